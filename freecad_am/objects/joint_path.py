@@ -184,17 +184,17 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
         return []
     names = ", ".join(one.name for one in cell.obstacles)
     return [Issue(
-        NOTE, "OBSTACLES_NOT_KEPT", Text("{}: looked at for the nozzle, and for links and part in simulation and preflight "
-            "alone; give cell.arm_clearance so that these are kept clear of it while planning", names)
+        NOTE, "OBSTACLES_NOT_KEPT", Text("{}: checked for the nozzle, and for links and part only in simulation and "
+            "preflight; give cell.arm_clearance so that these are kept clear of it while planning", names)
     )]
 
 
 def _not_known(cell: cells.Cell) -> list[Issue]:
-    """A note on positioners and tracks of which nothing is kept clear, for no file tells what they are made of."""
+    """A note on positioners and tracks of which nothing is kept clear, for no file says what they are made of."""
     if cell.external is None or not (lacking := ", ".join(of_unknown_shape(cell.external, cell.external_links))):
         return []
     return [Issue(
-        NOTE, "BODIES_NOT_KNOWN", Text("no file tells what {} is made of, so nozzle, torch and robot are not kept clear of "
+        NOTE, "BODIES_NOT_KNOWN", Text("no file says what {} is made of, so nozzle, torch and robot are not kept clear of "
             "it; give its machine file bodies, or name what of it stands still in cell.obstacles", lacking)
     )]
 

@@ -70,8 +70,8 @@ def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 
     if not inside and any(isinstance(block, Schedule) and block.inside for block in program.blocks):
         raise InputError(
             "SCHEDULE", "process.start.schedule",
-            "beads change their schedule, and this controller sets outputs between moves ahead of the motion, so far as"
-            " is known; give start and end other speeds alone, or use another controller",
+            "beads change their schedule, and as far as is known this controller sets outputs between moves ahead of the"
+            " motion; give start and end other speeds alone, or use another controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
     if numbers and not 1 <= program.schedule_output <= last:
@@ -83,7 +83,7 @@ def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 
     largest, most = (max(named), most_of_arc or most) if named else (max(numbers, default=0), most)
     if largest > most:
         raise InputError(
-            "SCHEDULE", "process.schedule", "the controller is told schedules up to {}, not {}; use another number, there "
+            "SCHEDULE", "process.schedule", "the controller takes schedules up to {}, not {}; use another number, there "
             "or in process.classes", most, largest,
         )
 
@@ -97,7 +97,7 @@ def refuse_weave(program: Program, most: int) -> None:
         raise weave_refused(Text("the controller has weaves 1 to {}, not {}", most, max(numbers)))
 
 
-JOINT_WEAVE = "controllers weave on linear moves, so far as is known, and these are joint moves"
+JOINT_WEAVE = "as far as is known controllers weave on linear moves, and these are joint moves"
 
 
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
@@ -233,8 +233,9 @@ def refuse_without_speeds(program: Program, axes: int) -> None:
     first = int(known.argmin()) if len(known) == axes else 0
     raise InputError(
         "NO_JOINT_SPEED", "cell.machine" if first < program.own_axes else "cell.external",
-        "this controller is told the speed of joint moves in percent of the axes' largest speeds, and the machine file of {}"
-        " does not give them; add max_speed to its joints", (program.axis_machines or (program.machine,) * axes)[first],
+        "on this controller the speed of joint moves is programmed in percent of the axes' largest speeds, and the "
+        "machine file of {} does not give them; add max_speed to its "
+        "joints", (program.axis_machines or (program.machine,) * axes)[first],
     )
 
 

@@ -29,7 +29,7 @@ from .planned import COMPUTED_AXIS, Planned
 # code and message of what is off, and the kinds of events that it is about
 _FAMILIES = (
     ("VERIFY_DEPOSIT", "the deposit is switched otherwise than planned", ("on", "off")),
-    ("VERIFY_SCHEDULE", "another schedule is told than planned", ("schedule",)),
+    ("VERIFY_SCHEDULE", "the schedule that is sent is not the planned one", ("schedule",)),
     ("VERIFY_WEAVE", "beads are woven otherwise than planned", ("weave",)),
     ("VERIFY_WAIT", "it is waited otherwise than planned", ("wait", "input")),
     ("VERIFY_COOLING", "a temperature is waited for otherwise", ("below",)),

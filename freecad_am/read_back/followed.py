@@ -110,7 +110,7 @@ def _as_named(cell: Cell, read: ReadMoves, found: Array, words: Index, rows: sli
     named &= ((shown[..., 4] > 0.0) == configuration.flip[rows, None]) & np.isfinite(found).all(axis=2) & (words >= 0)
     if configuration.turns[rows, :-1].any():
         raise InputError("NOT_YET", "program", "it names turns of other axes than the last one, which cannot be followed; "
-                         "tell these positions in joints")
+                         "give these positions in joints")
     chosen = shown[np.arange(len(found)), named.argmax(axis=1)]
     chosen -= TURN * np.rint(chosen / TURN)
     chosen[:, -1] += TURN * configuration.turns[rows, -1]

@@ -79,7 +79,7 @@ def twice_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves
     path, asked, _ = positions_path(cell, program, read)
     off = ~(lengths(path.position - planned.position) <= path.bound)
     off |= ~(lengths(path.tool - planned.tool) <= path.tool_bound) | turned_otherwise(asked, flange, path)
-    return planned.issue("VERIFY_POINT", twice & off, "the text tells another position there than joint values")
+    return planned.issue("VERIFY_POINT", twice & off, "the text gives another position there than the joint values")
 
 
 def turned_otherwise(asked: Array, flange: Array, path: Path) -> Mask:

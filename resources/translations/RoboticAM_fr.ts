@@ -40,7 +40,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Analogue output that tells the speed of the wire where it follows the travel speed.</source>
+        <source>Analogue output for the speed of the wire where it follows the travel speed.</source>
         <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
     </message>
     <message>
@@ -105,7 +105,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Density of the deposit in g/cm³; tells its mass.</source>
+        <source>Density of the deposit in g/cm³, for its mass.</source>
         <translation>Masse volumique du dépôt en g/cm³ ; donne sa masse.</translation>
     </message>
     <message>
@@ -210,7 +210,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Fastest travel speed at which the material is laid; faster beads are told. (mm/s)</source>
+        <source>Fastest travel speed at which the material is laid; faster beads are reported. (mm/s)</source>
         <translation>Vitesse d&apos;avance la plus rapide à laquelle le matériau est déposé ; les cordons plus rapides sont signalés. (mm/s)</translation>
     </message>
     <message>
@@ -285,7 +285,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Group output, H word, register or analogue output that tells it; of KUKA the first of eight outputs.</source>
+        <source>Group output, H word, register or analogue output that carries it; for KUKA the first of eight outputs.</source>
         <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
     </message>
     <message>
@@ -295,12 +295,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Heights above the part&apos;s base, in mm, at which circularity is told; none: a sixth, a half and five sixths of what was measured.</source>
+        <source>Heights above the part&apos;s base, in mm, at which circularity is evaluated; none: a sixth, a half and five sixths of what was measured.</source>
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Holes of meshes up to this size across are closed, which is told; larger ones are refused.</source>
+        <source>Holes of meshes up to this size across are closed, with a note; larger ones are refused.</source>
         <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
     </message>
     <message>
@@ -465,7 +465,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; where they would turn faster, at corners, they are spread, and how far they depart is told. (deg/mm)</source>
+        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; where they would turn faster, at corners, they are spread out, and the deviation is reported. (deg/mm)</source>
         <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante, sur les moyeux et dans les couches courbes ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit. (deg/mm)</translation>
     </message>
     <message>
@@ -689,6 +689,11 @@
         <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number of the schedule by which the welder or extruder lays beads; program.schedule says how it is sent.</source>
+        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Number of the tool frame named in the program.</source>
         <translation>Numéro du repère outil nommé dans le programme.</translation>
@@ -697,11 +702,6 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Number of the user frame named in the program.</source>
         <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Number that tells the welder or extruder how to lay beads; program.schedule says how it is told.</source>
-        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -795,7 +795,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule that is told there, without a stop.</source>
+        <source>Schedule that is sent there, without a stop.</source>
         <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
     </message>
     <message>
@@ -880,7 +880,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Slowest travel speed at which the material is laid; slower beads are told. (mm/s)</source>
+        <source>Slowest travel speed at which the material is laid; slower beads are reported. (mm/s)</source>
         <translation>Vitesse d&apos;avance la plus lente à laquelle le matériau est déposé ; les cordons plus lents sont signalés. (mm/s)</translation>
     </message>
     <message>
@@ -1210,7 +1210,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>What the colours of the beads tell.</source>
+        <source>What the colours of the beads show.</source>
         <translation>Ce que disent les couleurs des cordons.</translation>
     </message>
     <message>
@@ -1270,7 +1270,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is looked for.</source>
+        <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is searched for.</source>
         <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
     </message>
     <message>
@@ -1363,7 +1363,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>$OUT[{0}] to $OUT[{1}] tell the schedule, and one of them switches the deposit; use other ones, or another program.deposit_output</source>
+        <source>$OUT[{0}] to $OUT[{1}] carry the schedule, and one of them switches the deposit; use other ones, or another program.deposit_output</source>
         <translation>$OUT[{0}] à $OUT[{1}] transmettent le programme de soudage, et l&apos;une d&apos;elles commute le dépôt ; prenez-en d&apos;autres, ou un autre program.deposit_output</translation>
     </message>
     <message>
@@ -1668,7 +1668,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Analogue output that tells the speed of the wire where it follows the travel speed.</source>
+        <source>Analogue output for the speed of the wire where it follows the travel speed.</source>
         <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
     </message>
     <message>
@@ -1803,7 +1803,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>Base: the maker&apos;s own base frame, in which the pendant tells positions, seen from the floor plate. FANUC&apos;s lies at the height of axis 2. Flange: in the last link, its Z out of the plate. Rotation: about X, then Y, then Z.</source>
+        <source>Base: the maker&apos;s own base frame, in which the pendant shows positions, seen from the floor plate. FANUC&apos;s lies at the height of axis 2. Flange: in the last link, its Z out of the plate. Rotation: about X, then Y, then Z.</source>
         <translation>Base : le repère de base du constructeur, dans lequel le pupitre dit les positions, vu de la plaque au sol. Celui de FANUC est à la hauteur de l&apos;axe 2. Bride : dans le dernier corps, son Z hors de la plaque. Rotation : autour de X, puis Y, puis Z.</translation>
     </message>
     <message>
@@ -2338,7 +2338,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Density of the deposit in g/cm³; tells its mass.</source>
+        <source>Density of the deposit in g/cm³, for its mass.</source>
         <translation>Masse volumique du dépôt en g/cm³ ; donne sa masse.</translation>
     </message>
     <message>
@@ -2678,7 +2678,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Fastest travel speed at which the material is laid; faster beads are told.</source>
+        <source>Fastest travel speed at which the material is laid; faster beads are reported.</source>
         <translation>Vitesse d&apos;avance la plus rapide à laquelle le matériau est déposé ; les cordons plus rapides sont signalés.</translation>
     </message>
     <message>
@@ -2978,7 +2978,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Group output, H word, register or analogue output that tells it; of KUKA the first of eight outputs.</source>
+        <source>Group output, H word, register or analogue output that carries it; for KUKA the first of eight outputs.</source>
         <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
     </message>
     <message>
@@ -3023,7 +3023,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Heights above the part&apos;s base, in mm, at which circularity is told; none: a sixth, a half and five sixths of what was measured.</source>
+        <source>Heights above the part&apos;s base, in mm, at which circularity is evaluated; none: a sixth, a half and five sixths of what was measured.</source>
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
     </message>
     <message>
@@ -3038,7 +3038,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Holes of meshes up to this size across are closed, which is told; larger ones are refused.</source>
+        <source>Holes of meshes up to this size across are closed, with a note; larger ones are refused.</source>
         <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
     </message>
     <message>
@@ -3413,7 +3413,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; where they would turn faster, at corners, they are spread, and how far they depart is told.</source>
+        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; where they would turn faster, at corners, they are spread out, and the deviation is reported.</source>
         <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante, sur les moyeux et dans les couches courbes ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit.</translation>
     </message>
     <message>
@@ -3613,7 +3613,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide and two that turn; whether yours is one is looked at when you go on. Tracks, turntables and positioners, which stand beside a robot, have one axis or two.</source>
+        <source>Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide and two that turn; whether yours is one is checked when you go on. Tracks, turntables and positioners, which stand beside a robot, have one axis or two.</source>
         <translation>Les longueurs sont en mm, les angles en degrés. Les robots ont besoin de six axes qui tournent, les machines-outils de trois axes qui glissent et deux qui tournent ; si la vôtre en est une est examiné à la page suivante. Les rails, tables tournantes et positionneurs, qui se trouvent à côté d&apos;un robot, ont un axe ou deux.</translation>
     </message>
     <message>
@@ -4112,6 +4112,11 @@
         <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number of the schedule by which the welder or extruder lays beads; program.schedule says how it is sent.</source>
+        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Number of the tool frame named in the program.</source>
         <translation>Numéro du repère outil nommé dans le programme.</translation>
@@ -4120,11 +4125,6 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Number of the user frame named in the program.</source>
         <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Number that tells the welder or extruder how to lay beads; program.schedule says how it is told.</source>
-        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -4603,7 +4603,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
-        <source>Programs for this machine need what only its controller tells, its pulses per degree, in a machine file of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.</source>
+        <source>Programs for this machine need what only its controller knows, its pulses per degree, in a machine file of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.</source>
         <translation>Les programmes de cette machine demandent ce que seule sa commande indique, ses impulsions par degré, dans un fichier machine à vous. Tout est planifié, contrôlé et simulé sans elles ; Export Path… écrit les points dans un tableau.</translation>
     </message>
     <message>
@@ -4918,7 +4918,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule that is told there, without a stop.</source>
+        <source>Schedule that is sent there, without a stop.</source>
         <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
     </message>
     <message>
@@ -5123,7 +5123,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Slowest travel speed at which the material is laid; slower beads are told.</source>
+        <source>Slowest travel speed at which the material is laid; slower beads are reported.</source>
         <translation>Vitesse d&apos;avance la plus lente à laquelle le matériau est déposé ; les cordons plus lents sont signalés.</translation>
     </message>
     <message>
@@ -5683,7 +5683,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>The layer that is looked at; -1 for all of them</source>
+        <source>The layer that is shown; -1 for all of them</source>
         <translation>La couche regardée ; -1 pour toutes</translation>
     </message>
     <message>
@@ -5728,7 +5728,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>The machine does not give these poses; what is wrong can be told from three or more.</source>
+        <source>The machine does not give these poses; three or more would show what is wrong.</source>
         <translation>La machine ne donne pas ces poses ; ce qui est faux peut se dire à partir de trois ou plus.</translation>
     </message>
     <message>
@@ -5763,7 +5763,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
-        <source>The next page compares this with poses of your controller, and tells what is likely wrong: leave what you do not know as it is.</source>
+        <source>The next page compares this with poses of your controller, and says what is likely to be wrong: leave what you do not know as it is.</source>
         <translation>La page suivante compare ceci à des poses de votre commande, et dit ce qui est probablement faux : laissez tel quel ce que vous ne savez pas.</translation>
     </message>
     <message>
@@ -6128,7 +6128,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
-        <source>To the next place where a limit, a singularity or a speed is to be looked at</source>
+        <source>To the next place where a limit, a singularity or a speed needs attention</source>
         <translation>Au prochain endroit où une limite, une singularité ou une vitesse est à regarder</translation>
     </message>
     <message>
@@ -6263,12 +6263,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>URScript has no output at a time before a place, so far as is documented</source>
+        <source>URScript has no documented output at a time before a place</source>
         <translation>URScript n&apos;a pas de sortie commutée un temps avant un lieu, d&apos;après ce qui est documenté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>URScript has no weave of its own, so far as is documented</source>
+        <source>URScript has no documented weave of its own</source>
         <translation>URScript n&apos;a pas de balayage propre, d&apos;après la documentation</translation>
     </message>
     <message>
@@ -6338,12 +6338,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>VAL 3 has no output at a time before a place, so far as is documented</source>
+        <source>VAL 3 has no documented output at a time before a place</source>
         <translation>VAL 3 n&apos;a pas de sortie commutée un temps avant un lieu, d&apos;après ce qui est documenté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>VAL 3 has no weave, so far as is documented</source>
+        <source>VAL 3 has no documented weave</source>
         <translation>VAL 3 n&apos;a pas de balayage, d&apos;après la documentation</translation>
     </message>
     <message>
@@ -6493,17 +6493,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
-        <source>What the colours of the beads tell</source>
+        <source>What the colours of the beads show</source>
         <translation>Ce que disent les couleurs des cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/form.py"/>
-        <source>What the colours of the places tell</source>
+        <source>What the colours of the places show</source>
         <translation>Ce que disent les couleurs des endroits</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>What the colours tell</source>
+        <source>What the colours show</source>
         <translation>Ce que disent les couleurs</translation>
     </message>
     <message>
@@ -6568,7 +6568,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is looked for.</source>
+        <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is searched for.</source>
         <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
     </message>
     <message>
@@ -6958,7 +6958,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>a move would need {0} % of the largest joint speed, which is told in steps of {1} %; use another speed, so that it is {2} to 100 %</source>
+        <source>a move would need {0} % of the largest joint speed, which is programmed in steps of {1} %; use another speed, so that it is {2} to 100 %</source>
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
     </message>
     <message>
@@ -7063,7 +7063,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/text.py"/>
-        <source>a rapid would need {0} % of the largest joint speed, and KRL is told whole percents of {1} to 100; use another rapid speed</source>
+        <source>a rapid would need {0} % of the largest joint speed, and KRL takes whole percentages from {1} to 100; use another rapid speed</source>
         <translation>un rapide demanderait {0} % de la plus grande vitesse articulaire, et KRL prend des pourcentages entiers de {1} à 100 ; prenez une autre vitesse rapide</translation>
     </message>
     <message>
@@ -7073,7 +7073,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>a schedule is told within a bead</source>
+        <source>a schedule is sent within a bead</source>
         <translation>un programme de soudage est transmis à l&apos;intérieur d&apos;un cordon</translation>
     </message>
     <message>
@@ -7413,7 +7413,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>analogue output {0} tells the speed of the wire; use another one for schedules</source>
+        <source>analogue output {0} carries the speed of the wire; use another one for schedules</source>
         <translation>la sortie analogique {0} transmet la vitesse du fil ; prenez-en une autre pour les programmes de soudage</translation>
     </message>
     <message>
@@ -7440,16 +7440,6 @@
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>another program is called within a bead</source>
         <translation>un autre programme est appelé au sein d&apos;un cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>another schedule is told than planned</source>
-        <translation>un autre programme de soudage que prévu est transmis</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/program/beads.py"/>
-        <source>another schedule within a bead is told by an output alone: calls stop the machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and end out</source>
-        <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/placement/moved.py"/>
@@ -7495,6 +7485,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>around-axis</source>
         <translation>autour de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>as far as is known controllers weave on linear moves, and these are joint moves</source>
+        <translation>les commandes balaient sur des mouvements linéaires, à ce que l&apos;on sait, et ceux-ci sont articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -7648,7 +7643,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
-        <source>axis {0} stands at {1} deg and its turn cannot be told reliably in a Cartesian position; use `motion: joint`</source>
+        <source>axis {0} stands at {1} deg and its turn number cannot be given reliably in a Cartesian position; use `motion: joint`</source>
         <translation>l&apos;axe {0} se tient à {1} deg et son tour ne peut pas être dit sûrement dans une position cartésienne ; utilisez `motion: joint`</translation>
     </message>
     <message>
@@ -7763,7 +7758,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>beads change their schedule, and this controller sets outputs between moves ahead of the motion, so far as is known; give start and end other speeds alone, or use another controller</source>
+        <source>beads change their schedule, and as far as is known this controller sets outputs between moves ahead of the motion; give start and end other speeds alone, or use another controller</source>
         <translation>les cordons changent de programme de soudage, et ce contrôleur met les sorties entre les mouvements en avance sur le mouvement, autant qu&apos;on sache ; ne donnez à start et end que d&apos;autres vitesses, ou prenez un autre contrôleur</translation>
     </message>
     <message>
@@ -7833,7 +7828,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>blocks that tell a time are compressed into one, which would take the time of the last</source>
+        <source>blocks with a time are compressed into one, which would take the time of the last</source>
         <translation>des blocs qui disent un temps sont comprimés en un seul, qui prendrait le temps du dernier</translation>
     </message>
     <message>
@@ -8107,11 +8102,6 @@
         <translation>des contours qui se croisent ou se touchent ont été réparés ; {0} mm^2 ont changé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>controllers weave on linear moves, so far as is known, and these are joint moves</source>
-        <translation>les commandes balaient sur des mouvements linéaires, à ce que l&apos;on sait, et ceux-ci sont articulaires</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>coordinates in {0}</source>
         <translation>coordonnées en {0}</translation>
@@ -8138,7 +8128,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/size.py"/>
-        <source>curved layers are looked for on a grid of about {0} nodes, which takes about {1} min of the processor; a larger strategy.layer_height, or layers: planes, takes less</source>
+        <source>curved layers are searched for on a grid of about {0} nodes, which takes about {1} min of the processor; a larger strategy.layer_height, or layers: planes, takes less</source>
         <translation>les couches courbes sont cherchées sur une grille d&apos;environ {0} nœuds, ce qui prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou layers: planes, en prend moins</translation>
     </message>
     <message>
@@ -8603,7 +8593,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>how many pulses {0} counts to a degree of each axis is not known, and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant tells (a position in pulses over the same in degrees), or plan without a program</source>
+        <source>how many pulses {0} counts to a degree of each axis is not known, and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant shows them (a position in pulses over the same in degrees), or plan without a program</source>
         <translation>combien d&apos;impulsions {0} compte par degré de chaque axe n&apos;est pas connu, et deux modèles diffèrent toujours ; faites-en un fichier machine à vous, avec controller.pulses_per_degree d&apos;après le pupitre (une position en impulsions divisée par la même en degrés), ou planifiez sans programme</translation>
     </message>
     <message>
@@ -8878,7 +8868,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it extrudes before the program says where: X, Y and Z are to be told first; {0}</source>
+        <source>it extrudes before the program says where: X, Y and Z have to be given first; {0}</source>
         <translation>il extrude avant que le programme ne dise où : X, Y et Z doivent être donnés d&apos;abord ; {0}</translation>
     </message>
     <message>
@@ -9318,7 +9308,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>it is not known how wide its beads count; plan it anew</source>
+        <source>it is not known how wide its beads count; plan it again</source>
         <translation>la largeur que comptent ses cordons n&apos;est pas connue ; replanifiez-la</translation>
     </message>
     <message>
@@ -9368,7 +9358,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is set ahead of the motion, or its outputs cannot tell such a number</source>
+        <source>it is set ahead of the motion, or its outputs cannot carry such a number</source>
         <translation>il est mis en avance sur le mouvement, ou ses sorties ne peuvent transmettre un tel numéro</translation>
     </message>
     <message>
@@ -9423,7 +9413,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/scan_motion.py"/>
-        <source>it lies as well on the part turned by {0} deg: the scan does not tell which; give three points of it and where they are on the part as substrate.scan_pairs, or measure it in the part&apos;s coordinates</source>
+        <source>it lies as well on the part turned by {0} deg: the scan does not show which; give three points of it and where they are on the part as substrate.scan_pairs, or measure it in the part&apos;s coordinates</source>
         <translation>elle repose aussi bien sur la pièce tournée de {0} deg : la numérisation ne dit pas laquelle ; donnez trois de ses points et où ils sont sur la pièce par substrate.scan_pairs, ou mesurez-la dans les coordonnées de la pièce</translation>
     </message>
     <message>
@@ -9443,7 +9433,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>it moves without a tool, without the platform, or in joints where positions are told</source>
+        <source>it moves without a tool, without the platform, or in joints where positions are given</source>
         <translation>il se déplace sans outil, sans plateau, ou en valeurs articulaires là où des positions sont dites</translation>
     </message>
     <message>
@@ -9453,7 +9443,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/followed.py"/>
-        <source>it names turns of other axes than the last one, which cannot be followed; tell these positions in joints</source>
+        <source>it names turns of other axes than the last one, which cannot be followed; give these positions in joints</source>
         <translation>il nomme des tours d&apos;autres axes que le dernier, ce qui ne peut être suivi ; donnez ces positions en valeurs d&apos;axes</translation>
     </message>
     <message>
@@ -9628,7 +9618,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
-        <source>its surface ({0}) cannot be told as a spline; rebuild the face, for instance as a loft</source>
+        <source>its surface ({0}) cannot be converted to a spline; rebuild the face, for instance as a loft</source>
         <translation>sa surface ({0}) ne peut pas être dite par une spline ; reconstruisez la face, par exemple par lissage</translation>
     </message>
     <message>
@@ -10253,12 +10243,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>no file tells what {0} is made of</source>
+        <source>no file says what {0} is made of</source>
         <translation>aucun fichier ne dit de quoi {0} est fait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>no file tells what {0} is made of, so nozzle, torch and robot are not kept clear of it; give its machine file bodies, or name what of it stands still in cell.obstacles</source>
+        <source>no file says what {0} is made of, so nozzle, torch and robot are not kept clear of it; give its machine file bodies, or name what of it stands still in cell.obstacles</source>
         <translation>aucun fichier ne dit de quoi {0} est fait, si bien que buse, torche et robot n’en sont pas tenus à l’écart ; donnez bodies à son fichier de machine, ou nommez dans cell.obstacles ce qui en est immobile</translation>
     </message>
     <message>
@@ -10423,7 +10413,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>not checked: a bead model, or nothing, tells how wide the beads are</source>
+        <source>not checked: a bead model, or nothing, says how wide the beads are</source>
         <translation>non vérifié : un modèle de cordon, ou rien, dit la largeur des cordons</translation>
     </message>
     <message>
@@ -10438,7 +10428,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: no file tells what {0} is made of</source>
+        <source>not checked: no file says what {0} is made of</source>
         <translation>non vérifié : aucun fichier ne dit de quoi {0} est fait</translation>
     </message>
     <message>
@@ -10452,18 +10442,13 @@
         <translation>non vérifié : planifié par une version antérieure</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>not checked: schedules of their own, which nobody here knows, tell the welder to feed {0}</source>
-        <translation>non vérifié : des programmes de soudage propres, que personne ne connaît ici, disent au poste comment alimenter {0}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/preflight/payload.py"/>
-        <source>not checked: the file of {0} tells no payload; deposit and what it grows on, where that is closed, at {1} g/cm3 (process.density)</source>
+        <source>not checked: the file of {0} gives no payload; deposit and what it grows on, where that is closed, at {1} g/cm3 (process.density)</source>
         <translation>non vérifié : le fichier de {0} n’indique pas de charge ; dépôt et ce sur quoi il repose, dans la mesure où c’est fermé, à {1} g/cm3 (process.density)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: the machine file tells no shapes of its links</source>
+        <source>not checked: the machine file gives no shapes for its links</source>
         <translation>non vérifié : le fichier machine ne donne pas la forme de ses corps</translation>
     </message>
     <message>
@@ -10475,6 +10460,11 @@
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>not checked: the part has no faces to measure from</source>
         <translation>non vérifié : la pièce n’a pas de faces d’où mesurer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: the welder&apos;s own schedules, which are not known here, set the feed of {0}</source>
+        <translation>non vérifié : des programmes de soudage propres, que personne ne connaît ici, disent au poste comment alimenter {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
@@ -10493,22 +10483,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come nearer than {0} mm to nothing, looked at every {1} deg</source>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come nearer than {0} mm to nothing, checked every {1} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne s’approchent à moins de {0} mm de rien, regardés tous les {1} deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come nearer than {0} mm to {1} with {2}, looked at every {3} deg</source>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come nearer than {0} mm to {1} with {2}, checked every {3} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique s’approchent à moins de {0} mm de {1} avec {2}, regardés tous les {3} deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch nothing, looked at every {0} deg</source>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch nothing, checked every {0} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne touchent rien, regardés tous les {0} deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch {0} with {1}, looked at every {2} deg</source>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch {0} with {1}, checked every {2} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
     </message>
     <message>
@@ -10600,6 +10590,11 @@
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>on its way from the bead before the nozzle would meet {0} at every retract distance and direction tried, and no way round was found; move the seam or the part, or take a more slender nozzle</source>
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée, et aucun contournement n’a été trouvé ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>on this controller the speed of joint moves is programmed in percent of the axes&apos; largest speeds, and the machine file of {0} does not give them; add max_speed to its joints</source>
+        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine de {0} ne les donne pas ; ajoutez max_speed à ses articulations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
@@ -10883,7 +10878,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>process.density tells what it weighs; what the machine carries is in its file</source>
+        <source>process.density sets what it weighs; the payload is in the machine&apos;s file</source>
         <translation>process.density dit ce qu&apos;elle pèse ; ce que la machine porte est dans son fichier</translation>
     </message>
     <message>
@@ -11033,7 +11028,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>retracts, travels and approaches driven anew, at {0} places {1} mm apart, against bodies, platform and beads as wide and high as they are by then</source>
+        <source>retracts, travels and approaches driven again, at {0} places {1} mm apart, against bodies, platform and beads as wide and high as they are by then</source>
         <translation>retraits, transferts et approches menés à nouveau, en {0} points distants de {1} mm, contre les corps, le plateau et les cordons avec leur largeur et leur hauteur du moment</translation>
     </message>
     <message>
@@ -11393,7 +11388,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the axes beside the robot are not told in order, or BASE is not coupled to what they move</source>
+        <source>the axes beside the robot are not given in order, or BASE is not coupled to what they move</source>
         <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à ce qu&apos;ils déplacent</translation>
     </message>
     <message>
@@ -11527,11 +11522,6 @@
         <translation>la commande a les balayages 1 à {0}, pas {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the controller is told schedules up to {0}, not {1}; use another number, there or in process.classes</source>
-        <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>the controller of {0} does not read {1}; there is no post for it yet: plan without a program; waypoints.csv has its axes</source>
         <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle : planifiez sans programme ; waypoints.csv a ses axes</translation>
@@ -11540,6 +11530,11 @@
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>the controller of {0} does not read {1}; use one of {2}</source>
         <translation>la commande de {0} ne lit pas {1} ; utilisez l&apos;un de {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the controller takes schedules up to {0}, not {1}; use another number, there or in process.classes</source>
+        <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -11573,7 +11568,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
-        <source>the deposit begins with a linear move onto the bead, which would leave the way that was looked at by {0} mm; give a shorter retract distance, or another {1}</source>
+        <source>the deposit begins with a linear move onto the bead, which would leave the checked way by {0} mm; give a shorter retract distance, or another {1}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
     </message>
     <message>
@@ -11723,12 +11718,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>the geometry kernel cannot divide this face into triangles; repair it (Part, Check geometry), or draw it anew</source>
+        <source>the geometry kernel cannot divide this face into triangles; repair it (Part, Check geometry), or redraw it</source>
         <translation>le noyau géométrique ne peut pas diviser cette face en triangles ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>the geometry kernel cannot work with this shape ({0}); repair it (Part, Check geometry), or draw its faces anew</source>
+        <source>the geometry kernel cannot work with this shape ({0}); repair it (Part, Check geometry), or redraw its faces</source>
         <translation>le noyau géométrique ne peut pas traiter cette forme ({0}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
     </message>
     <message>
@@ -11877,6 +11872,11 @@
         <translation>la machine ne les donne pas ; voyez les écarts</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>the machine file gives no largest speeds</source>
+        <translation>le fichier machine ne donne pas de vitesses maximales</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the machine file has no controller.pulses_per_degree; add them</source>
         <translation>le fichier machine n&apos;a pas de controller.pulses_per_degree ; ajoutez-les</translation>
@@ -11885,11 +11885,6 @@
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the machine file has no controller.speed_unit; add it</source>
         <translation>le fichier machine n&apos;a pas de controller.speed_unit ; ajoutez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/joints.py"/>
-        <source>the machine file tells no largest speeds</source>
-        <translation>le fichier machine ne donne pas de vitesses maximales</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/order.py"/>
@@ -11998,7 +11993,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/read.py"/>
-        <source>the move is not told in the axes of the first one</source>
+        <source>the move is not given in the axes of the first one</source>
         <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
     </message>
     <message>
@@ -12173,7 +12168,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>the points of the part are on a line, or all in one place: nothing tells how the part is turned about it; touch one beside it</source>
+        <source>the points of the part are on a line, or all in one place: they leave open how the part is turned about it; touch one off that line</source>
         <translation>les points de la pièce sont sur une droite, ou tous au même endroit : rien ne dit comment la pièce est tournée autour ; palpez-en un à côté</translation>
     </message>
     <message>
@@ -12188,7 +12183,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>the points touched are on a line, or all in one place: nothing tells how the part is turned about it; touch one beside it</source>
+        <source>the points touched are on a line, or all in one place: they leave open how the part is turned about it; touch one off that line</source>
         <translation>les points palpés sont sur une droite, ou tous au même endroit : rien ne dit comment la pièce est tournée autour ; palpez-en un à côté</translation>
     </message>
     <message>
@@ -12253,7 +12248,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>the program does not tell where the flange is, which blends count on; plan the joint path again</source>
+        <source>the program does not say where the flange is, which blends depend on; plan the joint path again</source>
         <translation>le programme ne dit pas où est la bride, dont dépendent les lissages ; replanifiez la trajectoire articulaire</translation>
     </message>
     <message>
@@ -12325,6 +12320,11 @@
         <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
         <source>the scan reaches over {0} mm, {1} over {2} mm; in {3} it would be about as large, give that as substrate.scan_unit</source>
         <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; en {3} elle serait à peu près aussi grande, donnez cela comme substrate.scan_unit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the schedule that is sent is not the planned one</source>
+        <translation>un autre programme de soudage que prévu est transmis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
@@ -12437,6 +12437,11 @@
         <translation>le texte demande d&apos;autres valeurs articulaires que celles prévues</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/points.py"/>
+        <source>the text gives another position there than the joint values</source>
+        <translation>le texte y dit une autre position que les valeurs articulaires</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/verify.py"/>
         <source>the text has {0} moves, planned are {1}</source>
         <translation>le texte a {0} mouvements, {1} sont planifiés</translation>
@@ -12482,11 +12487,6 @@
         <translation>le texte mène {0} jusqu&apos;à {1} {2} au-delà de sa limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/points.py"/>
-        <source>the text tells another position there than joint values</source>
-        <translation>le texte y dit une autre position que les valeurs articulaires</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/read_back/times.py"/>
         <source>the time in the text does not give the planned speed</source>
         <translation>le temps dans le texte ne donne pas la vitesse planifiée</translation>
@@ -12498,7 +12498,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>the tip moves at {0} mm/s on the move at the end of which the deposit is switched, and the controller is told how far before it; give a retract distance, or leave program.trigger.lead out</source>
+        <source>the tip moves at {0} mm/s on the move at the end of which the deposit is switched, and the lead is programmed as a distance before that place; give a retract distance, or leave program.trigger.lead out</source>
         <translation>la pointe avance à {0} mm/s dans le mouvement à la fin duquel le dépôt est commuté, et l&apos;on indique au contrôleur à quelle distance de cette fin ; donnez une distance de retrait, ou omettez program.trigger.lead</translation>
     </message>
     <message>
@@ -12662,6 +12662,11 @@
         <translation>le balayage d&apos;ArcTech fait partie de ses données de soudage, que le pupitre crée, et n&apos;a pas de numéro à lui</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>the wire feed of ArcL is set by its welddata</source>
+        <translation>le fil de ArcL est dit par ses welddata</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>the wire feeds {0} mm3/s, but beads of these classes, at their own travel speeds, take {1} mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the travel speed of the others</source>
         <translation>le fil apporte {0} mm3/s, mais les cordons de ces classes, à leurs propres vitesses d&apos;avance, en demandent {1} mm3/s : il y a là plus ou moins de matière que de place ; donnez-leur un programme de soudage qui alimente ainsi le fil, ou la vitesse d&apos;avance des autres</translation>
@@ -12680,11 +12685,6 @@
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
         <source>the wire is fed by two scales at once, or ends where it was not fed, or within a bead</source>
         <translation>le fil est dévidé par deux échelles à la fois, ou s&apos;arrête là où il ne l&apos;était pas, ou au sein d&apos;un cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>the wire of ArcL is told by its welddata</source>
-        <translation>le fil de ArcL est dit par ses welddata</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -12962,11 +12962,6 @@
         <translation>cette machine ne peut pas être planifiée : {0} ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>this controller is told the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file of {0} does not give them; add max_speed to its joints</source>
-        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine de {0} ne les donne pas ; ajoutez max_speed à ses articulations</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF; choose the URDF of a robot</source>
         <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF ; choisissez l&apos;URDF d&apos;un robot</translation>
@@ -13098,7 +13093,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>tool or platform is set anew</source>
+        <source>tool or platform is set again</source>
         <translation>l&apos;outil ou le plateau est redéfini</translation>
     </message>
     <message>
@@ -13333,7 +13328,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>what the robot&apos;s own base is on, which is not told by a MACHINE_DEF</source>
+        <source>what the robot&apos;s own base is on, which no MACHINE_DEF gives</source>
         <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
     </message>
     <message>
@@ -13433,13 +13428,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>with {0} the {1} of the layers in question that were planned anew are feasible; the whole job was not tried</source>
+        <source>with {0} the {1} of the layers in question that were planned again are feasible; the whole job was not tried</source>
         <translation>avec {0}, les {1} couches en cause replanifiées sont faisables ; le travail entier n’a pas été essayé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
         <source>with {0} this job is feasible; tried, not applied</source>
         <translation>avec {0}, ce travail est faisable ; essayé, non appliqué</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program/beads.py"/>
+        <source>within a bead the schedule is changed by an output alone: calls stop the machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and end out</source>
+        <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
@@ -13693,7 +13693,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>{0} changes no deviation: the points do not tell it</source>
+        <source>{0} changes no deviation: the points do not determine it</source>
         <translation>{0} ne change aucun écart : les points ne le disent pas</translation>
     </message>
     <message>
@@ -13893,7 +13893,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>{0} is a URDF, which does not tell what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
+        <source>{0} is a URDF, which does not say what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
     <message>
@@ -14353,7 +14353,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is not a speed of the module, or the move is told otherwise than by \T or \V</source>
+        <source>{0} is not a speed of the module, or the speed is given otherwise than by \T or \V</source>
         <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
     </message>
     <message>
@@ -14958,12 +14958,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} is not the edge that was chosen: that edge is {2} now, as FreeCAD numbers edges anew when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} is not the edge that was chosen: that edge is {2} now, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} n’est pas l’arête choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} is not the face that was chosen: that face is {2} now, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} is not the face that was chosen: that face is {2} now, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} n’est pas la face choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
@@ -14983,17 +14983,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} lies another way than when it was chosen, so it may be another edge, as FreeCAD numbers edges anew when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} lies another way than when it was chosen, so it may be another edge, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} est orientée autrement que lorsqu’elle a été choisie, c’est donc peut-être une autre arête, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} lies another way than when it was chosen, so it may be another face, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} lies another way than when it was chosen, so it may be another face, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} est orientée autrement que lorsqu’elle a été choisie, c’est donc peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/on_part.py"/>
-        <source>{0} of {1} places looked at are off the part, this one at {2} by {3} mm, and {4} mm are allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part</source>
+        <source>{0} of {1} places checked are off the part, this one at {2} by {3} mm, and {4} mm are allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part</source>
         <translation>{0} des {1} endroits regardés sont hors de la pièce, celui-ci en {2} de {3} mm, et {4} mm sont permis : cette trajectoire dépose autre chose ; choisissez une autre stratégie, ou d&apos;autres faces, et signalez la pièce</translation>
     </message>
     <message>
@@ -15013,12 +15013,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another edge, as FreeCAD numbers edges anew when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another edge, as FreeCAD renumbers edges when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, c’est donc peut-être une autre arête, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
-        <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another face, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
+        <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another face, as FreeCAD renumbers faces when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, c’est donc peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
@@ -15048,7 +15048,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
-        <source>{0} point(s) do not tell where a part stands; touch {1} or more, far from one another and not on a line</source>
+        <source>{0} point(s) do not determine where a part stands; touch {1} or more, far from one another and not on a line</source>
         <translation>{0} point(s) ne disent pas où se trouve une pièce ; palpez-en {1} ou plus, éloignés les uns des autres et pas sur une droite</translation>
     </message>
     <message>
@@ -15167,6 +15167,11 @@
         <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
+        <source>{0} states its own unit; leave out the scale, which is for STL and OBJ</source>
+        <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} takes all of the file; leave out base and tip of the machine, or name the mechanisms one by one</source>
         <translation>{0} prend tout le fichier ; retirez base et tip de la machine, ou nommez les mécanismes un par un</translation>
@@ -15175,11 +15180,6 @@
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>{0} takes no calibration; those of Universal Robots do: leave it out</source>
         <translation>{0} n&apos;admet pas d&apos;étalonnage ; seuls les robots d&apos;Universal Robots en ont un : omettez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
-        <source>{0} tells its unit itself; leave out the scale, it is for STL and OBJ</source>
-        <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
@@ -15387,6 +15387,11 @@
         <translation>{0} : les cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, les couches ne montent pas au-dessus de la dernière coupe, et rien n&apos;est déposé dans un moyeu ; prenez des cordons plus étroits, ou des couches plus basses</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>{0}: checked for the nozzle, and for links and part only in simulation and preflight; give cell.arm_clearance so that these are kept clear of it while planning</source>
+        <translation>{0} : vérifié pour la buse, et pour les segments et la pièce dans la simulation et le contrôle préalable seulement ; donnez cell.arm_clearance pour que ceux-ci l&apos;évitent dès la planification</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
         <source>{0}: controller.matrix</source>
         <translation>{0} : controller.matrix</translation>
@@ -15402,29 +15407,24 @@
         <translation>{0} : donnez source, et au besoin {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/scan.py"/>
-        <source>{0}: how far a part has grown is told by a scan in the part&apos;s own coordinates alone; give none</source>
-        <translation>{0} : seule une numérisation dans les coordonnées de la pièce dit jusqu&apos;où une pièce a grandi ; donnez none</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/whole_mesh.py"/>
         <source>{0}: its triangles enclose {1} cm3 and its faces {2} cm3; check and export the part again, or deposit it from a mesh</source>
         <translation>{0} : ses triangles enferment {1} cm3 et ses faces {2} cm3 ; contrôlez la pièce et exportez-la de nouveau, ou déposez-la à partir d&apos;un maillage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>{0}: layer {1} lies on what was scanned, {2} to {3} mm from the plan, now within {4} mm; {5} layers lead back to the plan. {6} points were looked at, {7} that face another way left out; along the beads it rises by up to {8} deg against the plan{9}</source>
+        <source>{0}: layer {1} lies on what was scanned, {2} to {3} mm from the plan, now within {4} mm; {5} layers lead back to the plan. {6} points were used, {7} that face another way left out; along the beads it rises by up to {8} deg against the plan{9}</source>
         <translation>{0} : la couche {1} repose sur ce qui a été numérisé, de {2} à {3} mm du plan, maintenant à moins de {4} mm ; {5} couches ramènent au plan. {6} points ont été regardés, {7} tournés ailleurs laissés de côté ; le long des cordons elle monte de {8} deg au plus par rapport au plan{9}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>{0}: looked at for the nozzle, and for links and part in simulation and preflight alone; give cell.arm_clearance so that these are kept clear of it while planning</source>
-        <translation>{0} : vérifié pour la buse, et pour les segments et la pièce dans la simulation et le contrôle préalable seulement ; donnez cell.arm_clearance pour que ceux-ci l&apos;évitent dès la planification</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
         <source>{0}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool to choose; leave out what is meant for robots</source>
         <translation>{0} : sans effet sur une machine à deux axes rotatifs, qui ne laisse pas de rotation autour de l&apos;outil à choisir ; retirez ce qui est fait pour les robots</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/scan.py"/>
+        <source>{0}: only a scan in the part&apos;s own coordinates shows how far a part has grown; give none</source>
+        <translation>{0} : seule une numérisation dans les coordonnées de la pièce dit jusqu&apos;où une pièce a grandi ; donnez none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -15447,6 +15447,11 @@
         <translation>{0} : {1} arêtes, la première en {2} ; {3}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
+        <source>{0}: {1} has no number; {2}</source>
+        <translation>{0} : {1} ne donne pas de nombre ; {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0}: {1} is not a pose; give six numbers x y z RX RY RZ</source>
         <translation>{0} : {1} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ</translation>
@@ -15465,11 +15470,6 @@
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0}: {1} mm off; name the faces of the wall if it is not part of it</source>
         <translation>{0} : écart de {1} mm ; nommez les faces de la paroi si elle n&apos;en fait pas partie</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
-        <source>{0}: {1} tells no number; {2}</source>
-        <translation>{0} : {1} ne donne pas de nombre ; {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -15538,7 +15538,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>{0}; write the program anew</source>
+        <source>{0}; write the program again</source>
         <translation>{0} ; écrivez le programme de nouveau</translation>
     </message>
     <message>
@@ -15623,7 +15623,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
-        <source>{label} was computed anew</source>
+        <source>{label} was computed again</source>
         <translation>{label} a été recalculé</translation>
     </message>
     <message>
@@ -15893,7 +15893,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
-        <source>{} of the points looked at do not serve: they are red</source>
+        <source>{} of the points tried do not serve: they are red</source>
         <translation>{} des points regardés ne conviennent pas : ils sont rouges</translation>
     </message>
     <message>
@@ -15903,7 +15903,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>{} of {} poses are feasible, as far as {} of {} points tell.</source>
+        <source>{} of {} poses are feasible, as far as {} of {} points show.</source>
         <translation>{} poses sur {} sont réalisables, d&apos;après {} points sur {}.</translation>
     </message>
     <message>

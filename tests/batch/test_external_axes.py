@@ -95,7 +95,7 @@ def columns(workshop, first):
 
 
 @pytest.mark.parametrize(("mechanism", "untold"), [
-    ("motoman-motopos-d500", ""), ("kuka-kp2-hv500", "no file tells what KUKA KP2-HV500 is made of"),
+    ("motoman-motopos-d500", ""), ("kuka-kp2-hv500", "no file says what KUKA KP2-HV500 is made of"),
 ])
 def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(workshop, written, mechanism, untold):
     def change(job):

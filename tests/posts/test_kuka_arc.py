@@ -147,7 +147,7 @@ def test_the_way_onto_a_bead_stays_by_the_one_that_was_looked_at():
     assert looked == added
     with pytest.raises(InputError) as error:
         build(whole, cell, LIT, ARC, "job")
-    assert error.value.code == "SCHEDULE" and "would leave the way" in error.value.message
+    assert error.value.code == "SCHEDULE" and "would leave the checked way" in error.value.message
 
 
 def test_a_way_that_was_not_looked_at_is_found_by_reading_back(monkeypatch):
@@ -190,7 +190,7 @@ def test_what_arctech_has_in_its_own_data_or_was_not_confirmed_is_refused():
     refusal(dataclasses.replace(LIT, lead_off=0.2), "SCHEDULE", "crater time of WDATOFF7")
     refusal(dataclasses.replace(LIT, schedule=None), "NO_SCHEDULE", "arc instructions name")
     refusal(dataclasses.replace(LIT, schedule=256), "SCHEDULE", "up to 255, not 256")
-    refusal(dataclasses.replace(LIT, start=BeadStart(4.0, 5.0, 4)), "SCHEDULE", "told by an output alone")
+    refusal(dataclasses.replace(LIT, start=BeadStart(4.0, 5.0, 4)), "SCHEDULE", "changed by an output alone")
 
 
 def test_a_program_that_begins_at_a_bead_is_refused():

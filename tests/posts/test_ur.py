@@ -366,10 +366,10 @@ def by_hand(pattern="", replacement=""):
     (r"  movep[^\n]*\n", "  a()\n  def a():\n    sleep(0.1)\n  end\n", "TABLE.script line 6", "before it is defined"),
     (r"  movep[^\n]*\n", "  while True:\n    sleep(0.1)\n  end\n", "TABLE.script line 6", "is not understood"),
     (r"  movep[^\n]*\n", "  while get_standard_digital_in(1) == False:\n  end\n", "TABLE.script line 6", "a loop that"),
-    (r"  movep[^\n]*\n", "  set_tcp(p[0.0, 0.0, 0.0, 0.0, 0.0, 0.0])\n", "TABLE.script line 6", "set anew"),
+    (r"  movep[^\n]*\n", "  set_tcp(p[0.0, 0.0, 0.0, 0.0, 0.0, 0.0])\n", "TABLE.script line 6", "set again"),
     (r"  movep[^\n]*\n", "  set_standard_digital_out(1, True)\n", "TABLE.script line 6", "a second output"),
     (r"  movep", "movep", "TABLE.script line 6", "outside of its function"),
-    (r"movej\(get_inverse_kin\([^\n]*\), (\[[^\]]*\])\)", r"movej(\1", "TABLE.script line 4", "positions are told"),
+    (r"movej\(get_inverse_kin\([^\n]*\), (\[[^\]]*\])\)", r"movej(\1", "TABLE.script line 4", "positions are given"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(pattern, replacement, where, why):
     with pytest.raises(InputError) as raised:

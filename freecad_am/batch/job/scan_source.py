@@ -64,8 +64,8 @@ def scan_of(given: dict[str, Any], strategy: Any) -> ScanSource | None:
         raise InputError(error.code, f"{PREFIX}.scan_pairs", error.message) from None
     if parameters.after_layer is not None and fit not in (AUTO, NONE):
         raise InputError(
-            "BAD_VALUE", f"{PREFIX}.scan_fit", "{}: how far a part has grown is told by a scan in the part's own "
-            "coordinates alone; give none", fit
+            "BAD_VALUE", f"{PREFIX}.scan_fit", "{}: only a scan in the part's own coordinates shows how far a part has "
+            "grown; give none", fit
         )
     layers = getattr(strategy, "layers", "planes")
     kind = type(strategy).__name__.removesuffix("Parameters").lower()

@@ -25,7 +25,7 @@ def render(name: str, found: Placed) -> str:
     serve = sum(one.feasible for one in found.judged)
     what = found.moves.replace("-", " ")
     text = (f"{serve} of {len(found.poses)} poses of the {what} are feasible, as far as {found.points} of {found.of} points "
-            "tell. Each square is the best of its rotations; its colour is the least share of a joint's "
+            "show. Each square is the best of its rotations; its colour is the least share of a joint's "
             "range that is left to a limit, grey where the pose is not feasible; the number is the share of points served.")
     parts = [f"<header><h1>{title}</h1></header><p class=\"sub\">{text}</p>", _table(found)]
     heights = np.unique(found.poses[:, 2])[:_MOST_MAPS]

@@ -33,8 +33,8 @@ def reported(label: str) -> Iterator[None]:
     except FAULTS as error:
         what = " ".join(str(error).split()) or type(error).__name__
         raise InputError(
-            FAULTY, label, "the geometry kernel cannot work with this shape ({}); repair it (Part, Check geometry), or draw "
-            "its faces anew", what,
+            FAULTY, label, "the geometry kernel cannot work with this shape ({}); repair it (Part, Check geometry), or "
+            "redraw its faces", what,
         ) from error
 
 
@@ -53,7 +53,7 @@ def refuse_bare(named: Sequence[tuple[str, Any]], owner: Index, label: str, narr
                 )
         raise InputError(
             FAULTY, f"{label} {name}", "the geometry kernel cannot divide this face into triangles; repair it (Part, "
-            "Check geometry), or draw it anew",
+            "Check geometry), or redraw it",
         )
 
 

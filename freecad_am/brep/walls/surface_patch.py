@@ -62,7 +62,8 @@ def _spline(face: Any, where: str) -> Patch:
                 surface = surface.toBSpline()
         except (RuntimeError, AttributeError, Part.OCCError):
             raise InputError(
-                "ROUGH_WALL", where, "its surface ({}) cannot be told as a spline; rebuild the face, for instance as a loft",
+                "ROUGH_WALL", where, "its surface ({}) cannot be converted to a spline; rebuild the face, for instance "
+                "as a loft",
                 surface.TypeId.removeprefix("Part::Geom"),
             ) from None
     else:

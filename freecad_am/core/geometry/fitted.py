@@ -13,7 +13,7 @@ REMAINS = "SCAN_REMAINS"  # that the last layer is still off the plan
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """file: name of the scan. points: how many of its points were looked at, left_out: how many face another way than the
+    """file: name of the scan. points: how many of its points were used, left_out: how many face another way than the
     layers grow. layer: number of the first layer that was fitted; layers: over how many, from that one, the deposit is led
     back to the plan. places: (m, 3) mm in part coordinates, all over that layer as it was planned; off: (m,) mm along the
     build direction from there to the scan. laid: (k, 3) mm, places of that layer as it is laid now, between points too;

@@ -191,7 +191,7 @@ def _slope(planned: Sequence[Scanned]) -> float:
 def _issues(record: Fitted, height: float) -> list[Issue]:
     issues = [Issue(
         NOTE, "SCAN_FITTED", Text("{}: layer {} lies on what was scanned, {:.3f} to {:.3f} mm from the plan, now within "
-            "{:.3f} mm; {} layers lead back to the plan. {} points were looked at, {} that face another way left out; along "
+            "{:.3f} mm; {} layers lead back to the plan. {} points were used, {} that face another way left out; along "
             "the beads it rises by up to {:.1f} deg against the plan{}", record.file, record.layer, record.off.min(),
             record.off.max(), np.abs(record.left).max(), record.layers, record.points, record.left_out,
             math.degrees(math.atan(record.slope)), _moved(record.motion)),

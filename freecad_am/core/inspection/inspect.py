@@ -192,7 +192,8 @@ def _issues(
     found: Registration, planned: Planned, within: NDArray[np.bool_], fitted: NDArray[np.bool_], is_ball: bool
 ) -> list[Issue]:
     free = ("turning it about the centre of the sphere",) if is_ball and len(found.free) == 3 else found.free
-    issues = [Issue(NOTE, "FREE_MOTION", Text("{} changes no deviation: the points do not tell it", text)) for text in free]
+    issues = [Issue(NOTE, "FREE_MOTION", Text("{} changes no deviation: the points do not determine "
+        "it", text)) for text in free]
     past = int((~within).sum())
     if past:
         issues.append(Issue(NOTE, "PAST_EDGES", Text("{} points lie past the edges of {} and count nowhere", past,

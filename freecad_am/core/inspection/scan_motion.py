@@ -56,7 +56,7 @@ def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Arr
     if others and turns.min() > PLAIN:
         angle = np.degrees(_turn(others[0][:3, :3] @ best[:3, :3].T))
         raise InputError(
-            "SCAN_AMBIGUOUS", label, "it lies as well on the part turned by {:.0f} deg: the scan does not tell which; give "
+            "SCAN_AMBIGUOUS", label, "it lies as well on the part turned by {:.0f} deg: the scan does not show which; give "
             "three points of it and where they are on the part as substrate.scan_pairs, or measure it in the part's "
             "coordinates", angle
         )

@@ -56,15 +56,16 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
     """Where the part stands. Raises InputError TOUCHED for fewer than three points, points on a line, of another size, and
     where one is farther than `tolerance` mm from where it was touched."""
     if len(points) < LEAST:
-        raise InputError(CODE, WHERE, "{} point(s) do not tell where a part stands; touch {} or more, far from one another "
-                         "and not on a line", len(points), LEAST)
+        raise InputError(CODE, WHERE, "{} point(s) do not determine where a part stands; touch {} or more, far from one "
+                         "another and not on a line", len(points), LEAST)
     part, robot = (np.array([getattr(one, side) for one in points]) for side in ("part", "robot"))
     here, there = part - part.mean(axis=0), robot - robot.mean(axis=0)
     for side, seen in (("part", here), ("robot", there)):
         spread = np.linalg.svd(seen, compute_uv=False)
         if not spread[1] > LINE * spread[0]:
-            raise InputError(CODE, WHERE, "the points {} are on a line, or all in one place: nothing tells how the part is "
-                             "turned about it; touch one beside it", Word("touched" if side == "robot" else "of the part"))
+            raise InputError(CODE, WHERE, "the points {} are on a line, or all in one place: they leave open how the "
+                             "part is turned about it; touch one off that line",
+                             Word("touched" if side == "robot" else "of the part"))
     _refuse_other_size(float(np.linalg.norm(there) / np.linalg.norm(here)))
     left, _, right = np.linalg.svd(here.T @ there)
     turn = (left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right).T

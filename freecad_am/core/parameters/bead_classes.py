@@ -33,7 +33,7 @@ class PhaseParameters:
         None, f.SPEED, "Speed of the torch there.", low=0.0, open_low=True, optional=True
     )
     schedule: int | None = f.parameter(
-        None, f.COUNT, "Schedule that is told there, without a stop.", low=1, high=LARGEST_SCHEDULE, optional=True,
+        None, f.COUNT, "Schedule that is sent there, without a stop.", low=1, high=LARGEST_SCHEDULE, optional=True,
     )
     ramp: float = f.parameter(
         0.0, f.LENGTH, "Length beside it along which the speed changes step by step to that of the bead.", low=0.0,
@@ -167,7 +167,7 @@ def _values(name: str, text: str) -> dict[str, float | int | None]:
         try:
             value = float(number)
         except ValueError:
-            raise InputError("BAD_VALUE", WHERE, "{}: {!r} tells no number; {}", name, entry.strip(), _FORM) from None
+            raise InputError("BAD_VALUE", WHERE, "{}: {!r} has no number; {}", name, entry.strip(), _FORM) from None
         whole = SPECS[key].kind == f.COUNT and value.is_integer()
         values[key] = int(value) if whole else _INNER.get(SPECS[key].kind, float)(value)
     return values

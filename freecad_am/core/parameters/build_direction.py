@@ -33,8 +33,8 @@ class BuildDirectionParameters:
     )
     max_turn: float | str = f.parameter(
         "auto", f.TURN_RATE, "Largest turn of build direction and tool axis along a bead, on walls on an existing part, "
-        "on hubs and in curved layers; where they would turn faster, at corners, they are spread, and how far they depart "
-        "is told.",
+        "on hubs and in curved layers; where they would turn faster, at corners, they are spread out, and the deviation is "
+        "reported.",
         low=0.0, open_low=True, words=("auto", "inf"),
     )
     plane: str = f.parameter(

@@ -39,7 +39,7 @@ class InspectionParameters:
     )
     pairs: str = f.parameter(
         "", f.TEXT, "Where the fit begins: three or more pairs of a measured point and the same point of the part, each "
-        "x y z > x y z in mm, with a semicolon between; empty: it is looked for.", advanced=True,
+        "x y z > x y z in mm, with a semicolon between; empty: it is searched for.", advanced=True,
     )
     side: str = f.parameter(
         OUTER, f.CHOICE, "Which side of a wall was measured: that of its outer normals, the inner one, or both.",
@@ -50,8 +50,8 @@ class InspectionParameters:
         "surface itself is the measured one.", low=0.0, high=1000.0,
     )
     heights: tuple[str, ...] = f.parameter(
-        (), f.TEXT, "Heights above the part's base, in mm, at which circularity is told; none: a sixth, a half and five "
-        "sixths of what was measured.", unit="mm",
+        (), f.TEXT, "Heights above the part's base, in mm, at which circularity is evaluated; none: a sixth, a half and "
+        "five sixths of what was measured.", unit="mm",
     )
     band: float = f.parameter(
         0.5, f.LENGTH, "Points up to this far above or below such a height count there, slid along the planned surface.",

@@ -99,11 +99,13 @@ class MaterialParameters:
         None, f.TEXT, "Where the figures of the material are from; carried to the report.", optional=True, advanced=True
     )
     slowest: float | None = f.parameter(
-        None, f.SPEED, "Slowest travel speed at which the material is laid; slower beads are told.", low=0.0, open_low=True,
+        None, f.SPEED, "Slowest travel speed at which the material is laid; slower beads are "
+            "reported.", low=0.0, open_low=True,
         optional=True, advanced=True,
     )
     fastest: float | None = f.parameter(
-        None, f.SPEED, "Fastest travel speed at which the material is laid; faster beads are told.", low=0.0, open_low=True,
+        None, f.SPEED, "Fastest travel speed at which the material is laid; faster beads are "
+            "reported.", low=0.0, open_low=True,
         optional=True, advanced=True,
     )
 
@@ -136,7 +138,7 @@ class ProcessParameters:
     )
     wire: WireParameters = f.group(WireParameters, "The feedstock.")
     density: float = f.parameter(
-        7.85, f.NUMBER, "Density of the deposit in g/cm\u00b3; tells its mass.", low=0.0, open_low=True, unit="g/cm³",
+        7.85, f.NUMBER, "Density of the deposit in g/cm\u00b3, for its mass.", low=0.0, open_low=True, unit="g/cm³",
     )
     temperature: float | None = f.parameter(
         None, f.NUMBER, "Temperature in degrees Celsius; carried along.", optional=True, unit="°C"
@@ -162,7 +164,8 @@ class ProcessParameters:
     )
 
     schedule: int | None = f.parameter(
-        None, f.COUNT, "Number that tells the welder or extruder how to lay beads; program.schedule says how it is told.",
+        None, f.COUNT, "Number of the schedule by which the welder or extruder lays beads; program.schedule says how it "
+            "is sent.",
         low=1, high=bead_classes.LARGEST_SCHEDULE, optional=True,
     )
     classes: str = f.parameter(

@@ -41,7 +41,7 @@ class NcParameters:
     )
     deposit_off: str | None = f.parameter(None, f.TEXT, "M or H word that switches the deposit off.", optional=True)
     wire_output: int = f.parameter(
-        1, f.COUNT, "Analogue output that tells the speed of the wire where it follows the travel speed.", low=1, high=64
+        1, f.COUNT, "Analogue output for the speed of the wire where it follows the travel speed.", low=1, high=64
     )
     wire_gain: float = f.parameter(
         1.0, f.NUMBER, "Value of that output at 1 m/min of wire.", low=0.0, open_low=True, high=1e6, unit="min/m",
@@ -80,7 +80,8 @@ class ScheduleParameters:
         "switch the deposit; or is that of a program that is called.", choices=("output", "arc", "call"),
     )
     output: int = f.parameter(
-        2, f.COUNT, "Group output, H word, register or analogue output that tells it; of KUKA the first of eight outputs.",
+        2, f.COUNT, "Group output, H word, register or analogue output that carries it; for KUKA the first of eight "
+            "outputs.",
         low=1, high=4096,
     )
     call: str = f.parameter("SCHEDULE", f.TEXT, "Name of the programs that are called, without their number: SCHEDULE3.")

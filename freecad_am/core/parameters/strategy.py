@@ -12,7 +12,7 @@ from . import field as f
 ISO = "iso-parameter"
 SPACINGS = ("constant-distance", "smooth", ISO)
 FRONTS = "fronts"  # a method
-MEND = "Holes of meshes up to this size across are closed, which is told; larger ones are refused."
+MEND = "Holes of meshes up to this size across are closed, with a note; larger ones are refused."
 LAYER_TIME = (
     "Least time of a layer, from its first bead to the next layer's; the machine waits for what is missing"
 )

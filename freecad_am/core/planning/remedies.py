@@ -60,7 +60,7 @@ def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Pro
                 continue
             if toolpath.point_count > LONGEST:
                 count = len(some.layers)
-                return [Issue(NOTE, REMEDY, Text("with {} the {} of the layers in question that were planned anew are "
+                return [Issue(NOTE, REMEDY, Text("with {} the {} of the layers in question that were planned again are "
                                                  "feasible; the whole job was not tried", change.remedy, count))]
             whole -= 1
             if not has_errors(change.issues(toolpath, True, progress)):

@@ -39,7 +39,7 @@ def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
 def rapids(issues: Sequence[Issue], looked: RapidsLooked) -> Promise:
     """On the way between beads."""
     found = of_codes(issues, RAPIDS)
-    how = Text("retracts, travels and approaches driven anew, at {} places {} mm apart, against bodies, platform and beads "
+    how = Text("retracts, travels and approaches driven again, at {} places {} mm apart, against bodies, platform and beads "
                "as wide and high as they are by then", looked.places, number(looked.step))
     place = issue_place(found) if looked.place is None else Place(*looked.place)
     return Promise(ON_RAPIDS, how, not found and not len(looked.rows), float(len(looked.rows)), "rapids", 0.0, place)
@@ -49,7 +49,7 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
     """Of the links. Plain ones, drawn from the kinematics alone, can neither keep the promise nor break it."""
     what = "The arm stays clear of part, deposit, platform, nozzle and itself"
     if touches is None:
-        return Promise(what, "not checked: the machine file tells no shapes of its links", None)
+        return Promise(what, "not checked: the machine file gives no shapes for its links", None)
     rows, met = np.flatnonzero(touches.link != NONE), "nothing"
     place: Place | None = None
     if len(rows):
@@ -59,7 +59,7 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
     step = number(math.degrees(touches.step))
     near = Text("come nearer than {:g} mm to", cell.arm_clearance) if cell.arm_clearance else "touch"
     if not true_shapes:
-        how = Text("not checked: without the manufacturer's shapes, links drawn from the kinematics {} {}, looked at every "
+        how = Text("not checked: without the manufacturer's shapes, links drawn from the kinematics {} {}, checked every "
                    "{} deg", Word(near), Word(met), step)
         return Promise(what, how, None, float(len(rows)), "points", None, place)
     how = Text("shapes of all links, against each other too, every {} deg of the whole motion: they {} {}", step, Word(near),
@@ -77,9 +77,9 @@ def external_links(
     what = "Positioner and track stay clear of nozzle, torch, robot and obstacles"
     names = [one.name for one in cell.external_links]
     lacking = ", ".join(of_unknown_shape(cell.external, cell.external_links))
-    missing = Text("no file tells what {} is made of", lacking) if lacking else ""
+    missing = Text("no file says what {} is made of", lacking) if lacking else ""
     if touches is None or not names:
-        return [Promise(what, Text("not checked: no file tells what {} is made of", lacking), None)]
+        return [Promise(what, Text("not checked: no file says what {} is made of", lacking), None)]
     own = cell.robot.chain.axes
     about = np.isin(touches.what, [touches.names.index(name) for name in names]) | (touches.link >= own + LINKS_MORE)
     rows = np.flatnonzero((touches.link != NONE) & about)

@@ -137,7 +137,7 @@ def fed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
     what = "The wire feeds what the beads take"
     parts = toolpath.parts
     if process.bead_model != "none" or any(part.wire_feed is None or part.bead_width is None for part, _ in parts):
-        return Promise(what, "not checked: a bead model, or nothing, tells how wide the beads are", None)
+        return Promise(what, "not checked: a bead model, or nothing, says how wide the beads are", None)
     if not any(part.wire_feed for part, _ in parts):
         return Promise(what, "not checked: there is no wire, process.wire.feed is 0", None)
     found = [
@@ -147,7 +147,7 @@ def fed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
     others = sorted({name for part, _ in parts for name in wire_taken.by_schedules(part, process)})
     off, where = max(found, key=lambda one: one[0], default=(0.0, None))
     if others and off <= wire.TOLERANCE:
-        how: str = Text("not checked: schedules of their own, which nobody here knows, tell the welder to feed {}",
+        how: str = Text("not checked: the welder's own schedules, which are not known here, set the feed of {}",
                         ", ".join(others))
         return Promise(what, how, None)
     how = "section of the wire times its feed, against width x height x speed of beads of each class, their starts and ends"

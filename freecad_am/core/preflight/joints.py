@@ -56,7 +56,7 @@ def _reach(motion: Motion, cell: Cell) -> Promise:
 def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
     what = "No axis is asked for more than its largest speed"
     if not np.isfinite(cell.machine.max_speed).any():
-        return Promise(what, "the machine file tells no largest speeds", None)
+        return Promise(what, "the machine file gives no largest speeds", None)
     ratios = speed_ratios(motion.joints, motion.duration, cell.machine.max_speed).max(axis=1)
     if not np.isfinite(ratios).any():
         return Promise(what, "no point is reached", None)

@@ -29,7 +29,7 @@ def carried(
                    number(process.density))
     untold = [one.title for one in cell.carriers if math.isinf(one.payload.kg)]
     if untold and not text:
-        return [Promise(WHAT, Text("not checked: the file of {} tells no payload; {}", untold[0], Word(weighed)), None, mass,
+        return [Promise(WHAT, Text("not checked: the file of {} gives no payload; {}", untold[0], Word(weighed)), None, mass,
                         "kg")]
     how = Text("{}, against what {} carries", Word(weighed), least.title)
     if not math.isinf(least.payload.from_axis):

@@ -22,7 +22,7 @@ from .deposit import volumes
 
 CODE = "PAYLOAD"
 KG = 1e-6  # of a mm3 at 1 g/cm3
-REMEDY = "process.density tells what it weighs; what the machine carries is in its file"
+REMEDY = "process.density sets what it weighs; the payload is in the machine's file"
 
 
 def issues(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:

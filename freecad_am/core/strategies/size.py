@@ -191,8 +191,8 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     if size.nodes * SECONDS_A_NODE > max(seconds, LARGE_SECONDS):
         minutes = at_least(size.nodes * SECONDS_A_NODE / 60.0)
         grids = (Issue(
-            NOTE, LARGE, Text("curved layers are looked for on a grid of about {} nodes, which takes about {:g} min of the "
-                "processor; a larger strategy.layer_height, or layers: planes, takes less", count(size.nodes), minutes),
+            NOTE, LARGE, Text("curved layers are searched for on a grid of about {} nodes, which takes about {:g} min of "
+                "the processor; a larger strategy.layer_height, or layers: planes, takes less", count(size.nodes), minutes),
         ),)
     if gigabytes < LARGE_GIGABYTES and (grids or seconds < LARGE_SECONDS):
         return grids

@@ -27,10 +27,10 @@ class FramesPage(Page):
 
     def __init__(self, wizard: Any) -> None:
         super().__init__(wizard, "FramesPage", tr("Frames and conventions"), tr(
-            "The next page compares this with poses of your controller, and tells what is likely wrong: leave what you do "
-            "not know as it is."))
+            "The next page compares this with poses of your controller, and says what is likely to be wrong: leave what "
+            "you do not know as it is."))
         self.frames = FigureTable("frames", [tr("Base"), tr("Flange")], _POSE, [tr(
-            "Base: the maker's own base frame, in which the pendant tells positions, seen from the floor plate. FANUC's "
+            "Base: the maker's own base frame, in which the pendant shows positions, seen from the floor plate. FANUC's "
             "lies at the height of axis 2. Flange: in the last link, its Z out of the plate. Rotation: about X, then Y, "
             "then Z."
         )] * 6)

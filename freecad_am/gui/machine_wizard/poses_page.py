@@ -204,7 +204,7 @@ class PosesPage(Page):
 
     def _reason(self, count: int) -> str:
         if count < LEAST:
-            return tr("The machine does not give these poses; what is wrong can be told from three or more.")
+            return tr("The machine does not give these poses; three or more would show what is wrong.")
         if self.suspects:
             return tr("The machine does not give these poses. It would if:")
         return tr("The machine does not give these poses, and no sign, zero, coupling or frame alone explains it. Look for "

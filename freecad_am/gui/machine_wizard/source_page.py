@@ -38,7 +38,7 @@ class SourcePage(Page):
     def __init__(self, wizard: Any) -> None:
         super().__init__(wizard, "SourcePage", tr("Where the geometry comes from"), tr(
             "Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide "
-            "and two that turn; whether yours is one is looked at when you go on. Tracks, turntables and positioners, "
+            "and two that turn; whether yours is one is checked when you go on. Tracks, turntables and positioners, "
             "which stand beside a robot, have one axis or two."))
         self.kind = choice("source", [
             (tr("A URDF file"), "urdf"), (tr("A table of Denavit and Hartenberg"), "table"),

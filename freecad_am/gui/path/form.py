@@ -26,7 +26,7 @@ class PathForm(QtGui.QWidget):
         column.setContentsMargins(9, 4, 9, 4)
         column.setSpacing(3)
         self.choice = _combo("path", tr("The toolpath or joint path to look at"))
-        self.colouring = _combo("colouring", tr("What the colours of the beads tell"))
+        self.colouring = _combo("colouring", tr("What the colours of the beads show"))
         self.look = _combo("look", tr("Draw beads as lines, or as tubes of their width and layer height"))
         self.directions = QtGui.QCheckBox(tr("Build directions"))
         self.directions.setObjectName("directions")

@@ -83,7 +83,7 @@ def heads() -> list[str]:
 def summed(found: Placed) -> str:
     """How many poses serve, in a sentence."""
     serve = sum(one.feasible for one in found.judged)
-    text = tr("{} of {} poses are feasible, as far as {} of {} points tell.").format(
+    text = tr("{} of {} poses are feasible, as far as {} of {} points show.").format(
         serve, len(found.poses), found.points, found.of)
     if found.best is None and not serve:
         most = max(range(len(found.poses)), key=lambda k: found.judged[k].share)

@@ -41,7 +41,7 @@ class Form(QtGui.QWidget):
         self.reach = _reach()
         self.colour = QtGui.QComboBox()
         self.colour.setObjectName("colour")
-        self.colour.setToolTip(tr("What the colours of the places tell"))
+        self.colour.setToolTip(tr("What the colours of the places show"))
         for name, text in figures.NAMES.items():
             self.colour.addItem(translated(text), name)
         self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()

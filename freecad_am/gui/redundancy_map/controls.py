@@ -35,13 +35,13 @@ class Controls(QtGui.QWidget):
         self.grid = QtGui.QGridLayout(self)
         self.grid.setContentsMargins(4, 2, 4, 2)
         self.grid.setVerticalSpacing(3)
-        self.layer = self._box("layer", tr("Layer"), tr("The layer that is looked at; -1 for all of them"), chosen)
+        self.layer = self._box("layer", tr("Layer"), tr("The layer that is shown; -1 for all of them"), chosen)
         self.layer.setSpecialValueText(tr("all"))
         self.branch = self._combo(
             "branch", tr("Branch"),
             tr("Shoulder, elbow and wrist; behind it the share of the map that it reaches within its limits"), chosen,
         )
-        self.kind = self._combo("colours", tr("Colours"), tr("What the colours tell"), chosen)
+        self.kind = self._combo("colours", tr("Colours"), tr("What the colours show"), chosen)
         self.kind.addItems([tr(kind) for kind in KINDS])
         help = tr("RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across")
         self.axis = self._combo("axis", tr("Upwards"), help, chosen)

@@ -100,7 +100,7 @@ class Fields(QtGui.QWidget):
         self.factor.currentIndexChanged.connect(lambda index: setattr(self.player, "factor", FACTORS[index]))
         self.next = QtGui.QPushButton(tr("Next finding"))
         self.next.setObjectName("next_finding")
-        self.next.setToolTip(tr("To the next place where a limit, a singularity or a speed is to be looked at"))
+        self.next.setToolTip(tr("To the next place where a limit, a singularity or a speed needs attention"))
         self.next.clicked.connect(lambda *_: acts["next_finding"]())
         self.next.setEnabled(bool(self.run.watch.findings))
         line.addWidget(self.factor)

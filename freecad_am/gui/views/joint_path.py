@@ -60,7 +60,7 @@ class JointPathView(PathView):
 
     icon = "joint_path"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
-        "Colouring": ("App::PropertyEnumeration", JOINT_KINDS, "What the colours of the beads tell."), **OPTIONS,
+        "Colouring": ("App::PropertyEnumeration", JOINT_KINDS, "What the colours of the beads show."), **OPTIONS,
         "ShowRapids": ("App::PropertyBool", True, "Show the rapid moves as thin dashed lines."),
     }
     source_hidden = True

@@ -20,7 +20,7 @@ class ToolpathView(PathView):
 
     icon = "toolpath"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
-        "Colouring": ("App::PropertyEnumeration", KINDS, "What the colours of the beads tell."), **OPTIONS,
+        "Colouring": ("App::PropertyEnumeration", KINDS, "What the colours of the beads show."), **OPTIONS,
     }
     source_hidden = True
 

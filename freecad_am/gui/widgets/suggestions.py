@@ -70,7 +70,7 @@ def no_post(name: str, setup: str = "") -> str:
         return tr("Programs for this machine's controller are of positions, and what it calls the configurations of this "
                   "wrist is not known: all is planned, checked and simulated, but no program is written.")
     if loaded.posts:
-        return tr("Programs for this machine need what only its controller tells, its pulses per degree, in a machine file "
+        return tr("Programs for this machine need what only its controller knows, its pulses per degree, in a machine file "
                   "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.")
     return tr("There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "
               "written. Export Path… writes its points as a table.")

@@ -32,7 +32,7 @@ def check_controller(machine: Machine, post: str) -> None:
     if machine.posts is None or post in machine.posts:
         return
     if machine.controller_remark == UNKNOWN_REMARK:
-        raise InputError("WRONG_CONTROLLER", "program.post", "{} is a URDF, which does not tell what the controller shows; "
+        raise InputError("WRONG_CONTROLLER", "program.post", "{} is a URDF, which does not say what the controller shows; "
                          "plan without a program, or make a machine file of it with New Machine…", machine.title)
     known = Text("use one of {}", ", ".join(machine.posts)) if machine.posts else (
         "there is no post for it yet: plan without a program; waypoints.csv has its axes")
@@ -81,7 +81,7 @@ def check_pulses(machine: Machine, motion: str, post: str) -> None:
         raise InputError(
             "NO_PULSES", "cell.machine", "how many pulses {} counts to a degree of each axis is not known, and no two "
             "models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant "
-            "tells (a position in pulses over the same in degrees), or plan without a program", machine.title,
+            "shows them (a position in pulses over the same in degrees), or plan without a program", machine.title,
         )
     if controller(post).pulses and motion == "cartesian" and not machine.speed_unit:
         raise InputError(

@@ -78,7 +78,7 @@ def predicted(toolpath: CoreToolpath, targets: Sequence[Target], report: Report)
     processes: list[ProcessParameters] = [target.given.process for target in targets]
     parts = parts_of(toolpath, processes)
     if any(part.toolpath.bead_width is None for part in parts):
-        raise InputError(NOTHING, "toolpath", "it is not known how wide its beads count; plan it anew")
+        raise InputError(NOTHING, "toolpath", "it is not known how wide its beads count; plan it again")
     asked = [_faces(target) for target in targets if target.kind != "curves"]
     if not asked:
         raise InputError(NOTHING, "toolpath", "curves have no faces that a deposit could be held against; leave out "

@@ -38,8 +38,8 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
     how = scan.Proxy.parameters(scan, InspectionParameters).fit
     if parameters.after_layer is not None and how != NONE:
         raise InputError(
-            "BAD_VALUE", f"{scan.Label}.Fit", "{}: how far a part has grown is told by a scan in the part's own coordinates "
-            "alone; give none", how
+            "BAD_VALUE", f"{scan.Label}.Fit", "{}: only a scan in the part's own coordinates shows how far a part has "
+            "grown; give none", how
         )
     inspected = scan.Proxy.value(scan)
     ground = getattr(obj.Feature, "Substrate", None)

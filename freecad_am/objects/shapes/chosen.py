@@ -219,10 +219,10 @@ def _is_turned(mark: Mark, now: Mark, shape: Any) -> bool:
 
 def _elsewhere(name: str, label: str, there: str) -> Issue:
     return _issue(name, Text(
-        "{} of {} is not the face that was chosen: that face is {} now, as FreeCAD numbers faces anew when a part changes; "
+        "{} of {} is not the face that was chosen: that face is {} now, as FreeCAD renumbers faces when a part changes; "
         "choose the faces again, or confirm them: OK in the panel with nothing else entered", name, label, there,
     ) if _kind(name) == FACE else Text(
-        "{} of {} is not the edge that was chosen: that edge is {} now, as FreeCAD numbers edges anew when a part changes; "
+        "{} of {} is not the edge that was chosen: that edge is {} now, as FreeCAD renumbers edges when a part changes; "
         "choose the edges again, or confirm them: OK in the panel with nothing else entered", name, label, there,
     ))
 
@@ -230,22 +230,22 @@ def _elsewhere(name: str, label: str, there: str) -> Issue:
 def _changed(mark: Mark, now: Mark, label: str) -> Issue:
     if mark.form == now.form:
         return _issue(mark.name, Text(
-            "{} of {} lies another way than when it was chosen, so it may be another face, as FreeCAD numbers faces anew "
+            "{} of {} lies another way than when it was chosen, so it may be another face, as FreeCAD renumbers faces "
             "when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered",
             mark.name, label,
         ) if _kind(mark.name) == FACE else Text(
-            "{} of {} lies another way than when it was chosen, so it may be another edge, as FreeCAD numbers edges anew "
+            "{} of {} lies another way than when it was chosen, so it may be another edge, as FreeCAD renumbers edges "
             "when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered",
             mark.name, label,
         ))
     kind = _kind(mark.name)
     was, is_ = (FORMS.get(one.form, FREE_FORM[kind]) for one in (mark, now))
     return _issue(mark.name, Text(
-        "{} of {} was {} when it was chosen and is {} now, so it may be another face, as FreeCAD numbers faces anew when a "
+        "{} of {} was {} when it was chosen and is {} now, so it may be another face, as FreeCAD renumbers faces when a "
         "part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered", mark.name, label,
         was, is_,
     ) if kind == FACE else Text(
-        "{} of {} was {} when it was chosen and is {} now, so it may be another edge, as FreeCAD numbers edges anew when a "
+        "{} of {} was {} when it was chosen and is {} now, so it may be another edge, as FreeCAD renumbers edges when a "
         "part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered", mark.name, label,
         was, is_,
     ))

@@ -176,4 +176,4 @@ def turned(quaternion: Array) -> Array:
 
 def unreadable(where: str, why: str) -> InputError:
     """The error for what is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

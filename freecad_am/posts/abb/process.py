@@ -46,7 +46,7 @@ def refuse(asked: Asked) -> None:
     if not asked.wire:
         return
     if arc:
-        raise wire_refused("the wire of ArcL is told by its welddata")
+        raise wire_refused("the wire feed of ArcL is set by its welddata")
     if asked.motion != CARTESIAN:
         raise wire_refused("TriggSpeed follows the speed of linear moves, and these are joint moves")
     if asked.held or asked.turned:
@@ -166,8 +166,9 @@ class Process:
         if not speed >= SLOWEST:
             raise InputError(
                 "TRIGGER", place(own.moves),
-                "the tip moves at {:.2g} mm/s on the move at the end of which the deposit is switched, and the controller "
-                "is told how far before it; give a retract distance, or leave program.trigger.lead out", speed,
+                "the tip moves at {:.2g} mm/s on the move at the end of which the deposit is switched, and the lead is "
+                "programmed as a distance before that place; give a retract distance, or leave program.trigger.lead "
+                "out", speed,
             )
         return [_numbered(self._switches[kind], kind, f"{own.lead * speed:.{WAY_DECIMALS}f}")]
 

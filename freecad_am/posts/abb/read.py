@@ -116,7 +116,7 @@ def _move(module: Module, move: re.Match[str], run: Run, where: str) -> None:
     linear = move.re is _LINEAR
     *values, axes, speed, letter, amount, decimals, zone, tool, work_object = move.groups()
     if speed not in module.speeds or (letter == "V") != linear:
-        raise unreadable(where, Text("{} is not a speed of the module, or the move is told otherwise than by \\T or \\V",
+        raise unreadable(where, Text("{} is not a speed of the module, or the speed is given otherwise than by \\T or \\V",
                                      speed))
     if run.on and run.output == ARC:
         raise unreadable(where, "the arc burns on a move of another kind")

@@ -93,7 +93,8 @@ def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
         point, axis = np.argwhere(untold)[0]
         raise InputError(
             "TURN_NUMBER", place(moves),
-            "axis {} stands at {:.1f} deg and its turn cannot be told reliably in a Cartesian position; use `motion: joint`",
+            "axis {} stands at {:.1f} deg and its turn number cannot be given reliably in a Cartesian position; use "
+            "`motion: joint`",
             axis + 1, degrees[point, axis],
         )
     wrists = np.where(moves.joints[:, 4] > 0.0, "F", "N").tolist()

@@ -162,4 +162,4 @@ def _any_records(file: str, text: str, positions: int) -> Records:
 
 def unreadable(where: str, why: str) -> InputError:
     """What is raised for a text that is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

@@ -97,4 +97,4 @@ def _about(axis: int, angle: Array) -> Array:
 
 def not_read(where: str, why: str) -> InputError:
     """The error for a line that is not understood, or makes no sense where it stands."""
-    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

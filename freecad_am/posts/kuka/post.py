@@ -137,7 +137,7 @@ def _refuse(program: Program) -> None:
     axes = AXES + len(program.external_kinds)
     refuse_incomplete(program, "kuka", axes)
     refuse_external(program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16")
-    refuse_named_track(program, "what the robot's own base is on, which is not told by a MACHINE_DEF")
+    refuse_named_track(program, "what the robot's own base is on, which no MACHINE_DEF gives")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     _refuse_schedules(program)
@@ -161,7 +161,7 @@ def _refuse_schedules(program: Program) -> None:
     own = range(program.schedule_output, program.schedule_output + text.BITS)
     if _scheduled(program) and program.deposit_output in own:
         raise InputError(
-            "SCHEDULE", "program.schedule.output", "$OUT[{}] to $OUT[{}] tell the schedule, and one of them switches the "
+            "SCHEDULE", "program.schedule.output", "$OUT[{}] to $OUT[{}] carry the schedule, and one of them switches the "
             "deposit; use other ones, or another program.deposit_output", own[0], own[-1],
         )
 

@@ -146,7 +146,7 @@ def _declare(declared: re.Match[str], before: list[str], run: Run, where: str) -
 def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
     """A group of outputs, the first and the last, is set to a number."""
     if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
-        raise not_read(where, "it is set ahead of the motion, or its outputs cannot tell such a number")
+        raise not_read(where, "it is set ahead of the motion, or its outputs cannot carry such a number")
     if run.output and outputs[0] <= int(run.output) <= outputs[1]:
         raise not_read(where, "one of its outputs switches the deposit")
     run.happens("schedule", float(outputs[0]), float(number))
@@ -272,7 +272,7 @@ def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str)
     moved = set(numbers) - set(run.slides)
     in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
     if not in_order or bool(moved) != bool(unit) or len(run.slides) > 1 or not {*run.slides} <= {*numbers}:
-        raise not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
+        raise not_read(where, "the axes beside the robot are not given in order, or BASE is not coupled to what they move")
     if any(run.state.get(f"E{number}") != share for number in numbers):
         raise not_read(where, Text("axes beside the robot do not run at {:.0f} % of their speeds", share))
     run.unit, run.numbers = unit, numbers

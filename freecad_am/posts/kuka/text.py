@@ -138,8 +138,8 @@ class Lines:
         if wrong.any():
             raise InputError(
                 "JOINT_SPEED", place(moves),
-                "a rapid would need {:.3g} % of the largest joint speed, and KRL is told whole percents of {} to 100; use "
-                "another rapid speed", percent[wrong][0], LEAST_PERCENT,
+                "a rapid would need {:.3g} % of the largest joint speed, and KRL takes whole percentages from {} to 100; "
+                "use another rapid speed", percent[wrong][0], LEAST_PERCENT,
             )
         whole = np.clip(np.rint(percent), LEAST_PERCENT, 100)
         if self._before is not None or len(moves) > 1:

@@ -130,7 +130,7 @@ def _refuse(program: Program) -> None:
                       any(run.wire is not None for run in program.moves))
     if scheduled and fed and program.schedule_output == program.nc.wire_output:
         raise InputError(
-            "SCHEDULE", "program.schedule.output", "analogue output {} tells the speed of the wire; use another one for "
+            "SCHEDULE", "program.schedule.output", "analogue output {} carries the speed of the wire; use another one for "
             "schedules", program.schedule_output,
         )
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:

@@ -125,7 +125,7 @@ class Track:
         elif not self.axes and set(_LINEAR) <= set(names) and not set(names) & set(_VECTOR):
             self.axes = names
         elif names != self.axes:
-            raise unreadable(where, "the move is not told in the axes of the first one")
+            raise unreadable(where, "the move is not given in the axes of the first one")
 
     def moves(self) -> ReadMoves:
         """All of them. Raises InputError UNREADABLE_PROGRAM when there are none."""
@@ -210,4 +210,4 @@ def _durations(
 
 def unreadable(where: str, why: str) -> InputError:
     """The error for what is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

@@ -214,7 +214,7 @@ def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None
         state.track.add(SLIDES, words, where, stops)
         return
     if state.compress:
-        raise unreadable(where, "blocks that tell a time are compressed into one, which would take the time of the last")
+        raise unreadable(where, "blocks with a time are compressed into one, which would take the time of the last")
     state.track.add(TIME, words, where, stops)
 
 
@@ -222,7 +222,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
     output = _OUTPUT.match(token)
     if output and output[3] and token.partition("=")[0] not in state.switching:
         if state.compress or state.track.on:
-            raise unreadable(where, "a schedule is told within a bead")
+            raise unreadable(where, "a schedule is sent within a bead")
         state.track.happens("schedule", float(output[3]), float(output[4]))
     elif output:
         if output[5] in ("0", "1", "2", "6", "17", "30"):

@@ -139,4 +139,4 @@ def poses(values: Array) -> Array:
 
 def unreadable(where: str, why: str) -> InputError:
     """The error for what is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

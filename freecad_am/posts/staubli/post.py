@@ -41,8 +41,8 @@ NO_ANALOGUE = "the links of analogue inputs differ from controller to controller
 CONTROLLER = Controller(whole_beads=True)
 PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
-NO_WEAVE = "VAL 3 has no weave, so far as is documented"
-NO_TRIGGER = "VAL 3 has no output at a time before a place, so far as is documented"
+NO_WEAVE = "VAL 3 has no documented weave"
+NO_TRIGGER = "VAL 3 has no documented output at a time before a place"
 refuse_process = refuse_no_process
 NO_SCHEDULE = {
     "output": "that VAL 3 sets several outputs to one number was not found documented",

@@ -58,8 +58,8 @@ AXES = 6
 CONTROLLER = Controller(configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3)
 PENDANT = Pendant("Universal Robots", ("RX", "RY", "RZ"), ROTATION_VECTOR, 6)
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
-NO_WEAVE = "URScript has no weave of its own, so far as is documented"
-NO_TRIGGER = "URScript has no output at a time before a place, so far as is documented"
+NO_WEAVE = "URScript has no documented weave of its own"
+NO_TRIGGER = "URScript has no documented output at a time before a place"
 refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
@@ -146,7 +146,7 @@ def _refuse(program: Program) -> None:
     refuse_continuous(program)
     refuse_without_positions(program)
     if program.holds_part and any(run.flange is None for run in program.moves):
-        raise InputError("NO_POSITIONS", "program", "the program does not tell where the flange is, which blends count on; "
+        raise InputError("NO_POSITIONS", "program", "the program does not say where the flange is, which blends depend on; "
                          "plan the joint path again")
     if not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(

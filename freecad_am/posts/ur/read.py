@@ -86,7 +86,7 @@ class _Run:
 
 def unreadable(where: str, why: str) -> InputError:
     """What is raised for a text that is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
@@ -196,14 +196,14 @@ def _move(text: str, run: _Run, where: str) -> bool:
         if frame is None:
             return False
         if run.deposit or (run.tcp if text.startswith("set_tcp") else run.platform):
-            raise unreadable(where, "tool or platform is set anew")
+            raise unreadable(where, "tool or platform is set again")
         if text.startswith("set_tcp"):
             run.tcp = frame.groups()
         else:
             run.platform = frame.groups()
         return True
     if not run.tcp or (found[0] == "nan") is bool(run.platform):
-        raise unreadable(where, "it moves without a tool, without the platform, or in joints where positions are told")
+        raise unreadable(where, "it moves without a tool, without the platform, or in joints where positions are given")
     values = [float(number) for number in found]
     if values[12] <= 0.0 or values[13] <= 0.0 or values[14] < 0.0:
         raise unreadable(where, "its time, speed or blend is none that is kept")

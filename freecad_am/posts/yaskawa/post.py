@@ -247,8 +247,8 @@ def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array
     if wrong.any():
         raise InputError(
             "JOINT_SPEED", place(moves),
-            "a move would need {:.4g} % of the largest joint speed, which is told in steps of {} %; use another speed, so "
-            "that it is {} to 100 %", percent[wrong][0], STEP_PERCENT, LEAST_PERCENT,
+            "a move would need {:.4g} % of the largest joint speed, which is programmed in steps of {} %; use another "
+            "speed, so that it is {} to 100 %", percent[wrong][0], STEP_PERCENT, LEAST_PERCENT,
         )
     percent = np.where(share > 0.0, np.clip(percent, STEP_PERCENT, 100.0), 100.0)
     if first:

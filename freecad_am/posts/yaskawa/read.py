@@ -89,7 +89,7 @@ _WORDS = 4  # of a move besides its pulses
 
 def unreadable(where: str, why: str) -> InputError:
     """What is raised for a text that is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:

@@ -72,7 +72,7 @@ def changed(motion, row, **columns):
 def test_a_sound_job_keeps_all_promises_and_says_what_was_not_checked(sound):
     entries = promises(sound[2])
     assert not broken(sound[2])
-    # the file of the robot tells no payload
+    # the file of the robot gives no payload
     unchecked = {entry.promise for entry in entries if entry.ok is None}
     assert unchecked == {"UFRAME 1", "What carries the part carries its weight"}
     assert all(entry.worst is not None for entry in entries if entry.ok)

@@ -35,7 +35,7 @@ def test_texts_read_back(seed):
     ("contour", "is not a class of beads"), ("contour: travel_speed 0", "more than 0"),
     ("outer: lead 5", "'outer' is not known"),
     ("contour: lead 5; contour: tilt 5", "contour is there twice"), ("fill: speed 5", "no 'speed'"),
-    ("fill: lead", "tells no number"), ("fill: schedule 2.5", "whole number"), ("fill: schedule 0", "at least 1"),
+    ("fill: lead", "has no number"), ("fill: schedule 2.5", "whole number"), ("fill: schedule 0", "at least 1"),
     ("wall: lead 91", "at most 90 deg"), ("wall: lead_on -1", "at least 0"), ("wall: travel_speed nan", "is not a number"),
 ])
 def test_what_is_wrong_is_named(text, words):

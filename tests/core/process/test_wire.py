@@ -87,7 +87,7 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     made = fed(path_of(), own, None)
     assert made.issues == ()
     promise = deposit.fed(made, own)  # what that schedule feeds nobody knows
-    assert promise.ok is None and promise.how.startswith("not checked") and promise.how.endswith("feed contour")
+    assert promise.ok is None and promise.how.startswith("not checked") and promise.how.endswith("feed of contour")
     near = replace(process("auto"), classes="contour: travel_speed 6.5")
     bead = replace(BEAD, bead_class="contour", speed=np.full(2, 6.5))
     made = fed(replace(PATH, layers=(Layer((bead,)),)), near, None)
@@ -117,7 +117,7 @@ def test_a_schedule_of_a_start_is_not_known_and_no_wire_is_not_checked():
     of = replace(process("auto"), schedule=2, start=BeadStart(20.0, 3.0, 4), classes=own)
     made = fed(path_of((20.0, 3.0, 0.0, 0.0)), of, None)
     assert made.issues == ()
-    assert deposit.fed(made, of).how.endswith("feed contour, contour.start, fill.start")
+    assert deposit.fed(made, of).how.endswith("feed of contour, contour.start, fill.start")
     none = process(0.0)
     promise = deposit.fed(fed(PATH, none, None), none)
     assert promise.ok is None and promise.how.startswith("not checked")

@@ -131,7 +131,7 @@ class _Reader:
             self._end()
             return
         if len(self.known) < 3:
-            raise self._error(Text("it extrudes before the program says where: X, Y and Z are to be told first; {}", FORM))
+            raise self._error(Text("it extrudes before the program says where: X, Y and Z have to be given first; {}", FORM))
         if not self.run:
             self.run = [start]
         self.run += way

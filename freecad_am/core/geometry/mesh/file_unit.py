@@ -19,5 +19,5 @@ def refuse_scale(scale: float, path: str, key: str) -> None:
                          "{:g} mm is not a unit; give the length of one unit of the file, as 25.4 mm", scale)
     if scale != 1.0 and not path.lower().endswith(UNTOLD):
         raise InputError(
-            "BAD_VALUE", key, "{} tells its unit itself; leave out the scale, it is for STL and OBJ", os.path.basename(path)
+            "BAD_VALUE", key, "{} states its own unit; leave out the scale, which is for STL and OBJ", os.path.basename(path)
         )

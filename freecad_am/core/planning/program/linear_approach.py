@@ -89,7 +89,7 @@ def check(motion: Motion, cell: Cell, rows: NDArray[np.intp], arriving: bool, ar
     off, tilt = apart(motion, cell, last)
     if not (off[0] <= MOST_MM and tilt[0] <= MOST_RAD):
         raise InputError(
-            code, place, "the deposit begins with a linear move onto the bead, which would leave the way that was looked at "
+            code, place, "the deposit begins with a linear move onto the bead, which would leave the checked way "
             "by {:.2g} mm; give a shorter retract distance, or another {}", off[0], key,
         )
 

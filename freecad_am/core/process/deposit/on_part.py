@@ -61,7 +61,7 @@ def judged(toolpath: Toolpath, looked: Places, off: Array, limit: float) -> Tool
         return made
     where = tuple(int(column[worst]) for column in (looked.layer, looked.bead, looked.point))
     return replace(made, issues=(*made.issues, Issue(
-        ERROR, CODE, Text("{} of {} places looked at are off the part, this one at {} by {:.4g} mm, and {:.3g} mm are "
+        ERROR, CODE, Text("{} of {} places checked are off the part, this one at {} by {:.4g} mm, and {:.3g} mm are "
             "allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part",
             int((off[known] > limit).sum()), len(known), place(looked.points[worst]), off[worst], limit), *where,
     )))
