@@ -199,7 +199,7 @@ class Program:
     origin on the table's face: the work offset with the rotary axes at zero.
     axis_names: how the controller writes each axis, such as X Y Z A C; axis_kinds: 'linear' or 'rotary', one each. Both are
     empty for robots, whose axes go by number. nc: for five-axis machines alone.
-    external_kinds: 'linear' or 'rotary' of each axis beside the robot, which are the last ones of all. With rotary ones the
+    external_kinds: 'linear' or 'rotary' of each external axis, which are the last ones of all. With rotary ones the
     part is on the last mechanism, and station is the program's origin on its face; a linear one is a track that carries the
     robot. unit: what the controller calls the mechanism of the part, or a track alone; first_external: the number there of
     the first of these axes, from 1. schedule_output: what the numbers of schedules are set on.
@@ -245,12 +245,12 @@ class Program:
 
     @property
     def on_track(self) -> bool:
-        """Whether an axis beside the robot carries it."""
+        """Whether an external axis carries it."""
         return LINEAR in self.external_kinds
 
     @property
     def on_positioner(self) -> bool:
-        """Whether axes beside the robot carry the part, which its positions then are seen from."""
+        """Whether external axes carry the part, which its positions then are seen from."""
         return ROTARY in self.external_kinds
 
     @property

@@ -87,7 +87,7 @@ class ReadMoves:
     user_frame, tool_frame: (n,) numbers of the frame and the tool that a text selects, NaN where it selects none; the frame
     of moves of bare axes, which count on none, is left out.
     unit: what a text calls the mechanism that carries the part, and that its positions are seen from, or the track;
-    first_external: the number of the first axis beside the robot. Both as in `Program`.
+    first_external: the number of the first external axis. Both as in `Program`.
     lines: where the moves stand, those of a loop all on its line; None of what is not of a text.
     """
 

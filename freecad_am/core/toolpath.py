@@ -51,7 +51,7 @@ class Bead:
     nearer to them than a layer height. kind: what it is in the filling of its layer: 'contour', 'line', 'zigzag', 'spiral',
     'centre' (in the middle of contours or thin regions), 'closing' (where other beads left a gap); '' where a strategy has
     no fillings. ring: how many contours are outside of it. returns: it is the first one of a layer on a solid that has one
-    already. external: (n, k) rad of axes beside a robot, once planned. bead_class: of `bead_classes.CLASSES`, or ''. ends:
+    already. external: (n, k) rad of external axes, once planned. bead_class: of `bead_classes.CLASSES`, or ''. ends:
     mm of its start, mm/s there, 0: as elsewhere, both of its end, mm of ramps. phase: (n,) PHASES of segments, if planned.
     """
 

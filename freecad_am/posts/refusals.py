@@ -71,7 +71,7 @@ def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 
         raise InputError(
             "SCHEDULE", "process.start.schedule",
             "beads change their schedule, and as far as is known this controller sets outputs between moves ahead of the"
-            " motion; give start and end other speeds alone, or use another controller",
+            " motion; give start and end nothing but other speeds, or use another controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
     if numbers and not 1 <= program.schedule_output <= last:
@@ -187,7 +187,7 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
 
 
 def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
-    """Raises InputError UNSUPPORTED_AXES where a controller has no axes beside the robot beyond the `last` one, or no
+    """Raises InputError UNSUPPORTED_AXES where a controller has no external axes beyond the `last` one, or no
     positioner is called so: the pattern `unit` says how they are, in words `form`."""
     if not program.external_kinds:
         return
@@ -195,7 +195,7 @@ def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
     if end > last:
         raise InputError(
             "UNSUPPORTED_AXES", "program.axes.first",
-            "the axes beside the robot would end with number {}, and the controller has {}; use a smaller first one", end,
+            "the external axes would end with number {}, and the controller has {}; use a smaller first one", end,
             last,
         )
     if not re.fullmatch(unit, program.unit) and (program.on_positioner or program.unit):
@@ -225,7 +225,7 @@ def refuse_continuous(program: Program) -> None:
 
 
 def refuse_without_speeds(program: Program, axes: int) -> None:
-    """Raises InputError NO_JOINT_SPEED where a machine file, the robot's or that of axes beside it, does not tell what
+    """Raises InputError NO_JOINT_SPEED where a machine file, the robot's or that of external axes, does not tell what
     percents of joint speeds are of."""
     known = np.isfinite(program.max_speed)
     if len(known) == axes and known.all():

@@ -30,7 +30,7 @@ def by_robot(cell: Cell, read: ReadMoves, asked: Array) -> Array:
     unknown = np.isnan(shown[:, :own]).any(axis=1)
     serial = np.full_like(shown, np.nan)
     serial[~unknown] = machine.from_controller(shown[~unknown])
-    if cell.external is not None:  # the axes beside the robot are told with every position
+    if cell.external is not None:  # the external axes are told with every position
         external = machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[:, own:]
         asked, serial[:, own:] = frames.inverse(cell.external.base(external)) @ asked, external
     if read.near is not None:

@@ -93,7 +93,7 @@ def second_opinion(cell: Cell, planned: Planned, shown: Array, flange: Array) ->
     """The same joint values through PyKDL, where it is installed: all of them, or of a long text some and joint values of
     every kind (docs/decisions/0022)."""
     if not kdl_chain.available():
-        message = "PyKDL is not installed; the program was checked by one solver alone"
+        message = "PyKDL is not installed; the program was checked by one solver only"
         return [Issue(NOTE, "VERIFY_ONE_SOLVER", message)], ("chain",)
     arm, wrong = kdl_chain.KdlArm(cell.machine), np.zeros(len(shown), dtype=bool)
     grid = grid_of(cell.machine.chain, planned.joints)

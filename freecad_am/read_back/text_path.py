@@ -43,7 +43,7 @@ class Joints:
 def given_by_position(cell: Cell, joints: Array) -> Mask:
     """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: a robot's own
     ones, and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
-    own = np.arange(joints.shape[1]) < cell.robot.chain.axes  # a position says nothing of the axes beside the robot
+    own = np.arange(joints.shape[1]) < cell.robot.chain.axes  # a position says nothing of the external axes
     untold = np.isnan(joints[:, own]).all(axis=1, keepdims=True)
     return np.asarray((cell.machine.chain.sliding | untold) & own, dtype=np.bool_)
 

@@ -94,8 +94,8 @@ def _machine(value: Any, key: str = "cell.machine") -> Any:
         meant = urdf_reference.reference(texts["file"])
         if meant is None or len(texts["file"]) != len(meant.file):
             raise InputError(
-                "BAD_VALUE", f"{key}.file", "{} is no URDF, which alone has links; write machine: {{file: robot.urdf, base: "
-                "base_link, tip: tool0}}, or the path of a machine file without braces", texts["file"],
+                "BAD_VALUE", f"{key}.file", "{} is not a URDF, and only a URDF has links; write machine: {{file: "
+                "robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces", texts["file"],
             )
         return str(urdf_reference.Reference(meant.file, texts.get("base"), texts.get("tip")))
     return value

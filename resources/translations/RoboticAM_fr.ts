@@ -59,11 +59,6 @@
         <translation>Tableaux du résultat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Axes beside the robot. level: they turn no more than the angle from the vertical asks for; optimised: one polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.</source>
-        <translation>Axes à côté du robot. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: 2 mm, or the bead spacing where that is less. (mm)</source>
         <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit. (mm)</translation>
@@ -194,6 +189,11 @@
         <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>External axes. level: they turn no more than the angle from the vertical asks for; optimised: one polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.</source>
+        <translation>Axes externes. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>Faces of the wall, from the platform up.</source>
         <translation>Faces de la paroi, du plateau vers le haut.</translation>
@@ -320,7 +320,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far the deposit stands out beside the part, to be machined off; above it by the layers that begin less than that above its last one.</source>
+        <source>How far the deposit stands out from the part, to be machined off; above it by the layers that begin less than that above its last one.</source>
         <translation>De combien le dépôt dépasse sur les côtés de la pièce, à usiner ; au-dessus, des couches qui commencent moins haut que cela au-dessus de sa dernière.</translation>
     </message>
     <message>
@@ -380,7 +380,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How many contours lie round lines and the like; inf: contours alone.</source>
+        <source>How many contours lie round lines and the like; inf: contours only.</source>
         <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
     <message>
@@ -415,7 +415,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none but what pairs of points say.</source>
+        <source>How the points may be moved onto the part: best fit, shifts only, a turn about and a shift along the part&apos;s axis, or none but what pairs of points say.</source>
         <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
     </message>
     <message>
@@ -470,7 +470,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Last layers trimmed flush with the wall&apos;s upper edge, or whole layers alone.</source>
+        <source>Last layers trimmed flush with the wall&apos;s upper edge, or whole layers only.</source>
         <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
     </message>
     <message>
@@ -555,7 +555,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes alone.</source>
+        <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only.</source>
         <translation>LinuxCNC : M428 et M429 choisissent entre bout d&apos;outil et axes ; faux pour une machine qui n&apos;a que ses axes.</translation>
     </message>
     <message>
@@ -750,7 +750,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: axes beside them that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
+        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
         <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
@@ -1737,11 +1737,6 @@
         <translation>Axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Axes beside the robot. level: they turn no more than the angle from the vertical asks for; optimised: one polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.</source>
-        <translation>Axes à côté du robot. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
         <source>Axes on the pendant: -1 where it counts the other way; what it shows at zero</source>
         <translation>Axes sur le pupitre : -1 là où il compte dans l&apos;autre sens ; ce qu&apos;il montre à zéro</translation>
@@ -2642,6 +2637,11 @@
         <translation>Axes externes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>External axes. level: they turn no more than the angle from the vertical asks for; optimised: one polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.</source>
+        <translation>Axes externes. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>Faces</source>
         <translation>Faces</translation>
@@ -2840,6 +2840,11 @@
         <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Folders</source>
         <translation>Dossiers</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <source>For walls only: solids on a hub grow along the normals of its surface</source>
+        <translation>Des parois seulement : les solides sur moyeu croissent le long des normales de sa surface</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -3088,7 +3093,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far the deposit stands out beside the part, to be machined off; above it by the layers that begin less than that above its last one.</source>
+        <source>How far the deposit stands out from the part, to be machined off; above it by the layers that begin less than that above its last one.</source>
         <translation>De combien le dépôt dépasse sur les côtés de la pièce, à usiner ; au-dessus, des couches qui commencent moins haut que cela au-dessus de sa dernière.</translation>
     </message>
     <message>
@@ -3133,7 +3138,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How many contours lie round lines and the like; inf: contours alone.</source>
+        <source>How many contours lie round lines and the like; inf: contours only.</source>
         <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
     <message>
@@ -3183,7 +3188,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none but what pairs of points say.</source>
+        <source>How the points may be moved onto the part: best fit, shifts only, a turn about and a shift along the part&apos;s axis, or none but what pairs of points say.</source>
         <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
     </message>
     <message>
@@ -3313,7 +3318,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>Joint programs count on the nominal arm; the calibrated one stands up to millimetres beside it</source>
+        <source>Joint programs rely on the nominal arm; the calibrated one stands up to millimetres off it</source>
         <translation>Les programmes articulaires comptent sur le bras nominal ; le bras étalonné s&apos;en écarte jusqu&apos;à quelques millimètres</translation>
     </message>
     <message>
@@ -3418,7 +3423,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Last layers trimmed flush with the wall&apos;s upper edge, or whole layers alone.</source>
+        <source>Last layers trimmed flush with the wall&apos;s upper edge, or whole layers only.</source>
         <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
     </message>
     <message>
@@ -3648,7 +3653,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes alone.</source>
+        <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only.</source>
         <translation>LinuxCNC : M428 et M429 choisissent entre bout d&apos;outil et axes ; faux pour une machine qui n&apos;a que ses axes.</translation>
     </message>
     <message>
@@ -4043,7 +4048,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>Nothing is deposited beside the part</source>
+        <source>Nothing is deposited outside the part</source>
         <translation>Rien n’est déposé à côté de la pièce</translation>
     </message>
     <message>
@@ -4157,11 +4162,6 @@
         <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s, deg/s² et deg/s³, de translation en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses, accélérations et jerks là où ils ne sont pas connus.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
-        <source>Of walls alone: solids on a hub grow along the normals of its surface</source>
-        <translation>Des parois seulement : les solides sur moyeu croissent le long des normales de sa surface</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Off axis</source>
         <translation>Excentrage</translation>
@@ -4188,7 +4188,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
-        <source>One layer alone</source>
+        <source>One layer only</source>
         <translation>Une seule couche</translation>
     </message>
     <message>
@@ -4648,7 +4648,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
-        <source>PyKDL is not installed; the program was checked by one solver alone</source>
+        <source>PyKDL is not installed; the program was checked by one solver only</source>
         <translation>PyKDL n&apos;est pas installé ; le programme a été vérifié par un seul solveur</translation>
     </message>
     <message>
@@ -4788,7 +4788,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: axes beside them that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
+        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
         <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
@@ -5048,7 +5048,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
-        <source>Show this job alone</source>
+        <source>Show this job only</source>
         <translation>Montrer ce travail seul</translation>
     </message>
     <message>
@@ -5963,17 +5963,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/proposal.py"/>
-        <source>The whole of {} is taken. For faces alone, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
+        <source>The whole of {} is taken. To take single faces, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
         <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/wall.py"/>
-        <source>The whole of {} is taken; Pick takes faces alone, click by click.</source>
+        <source>The whole of {} is taken; Pick takes single faces, click by click.</source>
         <translation>{} est pris en entier ; Choisir prend des faces seules, clic par clic.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>The whole of {} is taken; Use selection takes faces alone.</source>
+        <source>The whole of {} is taken; Use selection takes the selected faces only.</source>
         <translation>{} est pris en entier ; Prendre la sélection prend des faces seules.</translation>
     </message>
     <message>
@@ -6553,7 +6553,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>
-        <source>Where programs are written first; empty for the folder of last time, or beside the document</source>
+        <source>Where programs are written first; empty for the folder of last time, or next to the document</source>
         <translation>Là où les programmes sont d&apos;abord écrits ; vide pour le dossier de la dernière fois, ou à côté du document</translation>
     </message>
     <message>
@@ -7203,7 +7203,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>a work offset of LinuxCNC turns about Z alone, and the part leans on the table by RX {0} and RY {1} deg; enter an upright origin, as cell.platform: [{2}, {3}, {4}, 0, 0, {5}], or use `motion: joint`</source>
+        <source>a work offset of LinuxCNC turns about Z only, and the part leans on the table by RX {0} and RY {1} deg; enter an upright origin, as cell.platform: [{2}, {3}, {4}, 0, 0, {5}], or use `motion: joint`</source>
         <translation>un décalage d&apos;origine de LinuxCNC ne tourne qu&apos;autour de Z, et la pièce penche sur la table de RX {0} et RY {1} deg ; entrez une origine droite, comme cell.platform: [{2}, {3}, {4}, 0, 0, {5}], ou utilisez `motion: joint`</translation>
     </message>
     <message>
@@ -7228,7 +7228,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>about {0} cm3 of beads lie beside the {1} cm3 of {2}: beads of {3} mm stand out where it is narrower; use narrower beads, or machine it off</source>
+        <source>about {0} cm3 of beads lie outside the {1} cm3 of {2}: beads of {3} mm stand out where it is narrower; use narrower beads, or machine it off</source>
         <translation>environ {0} cm3 de cordons sont à côté des {1} cm3 de {2} : des cordons de {3} mm en débordent là où c&apos;est plus étroit ; prenez des cordons plus étroits, ou usinez l&apos;excédent</translation>
     </message>
     <message>
@@ -7248,7 +7248,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>about {0} of {1} cm3 of beads lie beside {2}, which is {3} mm thick there, and beads are {4} mm wide; give process.bead_width, or machine it off</source>
+        <source>about {0} of {1} cm3 of beads lie outside {2}, which is {3} mm thick there, and beads are {4} mm wide; give process.bead_width, or machine it off</source>
         <translation>environ {0} des {1} cm3 de cordons sont à côté de {2}, qui y a {3} mm d’épaisseur, et les cordons ont {4} mm de large ; donnez process.bead_width, ou enlevez-les par usinage</translation>
     </message>
     <message>
@@ -7468,12 +7468,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines alone</source>
+        <source>arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines only</source>
         <translation>les arcs sont dans le plan de X et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines alone</source>
+        <source>arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines only</source>
         <translation>les arcs sont dans le plan de Y et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
     </message>
     <message>
@@ -7590,21 +7590,6 @@
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>axes are moved in another frame than that of the machine</source>
         <translation>des axes sont déplacés dans un autre repère que celui de la machine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>axes beside the robot do not run at {0} % of their speeds</source>
-        <translation>les axes externes ne tournent pas à {0} % de leurs vitesses</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>axes beside the robot have no value, or their unit is not active, or not the object&apos;s</source>
-        <translation>des axes externes n&apos;ont pas de valeur, ou leur unité n&apos;est pas active, ou n&apos;est pas celle de l&apos;objet</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>axes beside the robot would move where it stands</source>
-        <translation>des axes à côté du robot bougeraient là où il est à l&apos;arrêt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
@@ -7758,7 +7743,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>beads change their schedule, and as far as is known this controller sets outputs between moves ahead of the motion; give start and end other speeds alone, or use another controller</source>
+        <source>beads change their schedule, and as far as is known this controller sets outputs between moves ahead of the motion; give start and end nothing but other speeds, or use another controller</source>
         <translation>les cordons changent de programme de soudage, et ce contrôleur met les sorties entre les mouvements en avance sur le mouvement, autant qu&apos;on sache ; ne donnez à start et end que d&apos;autres vitesses, ou prenez un autre contrôleur</translation>
     </message>
     <message>
@@ -8305,6 +8290,21 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>every point of the motion, rapids included, against the machine file</source>
         <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>external axes do not run at {0} % of their speeds</source>
+        <translation>les axes externes ne tournent pas à {0} % de leurs vitesses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>external axes have no value, or their unit is not active, or not the object&apos;s</source>
+        <translation>des axes externes n&apos;ont pas de valeur, ou leur unité n&apos;est pas active, ou n&apos;est pas celle de l&apos;objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>external axes would move where it stands</source>
+        <translation>des axes externes bougeraient là où il est à l&apos;arrêt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -10168,7 +10168,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>moves with other axes beside the robot are mixed</source>
+        <source>moves with other external axes are mixed</source>
         <translation>des mouvements avec d&apos;autres axes externes sont mêlés</translation>
     </message>
     <message>
@@ -10503,8 +10503,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>not every position has one of the axes beside the robot, or these are alone</source>
-        <translation>toutes les positions n&apos;en ont pas une des axes à côté du robot, ou celles-ci sont seules</translation>
+        <source>not every position has one of the external axes, or these are alone</source>
+        <translation>toutes les positions n&apos;ont pas d&apos;axes externes, ou celles-ci sont seules</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
@@ -10568,7 +10568,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>of its {0} solids {1} alone turns about an axis, {2} of its surface; name the faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub</source>
+        <source>of its {0} solids only {1} turns about an axis, {2} of its surface; name the faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub</source>
         <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
     </message>
     <message>
@@ -10703,7 +10703,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>other axes beside the robot have values than in moves before, or not all in a row</source>
+        <source>other external axes have values than in moves before, or not all in a row</source>
         <translation>d&apos;autres axes externes ont des valeurs que dans les mouvements précédents, ou ils ne se suivent pas</translation>
     </message>
     <message>
@@ -11387,16 +11387,6 @@
         <translation>l&apos;arc est amorcé avec d&apos;autres données de soudage, ou un autre balayage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the axes beside the robot are not given in order, or BASE is not coupled to what they move</source>
-        <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à ce qu&apos;ils déplacent</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the axes beside the robot would end with number {0}, and the controller has {1}; use a smaller first one</source>
-        <translation>les axes externes finiraient au numéro {0}, et la commande en a {1} ; prenez un premier plus petit</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/methods/closed_form.py"/>
         <source>the axes leave the bead by {0} mm, its direction by {1} deg between two points however many are added: near a pole; tilt away from it</source>
         <translation>les axes quittent le cordon de {0} mm, sa direction de {1} deg entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;un pôle ; inclinez pour vous en éloigner</translation>
@@ -11607,6 +11597,16 @@
         <translation>les extrémités de l&apos;arc sont à {0} et {1} mm de son centre ; donnez I et J de son début à son centre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the external axes are not given in order, or BASE is not coupled to what they move</source>
+        <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à ce qu&apos;ils déplacent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the external axes would end with number {0}, and the controller has {1}; use a smaller first one</source>
+        <translation>les axes externes finiraient au numéro {0}, et la commande en a {1} ; prenez un premier plus petit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
         <source>the face folds back and cuts itself at {0}; give the bend a larger radius than the tube</source>
         <translation>la face se replie et se coupe elle-même en {0} ; donnez au coude un rayon plus grand que celui du tube</translation>
@@ -11738,7 +11738,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/field.py"/>
-        <source>the guide leaves the part: at layer {0} it is {1} mm beside it, at {2}; choose a guide in the part or along one of its edges, or guide: auto</source>
+        <source>the guide leaves the part: at layer {0} it is {1} mm off it, at {2}; choose a guide in the part or along one of its edges, or guide: auto</source>
         <translation>le guide quitte la pièce : à la couche {0} il est à {1} mm à côté, en {2} ; choisissez un guide dans la pièce ou le long de l&apos;une de ses arêtes, ou guide: auto</translation>
     </message>
     <message>
@@ -12513,7 +12513,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/numbers.py"/>
-        <source>the tool goes {0} mm beside a point that is not stopped at, too little for a blend radius, and the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
+        <source>the tool goes {0} mm past a point that is not stopped at, too little for a blend radius, and the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
         <translation>l&apos;outil parcourt {0} mm près d&apos;un point sans arrêt, trop peu pour un rayon de lissage, et le robot s&apos;y arrêterait en déposant ; utilisez un strategy.chord_error plus grand, ou `program.blend: 0` pour s&apos;arrêter à chaque point</translation>
     </message>
     <message>
@@ -12693,7 +12693,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>the wrist is not spherical, and axis 4 passes {0} mm beside axis 1</source>
+        <source>the wrist is not spherical, and axis 4 passes {0} mm off axis 1</source>
         <translation>le poignet n&apos;est pas sphérique, et l&apos;axe 4 passe à {0} mm à côté de l&apos;axe 1</translation>
     </message>
     <message>
@@ -12703,12 +12703,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the wrist is not spherical: axis {0} passes {1} mm beside the point where axes 4 and 5 meet</source>
+        <source>the wrist is not spherical: axis {0} passes {1} mm off the point where axes 4 and 5 meet</source>
         <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 4 et 5 se rencontrent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the wrist is not spherical: axis {0} passes {1} mm beside the point where axes 5 and 6 meet</source>
+        <source>the wrist is not spherical: axis {0} passes {1} mm off the point where axes 5 and 6 meet</source>
         <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 5 et 6 se rencontrent</translation>
     </message>
     <message>
@@ -12923,7 +12923,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>there is one layer alone</source>
+        <source>there is only one layer</source>
         <translation>il n’y a qu’une couche</translation>
     </message>
     <message>
@@ -13438,7 +13438,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program/beads.py"/>
-        <source>within a bead the schedule is changed by an output alone: calls stop the machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and end out</source>
+        <source>within a bead only an output can change the schedule: calls stop the machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and end out</source>
         <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
     <message>
@@ -14082,11 +14082,6 @@
         <translation>{0} n&apos;est ni true ni false ; donnez l&apos;un des deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/cell.py"/>
-        <source>{0} is no URDF, which alone has links; write machine: {{file: robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces</source>
-        <translation>{0} n&apos;est pas un URDF, qui seul a des segments ; écrivez machine: {{file: robot.urdf, base: base_link, tip: tool0}}, ou le chemin d&apos;un fichier machine sans accolades</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/planned/feature_kinds.py"/>
         <source>{0} is none of {1}; use one of these</source>
         <translation>{0} n&apos;est aucun de {1} ; utilisez l&apos;un d&apos;eux</translation>
@@ -14095,6 +14090,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>{0} is not `key: value`; give the file as ur_calibration wrote it</source>
         <translation>{0} n&apos;est pas de la forme `clé: valeur` ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>{0} is not a URDF, and only a URDF has links; write machine: {{file: robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces</source>
+        <translation>{0} n&apos;est pas un URDF, qui seul a des segments ; écrivez machine: {{file: robot.urdf, base: base_link, tip: tool0}}, ou le chemin d&apos;un fichier machine sans accolades</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
@@ -15008,7 +15008,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} solids or groups of solids get one layer alone, on the hub: they are no higher than strategy.layer_height, {2} mm</source>
+        <source>{0} of {1} solids or groups of solids get a single layer, on the hub: they are no higher than strategy.layer_height, {2} mm</source>
         <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu : ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
     </message>
     <message>
@@ -15377,11 +15377,6 @@
         <translation>{0} : une paroi d’un seul cordon, de {1} mm de large, est prévue</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0}: axes beside the robot need the tool on the robot; use setup: tool-on-robot, or leave external out</source>
-        <translation>{0} : des axes à côté du robot demandent l&apos;outil sur le robot ; utilisez setup: tool-on-robot, ou omettez external</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0}: beads of {1} mm do not reach into what is narrower, layers not above the last cut, and nothing is laid within a hub; use narrower beads, or lower layers</source>
         <translation>{0} : les cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, les couches ne montent pas au-dessus de la dernière coupe, et rien n&apos;est déposé dans un moyeu ; prenez des cordons plus étroits, ou des couches plus basses</translation>
@@ -15400,6 +15395,11 @@
         <location filename="../../freecad_am/plots/process.py"/>
         <source>{0}: distance to the layer before (asked: {1} mm)</source>
         <translation>{0} : distance à la couche précédente (demandée : {1} mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0}: external axes need the tool on the robot; use setup: tool-on-robot, or leave external out</source>
+        <translation>{0} : des axes à côté du robot demandent l&apos;outil sur le robot ; utilisez setup: tool-on-robot, ou omettez external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/api.py"/>

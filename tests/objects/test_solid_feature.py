@@ -256,4 +256,4 @@ def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):
         assert left - corners == pytest.approx(24 * 24 * (high - 8.0), rel=0.05) and ("NOT_DEPOSITED" in told) == news
     (whole, _, beside), told = balanced(doc, Part.makeBox(60, 3.2, 8))
     assert beside > 0.8 * whole
-    assert f"about {beside / 1000.0:.3g} cm3 of beads lie beside the 1.54" in told["DEPOSITED_BESIDE"]
+    assert f"about {beside / 1000.0:.3g} cm3 of beads lie outside the 1.54" in told["DEPOSITED_BESIDE"]

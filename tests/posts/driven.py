@@ -60,7 +60,7 @@ class Drive:
         return np.array(rows[1:])
 
     def _beside(self, row, shown, near):
-        """The joints of a position with the values of the axes beside the robot as told; the robot's own from those near."""
+        """The joints of a position with the values of the external axes as told; the robot's own from those near."""
         cell, own = self.cell, len(self.cell.robot.axes)
         values = cell.machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[own:]
         face = KdlArm(cell.machine).forward(np.r_[np.zeros(own), values][None])[0] @ np.linalg.inv(

@@ -121,7 +121,7 @@ JOB = program(
 
 
 def beside(of, **more):
-    """The same with two axes beside the robot, told as E2 and E3: they tilt by 30 deg, and turn on with every move."""
+    """The same with two external axes, told as E2 and E3: they tilt by 30 deg, and turn on with every move."""
     count, blocks = 0, []
     for block in of.blocks:
         if isinstance(block, Moves):

@@ -190,7 +190,7 @@ def test_what_arctech_has_in_its_own_data_or_was_not_confirmed_is_refused():
     refusal(dataclasses.replace(LIT, lead_off=0.2), "SCHEDULE", "crater time of WDATOFF7")
     refusal(dataclasses.replace(LIT, schedule=None), "NO_SCHEDULE", "arc instructions name")
     refusal(dataclasses.replace(LIT, schedule=256), "SCHEDULE", "up to 255, not 256")
-    refusal(dataclasses.replace(LIT, start=BeadStart(4.0, 5.0, 4)), "SCHEDULE", "changed by an output alone")
+    refusal(dataclasses.replace(LIT, start=BeadStart(4.0, 5.0, 4)), "SCHEDULE", "only an output can change the schedule")
 
 
 def test_a_program_that_begins_at_a_bead_is_refused():

@@ -75,7 +75,7 @@ def _only_solid(shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any]
         name, made, share = found[0]
         if share < MOSTLY:
             raise InputError(
-                "NOT_OF_REVOLUTION", label, "of its {} solids {} alone turns about an axis, {:.0%} of its surface; name the "
+                "NOT_OF_REVOLUTION", label, "of its {} solids only {} turns about an axis, {:.0%} of its surface; name the "
                 "faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub",
                 len(shape.Solids), name, share,
             )

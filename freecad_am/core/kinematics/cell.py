@@ -48,7 +48,7 @@ class Cell:
     rotary axes is a chain seen from the torch, so that the part hangs on its flange wherever its axes are.
     mount: in part coordinates, the frame that sits on the platform.
     branch: index of the branch (opw.branch_index), or None when all are to be searched.
-    external: axes beside the robot; the machine then is the robot together with them, and what stands for base_link in its
+    external: external axes; the machine then is the robot together with them, and what stands for base_link in its
     chain is the face that carries the part, or the world where only the robot is carried.
     obstacles: what stands in the world, the maker's base frame, in its coordinates. up: (3,) against gravity, there.
     torch: what holds the nozzle, in the frame of its tip, Z into it. offset: where the part stands by points touched.
@@ -286,7 +286,7 @@ def resolve(
 
 
 def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: bool) -> None:
-    """InputError WRONG_SETUP for what the machine, or axes beside it, do not do, NO_CLOSED_FORM for an arm whose inverse is
+    """InputError WRONG_SETUP for what the machine, or external axes, do not do, NO_CLOSED_FORM for an arm whose inverse is
     not known."""
     if arrangement not in machine.arrangements:
         kind = "is a robot" if machine.free else "has sliding axes"
@@ -296,5 +296,5 @@ def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: 
     if machine.no_arm:
         raise InputError("NO_CLOSED_FORM", "cell.machine", "{}: {}", machine.title, machine.no_arm)
     if has_external and arrangement.carries_part:
-        raise InputError("WRONG_SETUP", "cell.external", "{}: axes beside the robot need the tool on the robot; use setup: "
+        raise InputError("WRONG_SETUP", "cell.external", "{}: external axes need the tool on the robot; use setup: "
                          "tool-on-robot, or leave external out", arrangement.setup)

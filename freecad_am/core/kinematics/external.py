@@ -46,7 +46,7 @@ class Mechanism:
 
 @dataclass(frozen=True, eq=False)
 class ExternalAxes:
-    """The axes beside a robot, k in all. robot: the machine without them. to_robot: the chain from where the part stands,
+    """The k external axes of a robot. robot: the machine without them. to_robot: the chain from where the part stands,
     the platform's face or the world, to the robot's base_link. up: (3,) against gravity, in the world. turning: the unit
     axes (3,) of the positioner in the world with all axes at zero, from the floor on, and `turned` which of the values these
     are. at_zero: (3, 3) turns directions on the face into the world, at zero. along: (3,) the unit way of the track in the

@@ -73,7 +73,7 @@ class CellParameters:
     )
     nozzle: NozzleParameters = f.group(NozzleParameters, "The nozzle.")
     external: str = f.parameter(
-        NO_AXES, f.TEXT, "Robots: axes beside them that carry the part or the robot, such as: motoman-motopos-d500 at "
+        NO_AXES, f.TEXT, "Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at "
         "1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot's base frame; "
         "more than one with ; between.", advanced=True, poses=True,
     )

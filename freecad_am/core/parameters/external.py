@@ -21,7 +21,7 @@ _FORM = "write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"
 
 @dataclass(frozen=True)
 class External:
-    """A mechanism of one or more axes beside the robot. machine: its id, or the path of a machine file. pose: of its base in
+    """A mechanism of one or more external axes. machine: its id, or the path of a machine file. pose: of its base in
     the world, mm and rad (Bryant). carries: part or robot. Its text has degrees."""
 
     machine: str

@@ -98,10 +98,10 @@ class FilledParameters(LayerParameters):
     )
     contour: bool = f.parameter(True, f.FLAG, "Contours are laid round lines and the like.")
     walls: int | str = f.parameter(
-        1, f.COUNT, "How many contours lie round lines and the like; inf: contours alone.", low=0, words=("inf",)
+        1, f.COUNT, "How many contours lie round lines and the like; inf: contours only.", low=0, words=("inf",)
     )
     margin: float = f.parameter(
-        0.0, f.LENGTH, "How far the deposit stands out beside the part, to be machined off; above it by the layers that "
+        0.0, f.LENGTH, "How far the deposit stands out from the part, to be machined off; above it by the layers that "
         "begin less than that above its last one.", low=0.0
     )
     order: str = f.parameter(

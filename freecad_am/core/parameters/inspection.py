@@ -31,7 +31,7 @@ class InspectionParameters:
         low=0.0, high=100.0,
     )
     fit: str = f.parameter(
-        BEST, f.CHOICE, "How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along "
+        BEST, f.CHOICE, "How the points may be moved onto the part: best fit, shifts only, a turn about and a shift along "
         "the part's axis, or none but what pairs of points say.", choices=(BEST, SHIFT, AXIS, NONE),
     )
     trim: float = f.parameter(

@@ -92,7 +92,7 @@ class JointParameters:
     )
     external_axes: str = f.parameter(
         LEVEL, f.CHOICE,
-        "Axes beside the robot. level: they turn no more than the angle from the vertical asks for; optimised: one "
+        "External axes. level: they turn no more than the angle from the vertical asks for; optimised: one "
         "polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.",
         choices=(LEVEL, OPTIMISED),
     )

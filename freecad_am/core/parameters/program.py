@@ -47,7 +47,7 @@ class NcParameters:
         1.0, f.NUMBER, "Value of that output at 1 m/min of wire.", low=0.0, open_low=True, high=1e6, unit="min/m",
     )
     switch_kinematics: bool = f.parameter(
-        True, f.FLAG, "LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes alone."
+        True, f.FLAG, "LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only."
     )
 
     def __post_init__(self) -> None:
@@ -56,7 +56,7 @@ class NcParameters:
 
 @dataclass(frozen=True)
 class AxesParameters:
-    """What the controller calls the axes beside the robot."""
+    """What the controller calls the external axes."""
 
     unit: str | None = f.parameter(
         None, f.TEXT, "Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), "
@@ -126,7 +126,7 @@ class ProgramParameters:
     user_frame: int = f.parameter(1, f.COUNT, "Number of the user frame named in the program.", low=0, high=61)
     tool_frame: int = f.parameter(1, f.COUNT, "Number of the tool frame named in the program.", low=1, high=29)
     deposit_output: int = f.parameter(1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096)
-    axes: AxesParameters = f.group(AxesParameters, "What the controller calls the axes beside the robot.")
+    axes: AxesParameters = f.group(AxesParameters, "What the controller calls the external axes.")
     schedule: ScheduleParameters = f.group(ScheduleParameters, "How the welder or extruder is told its schedule.")
     trigger: TriggerParameters = f.group(TriggerParameters, "Switching on the move itself, ahead of a place.")
 

@@ -84,7 +84,7 @@ class SurfaceParameters(LayerParameters):
         1e-4, f.LENGTH, "Largest error of the local distance of constant-distance layers.", low=1e-6, high=1.0
     )
     end: str = f.parameter(
-        "trim", f.CHOICE, "Last layers trimmed flush with the wall's upper edge, or whole layers alone.",
+        "trim", f.CHOICE, "Last layers trimmed flush with the wall's upper edge, or whole layers only.",
         choices=("trim", "whole"),
     )
     compare: tuple[str, ...] = f.parameter(

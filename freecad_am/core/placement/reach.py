@@ -32,7 +32,7 @@ class Reach:
 def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None) -> Reach:
     """Where the tip of the nozzle, or the middle of the platform where the robot carries the part, can be, within the
     limits, in the configuration of the cell; on a grid of `step` mm, or wider for MOST_PLACES. What stands in the cell is
-    not looked at, nor axes beside the robot. progress may raise to cancel. Nothing of machines with rotary axes.
+    not looked at, nor external axes. progress may raise to cancel. Nothing of machines with rotary axes.
     """
     arm = cell.robot.arm
     if arm is None:
@@ -85,7 +85,7 @@ def _share(cell: Cell, rows: LimitRows, places: Array, hold: Array) -> Array:
     for branch in range(8) if cell.branch is None else (cell.branch,):
         left = np.nonzero(~served.any(axis=2))
         joints = arm.inverse_branch(poses[left].reshape(-1, 4, 4), branch)
-        joints = np.pad(joints, ((0, 0), (0, count - own)))  # axes beside it stand at zero
+        joints = np.pad(joints, ((0, 0), (0, count - own)))  # external axes stand at zero
         turns = np.where(np.isfinite(middle), np.round((np.nan_to_num(middle) - joints[:, :own]) / TURN), 0.0)
         joints[:, :own] += TURN * turns
         served[left] = (rows.margin(joints) >= 0.0).reshape(-1, TURNS)

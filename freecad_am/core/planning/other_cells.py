@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Other cells that a job may be done in: another branch, another place of the part, axes beside the robot, the likeliest
+"""Other cells that a job may be done in: another branch, another place of the part, external axes, the likeliest
 first; each is told as keys of a job file."""
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def points(job: Tried) -> Iterator[Tried]:
 
 
 def external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
-    """A positioner elsewhere, or axes beside a robot that has none."""
+    """A positioner elsewhere, or external axes for a robot that has none."""
     for remedy, settings in external_remedies.moved(job.settings, job.folders):
         yield dataclasses.replace(job, settings=settings, remedy=remedy)
     toolpath = job.toolpath()

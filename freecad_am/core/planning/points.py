@@ -24,7 +24,7 @@ UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 class Points:
     """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each bead's
     first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends where it starts.
-    external: (T, k) values of the axes beside the robot, None where there are none. sliding: (axes,) those that slide, None
+    external: (T, k) values of the external axes, None where there are none. sliding: (axes,) those that slide, None
     where none does."""
 
     position: Array

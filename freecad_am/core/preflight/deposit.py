@@ -30,7 +30,7 @@ def layers(toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] |
         how = "height of each point over the nearest place of the layer below, along the build direction there"
     distances = [values for values in (spacing.between_layers(toolpath) if known is None else known) if len(values)]
     if not distances:
-        return Promise(what, "there is one layer alone", None)
+        return Promise(what, "there is only one layer", None)
     height = toolpath.layer_height
     extremes = [(float(np.nanmin(values)), float(np.nanmax(values))) for values in distances]
     low, high = min(low for low, _ in extremes), max(high for _, high in extremes)
@@ -68,7 +68,7 @@ def whole(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
 
 def nothing_outside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     """Of what the beads deposit that is not the part."""
-    what = "Nothing is deposited beside the part"
+    what = "Nothing is deposited outside the part"
     if balance is None or balance.outside is None:
         return Promise(what, "not checked: the part encloses no volume", None)
     found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.OUTSIDE,), WARNING)

@@ -89,8 +89,8 @@ def taken_whole(found: JobProposal, picks: Sequence[Pick]) -> str:
     clicked = {pick.obj.Name for pick in picks if len(picking.with_faces(pick).names) == 1}
     for part in found.parts:
         if found.kind != DEVELOPABLE and not part.names and part.obj.Name in clicked:
-            return tr("The whole of {} is taken. For faces alone, click several with Ctrl; for a single one, use the panel "
-                      "of Feature or Wall on Part.").format(part.obj.Label)
+            return tr("The whole of {} is taken. To take single faces, click several with Ctrl; for a single one, use "
+                      "the panel of Feature or Wall on Part.").format(part.obj.Label)
     return ""
 
 

@@ -42,7 +42,7 @@ class ExternalLinkNodes:
             move(matrix, frame)
 
     def paint(self, bad: NDArray[np.bool_]) -> None:
-        """bad: (k,) of the axes beside the robot, those whose links are to be red; the others get their own colours back."""
+        """bad: (k,) of the external axes, those whose links are to be red; the others get their own colours back."""
         red = np.array([link.link > 0 and bool(bad[link.axis]) for link in self.links], dtype=bool)
         for index in np.flatnonzero(red != self.bad):
             self.materials[index].diffuseColor.setValue(*(BAD if red[index] else _colour(self.links[index])))

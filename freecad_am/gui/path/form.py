@@ -30,7 +30,7 @@ class PathForm(QtGui.QWidget):
         self.look = _combo("look", tr("Draw beads as lines, or as tubes of their width and layer height"))
         self.directions = QtGui.QCheckBox(tr("Build directions"))
         self.directions.setObjectName("directions")
-        self.single = QtGui.QCheckBox(tr("One layer alone"))
+        self.single = QtGui.QCheckBox(tr("One layer only"))
         self.single.setObjectName("single")
         self.all = QtGui.QPushButton(tr("Show all"))
         self.all.setObjectName("all")

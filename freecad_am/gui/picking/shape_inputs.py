@@ -54,7 +54,7 @@ class ShapeChoice(Input):
         pick = found if found is None or self.link.name == "Axis" else picking.whole(found)
         self._take(pick)
         if found is not None and pick is not None and found.names and not pick.names:
-            self.note = tr("The whole of {} is taken; Use selection takes faces alone.").format(pick.obj.Label)
+            self.note = tr("The whole of {} is taken; Use selection takes the selected faces only.").format(pick.obj.Label)
 
     def _take_selected(self, *_: Any) -> None:
         """The button was pressed, perhaps after the document was closed."""

@@ -76,7 +76,7 @@ def _up(board: Any) -> tuple[str, Array]:
 
 
 def _axis(board: Any, number: int, inside: Array) -> tuple[str, Array]:
-    """An axis beside the robot: name and values as a machine file has them."""
+    """An external axis: name and values as a machine file has them."""
     machine, index = board.source.cell.machine, board.source.cell.robot.chain.axes + number
     unit = "mm" if machine.chain.sliding[index] else "deg"
     return f"{machine.axes[index]}_{unit}", inside / machine.unit_values[index]

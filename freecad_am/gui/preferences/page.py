@@ -75,7 +75,7 @@ class PreferencesPage:
             "A further folder of machine files, such as one that is shared; your own are in {} as well").format(
                 os.path.join("RoboticAM", "machines")))
         self.programs = self._folder(rows, "programsFolder", tr("Programs"), tr(
-            "Where programs are written first; empty for the folder of last time, or beside the document"))
+            "Where programs are written first; empty for the folder of last time, or next to the document"))
 
     def _folder(self, rows: Any, name: str, label: str, help: str) -> Any:
         line, edit, button = QtGui.QHBoxLayout(), QtGui.QLineEdit(), QtGui.QPushButton(tr("Browse…"))

@@ -79,7 +79,7 @@ def of_job(menu: Any, group: Any) -> None:
     _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(paths[-1]), bool(paths))
     if paths:
         _of_tool(menu, "Plots", tr("Plots…"), paths[-1], True)
-    _add(menu, "Shown", tr("Show this job alone"), lambda: show_alone(group))
+    _add(menu, "Shown", tr("Show this job only"), lambda: show_alone(group))
 
 
 def renew(obj: Any, force: bool = False) -> None:

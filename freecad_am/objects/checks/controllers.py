@@ -55,7 +55,7 @@ def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
 
 
 def check_external(cell: Cell, post: str) -> None:
-    """InputError UNSUPPORTED_AXES when a post of the robot does not write the axes beside it."""
+    """InputError UNSUPPORTED_AXES when a post of the robot does not write its external axes."""
     written = readers(cell)
     if cell.external is None or written is None or post in written:
         return
@@ -139,5 +139,5 @@ def readers(cell: Cell) -> tuple[str, ...] | None:
 
 
 def _with_external(posts: Sequence[str] | None) -> tuple[str, ...]:
-    """Those of the posts, of all for None, that write axes beside the robot."""
+    """Those of the posts, of all for None, that write external axes."""
     return tuple(post for post in sorted(NAMES if posts is None else posts) if controller(post).external)

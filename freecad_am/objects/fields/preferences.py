@@ -62,7 +62,8 @@ def machine_folder() -> str:
 
 
 def programs_folder() -> str:
-    """Where programs are written first: the folder that is preferred, else that of last time; '' for beside the document."""
+    """Where programs are written first: the folder that is preferred, else that of last time; '' for next to
+    the document."""
     return text("ProgramsFolder") or text("ExportFolder")
 
 

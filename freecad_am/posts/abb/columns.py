@@ -23,7 +23,7 @@ _DECIMALS = re.compile(r"\.(\d+)")
 
 
 class Move(NamedTuple):
-    """A move as its line has it: joint values, or place and orientation, and the axes beside the robot. amount: s of joint
+    """A move as its line has it: joint values, or place and orientation, and the external axes. amount: s of joint
     moves, mm/s of linear ones, half: of its last digit. wire: of the analogue output, and half of its last digit."""
 
     linear: bool
@@ -39,7 +39,7 @@ class Move(NamedTuple):
 
 @dataclass
 class Run:
-    """What happened so far while the routines are followed, column by column. external: axes beside the robot as they stand,
+    """What happened so far while the routines are followed, column by column. external: external axes as they stand,
     of which those `used` have values, `unit` theirs, and `slides` those that a remark calls the track; active: the
     mechanical unit that the module has activated.
 
@@ -129,7 +129,7 @@ class Run:
         if not self.time_or_speed or self.moving or move.zone != "fine":
             return False
         if self.external and self.external[-1] != self._used_of(move.axes.split(",")):
-            raise unreadable(where, "axes beside the robot would move where it stands")
+            raise unreadable(where, "external axes would move where it stands")
         if self.placed[-1]:
             return (self.places[-1], self.turns[-1]) == move.values
         self._framed(move.frames, where)
@@ -148,16 +148,16 @@ class Run:
         return ",".join(text for text in texts if text != "9E9")
 
     def _external_axes(self, texts: list[str], frames: Frames, where: str) -> None:
-        """Keep the values of the axes beside the robot: of the same ones in all moves, those of the unit that the work
+        """Keep the values of the external axes: of the same ones in all moves, those of the unit that the work
         object is on, which is active, and the track. Where the work object stands, the track is the only one."""
         used = tuple(number for number, text in enumerate(texts, 1) if text != "9E9")
         if used != tuple(range(used[0], used[0] + len(used)) if used else ()) or self.used not in (None, used):
-            raise unreadable(where, "other axes beside the robot have values than in moves before, or not all in a row")
+            raise unreadable(where, "other external axes have values than in moves before, or not all in a row")
         if len(self.slides) > 1 or not {*self.slides} <= {*used}:
             raise unreadable(where, "more than one axis is called the track, or it has no value")
         turned_ones = set(used) - set(self.slides)
         if bool(turned_ones) != bool(frames.unit) or (self.active != frames.unit and (turned_ones or not used)):
-            raise unreadable(where, "axes beside the robot have no value, or their unit is not active, or not the object's")
+            raise unreadable(where, "external axes have no value, or their unit is not active, or not the object's")
         if self.used is not None and self.unit != self.active:
             raise unreadable(where, "another unit is active than in moves before")
         self.used, self.unit = used, self.active

@@ -19,7 +19,7 @@ _TRIGGER = re.compile(r"LOCAL VAR triggdata (\w+);$")
 _TIP = re.compile(r"\[\d+(?:\.(\d+))?,")
 _TRACK = re.compile(r"! eax_([a-f]) is the track in mm\b")
 _MODULE_LINE, _PROC_LINE = re.compile(r"MODULE ([A-Za-z]\w*)$"), re.compile(r"PROC ([A-Za-z]\w*)\(\)$")
-# deg/s of the tool, mm/s and deg/s of axes beside the robot: moves that need more would be slowed down, as by RAPID's v1000
+# deg/s of the tool, mm/s and deg/s of external axes: moves that need more would be slowed down, as by RAPID's v1000
 _FAST = 500.0, 5000.0, 1000.0
 _NO_ARC = [0] * 9
 
@@ -43,7 +43,7 @@ class Frames:
 @dataclass
 class Module:
     """A file: the statements of its one routine with the numbers of their lines, and its data by name. slides: numbers of
-    the axes beside the robot that a remark calls the track. speeds: mm/s of the tip, halves: of their last digits; welds:
+    the external axes that a remark calls the track. speeds: mm/s of the tip, halves: of their last digits; welds:
     mm/s of weld data."""
 
     file: str

@@ -19,9 +19,9 @@ WIDTH = 80  # of remarks
 # what the module of a program and those of its parts call their data; each its own (LOCAL)
 TOOL, WORK_OBJECT, SPEED, ZONE = "t_am", "w_am", "v_am", "z_am"
 MAIN = "main"
-# of axes beside the robot's that there are none of
+# of external axes that there are none of
 _NO_AXIS, MOST_AXES = "9E9", 6
-# mm/s of the tip, which every move replaces by a speed or a time of its own; deg/s it turns; axes beside the robot's: those
+# mm/s of the tip, which every move replaces by a speed or a time of its own; deg/s it turns; external axes: those
 # of RAPID's own v1000
 _SPEEDS = "500,5000,1000"
 # kg, mm: the load that RAPID's own tool0 has
@@ -71,13 +71,13 @@ def _zone(size: float) -> str:
 
 def joint_moves(degrees: Array, words: Sequence[str], first: int = 1) -> list[str]:
     """Moves straight in the joints to values (n, 6 and those beside the robot), rounded already. words: speed and zone of
-    each. first: the number of the first axis beside the robot, from 1."""
+    each. first: the number of the first external axis, from 1."""
     line = _JOINTS.replace("<axes>", _axes(degrees.shape[1] - 6, first))
     return _move_lines(line, "MoveAbsJ", degrees, words)
 
 
 def linear_moves(position: Array, quaternion: Array, external: Array, words: Sequence[str], first: int = 1) -> list[str]:
-    """Moves straight in space to positions (n, 3), quaternions (n, 4) and axes beside the robot (n, k), rounded already."""
+    """Moves straight in space to positions (n, 3), quaternions (n, 4) and external axes (n, k), rounded already."""
     line = _POSITION.replace("<axes>", _axes(external.shape[1], first))
     return _move_lines(line, "MoveL", np.hstack((position, quaternion, external)), words)
 
@@ -90,7 +90,7 @@ def _move_lines(line: str, instruction: str, values: Array, words: Sequence[str]
 
 
 def _axes(count: int, first: int) -> str:
-    """The axes beside the robot: so many of them, from that number on."""
+    """The external axes: so many of them, from that number on."""
     formats = [_NO_AXIS] * (first - 1) + [f"%.{ANGLE_DECIMALS}f"] * count if count else []
     return f"[{','.join(formats + [_NO_AXIS] * (MOST_AXES - len(formats)))}]"
 

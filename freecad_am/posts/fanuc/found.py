@@ -24,7 +24,7 @@ class Run:
     """What happened so far while the programs are followed.
 
     pending: records of the listing at hand that were moved to and are not among `values` yet. recorded, numbers: frames of
-    the record that was looked at last, and the numbers of those selected. track: which of the axes beside the robot a remark
+    the record that was looked at last, and the numbers of those selected. track: which of the external axes a remark
     calls the track, 0 for none, and whether positions have one. moved: groups that headers name.
     """
 
@@ -102,7 +102,7 @@ def read_moves(run: Run) -> ReadMoves:
 
 
 def _joints(run: Run, values: Array) -> Array:
-    """(n, axes) rad and mm of the values of records, the track where a remark says that it is among the axes beside."""
+    """(n, axes) rad and mm of the values of records, the track where a remark says that it is among the external axes."""
     number, track = run.track
     if track != bool(number) or number > values.shape[1] - _OWN:
         raise unreadable("program", "positions have a track and no remark says which axis it is, or the other way round")

@@ -22,7 +22,7 @@ class Run:
 
     state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
     the program has waited. signals: outputs, the first and the last, by the name they have in the module. beside: values of
-    the axes beside the robot at each move; unit: the mechanism that BASE is coupled to, and numbers of all these axes;
+    the external axes at each move; unit: the mechanism that BASE is coupled to, and numbers of all these axes;
     slides: of the one that a remark calls the track. arc: the instruction of ArcTech that is being read. trigger: s
     before its end at which the next move switches an output, which one, and whether on.
     """

@@ -18,7 +18,7 @@ from .read_arc import of_arc
 
 _N = r"(-?\d+\.\d+)"
 _AXES, _PLACES = (",".join(f"{name} {_N}" for name in names.split()) for names in ("A1 A2 A3 A4 A5 A6", "X Y Z A B C"))
-_EXTERNAL_WORDS = rf"((?:,E[1-6] {_N[1:-1]})*)"  # axes beside the robot
+_EXTERNAL_WORDS = rf"((?:,E[1-6] {_N[1:-1]})*)"  # external axes
 _TO_AXES = re.compile(rf"PTP \{{{_AXES}{_EXTERNAL_WORDS}\}}$")
 _STRAIGHT = re.compile(rf"LIN \{{{_PLACES}{_EXTERNAL_WORDS}\}}( C_DIS)?$")
 _EXTERNAL, _SHARED = re.compile(rf",E(\d) {_N}"), re.compile(r"\$VEL_EXTAX\[([1-6])\]=(\d+)$")
@@ -264,15 +264,15 @@ def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> Non
 
 
 def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str) -> None:
-    """Look at the axes beside the robot of a move: the same ones in all of them, coupled, and as fast as the move needs, in
+    """Look at the external axes of a move: the same ones in all of them, coupled, and as fast as the move needs, in
     percent: a linear one goes at its own speed only where they may be as fast as they can."""
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
-        raise not_read(where, "moves with other axes beside the robot are mixed")
+        raise not_read(where, "moves with other external axes are mixed")
     moved = set(numbers) - set(run.slides)
     in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
     if not in_order or bool(moved) != bool(unit) or len(run.slides) > 1 or not {*run.slides} <= {*numbers}:
-        raise not_read(where, "the axes beside the robot are not given in order, or BASE is not coupled to what they move")
+        raise not_read(where, "the external axes are not given in order, or BASE is not coupled to what they move")
     if any(run.state.get(f"E{number}") != share for number in numbers):
-        raise not_read(where, Text("axes beside the robot do not run at {:.0f} % of their speeds", share))
+        raise not_read(where, Text("external axes do not run at {:.0f} % of their speeds", share))
     run.unit, run.numbers = unit, numbers

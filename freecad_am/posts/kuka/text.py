@@ -88,7 +88,7 @@ class Lines:
         external = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
         self._ptp, self._lin = (f"{word} {{{','.join([*values, *external])}}}" for word, values in (
             ("PTP", _AXES), ("LIN", _PLACE)))
-        # shares of the speeds of axes beside the robot hold for linear moves too, which they must not slow down
+        # shares of the speeds of external axes hold for linear moves too, which they must not slow down
         self._shares = "".join(f"$VEL_EXTAX[{number}]=%d|" for number in numbers)
         self._unhindered = self._external_speeds(100)
 
@@ -120,7 +120,7 @@ class Lines:
         return marked
 
     def _external_speeds(self, share: int) -> str:
-        """Settings of a share, percent, of the speeds of the axes beside the robot; none where there are none."""
+        """Settings of a share, percent, of the speeds of the external axes; none where there are none."""
         return self._shares % ((share,) * self._shares.count("%"))
 
     def _percent(self, moves: Moves, shown: Array) -> list[int]:

@@ -173,7 +173,7 @@ def _refuse_tilt(carried: tuple[float, ...]) -> None:
         x, y, z, rx, ry, rz = (*carried[:3], *(math.degrees(angle) for angle in carried[3:]))
         raise InputError(
             "UNSUPPORTED_FRAME", "program.origin",
-            "a work offset of LinuxCNC turns about Z alone, and the part leans on the table by RX {:.4g} and RY {:.4g} deg; "
+            "a work offset of LinuxCNC turns about Z only, and the part leans on the table by RX {:.4g} and RY {:.4g} deg; "
             "enter an upright origin, as cell.platform: [{:.6g}, {:.6g}, {:.6g}, 0, 0, {:.6g}], or use `motion: joint`", rx,
             ry, x, y, z, rz + 0.0,
         )

@@ -73,7 +73,7 @@ def _radii(program: Program, ways: Array) -> Array:
         run = moves[int(np.searchsorted(np.cumsum([len(run) for run in moves]), first, side="right"))]
         raise InputError(
             "BLEND_RADIUS", place(run),
-            "the tool goes {:.3g} mm beside a point that is not stopped at, too little for a blend radius, and the robot "
+            "the tool goes {:.3g} mm past a point that is not stopped at, too little for a blend radius, and the robot "
             "would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at "
             "every point", adjacent[first],
         )

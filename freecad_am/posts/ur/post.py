@@ -65,7 +65,7 @@ NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
 MOVE_LINE = re.compile(rb" *move[jlp]\(")
 ON_CONTROLLER = on_controller(
-    "Joint programs count on the nominal arm; the calibrated one stands up to millimetres beside it",
+    "Joint programs rely on the nominal arm; the calibrated one stands up to millimetres off it",
     "The robot keeps the time of every move through the blends",
     "Payload is set, safety limits allow the speeds, and the speed slider is at 100 %",
     "The deposit output switches the process",

@@ -161,7 +161,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
     counts = {letters: int(number) for letters, number in zip(_EXTERNAL, count.groups()[1:])}
     for letters, external in counts.items():
         if external not in (0, points):
-            raise unreadable(f"{file} line 4", "not every position has one of the axes beside the robot, or these are alone")
+            raise unreadable(f"{file} line 4", "not every position has one of the external axes, or these are alone")
         values = np.hstack([values, _external_pulses(file, letters, lines[at : at + external], at)]) if external else values
         at += external
     for number, pattern in enumerate(_INST):

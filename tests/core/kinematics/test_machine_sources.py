@@ -162,8 +162,8 @@ def shift(x=0.0, y=0.0, z=0.0, about=None, deg=0.0):
 
 
 @pytest.mark.parametrize("index,step,reason", [
-    (4, {"z": 12.0}, r"axis 4 passes 12 mm beside"),
-    (5, {"y": 3.0}, r"axis 6 passes 3 mm beside"),
+    (4, {"z": 12.0}, r"axis 4 passes 12 mm off"),
+    (5, {"y": 3.0}, r"axis 6 passes 3 mm off"),
     (1, {"about": 0, "deg": 2.0}, r"axes 1 and 2 are 88 deg apart"),
     (2, {"about": 2, "deg": 0.01}, r"axes 2 and 3 are not parallel, but 0.01 deg"),
     (3, {"about": 2, "deg": 90.0}, r"the wrist is not spherical: axis 4 is parallel to axes 2 and 3"),

@@ -155,7 +155,7 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
         ("What is deposited lies on the part", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, on_part=(500.0, 0.21, 0.2))}),
         ("All of the part is deposited", lambda e: {"balance": Balance("Part", 1e5, 3e3, 1e5, 0.0)}),
-        ("Nothing is deposited beside the part", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 3e4)}),
+        ("Nothing is deposited outside the part", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 3e4)}),
         ("Little is deposited twice", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 0.0, filled=True, twice=1.1e4)}),
         ("Little is deposited twice", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=1.1e4)}),
         ("Every bead is carried by what lies below it", lambda e: {"toolpath": dataclasses.replace(
@@ -192,7 +192,7 @@ def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound)
         "RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")),
     ("The nozzle stays clear of deposit, part and platform while it deposits", "error", ("CLEARANCE", "OVER_PLATFORM")),
     ("All of the part is deposited", "warning", ("NOT_DEPOSITED",)),
-    ("Nothing is deposited beside the part", "warning", ("DEPOSITED_BESIDE",)),
+    ("Nothing is deposited outside the part", "warning", ("DEPOSITED_BESIDE",)),
     ("Little is deposited twice", "warning", ("DEPOSITED_TWICE",)),
     ("Every bead is carried by what lies below it", "warning", ("UNSUPPORTED",)),
 ])
@@ -212,8 +212,8 @@ def without(evidence, **parts):
     [
         ("What is deposited lies on the part", lambda e: without(e, toolpath={"on_part": None})),
         ("All of the part is deposited", lambda e: {"balance": None}),
-        ("Nothing is deposited beside the part", lambda e: {"balance": None}),
-        ("Nothing is deposited beside the part", lambda e: without(e, balance={"outside": None})),
+        ("Nothing is deposited outside the part", lambda e: {"balance": None}),
+        ("Nothing is deposited outside the part", lambda e: without(e, balance={"outside": None})),
         ("All of the part is deposited", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=0.0, lines=True)}),
         ("Little is deposited twice", lambda e: without(e, balance={"twice": None})),
         ("Every bead is carried by what lies below it", lambda e: without(e, toolpath={"unsupported": None})),

@@ -29,8 +29,8 @@ UP = np.array([0.0, 0.0, 1.0])
 FORM = "give absolute or relative moves in mm, G0 to G3 with E, as a slicer for filament or pellets writes them"
 REFUSED = {
     "G20": "it is in inches; let the slicer write mm (G21)",
-    "G18": "arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines alone",
-    "G19": "arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines alone",
+    "G18": "arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines only",
+    "G19": "arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines only",
     "G5": "splines are not known; let the slicer write lines and arcs",
     "G6": "direct moves of steppers are not known; let the slicer write G1",
     "G43": "tool lengths are not known; let the slicer leave them out",

@@ -110,7 +110,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         to = centre - p[axis]
         off = float(np.linalg.norm(to - z[axis] * float(z[axis] @ to)))
         if off > NEAR_MM:
-            raise refused(Text("the wrist is not spherical: axis {} passes {:.6g} mm beside the point where axes {} meet",
+            raise refused(Text("the wrist is not spherical: axis {} passes {:.6g} mm off the point where axes {} meet",
                                axis + 1, off, Word("5 and 6" if axis == 3 else "4 and 5")))
     return centre
 

@@ -92,7 +92,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     plane = np.stack([ahead, (0.0, 0.0, 1.0)])
     shoulder, elbow, centre = (plane @ at for at in (p[1], p[2], point))
     if abs(offset := float(normal @ point)) > NEAR_MM:
-        raise opw_recognition.refused(Text("the wrist is not spherical, and axis 4 passes {:.6g} mm beside axis 1",
+        raise opw_recognition.refused(Text("the wrist is not spherical, and axis 4 passes {:.6g} mm off axis 1",
                                            abs(offset)))
     upper, fore = elbow - shoulder, centre - elbow
     away = point - p[5] - z[5] * float(z[5] @ (point - p[5]))

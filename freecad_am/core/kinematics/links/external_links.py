@@ -83,7 +83,7 @@ def of_unknown_shape(external: ExternalAxes, links: Sequence[ExternalLink]) -> l
 
 
 def _axis(external: ExternalAxes, number: int, link: int) -> int:
-    """Which of the axes beside the robot moves a link of a mechanism last."""
+    """Which of the external axes moves a link of a mechanism last."""
     one = external.mechanisms[number]
     if link:
         return int(one.values[link - 1])

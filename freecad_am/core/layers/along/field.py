@@ -158,7 +158,7 @@ def _refuse_outside(layer: Slice) -> None:
     away = float(hull.equations[:, 2].max())
     if away > BEYOND * float(np.ptp(points, axis=0).max()):
         raise InputError(
-            "GUIDE_OUTSIDE", "strategy.guide", "the guide leaves the part: at layer {} it is {:.3g} mm beside it, at {}; "
+            "GUIDE_OUTSIDE", "strategy.guide", "the guide leaves the part: at layer {} it is {:.3g} mm off it, at {}; "
             "choose a guide in the part or along one of its edges, or guide: auto", layer.number, away,
             layer.where(np.zeros(2)),
         )

@@ -57,7 +57,7 @@ class Freedom:
 
     @property
     def external(self) -> ExternalAxes:
-        """The axes beside the robot."""
+        """The external axes."""
         found = self.task.cell.external
         assert found is not None
         return found

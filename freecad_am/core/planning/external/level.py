@@ -78,7 +78,7 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
 
 
 def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
-    """What leans more than allowed where no axis beside the robot turns the part: at most one issue of a bead."""
+    """What leans more than allowed where no external axis turns the part: at most one issue of a bead."""
     up, issues = cell.machine.base[:3, :3] @ cell.up, list[Issue]()
     allowed = allowed_by_layer(toolpath.parts)
     for layer, index, bead in toolpath:

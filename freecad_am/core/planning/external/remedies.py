@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cells that may make an infeasible job feasible: a positioner that stands elsewhere, or axes beside the robot where there
+"""Cells that may make an infeasible job feasible: a positioner that stands elsewhere, or external axes where there
 are none."""
 
 from __future__ import annotations

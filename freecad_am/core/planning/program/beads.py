@@ -36,7 +36,7 @@ def deposited(
         )
     if len(set(numbers)) > 1 and by != OUTPUT and not parameters.dry_run:
         raise InputError(
-            "SCHEDULE", "program.schedule.by", "within a bead the schedule is changed by an output alone: calls stop the "
+            "SCHEDULE", "program.schedule.by", "within a bead only an output can change the schedule: calls stop the "
             "machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and "
             "end out",
         )

@@ -110,7 +110,7 @@ def _axis_machines(cell: Cell) -> tuple[str, ...]:
 
 
 def external_kinds(cell: Cell) -> tuple[str, ...]:
-    """'linear' or 'rotary' of each axis beside the robot."""
+    """'linear' or 'rotary' of each external axis."""
     return tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding[cell.robot.chain.axes :])
 
 

@@ -93,7 +93,7 @@ class LedRound:
         return short
 
     def _ranges(self, start: Array, goal: Array) -> Ranges:
-        """Robots move within their limits, axes without end half a turn further than both ends, axes beside the robot no
+        """Robots move within their limits, axes without end half a turn further than both ends, external axes no
         further than from one to the other."""
         limits, own = self.cell.limits, self.cell.robot.chain.axes
         least, most = np.minimum(start, goal), np.maximum(start, goal)

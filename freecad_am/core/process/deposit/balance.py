@@ -145,7 +145,7 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
     if balance.outside:
         assert balance.beads is not None
         found.append(Issue(
-            WARNING, OUTSIDE, Text("about {:.3g} of {:.3g} cm3 of beads lie beside {}, which is {:.2g} mm thick there, and "
+            WARNING, OUTSIDE, Text("about {:.3g} of {:.3g} cm3 of beads lie outside {}, which is {:.2g} mm thick there, and "
                 "beads are {:.4g} mm wide; give process.bead_width, or machine it off", balance.outside / MM3,
                 balance.beads / MM3, balance.label, balance.thick, balance.width),
         ))
@@ -176,8 +176,8 @@ def _of_filling(of: Balance) -> tuple[Issue, ...]:
         ))
     if (of.outside or 0.0) > UNFILLED * part:
         found.append(Issue(
-            WARNING, OUTSIDE, Text("about {:.3g} cm3 of beads lie beside the {:.3g} cm3 of {}: beads of {:.4g} mm stand out "
-                "where it is narrower; use narrower beads, or machine it off", (of.outside or 0.0) / MM3, part / MM3,
+            WARNING, OUTSIDE, Text("about {:.3g} cm3 of beads lie outside the {:.3g} cm3 of {}: beads of {:.4g} mm stand "
+                "out where it is narrower; use narrower beads, or machine it off", (of.outside or 0.0) / MM3, part / MM3,
                 of.label, of.width),
         ))
     twice = of.twice or 0.0

@@ -112,7 +112,7 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
         return []
     return [Issue(
         NOTE, "SINGLE_LAYER",
-        Text("{} of {} solids or groups of solids get one layer alone, on the hub: they are no higher than "
+        Text("{} of {} solids or groups of solids get a single layer, on the hub: they are no higher than "
             "strategy.layer_height, {:g} mm", len(single), len(starts) - 1, strategy.layer_height), single[0],
     )]
 

@@ -62,7 +62,7 @@ class HubPanel(PickPanel):
             field, _, fold = self.places[place]
             if field.value == field.row.outer(field.row.default):  # what is refused must be put right here
                 fold.enable(field.widget, False)
-                field.widget.setToolTip(tr("Of walls alone: solids on a hub grow along the normals of its surface"))
+                field.widget.setToolTip(tr("For walls only: solids on a hub grow along the normals of its surface"))
 
     def _stored(self) -> dict[str, Any]:
         return {pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)}

@@ -45,7 +45,7 @@ class WallPanel(PickPanel):
         wall, substrate, unclear = picking.proposal(picks)
         whole = None if wall is None else picking.whole(wall)
         if wall is not None and whole is not None and wall.names and not whole.names:
-            self.note = tr("The whole of {} is taken; Pick takes faces alone, click by click.").format(wall.obj.Label)
+            self.note = tr("The whole of {} is taken; Pick takes single faces, click by click.").format(wall.obj.Label)
             wall = whole
         for name, pick in (("Source", wall), ("Substrate", substrate)):
             if pick is not None:
