@@ -37,7 +37,7 @@ from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
 from .core.parameters.scan import ScanParameters
-from .macro.arguments import checked_document, checked_path
+from .macro.arguments import checked_document, checked_job, checked_list, checked_path, checked_text
 from .macro.changes import change, recompute
 from .macro.export import (
     export,
@@ -105,10 +105,11 @@ def make_toolpath(
     """
     if "bead_width" in values:  # it is meant, even where it is the default
         values.setdefault("fill_width", "bead_width")
-    first, *more = [*feature, *further] if isinstance(feature, (list, tuple)) else [feature, *further]
+    features = list(feature) if isinstance(feature, (list, tuple)) else [feature]
+    first, *more = [*(features or [None]), *checked_list(further, "further")]
     links: dict[str, Any] = {"Feature": first, "Cell": cell, "Scan": scan}
     if more:
-        own = [own_process(one, process or ProcessParameters()) for one in processes]
+        own = [own_process(one, process or ProcessParameters()) for one in checked_list(processes, "processes")]
         links = {**links, "Further": more, "Sequence": sequence, "FeatureProcess": own}
     return make_stage(doc, Toolpath, "Toolpath", label, links, [process, fitting], values)
 
@@ -171,6 +172,8 @@ def make_all(
     (`source`, `kind`, `layers`, `faces` ...); they come after the feature in what is returned.
     `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
     """
+    process, then = checked_job(doc, source, process, then, mend, kind=kind, layers=layers, name=name, machine=machine,
+                                post=post, setup=setup, layers_otherwise=layers_otherwise)
     chosen = read_cell(cell) if cell else cell_of(machine, user_machines.folders(), setup or OF_ROBOTS[0].setup)
     refuse_otherwise(kind, layers_otherwise)
     first = {"source": source, "kind": kind, "faces": faces, "substrate": substrate, "further": further,
@@ -179,7 +182,7 @@ def make_all(
     def planned(layers: str) -> list[Any]:
         own = make_cell(doc, parameters=chosen)
         features = [_feature_of_job(doc, one) for one in ({**first, "layers": layers}, *then)]
-        toolpath = on_platform(own, features, lambda: make_toolpath(doc, features, own, **(process or {})))
+        toolpath = on_platform(own, features, lambda: make_toolpath(doc, features, own, **process))
         path = [] if toolpath.Status == "infeasible" else [_suited_path(doc, toolpath, own, setup, bool(cell))]
         return [own, *features, toolpath, *path]
 
@@ -187,10 +190,9 @@ def make_all(
         made = planned(layers)
         if in_vain(made, layers_otherwise):
             made = planned(layers_otherwise)
-        writer, motion = post_of(chosen, post, user_machines.folders())
-        if writer and made[-1].Proxy.kind == "joint path" and made[-1].Status == "up to date":
-            named = name or taken_name(source.Label, writer)
-            made.append(make_program(doc, made[-1], name=named, post=writer, motion=motion))
+        post, motion = post_of(chosen, post, user_machines.folders())
+        if post and made[-1].Proxy.kind == "joint path" and made[-1].Status == "up to date":
+            made.append(make_program(doc, made[-1], name=name or taken_name(source.Label, post), post=post, motion=motion))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
 
@@ -223,7 +225,7 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
         text = ", ".join(wrong) or "no source"
         raise InputError("BAD_VALUE", "then", "{}: give source, and any of {}", text, ", ".join(known[1:]))
     links = {
-        "Substrate": given_keys.get("substrate"), "Further": list(given_keys.get("further", ())),
+        "Substrate": given_keys.get("substrate"), "Further": given_keys.get("further", ()),
         "BaseFaces": given_keys.get("base_faces", ()),
     }
     values = {key: given_keys[key] for key in ("layers", "mend") if given_keys.get(key)}
@@ -246,6 +248,9 @@ def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any)
     """
     from .objects.checks.placed import given, placing_of
 
+    checked_stage(path)
+    if cell is not None and checked_stage(cell).kind != "cell":
+        raise InputError("WRONG_KIND", cell.Label, "this is not a cell; choose one")
     return placing_of(path, cell).placed(given(parameters, values))
 
 
@@ -270,4 +275,5 @@ def stages_of(doc: Any, kind: str = "") -> list[Any]:
     Those that a FreeCAD without the workbench has saved as plain objects are stages again.
     """
     revive(checked_document(doc))
+    checked_text(kind, "kind")
     return [obj for obj in in_order(doc.Objects) if kind in ("", obj.Proxy.kind)]

@@ -3,26 +3,29 @@
 
 from __future__ import annotations
 
+import math
+import numbers
 import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import FreeCAD as App
 
-from ..core.issues import InputError, Text
+from ..core.issues import InputError
+from ..objects.fields.plain_text import is_text, shown
 
 
 def checked_document(doc: Any, where: str = "doc") -> Any:
     """The document. InputError BAD_INPUT for anything else, by the name of the argument."""
-    if not isinstance(doc, App.Document) or _is_gone(doc):
-        raise InputError("BAD_INPUT", where, "{} is not a document; give one, such as FreeCAD.ActiveDocument", _named(doc))
+    if not isinstance(doc, App.Document) or is_gone(doc):
+        raise InputError("BAD_INPUT", where, "{} is not a document; give one, such as FreeCAD.ActiveDocument", named(doc))
     return doc
 
 
 def checked_object(value: Any, where: str, doc: Any = None) -> Any:
     """The object, of a document where that is given. InputError BAD_INPUT for anything else, by the name of the argument."""
-    if not isinstance(value, App.DocumentObject) or _is_gone(value):
-        raise InputError("BAD_INPUT", where, "{} is not an object of a document; give one, such as doc.Body", _named(value))
+    if not isinstance(value, App.DocumentObject) or is_gone(value):
+        raise InputError("BAD_INPUT", where, "{} is not an object of a document; give one, such as doc.Body", named(value))
     if doc is not None and value.Document != doc:
         raise InputError("BAD_INPUT", where, "{} is an object of another document, {}; give one of {}, such as a copy of it",
                          value.Label, value.Document.Label, doc.Label)
@@ -34,45 +37,88 @@ def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
     if values is None:
         return []
     if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
-        raise InputError("BAD_INPUT", where, "{} is not a list of objects; give one, such as [doc.Clamp]", _named(values))
+        raise InputError("BAD_INPUT", where, "{} is not a list of objects; give one, such as [doc.Clamp]", named(values))
     return [checked_object(value, where, doc) for value in values]
 
 
 def checked_names(names: Any, where: str) -> list[str]:
     """Names of faces and edges; a text is one name, and None is none. InputError BAD_INPUT for anything else."""
     found = [names] if isinstance(names, str) else [] if names is None else names
-    if not isinstance(found, (list, tuple, set, frozenset)) or not all(isinstance(name, str) for name in found):
+    if not isinstance(found, (list, tuple, set, frozenset)) or not all(map(is_text, found)):
         raise InputError("BAD_INPUT", where, "{} are not names of faces or edges; give a list of texts, such as "
-                         "[\"Face1\"]", _named(names))
+                         "[\"Face1\"]", named(names))
     return list(found)
 
 
 def checked_text(value: Any, where: str) -> str:
     """The text. InputError BAD_INPUT for anything else, by the name of the argument."""
-    if not isinstance(value, str):
-        raise InputError("BAD_INPUT", where, "{} is not a text; give one in quotes", _named(value))
+    if not is_text(value):
+        raise InputError("BAD_INPUT", where, "{} is not a text; give one in quotes", named(value))
     return value
+
+
+def checked_number(value: Any, where: str) -> float:
+    """The number. InputError BAD_INPUT for anything else, by the name of the argument."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or math.isnan(value):
+        raise InputError("BAD_INPUT", where, "{} is not a number; give one such as 2", named(value))
+    return float(value)
+
+
+def checked_keywords(values: Any, where: str) -> dict[str, Any]:
+    """Values by key, none of None. InputError BAD_INPUT for anything else, by the name of the argument."""
+    if values is None:
+        return {}
+    if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
+        raise InputError("BAD_INPUT", where, "{} are not values by key; give a mapping", named(values))
+    return dict(values)
+
+
+def checked_list(values: Any, where: str) -> list[Any]:
+    """The values of a list, none of None. InputError BAD_INPUT for anything else, by the name of the argument."""
+    if values is None:
+        return []
+    if not isinstance(values, (list, tuple)):
+        raise InputError("BAD_INPUT", where, "{} is not a list; give one, such as []", named(values))
+    return list(values)
+
+
+def checked_target(path: Any, where: str) -> str:
+    """As `checked_path`, of what is to be written: it has a name."""
+    if not checked_path(path, where).strip():
+        raise InputError("BAD_INPUT", where, "{} is not a path; give one as a text, such as \"cup.step\"", named(path))
+    return checked_path(path, where)
 
 
 def checked_path(path: Any, where: str) -> str:
     """The path of a file or folder as a text. InputError BAD_INPUT for anything else, by the name of the argument."""
     text = os.fspath(path) if isinstance(path, os.PathLike) else path
-    if not isinstance(text, str):
-        raise InputError("BAD_INPUT", where, "{} is not a path; give one as a text, such as \"cup.step\"", _named(path))
+    if not is_text(text):
+        raise InputError("BAD_INPUT", where, "{} is not a path; give one as a text, such as \"cup.step\"", named(path))
     return text
 
 
-def _is_gone(value: Any) -> bool:
+def checked_job(
+    doc: Any, source: Any, process: Any, then: Any, mend: Any, **texts: Any
+) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """Process and further features of `make_all`, whose other arguments that are no links are looked at too. InputError
+    BAD_INPUT for any of another kind, by its name."""
+    checked_document(doc)
+    for key, text in texts.items():
+        checked_text(text, key)
+    checked_number(mend, "mend")
+    if source is not None:
+        checked_object(source, "source", doc)
+    return checked_keywords(process, "process"), [checked_keywords(one, "then") for one in checked_list(then, "then")]
+
+
+def is_gone(value: Any) -> bool:
     """Whether a document was closed, or an object deleted."""
     try:
-        return not value.Name
+        return getattr(value, "Name", None) == ""
     except ReferenceError:
         return True
 
 
-def _named(value: Any) -> str:
+def named(value: Any) -> str:
     """What a value is called in a message: objects and documents by their label, which are else told by their address."""
-    try:
-        return str(getattr(value, "Label", None) or repr(value))
-    except ReferenceError:  # which has no name any more
-        return Text("what was deleted")
+    return shown(value) if is_gone(value) else str(getattr(value, "Label", None) or shown(value))

@@ -13,7 +13,7 @@ from ..objects.fields.settings import given
 from ..objects.program import Program
 from ..objects.shapes.chosen import FeatureStage
 from ..objects.staleness import UP_TO_DATE
-from .arguments import checked_document
+from .arguments import checked_document, is_gone
 from .links import checked_links
 from .steps import checked_stage, in_order, one_step, owned, renew, with_faces
 
@@ -41,7 +41,8 @@ def change(obj: Any, **values: Any) -> Any:
         if "base_faces" in values:
             hub = values.get("substrate") or obj.Substrate
             values["base_faces"] = owned(hub, values["base_faces"], "base_faces")
-        chosen = checked_links(obj.Document, proxy.links, {links[key]: values.pop(key) for key in links if key in values})
+        asked = {links[key]: values.pop(key) for key in links if key in values}
+        chosen = checked_links(obj.Document, proxy.links, asked, obj)
         given(obj, proxy, [], values)
         for property_name, value in chosen.items():
             setattr(obj, property_name, value)
@@ -72,7 +73,7 @@ def recompute(target: Any, force: bool = False) -> None:
 
     force: compute even what fits its inputs. `am.recompute(doc)`
     """
-    document = checked_document(getattr(target, "Document", target), "target")
+    document = checked_document(target if is_gone(target) else getattr(target, "Document", target), "target")
     with one_step(document, "Recompute"):
         with stages.deferred():
             document.recompute()

@@ -9,7 +9,7 @@ from typing import Any
 from ..core.issues import InputError, Text
 from ..core.one_thread import one_thread
 from ..posts import written
-from .arguments import checked_path
+from .arguments import checked_number, checked_target
 from .steps import checked_stage, one_step
 
 
@@ -19,11 +19,14 @@ def export(program: Any, folder: str) -> list[str]:
 
     Parts that an earlier, longer program of this name has left there are removed. `am.export(doc.Program, "out")`
     """
-    folder = checked_path(folder, "folder")
-    if checked_stage(program).kind == "inspection":
+    folder = checked_target(folder, "folder")
+    kind = checked_stage(program).kind
+    if kind == "inspection":
         from ..objects.inspection import files_of_figures as files_of
-    else:
+    elif kind == "program":
         from ..objects.program import files_of
+    else:
+        raise InputError("WRONG_KIND", program.Label, "it is neither a program nor an inspection; choose one")
     files = files_of(program)
     try:
         return written.write(folder, files)
@@ -40,7 +43,9 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
     """
     from ..interop import export as interop
 
-    return interop.write_wires(obj, checked_path(path, "path"), rapids)
+    path = checked_target(path, "path")
+    checked_stage(obj)
+    return interop.write_wires(obj, path, rapids)
 
 
 def export_cell(cell: Any, path: str) -> str:
@@ -50,7 +55,9 @@ def export_cell(cell: Any, path: str) -> str:
     """
     from ..interop import export as interop
 
-    return interop.write_cell(cell, checked_path(path, "path"))
+    path = checked_target(path, "path")
+    checked_stage(cell)
+    return interop.write_cell(cell, path)
 
 
 def export_waypoints(obj: Any, path: str) -> str:
@@ -60,7 +67,9 @@ def export_waypoints(obj: Any, path: str) -> str:
     """
     from ..interop import export as interop
 
-    return interop.write_waypoints(obj, checked_path(path, "path"))
+    path = checked_target(path, "path")
+    checked_stage(obj)
+    return interop.write_waypoints(obj, path)
 
 
 @one_thread()
@@ -72,7 +81,8 @@ def export_report(obj: Any, path: str) -> str:
     from ..interop import export as interop
     from ..report.of_document import reported
 
-    path = checked_path(path, "path")
+    path = checked_target(path, "path")
+    checked_stage(obj)
     return interop.write_page(path, reported(obj), obj.Label)
 
 
@@ -82,6 +92,7 @@ def make_cam_path(obj: Any) -> Any:
     follow changes. `am.make_cam_path(doc.JointPath)`"""
     from ..interop import export as interop
 
+    checked_stage(obj)
     with one_step(obj.Document, "CAM path"):
         return interop.add_cam_path(obj)
 
@@ -94,5 +105,7 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
     """
     from ..interop import export as interop
 
+    checked_stage(obj)
+    tolerance, turn = checked_number(tolerance, "tolerance"), checked_number(turn, "turn")
     with one_step(obj.Document, "Trajectory"):
         return interop.add_trajectory(obj, tolerance, math.radians(turn))

@@ -10,7 +10,7 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
 from ..core.parameters.strategy import CurvesParameters, RevolutionParameters, SurfaceParameters
 from ..objects.planned.feature_kinds import proxy_of
-from .arguments import checked_document
+from .arguments import checked_document, checked_keywords, checked_list, checked_text
 from .steps import make_stage, owned, with_faces
 
 
@@ -24,7 +24,7 @@ def make_feature(
     `am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)`; axis: (object, "Edge1") where the shape has none.
     fixtures: objects, solids or meshes, that the nozzle must not touch.
     """
-    links = {"Axis": axis, "Fixtures": list(fixtures)}
+    links = {"Axis": axis, "Fixtures": fixtures}
     return make_feature_of(doc, "revolution", source, faces, label=label, links=links,
                            parameters=[strategy, build_direction], values=values)
 
@@ -36,14 +36,15 @@ def make_feature_of(
     """A feature of any family, by its kind. links: by property name, of which those count that the family has; `StartEdges`
     and `BaseFaces` are names alone. parameters: dataclasses of its sections; values: single ones by key."""
     checked_document(doc)
-    proxy = proxy_of(kind)
+    proxy = proxy_of(checked_text(kind, "kind"))
     known = {link.name: link.key for link in proxy.links}
-    given_links = {"Source": with_faces(source, faces), **(links or {})}
+    given_links = {"Source": with_faces(source, faces), **checked_keywords(links, "links")}
     chosen = {name: value for name, value in given_links.items() if name in known}
     for name, owner in (("StartEdges", source), ("BaseFaces", given_links.get("Substrate")), ("StartFaces", source)):
         if name in chosen and not _is_owned(chosen[name]):
             chosen[name] = owned(owner, chosen[name], known[name])
-    return make_stage(doc, proxy, "Feature", label, chosen, parameters, dict(values or {}))
+    return make_stage(doc, proxy, "Feature", label, chosen, checked_list(parameters, "parameters"),
+                      checked_keywords(values, "values"))
 
 
 def _is_owned(names: Any) -> bool:
@@ -61,7 +62,7 @@ def make_surface_feature(
     `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5)`; fixtures: objects, solids or meshes,
     that the nozzle must not touch either.
     """
-    links = {"Substrate": substrate, "Fixtures": list(fixtures), "StartEdges": start_edges}
+    links = {"Substrate": substrate, "Fixtures": fixtures, "StartEdges": start_edges}
     return make_feature_of(doc, "surface", source, faces, label=label, links=links, parameters=[strategy, build_direction],
                            values=values)
 
@@ -78,7 +79,7 @@ def make_developable_feature(
     or meshes, that the nozzle must not touch either. `base_radius=60, base_height=200` gives the base by numbers.
     """
     links = {
-        "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures), "BaseFaces": base_faces,
+        "Substrate": substrate, "Further": further, "Fixtures": fixtures, "BaseFaces": base_faces,
     }
     return make_feature_of(doc, "developable", source, faces, label=label, links=links,
                            parameters=[strategy, build_direction], values=values)
@@ -96,7 +97,7 @@ def make_solid_feature(
     ["Face1"]), that the first layer lies on; fixtures: objects, solids or meshes, that the nozzle must not touch either.
     """
     links = {
-        "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures),
+        "Substrate": substrate, "Further": further, "Fixtures": fixtures,
         "Guide": guide if guide is None or isinstance(guide, tuple) else (guide, [""]),
         "StartFaces": start_faces,
     }
@@ -115,7 +116,7 @@ def make_curves_feature(
     directions, and of edges where not all are laid; substrate: what they are laid on.
     """
     return make_feature_of(doc, "curves", source, faces, label=label, parameters=[strategy, build_direction],
-                           links={"Substrate": substrate, "Fixtures": list(fixtures)}, values=values)
+                           links={"Substrate": substrate, "Fixtures": fixtures}, values=values)
 
 
 def make_cladding_feature(
@@ -129,4 +130,4 @@ def make_cladding_feature(
     else the nozzle must not touch.
     """
     return make_feature_of(doc, "cladding", source, faces, label=label, parameters=[strategy, build_direction],
-                           links={"Substrate": substrate, "Fixtures": list(fixtures)}, values=values)
+                           links={"Substrate": substrate, "Fixtures": fixtures}, values=values)

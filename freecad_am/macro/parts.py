@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.geometry.curves.bead_curves import POINT_FILES
-from .arguments import checked_document, checked_path
+from .arguments import checked_document, checked_number, checked_target, checked_text
 from .steps import one_step
 
 
@@ -18,7 +18,9 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
     scale: mm of one unit of an STL or OBJ file, which do not tell it. `am.open_part(doc, "cup.step")`
     """
     checked_document(doc)
-    path = checked_path(path, "path")
+    path = checked_target(path, "path")
+    checked_text(object, "object")
+    scale = checked_number(scale, "scale")
     if path.lower().endswith(tuple(POINT_FILES)):
         from ..objects.table_part import open_points
 

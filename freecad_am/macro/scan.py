@@ -6,8 +6,8 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.issues import InputError
-from ..core.parameters.inspection import AUTO, BEST, NONE
-from .arguments import checked_document, checked_path
+from ..core.parameters.inspection import AUTO, BEST, NONE, InspectionParameters
+from .arguments import checked_document, checked_number, checked_object, checked_target, checked_text
 from .steps import make_stage, one_step
 
 
@@ -27,8 +27,13 @@ def make_scan(
     from ..objects.shapes.bodies import taken
 
     checked_document(doc)
-    file = checked_path(file, "file")
-    body = taken(substrate).body()
+    checked_text(label, "label")
+    file = checked_target(file, "file")
+    for text, where in ((fit, "fit"), (unit, "unit"), (pairs, "pairs")):
+        checked_text(text, where)
+    within = checked_number(within, "within")
+    InspectionParameters(unit=unit)
+    body = taken(checked_object(substrate, "substrate", doc)).body()
     measured = point_file.read(file, unit)
     scan_checks.refuse_size(measured.points, measured.label, body)
     asked = fit == BEST or (fit == AUTO and scan_checks.near(measured.points, body, within) < scan_checks.LEAST_ON_PART)

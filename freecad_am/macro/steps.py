@@ -12,7 +12,7 @@ import FreeCAD as App
 from ..core.issues import InputError
 from ..objects import stage as stages
 from ..objects.fields.settings import given
-from .arguments import checked_document, checked_names, checked_text
+from .arguments import checked_document, checked_names, checked_text, is_gone, named
 from .links import checked_links
 
 
@@ -63,9 +63,9 @@ def renew(obj: Any, force: bool = False) -> None:
 
 def checked_stage(obj: Any) -> stages.Stage:
     """The proxy of a stage. InputError BAD_INPUT for any other object."""
-    proxy = stages.stage_of(obj)
+    proxy = None if is_gone(obj) else stages.stage_of(obj)
     if proxy is None:
-        raise InputError("BAD_INPUT", getattr(obj, "Label", repr(obj)), "it is not a stage of this workbench; choose one")
+        raise InputError("BAD_INPUT", named(obj), "it is not a stage of this workbench; choose one")
     return proxy
 
 

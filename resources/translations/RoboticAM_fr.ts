@@ -7177,6 +7177,11 @@
         <translation>une rotation par longueur comme 10 deg/mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <source>a value is an object that was deleted; give a number or a text</source>
+        <translation>une valeur est un objet qui a été supprimé ; donnez un nombre ou un texte</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>a value is not a plain number</source>
         <translation>une valeur n&apos;est pas un nombre simple</translation>
@@ -9210,6 +9215,11 @@
         <location filename="../../freecad_am/gui/simulation/run.py"/>
         <source>it is neither a joint path nor a program; select one of them</source>
         <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/export.py"/>
+        <source>it is neither a program nor an inspection; choose one</source>
+        <translation>ce n’est ni un programme ni une inspection ; choisissez-en un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/placed.py"/>
@@ -12987,7 +12997,7 @@
         <translation>ce n&apos;est pas du YAML : {0} ; corrigez cet endroit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/api.py"/>
         <source>this is not a cell; choose one</source>
         <translation>ceci n&apos;est pas une cellule ; choisissez-en une</translation>
     </message>
@@ -13332,7 +13342,7 @@
         <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/macro/arguments.py"/>
+        <location filename="../../freecad_am/objects/fields/plain_text.py"/>
         <source>what was deleted</source>
         <translation>ce qui a été supprimé</translation>
     </message>
@@ -13585,6 +13595,11 @@
         <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} are not names of faces or edges; give a list of texts, such as [&quot;Face1&quot;]</source>
         <translation>{0} ne sont pas des noms de faces ou d’arêtes ; donnez une liste de textes, telle que [&quot;Face1&quot;]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} are not values by key; give a mapping</source>
+        <translation>{0} ne sont pas des valeurs par clé ; donnez un dictionnaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
@@ -14047,6 +14062,11 @@
         <translation>{0} est chargé sans être exécuté puis retiré</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/links.py"/>
+        <source>{0} is made from {1} itself; choose another object</source>
+        <translation>{0} est lui-même fait à partir de {1} ; choisissez un autre objet</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0} is missing in it</source>
         <translation>il y manque {0}</translation>
@@ -14080,6 +14100,11 @@
         <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is neither true nor false; give one of them</source>
         <translation>{0} n&apos;est ni true ni false ; donnez l&apos;un des deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <source>{0} is none of the parameters that it takes; give {1}</source>
+        <translation>{0} n’est pas un des jeux de paramètres attendus ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/feature_kinds.py"/>
@@ -14162,6 +14187,11 @@
         <translation>{0} n&apos;est pas un tour entier ; utilisez path: layers</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/work/progress.py"/>
+        <source>{0} is not a function; give one</source>
+        <translation>{0} n’est pas une fonction ; donnez-en une</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>{0} is not a height; give numbers in mm</source>
         <translation>{0} n&apos;est pas une hauteur ; donnez des nombres en mm</translation>
@@ -14190,6 +14220,11 @@
         <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is not a list; give [x, y, z, RX, RY, RZ]{1}</source>
         <translation>{0} n&apos;est pas une liste ; donnez [x, y, z, RX, RY, RZ]{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is not a list; give one, such as []</source>
+        <translation>{0} n’est pas une liste ; donnez-en une, telle que []</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>

@@ -65,14 +65,20 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
 
 def given(parameters: PlaceParameters | None, values: dict[str, Any]) -> PlaceParameters:
     """Parameters with single ones changed, in outer units by row key. InputError UNKNOWN_PARAMETER, BAD_VALUE."""
+    if not isinstance(parameters or PlaceParameters(), PlaceParameters):
+        raise InputError("BAD_INPUT", "parameters", "{} is none of the parameters that it takes; give {}",
+                         type(parameters).__name__, PlaceParameters.__name__)
     known = {row.key: row for row in rows.rows(PlaceParameters)}
     unknown = sorted(set(values) - set(known))
     if unknown:
         raise InputError("UNKNOWN_PARAMETER", "place", "{} is not known; use one of {}", ", ".join(unknown),
                          ", ".join(sorted(known)))
     inner = rows.flat(parameters or PlaceParameters())
-    inner.update({name: known[name].inner(value, f"place.{name}") for name, value in values.items()})
-    found: PlaceParameters = rows.build(PlaceParameters, inner)
+    try:
+        inner.update({name: known[name].inner(value, f"place.{name}") for name, value in values.items()})
+        found: PlaceParameters = rows.build(PlaceParameters, inner)
+    except ReferenceError:
+        raise InputError("BAD_INPUT", "place", "a value is an object that was deleted; give a number or a text") from None
     return found
 
 

@@ -8,6 +8,7 @@ import unicodedata
 
 from ...core.issues import InputError
 from ...posts import catalogue
+from .plain_text import checked_words
 
 _NAME_LENGTH = 20
 
@@ -15,8 +16,9 @@ _NAME_LENGTH = 20
 def proposed_name(text: str) -> str:
     """A program name that controllers take, from a label: letters A to Z, digits and underscores.
 
-    `am.proposed_name("Hémisphère n° 1")` is "HEMISPHERE_N_1".
+    `am.proposed_name("Hémisphère n° 1")` is "HEMISPHERE_N_1". Raises InputError BAD_VALUE for what is not a text.
     """
+    checked_words([text], "text")
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().upper()
     name = re.sub(r"[^A-Z0-9]+", "_", plain).strip("_")[:_NAME_LENGTH].rstrip("_")
     return name if name[:1].isalpha() else f"P{name}"

@@ -18,6 +18,7 @@ import FreeCAD as App
 from ...core.issues import InputError, Text, Word
 from ...core.parameters import field as f
 from . import pendants
+from .plain_text import checked_words
 
 TEXT_LIST, MIXED, LENGTH_OR_POSE = "text list", "mixed", "length or pose"
 ENDS = ("low", "high")
@@ -83,16 +84,20 @@ class Row:
 
         Raises InputError 'BAD_VALUE' or 'BAD_UNIT' naming `where`.
         """
+        if isinstance(value, str):
+            checked_words([value], where)
         if self.form == f.POSE:
             return _pose(value, where)
         if self.form == TEXT_LIST:
-            return tuple(split(value, where) if isinstance(value, str) else value)
+            return tuple(split(value, where) if isinstance(value, str) else checked_words(value, where))
         if self.form == LENGTH_OR_POSE and (_is_list(value) or (isinstance(value, str) and len(split(value, where)) > 2)):
             return _pose(value, where)
         if self.form == MIXED and (value is None or (isinstance(value, str) and not value.strip())):
             return None
         if isinstance(value, str) and value.strip() in self.spec.words:
             return value.strip()
+        if self.spec.kind == f.TEXT and not isinstance(value, str):
+            return " ".join(checked_words(value, where))
         if self.spec.kind in (f.TEXT, f.CHOICE, f.FLAG):
             return pendants.plain(value, where) if self.spec.poses and isinstance(value, str) else value
         if self.spec.kind == f.POSE:
@@ -278,7 +283,10 @@ def _pose(value: Any, where: str) -> tuple[float, ...]:
         from ..shapes.placement import pose_of
 
         return pose_of(value)
-    numbers = split(value, where) if isinstance(value, str) else list(value)
+    try:
+        numbers = split(value, where) if isinstance(value, str) else list(value)
+    except TypeError:
+        numbers = []
     if pendants.named([one for one in numbers if isinstance(one, str)]):
         return pendants.six([str(one) for one in numbers], where)
     try:

@@ -24,6 +24,21 @@ def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, 
             "UNKNOWN_PARAMETER", obj.Label, "{} is not known; use one of {}", ", ".join(unknown), ", ".join(sorted(known))
         )
     whole = {type(entry): entry for entry in dataclasses if entry is not None}
+    for cls in whole.keys() - {section.cls for section in stage.sections}:
+        wanted = ", ".join(section.cls.__name__ for section in stage.sections)
+        raise InputError("BAD_INPUT", obj.Label, "{} is none of the parameters that it takes; give {}", cls.__name__, wanted)
+    try:
+        checked = _checked(obj, stage, whole, values)
+    except ReferenceError:  # an object that is gone cannot even be named
+        raise InputError("BAD_INPUT", obj.Label, "a value is an object that was deleted; give a number or a text") from None
+    for parameters in checked:
+        properties.write(obj, parameters)
+    for key, value in values.items():
+        expressions.follow(obj, known[key], value if expressions.is_expression(value) else None)
+
+
+def _checked(obj: Any, stage: Stage, whole: dict[type, Any], values: dict[str, Any]) -> list[Any]:
+    """The dataclasses of which something is given, by class as a whole, or by key."""
     checked = []
     for section in stage.sections:
         mine = {row.key: row for row in rows.rows(section.cls) if row.key in values}
@@ -34,10 +49,7 @@ def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, 
         for key, row in mine.items():
             inner[key] = row.inner(_plain(obj, row, values[key], f"{section.prefix}.{key}"), f"{section.prefix}.{key}")
         checked.append(rows.build(section.cls, inner))
-    for parameters in checked:
-        properties.write(obj, parameters)
-    for key, value in values.items():
-        expressions.follow(obj, known[key], value if expressions.is_expression(value) else None)
+    return checked
 
 
 def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:

@@ -8,7 +8,7 @@ import contextlib
 import threading
 from collections.abc import Callable, Iterator
 
-from ...core.issues import Issue
+from ...core.issues import InputError, Issue
 
 Listener = Callable[[float, str], None]
 Findings = Callable[[Issue], None]
@@ -44,7 +44,10 @@ def tell(issue: Issue) -> None:
 @contextlib.contextmanager
 def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[None]:
     """Within it `listener(fraction, text)` is told of what this thread computes, and `findings(issue)` of what is found on
-    the way."""
+    the way. InputError BAD_INPUT for what cannot be called."""
+    for called, where in ((listener, "listener"), (findings, "findings")):
+        if not callable(called) and (called is not None or where == "listener"):
+            raise InputError("BAD_INPUT", where, "{!r} is not a function; give one", type(called).__name__)
     _listeners.stack.append((listener, findings))
     try:
         yield

@@ -131,14 +131,14 @@ def count_halved(corners: Array, longest: float) -> float:
     each: Array = np.ones(len(square))
     count = 0.0
     for _ in range(ROUNDS):
-        small = square[:, 2] <= longest**2
+        small = square[:, 2] <= longest * longest
         count += each[small].sum()
         short, middle, long = square[~small].T
         if not len(long):
             break
         cut = 0.5 * (short + middle) - 0.25 * long
         halves = np.stack([np.stack([0.25 * long, cut, one], axis=1) for one in (short, middle)])
-        needle = (short < NEEDLE**2 * long) & (middle > longest**2)
+        needle = (short < NEEDLE**2 * long) & (middle > longest * longest)
         halves[:, needle] = np.stack([short, 0.25 * middle, long - 0.75 * middle], axis=1)[needle]
         halves = halves.reshape(-1, 3)
         # alike ones together
