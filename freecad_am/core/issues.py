@@ -113,6 +113,18 @@ class Issue:
         return Text(" ".join(word for word, _ in known), *(index for _, index in known)) if known else ""
 
 
+def one_of_each(issues: Iterable[Issue]) -> list[Issue]:
+    """Of issues of layers the first of each code, with how many more layers have one like it."""
+    of_code: dict[str, list[Issue]] = {}
+    for issue in issues:
+        of_code.setdefault(issue.code, []).append(issue)
+    found = []
+    for code, (first, *others) in sorted(of_code.items()):
+        text = Text("{} (more layers like it: {})", first.message, len(others)) if others else first.message
+        found.append(Issue(first.level, code, text, first.layer))
+    return found
+
+
 def has_errors(issues: tuple[Issue, ...] | list[Issue]) -> bool:
     """True when one of the issues forbids writing a program."""
     return any(issue.level == ERROR for issue in issues)

@@ -26,26 +26,26 @@ ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 
 
 def centre_beads(
-    left: Sequence[Region], beads: Beads, ring: int, inner: Sequence[Region], kind: str = "centre"
+    gaps: Sequence[Region], beads: Beads, ring: int, inner: Sequence[Region], kind: str = "centre"
 ) -> list[PlaneCurve]:
-    """Open beads along the middle of regions left open, or closed ones where those go round; no gap stays wider than stated.
+    """Open beads along the middle of gaps, or closed ones where those go round; no gap stays wider than stated.
 
     inner: where the middles of beads may lie; beads are moved there, and those too short go on in there until they are long
     enough.
     """
     found: list[PlaneCurve] = []
     for _ in range(ROUNDS):
-        left = wider(left, beads.gap, beads.chord_error)
+        gaps = wider(gaps, beads.gap, beads.chord_error)
         rest: list[Region] = []
-        for region in left:
+        for region in gaps:
             points, closed = _spine(region, beads, 0.5 * ENDS * beads.gap)
             points = moved(points if len(points) > 1 else _dab(region, beads), inner)
             if not closed:
                 points = _lengthened(points, beads, inner)
             found.append(PlaneCurve(points, closed, kind, ring))
             rest += region.without(along([(points, closed)], 0.5 * beads.spacing, beads.chord_error), beads.gap)
-        left = rest
-        if not left:
+        gaps = rest
+        if not gaps:
             break
     return found
 
@@ -53,8 +53,8 @@ def centre_beads(
 def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Beads) -> list[Region]:
     """What curves leave open, wider than the gap allowed, of what beads can reach with their middles in `inner`."""
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
-    covered = along([(simplified(curve.points, error, curve.closed), curve.closed) for curve in curves], half, error)
-    return wider(without(grown(inner, half, error), covered, beads.gap), beads.gap, error)
+    lines = [(simplified(curve.points, error, curve.closed), curve.closed) for curve in curves]
+    return wider(without(grown(inner, half, error), along(lines, half, error), beads.gap), beads.gap, error)
 
 
 def closing(
@@ -62,10 +62,10 @@ def closing(
 ) -> list[PlaneCurve]:
     """Beads in what other beads leave open of what beads can reach with their middles in `inner`, and of that without what
     else is filled."""
-    left = left_open(curves, inner, beads)
+    gaps = left_open(curves, inner, beads)
     if filled:
-        left = wider(without(left, filled), beads.gap, beads.chord_error)
-    return centre_beads(left, beads, ring, inner, "closing")
+        gaps = wider(without(gaps, filled), beads.gap, beads.chord_error)
+    return centre_beads(gaps, beads, ring, inner, "closing")
 
 
 def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
@@ -79,16 +79,16 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
                 "single, a narrower bead or a margin", beads.where(region.inside()), region.width, 2.0 * beads.inset,
             )
         before = len(found)
-        left: Sequence[Region] = (region,)
+        rest: Sequence[Region] = (region,)
         for _ in range(ROUNDS):
-            rest: list[Region] = []
-            for part in left:
+            parts, rest = rest, []
+            for part in parts:
                 sliver = part.width < SLIVER * beads.chord_error
                 points, closed = _along_border(part) if sliver else _spine(part, beads, 0.15 * part.width)
                 if len(points) > 1 and (len(found) == before or length(points, closed) >= beads.shortest):
                     found.append(PlaneCurve(points, closed, "centre", 0))
                     rest += part.without(along([(points, closed)], beads.inset, beads.chord_error), beads.gap)
-            left = wider(rest, beads.gap, beads.chord_error)
+            rest = wider(rest, beads.gap, beads.chord_error)
     return found
 
 
@@ -104,7 +104,7 @@ def outermost(
     if not inner:
         return (), single_beads((region,), beads)
     reached = grown(inner, beads.inset, beads.chord_error)
-    return inner, single_beads([part for part in region.without(reached) if _is_neck(part, reached, beads)], beads)
+    return inner, single_beads([neck for neck in region.without(reached) if _is_neck(neck, reached, beads)], beads)
 
 
 def _is_neck(part: Region, reached: Sequence[Region], beads: Beads) -> bool:

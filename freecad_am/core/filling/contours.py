@@ -13,11 +13,11 @@ from .curve import Beads, PlaneCurve, begun, contours_of
 
 @dataclass(frozen=True)
 class Levels:
-    """regions[k]: those whose borders are the contours k; left[k]: what stays open inside of them, where it has room for the
+    """regions[k]: those whose borders are the contours k; gaps[k]: what stays open inside of them, where it has room for the
     gap allowed."""
 
     regions: tuple[tuple[Region, ...], ...]
-    left: tuple[tuple[Region, ...], ...]
+    gaps: tuple[tuple[Region, ...], ...]
     thin: list[PlaneCurve]  # beads in what is narrower than a bead
 
 
@@ -26,15 +26,15 @@ def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
     too short are left open, for the beads in the middle. inner: where the middles of beads may lie."""
     half, error = 0.5 * beads.spacing, beads.chord_error
     inner, thin = outermost(region, inner, beads)
-    regions, left = [], []
+    regions, gaps = [], []
     k = 0
     while inner:
         regions.append(inner)
         open_ = region.grown(-beads.inset - (2 * k + 1) * half, error)
         inner = longer(region.grown(-beads.inset - (2 * k + 2) * half, error), beads.shortest)
-        left.append(without(open_, grown(inner, half, error), beads.gap))
+        gaps.append(without(open_, grown(inner, half, error), beads.gap))
         k += 1
-    return Levels(tuple(regions), tuple(left), thin)
+    return Levels(tuple(regions), tuple(gaps), thin)
 
 
 def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
@@ -51,6 +51,6 @@ def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:
 def centres(found: Levels, beads: Beads) -> list[PlaneCurve]:
     """The beads in what contours leave open, and in thin places."""
     curves = list(found.thin)
-    for k, left in enumerate(found.left):
-        curves += [begun(curve, beads) for curve in centre_beads(left, beads, k + 1, found.regions[0])]
+    for k, gaps in enumerate(found.gaps):
+        curves += [begun(curve, beads) for curve in centre_beads(gaps, beads, k + 1, found.regions[0])]
     return curves

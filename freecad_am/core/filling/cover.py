@@ -27,10 +27,18 @@ class Cover(NamedTuple):
     """Areas, mm^2: of regions, what beads leave of them, what of beads lies beside them, and what beads cover, in and beside
     them."""
 
-    whole: float = 0.0
+    area: float = 0.0
     left: float = 0.0
     outside: float = 0.0
-    once: float = 0.0
+    covered: float = 0.0
+
+    def scaled(self, share: float) -> Cover:
+        """Of a layer that is not as high as others."""
+        return Cover(*(share * area for area in self))
+
+    def over(self, area: float) -> float:
+        """What of beads of an area, mm^2, lies over other beads."""
+        return area - self.covered
 
 
 def total(covers: Sequence[Cover]) -> Cover:
@@ -42,14 +50,13 @@ def covered(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads, 
     """How well beads cover a region; what they leave open on purpose, at a density below 1, does not count."""
     if isinstance(region, Strip):  # window by window; beads of regions round a hub are as wide as usual
         beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
-        found = total([
-            _of_regions(region.flat(window.low, window.high, window.about), [_lines(near, beads.chord_error)], beads,
-                        region.pane(window))
-            for window, near in near_windows(region, curves, 2.0 * beads.inset)
+        cover = total([
+            _of_regions(region.flat(window), [_lines(adjacent, beads.chord_error)], beads, region.pane(window))
+            for window, adjacent in near_windows(region, curves, 2.0 * beads.inset)
         ])
     else:
-        found = _of_regions((region,), [_widths(curve) for curve in curves], beads, ())
-    return found if density == 1.0 else found._replace(left=0.0)
+        cover = _of_regions((region,), [_widths(curve) for curve in curves], beads, ())
+    return cover if density == 1.0 else cover._replace(left=0.0)
 
 
 def _of_regions(
@@ -63,8 +70,8 @@ def _of_regions(
     covered = common(covered, pane) if pane else covered
     whole = math.fsum(region.area for region in regions)
     inside = math.fsum(part.area for part in common(regions, covered)) if covered else 0.0
-    once = math.fsum(part.area for part in covered)
-    return Cover(whole, whole - inside, once - inside, once)
+    area = math.fsum(part.area for part in covered)
+    return Cover(whole, whole - inside, area - inside, area)
 
 
 def _lines(curves: Sequence[PlaneCurve], chord_error: float) -> tuple[list[Line], list[float]]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TypeVar
 
 from ..geometry.regions.region import Region, joined
 from ..geometry.regions.strip import Strip
@@ -26,6 +27,8 @@ PATTERNS = ("contours", "connected", "lines", "spiral", "zigzag", "grid", "trian
 CURVED = ("contours", "connected", "spiral")  # without walls: the border's parallel curves are all they have
 WHOLE = Infill()
 LINK = 3.0  # of the spacing
+Otherwise = TypeVar("Otherwise")
+Gaps = list[tuple[Array, float]]  # a place (2,) in each, and how wide it is, mm
 
 
 def fill(
@@ -45,13 +48,7 @@ def fill(
     if pattern not in CURVED and math.isinf(walls):
         pattern, infill = "contours", WHOLE
     if isinstance(region, Strip):
-        space = region.grown(-beads.inset, beads.chord_error)
-        upright = abs(math.sin(angle)) > abs(math.cos(angle))
-        if pattern in CURVED or not space:
-            curves = strip_contours(region, space, beads)
-        else:
-            curves = (lines_along if upright else lines_round)(region, space, beads, int(walls), infill.density)
-        return tuple(long_enough(curves, beads.shortest))
+        return tuple(long_enough(_fill_strip(region, beads, pattern, angle, walls, infill.density), beads.shortest))
     inner = region.grown(-beads.inset, beads.chord_error)
     if pattern in CURVED and infill.density == 1.0:
         curves = {"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, inner, beads)
@@ -69,24 +66,35 @@ def fill(
     return tuple(long_enough(curves, beads.shortest))
 
 
-def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> list[tuple[Array, float]]:
+def _fill_strip(
+    strip: Strip, beads: Beads, pattern: str, angle: float, walls: float, density: float
+) -> list[PlaneCurve]:
+    inner = strip.grown(-beads.inset, beads.chord_error)
+    if pattern in CURVED or not inner:
+        return strip_contours(strip, inner, beads)
+    upright = abs(math.sin(angle)) > abs(math.cos(angle))
+    return (lines_along if upright else lines_round)(strip, inner, beads, int(walls), density)
+
+
+def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Gaps:
     """Places (2,) that beads leave open of what beads inside can reach, and how wide (mm) each is, more than the gap
     allowed."""
     if isinstance(region, Strip):
         return [
-            (region.period.unroll(region.unrolled(window, part.inside()[None]))[0], part.width)
-            for window, left, _ in open_windows(region, curves, beads) for part in left
+            (region.period.unroll(region.unrolled(window, gap.inside()[None]))[0], gap.width)
+            for window, gaps, _ in open_windows(region, curves, beads) for gap in gaps
         ]
     inner = region.grown(-beads.inset, beads.chord_error)
-    return [(part.inside(), part.width) for part in left_open(curves, inner, beads)] if inner else []
+    return [(gap.inside(), gap.width) for gap in left_open(curves, inner, beads)] if inner else []
 
 
 def open_at_slits(
-    regions: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads
-) -> list[tuple[Array, float]] | None:
+    regions: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads, gaps: Otherwise
+) -> Gaps | Otherwise:
     """As `open_places`, of all regions of a layer with their beads, where slits thinner than the gap allowed divide them:
-    what beads leave open on both sides of a slit is one place. None where there are no such slits."""
+    what beads leave open on both sides of a slit is one gap. gaps: of the regions one by one, which are returned where no
+    slits do."""
     whole = joined(regions, beads.gap)
     if whole == tuple(regions):
-        return None
-    return [left for region in whole for left in open_places(region, curves, beads)]
+        return gaps
+    return [gap for region in whole for gap in open_places(region, curves, beads)]

@@ -4,14 +4,15 @@ them less than their usual room, so that layers do not get higher there."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.plane_curve import arcs, dense, nearest_among, steps
+from ..geometry.curves.plane_curve import arcs, dense, divided_by_step, nearest_among
 from ..geometry.regions.region import WIDTH, Region
 from ..geometry.regions.telling import telling
 from ..types import Array, Index, Mask
@@ -44,13 +45,13 @@ def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Bea
     least and most and as near to 1 as may be; the usual ones where there is no such number."""
     if least == most:
         return beads, 1.0
-    width, thickness = 2.0 * beads.inset, MORE * (1.0 + WIDTH) * region.width
-    excess = (thickness - width) / beads.spacing  # so many more than one
-    share = 1.0
-    if excess > 0.0:
-        count = np.arange(max(int(excess) - 1, 0), int(excess) + 3)
-        shares = thickness / (width + count * beads.spacing)
-        share = float(shares[np.argmin(np.abs(np.log(shares)))])
+    width, thickness, share = 2.0 * beads.inset, MORE * (1.0 + WIDTH) * region.width, 1.0
+    if thickness > width:
+        count = int((thickness - width) / beads.spacing)  # more than one bead
+        share = min(
+            (thickness / (width + number * beads.spacing) for number in range(max(count - 1, 0), count + 3)),
+            key=lambda one: abs(math.log(one)),
+        )
     if not least <= share <= most * MORE * (1.0 + WIDTH):
         share = 1.0
     return replace(beads, spacing=share * beads.spacing, width=share * width, gap=share * beads.gap), share
@@ -58,27 +59,29 @@ def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Bea
 
 def shared(
     region: Region, curves: Sequence[PlaneCurve], beads: Beads, share: float, least: float, most: float
-) -> tuple[PlaneCurve, ...]:
+) -> Iterator[PlaneCurve]:
     """The curves with the share of the usual width that each of their points has: that of the fitted beads, of those in the
     middle what room their neighbours leave them. Between least and most."""
-    if least == most:
-        return tuple(curves)
-    others = [curve for curve in curves if curve.kind not in CENTRES]
-    found = []
+    others = [(curve.points, curve.closed) for curve in curves if curve.kind not in CENTRES]
     for curve in curves:
-        if curve.kind in CENTRES:
-            # an open one there and back is a ring, of which the way there is the first half
-            line = curve.points if curve.closed else np.vstack([curve.points, curve.points[-2:0:-1]])
-            points = dense(line, PLACES * beads.spacing)
-            if not curve.closed:
-                points = points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
-            away = nearest_among([(other.points, other.closed) for other in others], points)[1]
-            free = np.minimum(region.nearest(points)[1] / beads.inset, 2.0 * away / beads.spacing - 1.0)
-            curve = replace(curve, points=points, share=np.clip(share * free, least, most))
-        elif share != 1.0:
-            curve = replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
-        found.append(curve)
-    return tuple(found)
+        if least == most or (share == 1.0 and curve.kind not in CENTRES):
+            yield curve
+        elif curve.kind in CENTRES:
+            points = _places(curve, PLACES * beads.spacing)
+            distances = nearest_among(others, points)[1]
+            room = np.minimum(region.nearest(points)[1] / beads.inset, 2.0 * distances / beads.spacing - 1.0)
+            yield replace(curve, points=points, share=np.clip(share * room, least, most))
+        else:
+            yield replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
+
+
+def _places(curve: PlaneCurve, step: float) -> Array:
+    """The points (n, 2) of a curve and more, at most `step` mm apart."""
+    if curve.closed:
+        return dense(curve.points, step)
+    # an open one there and back is a ring, of which the way there is the first half
+    points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)
+    return points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
 
 
 def narrowed(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> tuple[PlaneCurve, ...]:
@@ -100,12 +103,7 @@ def narrowed(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: fl
 def _divided(curve: PlaneCurve, step: float) -> tuple[Array, Mask]:
     """The points (n, 2) of a curve, the first of a closed one again at its end, and more, at most `step` mm apart; which of
     them (n,) are the curve's own."""
-    way = steps(curve.points, curve.closed)
-    count = np.maximum(np.ceil(np.hypot(*way.T) / step), 1.0).astype(np.intp)
-    edge = np.repeat(np.arange(len(way)), count)
-    number = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
-    last = curve.points[:1] if curve.closed else curve.points[-1:]
-    return np.vstack([curve.points[edge] + (number / count[edge])[:, None] * way[edge], last]), np.r_[number == 0, True]
+    return divided_by_step(np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points, step)
 
 
 def _edges(lines: Sequence[Array], closed: Sequence[bool]) -> _Edges:

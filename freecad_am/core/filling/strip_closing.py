@@ -17,12 +17,12 @@ REACH = 3.0  # spacings beside a window that tell what is open in it
 
 def strip_closing(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring: int, kind: str) -> list[PlaneCurve]:
     """Beads in what curves leave open, wider than the gap allowed; cut where windows meet."""
-    found = []
-    for window, left, inner in open_windows(strip, curves, beads):
-        for curve in centre_beads(left, beads, ring, inner, kind):
+    closing = []
+    for window, gaps, inner in open_windows(strip, curves, beads):
+        for curve in centre_beads(gaps, beads, ring, inner, kind):
             uv = strip.unrolled(window, curve.points)
-            found.append(replace(curve, points=strip.period.unroll(uv), sheet=float(uv[:, 0].mean())))
-    return found
+            closing.append(replace(curve, points=strip.period.unroll(uv), sheet=float(uv[:, 0].mean())))
+    return closing
 
 
 def open_windows(
@@ -30,19 +30,18 @@ def open_windows(
 ) -> list[tuple[Window, list[Region], tuple[Region, ...]]]:
     """Window by window, laid flat about its middle, what is open and where beads may lie."""
     found = []
-    for window, near in near_windows(strip, curves, REACH * beads.spacing):
-        here = strip.flat(window.low - window.margin, window.high + window.margin, window.about)
-        inner = grown(here, -beads.inset, beads.chord_error)
+    for window, adjacent in near_windows(strip, curves, REACH * beads.spacing):
+        inner = grown(strip.flat(window, window.margin), -beads.inset, beads.chord_error)
         if inner:
-            found.append((window, list(common(left_open(near, inner, beads), strip.pane(window))), inner))
+            found.append((window, list(common(left_open(adjacent, inner, beads), strip.pane(window))), inner))
     return found
 
 
 def near_windows(strip: Strip, curves: Sequence[PlaneCurve], reach: float) -> Iterator[tuple[Window, list[PlaneCurve]]]:
     """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle."""
-    uvs = [strip.period.followed(curve.points, curve.sheet, curve.turns) for curve in curves]
+    unrolled = [(curve, strip.period.followed(curve.points, curve.sheet, curve.turns)) for curve in curves]
     for window in strip.windows(reach):
         yield window, [
-            PlaneCurve(points, closed, curve.kind, curve.ring) for curve, uv in zip(curves, uvs)
+            PlaneCurve(points, closed, curve.kind, curve.ring) for curve, uv in unrolled
             for points, closed in strip.near(window, uv, curve.closed and not curve.turns)
         ]

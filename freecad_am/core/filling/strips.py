@@ -6,11 +6,9 @@ Closed beads that go round close over the period of the plane: `PlaneCurve.turns
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..geometry.regions.medial import spine_round
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import grown
+from ..geometry.regions.several import grown, halves
 from ..geometry.regions.strip import Strip
 from ..issues import InfeasibleError
 from .centre import FINE, centre_beads
@@ -40,9 +38,9 @@ def strip_contours(strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads
             start, first = grown(inner, -half, error), k + 1
         k += 1
         before, inner = inner, grown(start, -(half if first else beads.inset) - 2 * (k - first) * half, error)
-    for part in grown(before, -half, error):
-        if isinstance(part, Strip) and part.grown(-0.5 * beads.gap, error):
-            curves += _centre(part, beads, k)
+    for region in grown(before, -half, error):
+        if isinstance(region, Strip) and region.grown(-0.5 * beads.gap, error):
+            curves += _centre(region, beads, k)
     curves = long_enough(curves, beads.shortest)
     return curves + [begun(curve, beads) for curve in strip_closing(strip, curves, beads, k, "centre")]
 
@@ -51,6 +49,5 @@ def _centre(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     """A bead round the hub in the middle of a thin strip."""
     points = spine_round(strip, 0.25 * beads.gap, FINE * beads.spacing, beads.chord_error, beads.spacing)
     if points is None:  # somewhere too narrow for a bead
-        cuts = strip.period.around * np.array([-0.5, 0.0, 0.5])
-        return centre_beads([part for ends in zip(cuts, cuts[1:]) for part in strip.flat(*ends)], beads, ring, ())
+        return centre_beads(halves(strip), beads, ring, ())
     return [PlaneCurve(points[:: -1 if beads.clockwise else 1], True, "centre", ring, -1 if beads.clockwise else 1)]

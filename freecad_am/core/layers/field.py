@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from ..geometry.curves.guide import Guide
 from ..geometry.developable import Developable
-from ..geometry.obstacles import Body
-from ..geometry.on_hub import Group
+from ..geometry.on_hub import Group, SolidsOnHub
 from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
 from ..slicing.solids.equidistant import Facets
 from ..slicing.solids.plane_sections import PlaneCuts
@@ -26,33 +25,34 @@ from .surface import Slice
 
 
 class Stack(NamedTuple):
-    """Solids that are filled as one: what messages call them, and their layers."""
+    """Solids that are filled as one: what messages call them, their layers, and the numbers of their group and of their own
+    in that."""
 
     name: str
-    slices: Iterator[Slice]
+    layers: Iterable[Slice]
+    group: int
+    solid: int
 
 
-def stacks(group: Group, substrate: Sequence[Body], strategy: FilledParameters) -> list[Stack]:
-    """All solids of a group: on a cylinder or cone each by itself, on a plane those that are fused as one."""
-    surface = group.base.surface
-    if isinstance(surface, Developable):
-        assert isinstance(strategy, DevelopableParameters)
-        return [Stack(body.name, rotary.slices(group.base, body, strategy)) for body in group.bodies]
-    assert isinstance(strategy, SolidParameters)
-    if strategy.layers in ("geodesic", "offset"):
-        return [Stack(group.bodies[0].name, curved.slices(group, substrate, strategy))]
-    lots = [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
-    found: list[Stack] = []
-    for lot in lots:
-        layers: Iterable[Slice]
-        if isinstance(surface, Guide):
-            layers = along.slices(group.base, lot, strategy)
-        else:
-            layers = planes.slices(group.base, lot, strategy)
-        layers = with_overhangs(layers, strategy)
-        name = lot[0].name if len(lot) == 1 else f"{len(lot)} solids"
-        found.append(Stack(name, with_buried(layers, strategy.thick)))
-    return found
+def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
+    """All solids, group by group: on a cylinder or cone each by itself, on a plane those that are fused as one."""
+    for number, group in enumerate(solids.groups):
+        if isinstance(strategy, DevelopableParameters):
+            for solid, body in enumerate(group.bodies):
+                yield Stack(body.name, rotary.slices(group.base, body, strategy), number, solid)
+            continue
+        assert isinstance(strategy, SolidParameters)
+        if strategy.layers in ("geodesic", "offset"):
+            yield Stack(group.bodies[0].name, curved.slices(group, solids.surroundings, strategy), number, 0)
+            continue
+        for solid, bodies in enumerate([group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]):
+            layers: Iterable[Slice]
+            if isinstance(group.base.surface, Guide):
+                layers = along.slices(group.base, bodies, strategy)
+            else:
+                layers = planes.slices(group.base, bodies, strategy)
+            name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
+            yield Stack(name, with_buried(with_overhangs(layers, strategy), strategy.thick), number, solid)
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:

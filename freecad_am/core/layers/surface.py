@@ -31,12 +31,9 @@ class LayerSurface(Protocol):
     """One surface of a field of layers, in the frame of the field (`on_hub.Base`)."""
 
     @property
-    def alike(self) -> tuple[float, ...]:
-        """What regions on two surfaces must share beside their borders for their fillings to be the same."""
-
-    @property
     def period(self) -> Period | None:
-        """What a turn round the surface is on the plane; None where there is none."""
+        """What a turn round the surface is on the plane; None where there is none. Regions with the same borders on surfaces
+        with the same period are filled alike."""
 
     @property
     def bends_freely(self) -> bool:
@@ -69,7 +66,7 @@ class Slice(NamedTuple):
     """One layer of a part: its number, the base in whose frame it is, its surface, its regions laid flat, and findings.
     azimuth: rad about the axis of the base, of the middle of the solid. buried: what of the plane is near to neither a top
     nor a bottom (`over_and_under`); None where nobody asks. heights: its least, mean and largest height, mm; None
-    where it has the layer height everywhere. before: the share of all layers that come before it, where that is known."""
+    where it has the layer height everywhere. before: the share of all layers that come before it."""
 
     number: int
     base: Base
@@ -79,7 +76,7 @@ class Slice(NamedTuple):
     azimuth: float = 0.0
     buried: tuple[Region, ...] | None = None
     heights: tuple[float, float, float] | None = None
-    before: float | None = None
+    before: float = 0.0
 
     @property
     def borders(self) -> list[tuple[Array, bool]]:
@@ -91,8 +88,10 @@ class Slice(NamedTuple):
                 found += [(border, True) for border in region.borders()]
                 continue
             for border, turns in region.borders():
-                moved = [region.period.moved(border, k) for k in (-1, 0, 1)]
-                found += [(border, True) for border in moved] if not turns else [(np.vstack(moved[::turns]), False)]
+                if turns:
+                    found.append((np.vstack([region.period.moved(border, k) for k in (-turns, 0, turns)]), False))
+                else:
+                    found += [(region.period.moved(border, k), True) for k in (-1, 0, 1)]
         return found
 
     def where(self, point: Array) -> str:

@@ -116,24 +116,23 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
         spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
     layers = points = squares = nodes = 0.0
     for group in solids.groups:
-        deep, whole = [], 0.0
+        counts, volume = [], 0.0
         for body in group.bodies:
-            distance = group.base.surface.distance(group.base.inside(body.vertices))
-            away, within = max(0.0, float(distance.max())), max(0.0, -float(distance.min()))
-            deep.append((away + strategy.margin) / strategy.layer_height)
-            grown = float(np.prod(1.0 + 2.0 * strategy.margin / np.ptp(body.vertices, axis=0)))
-            volume = abs(SolidMesh(body.vertices, body.triangles).volume)
-            whole += volume
-            length = volume * grown * away / max(away + within, 1e-9) / strategy.layer_height / spacing
+            distances = group.base.surface.distance(group.base.inside(body.vertices))
+            height, depth = max(0.0, float(distances.max())), max(0.0, -float(distances.min()))
+            counts.append((height + strategy.margin) / strategy.layer_height)
+            solid, extent = abs(SolidMesh(body.vertices, body.triangles).volume), np.ptp(body.vertices, axis=0)
+            volume += solid
+            grown = solid * float(np.prod(1.0 + 2.0 * strategy.margin / extent))
+            length = grown * height / max(height + depth, 1e-9) / strategy.layer_height / spacing
             # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
-            extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
-            around = 0.5 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(away, extent))
-            points += length * max(around, 2.0 / extent)
+            bend = group.base.surface.bend(height, float(np.linalg.norm(extent)))
+            points += length * max(0.5 / math.sqrt(4.0 * strategy.chord_error * bend), 2.0 / float(np.linalg.norm(extent)))
             if strategy.margin > 0.0:  # rounded by it, each layer is another
                 squares += length / spacing
-        layers += sum(deep) if strategy.order == "feature" else max(deep, default=0.0)
+        layers += sum(counts) if strategy.order == "feature" else max(counts, default=0.0)
         if getattr(strategy, "layers", "") in (GEODESIC, OFFSET):
-            nodes += whole / step_of(whole, strategy.layer_height) ** 3
+            nodes += volume / step_of(volume, strategy.layer_height) ** 3
     return Size(layers, points, squares, nodes)
 
 

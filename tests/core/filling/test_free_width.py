@@ -28,7 +28,7 @@ STEP = 0.1
 
 def adapted(region, pattern, least, most):
     beads, share = fitted(region, BEADS, least, most)
-    return shared(region, fill(region, beads, pattern), beads, share, least, most), share
+    return [*shared(region, fill(region, beads, pattern), beads, share, least, most)], share
 
 
 def places(curves):
@@ -175,7 +175,7 @@ def test_beads_cover_as_much_as_they_are_wide(thick):
     within, swept_over = shapes.inside(loops, grid), swept(curves, grid)
     found = covered(region, curves, BEADS)
     pixel, near = 0.25**2, 0.06 * 2.0 * (50.0 + thick)  # a quarter of a place along the border
-    assert found.whole == pytest.approx(region.area) and found.once == pytest.approx(pixel * swept_over.sum(), abs=near)
+    assert found.area == pytest.approx(region.area) and found.covered == pytest.approx(pixel * swept_over.sum(), abs=near)
     assert found.left == pytest.approx(pixel * (within & ~swept_over).sum(), abs=near)
     assert found.outside == pytest.approx(pixel * (swept_over & ~within).sum(), abs=near)
     usual = covered(region, [replace(curve, share=None) for curve in curves], BEADS)

@@ -47,7 +47,7 @@ def test_a_convex_body_is_cut_where_it_is(seed):
     vertices, faces, spaces = hull(rng.normal(size=3) * rng.choice([0.0, 20.0, 60.0]) + rng.uniform(5, 60) * rng.normal(
         size=(rng.integers(5, 40), 3)))
     facets = Facets(base, vertices, faces)
-    for distance in np.linspace(facets.away.min(), facets.away.max(), 9)[1:-1]:
+    for distance in np.linspace(facets.distances.min(), facets.distances.max(), 9)[1:-1]:
         if base.radius + distance / math.cos(base.taper) <= 0.0:
             continue
         surface = base.offset(distance)

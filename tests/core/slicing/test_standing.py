@@ -49,7 +49,7 @@ def test_a_foot_that_lies_on_the_hub_is_cut_whole():
         loops = cut(facets, 0.0, 0.01)
         assert len(loops) == 1
         assert np.abs(LOWER.surface.distance(loops[0].points)).max() < 1e-9
-        flat = opened(LOWER.surface, loops, 0.0, "here").loops[0]
+        flat = opened(LOWER.surface, [loops], 0.0, "here").borders[0][0]
         area = 0.5 * (flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1]).sum()
         assert area == pytest.approx(50.0 * 0.6 * 40.0, rel=1e-3)
 

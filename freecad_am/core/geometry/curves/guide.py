@@ -56,6 +56,10 @@ class Guide:
         pose[:3, 3] = points[0]
         return pose
 
+    def reaches(self, way: float) -> bool:
+        """Whether a place, mm along it, is between its ends."""
+        return bool(self.way[0] <= way <= self.way[-1])
+
     def distance(self, points: Array) -> Array:
         """How far (...,) mm along the guide the plane normal to it is that each of the points (..., 3) lies in: the one
         whose foot is nearest."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 
 AT_ONCE = 4_000_000  # pairs of points and edges
 
@@ -117,13 +117,29 @@ def nearest_of(rings: Sequence[Array], boxes: tuple[Array, Array], points: Array
     return np.stack([one.points for one in found])[best, row], away[best, row]
 
 
+def fractions(points: Array) -> Array:
+    """How far (n,) along an open polyline (n, 2) its points are, of its length."""
+    way = arcs(points)
+    return np.asarray(way / way[-1])
+
+
+def divided(points: Array, count: Index) -> tuple[Array, Mask]:
+    """An open polyline (n, 2) with its edges in so many (n - 1,) equal parts each, and which points (m,) it had before."""
+    edge = np.repeat(np.arange(len(count)), count)
+    number = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
+    inner = points[edge] + (number / count[edge])[:, None] * np.diff(points, axis=0)[edge]
+    return np.vstack([inner, points[-1:]]), np.r_[number == 0, True]
+
+
+def divided_by_step(points: Array, step: float) -> tuple[Array, Mask]:
+    """An open polyline (n, 2) with points at most `step` mm apart, and which points (m,) it had before."""
+    lengths = np.hypot(*np.diff(points, axis=0).T)
+    return divided(points, np.maximum(np.ceil(lengths / step), 1.0).astype(np.intp))
+
+
 def dense(ring: Array, step: float) -> Array:
     """A ring (n, 2) with points at most `step` mm apart."""
-    way = steps(ring, True)
-    count = np.maximum(np.ceil(np.hypot(*way.T) / step), 1.0).astype(np.intp)
-    edge = np.repeat(np.arange(len(ring)), count)
-    share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
-    return np.asarray(ring[edge] + share[:, None] * way[edge])
+    return divided_by_step(np.vstack([ring, ring[:1]]), step)[0][:-1]
 
 
 def begun_at(ring: Array, point: Array) -> Array:

@@ -8,7 +8,7 @@ from typing import overload
 
 from ..curves.plane_curve import length
 from .region import Region
-from .strip import Strip
+from .strip import Strip, Window
 
 
 @overload
@@ -32,6 +32,12 @@ def without(regions: Sequence[Region], others: Sequence[Region], wide: float = 0
 def common(regions: Sequence[Region], others: Sequence[Region]) -> tuple[Region, ...]:
     """As `Region.common`."""
     return tuple(part for region in regions for part in region.common(others))
+
+
+def halves(strip: Strip) -> list[Region]:
+    """A strip cut in two, half a turn each way from where it is laid flat about."""
+    half = 0.5 * strip.period.around
+    return [part for low, high in ((-half, 0.0), (0.0, half)) for part in strip.flat(Window(0.0, low, high, 0.0))]
 
 
 def wider(regions: Sequence[Region], width: float, chord_error: float) -> list[Region]:

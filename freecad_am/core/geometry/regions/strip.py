@@ -130,11 +130,11 @@ class Strip:
         """What an operation makes of the strip that looks no farther than `reach` mm around."""
         windows = self.windows(reach)
         pieces: list[list[Array]] = []
-        for about, low, high, margin in windows:
+        for window in windows:
             found: list[Array] = []
-            for part in (part for region in self.flat(low - margin, high + margin, about) for part in operation(region)):
-                uv = [self._cut(ring, about, (low - about, high - about)) for ring in part.borders()]
-                found += [ring for inner in regions(uv) for ring in _boxed(inner, low, high)]
+            for part in (part for region in self.flat(window, window.margin) for part in operation(region)):
+                uv = [self._cut(ring, window) for ring in part.borders()]
+                found += [ring for inner in regions(uv) for ring in _boxed(inner, window.low, window.high)]
             pieces.append(found)
         return parts(*chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), self.period)
 
@@ -150,11 +150,11 @@ class Strip:
         box = _box(low, high, *self.levels)
         return tuple(part for region in regions(loops) for part in region.common(regions([box])))
 
-    def flat(self, low: float, high: float, about: float = 0.0) -> list[Region]:
-        """The strip from u = low to u = high as regions of the plane, laid flat about a u."""
+    def flat(self, window: Window, margin: float = 0.0) -> list[Region]:
+        """The strip in a window, and up to `margin` mm of u beside it, as regions laid flat about its middle."""
         return [
-            part for region in self.between(low, high)
-            for part in regions([self.period.unroll(ring, about) for ring in region.borders()])
+            part for region in self.between(window.low - margin, window.high + margin)
+            for part in regions([self.period.unroll(ring, window.about) for ring in region.borders()])
         ]
 
     def unrolled(self, window: Window, points: Array) -> Array:
@@ -183,10 +183,10 @@ class Strip:
             uv = np.insert(uv, k + 1, place, axis=0)
         return uv
 
-    def _cut(self, flat: Array, about: float, at: tuple[float, float]) -> Array:
-        """A ring of a window in (u, v), with points where generatrices cross it."""
-        uv = self._with_cuts(self.period.unrolled(flat), at, closed=True)
-        return np.asarray(uv + np.array([about, 0.0]))
+    def _cut(self, flat: Array, window: Window) -> Array:
+        """A ring laid flat about the middle of a window in (u, v), with points where the ends of the window cross it."""
+        ends = window.low - window.about, window.high - window.about
+        return np.asarray(self._with_cuts(self.period.unrolled(flat), ends, closed=True) + np.array([window.about, 0.0]))
 
     def windows(self, reach: float) -> tuple[Window, ...]:
         """The strip once round, for what looks `reach` mm around."""

@@ -43,21 +43,21 @@ class AlongCuts(PlaneCuts):
         points, triangles = base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)
         more = True
         while more:
-            far = guide.distance(points)
-            _refuse_tight(base, guide, body.name, points, triangles, far)
-            along = guide.at(far)[1]
+            distances = guide.distance(points)
+            _refuse_tight(base, guide, body.name, points, triangles, distances)
+            normals = guide.at(distances)[1]
 
-            def bends(ends: Index, along: Array = along) -> NDArray[np.bool_]:
-                return np.asarray((along[ends[0]] * along[ends[1]]).sum(axis=1) < BENDS)
+            def bends(ends: Index, normals: Array = normals) -> NDArray[np.bool_]:
+                return np.asarray((normals[ends[0]] * normals[ends[1]]).sum(axis=1) < BENDS)
 
             points, triangles, more = split(points, triangles, bends)
-        super().__init__(np.column_stack([points[:, :2], far]), triangles)
-        self._guide, self._space = guide, points
+        super().__init__(np.column_stack([points[:, :2], distances]), triangles)
+        self.guide, self.points = guide, points
 
     def _places(self, edge: Index, height: Array) -> Array:
         known, of = np.unique(height, return_inverse=True)
-        poses = np.stack([self._guide.frame(way) for way in known.tolist()])[np.ravel(of)]
-        below, above = (self._space[ends[edge]] - poses[:, :3, 3] for ends in (self._lower, self._upper))
+        poses = np.stack([self.guide.frame(way) for way in known.tolist()])[np.ravel(of)]
+        below, above = (self.points[ends[edge]] - poses[:, :3, 3] for ends in (self._lower, self._upper))
         near, far = ((one * poses[:, :3, 2]).sum(axis=1) for one in (below, above))
         apart = np.where(np.abs(far - near) > 1e-12, far - near, 1.0)
         point = below + np.clip(-near / apart, 0.0, 1.0)[:, None] * (above - below)
@@ -82,31 +82,30 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
     for number, regions, issues in planes.cut_together(cuts, layers, strategy):
         surface = between(guide, number * height, (number + 1) * height, strategy.share_of_cut)
         layer = Slice(number, base, surface, regions, issues)
-        if guide.way[0] <= (number + strategy.share_of_cut) * height <= guide.way[-1]:  # beyond, slanted ends may be aside
+        if guide.reaches((number + strategy.share_of_cut) * height):  # beyond, slanted ends may be aside
             _refuse_outside(layer)
-        made.append(layer._replace(heights=_heights(layer)))
+        made.append(layer._replace(heights=_heights(layer), before=number / layers))
     _refuse_uneven(made, strategy)
     return made
 
 
 def _refuse_tight(
-    base: Base, guide: Guide, name: str, points: Array, triangles: NDArray[np.intp], far: Array
+    base: Base, guide: Guide, name: str, points: Array, triangles: NDArray[np.intp], distances: Array
 ) -> None:
-    """InputError GUIDE_TIGHT where planes cross one another within a body, given how far along the guide (n,) mm those of
-    its vertices are."""
-    bent = guide.bent(points, far)
+    """InputError GUIDE_TIGHT where planes cross one another within a body, given the distances (n,) mm along the guide of
+    those of its points."""
+    bent = guide.bent(points, distances)
     side = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    apart = np.abs(far[side[:, 0]] - far[side[:, 1]])
+    apart = np.abs(distances[side[:, 0]] - distances[side[:, 1]])
     leaps = apart > JUMP * np.linalg.norm(points[side[:, 0]] - points[side[:, 1]], axis=1) + 1e-6
     worst = int(bent.argmax())
     if bent[worst] <= TIGHTEST and not leaps.any():
         return
     point = points[worst] if bent[worst] > TIGHTEST else points[side[np.argmax(leaps), 0]]
-    foot = guide.at(guide.distance(point[None]))[0][0]
     raise InputError(
         "GUIDE_TIGHT", name, "the guide bends more tightly at {} than the part is wide there: planes normal to it cross one "
         "another within the part, at {}; choose a guide nearer to the inside of the bend or with a larger radius, or "
-        "strategy.layers: geodesic", base.where(foot), base.where(point),
+        "strategy.layers: geodesic", base.where(guide.at(guide.distance(point[None]))[0][0]), base.where(point),
     )
 
 

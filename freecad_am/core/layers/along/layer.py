@@ -17,10 +17,10 @@ from ..surface import Wrapped
 @dataclass(frozen=True, eq=False)
 class AlongLayer(Flat):
     """pose: (4, 4) of the plane in the frame of the field, Z along the guide. As `LayerSurface`; its height (mm) at a place
-    (x, y) of the plane is level + slope . (x, y)."""
+    (x, y) of the plane is height + slope . (x, y)."""
 
     pose: Array
-    level: float
+    height: float
     slope: Array
 
     def unroll(self, points: Array) -> Array:
@@ -35,7 +35,7 @@ class AlongLayer(Flat):
 
     def heights(self, flat: Array) -> Array:
         """(n,) mm from this plane to the next at places (n, 2)."""
-        found: Array = self.level + flat @ self.slope
+        found: Array = self.height + flat @ self.slope
         return found
 
     def followed(self, flat: Array, sheet: float) -> AlongLayer:
@@ -51,11 +51,10 @@ class AlongLayer(Flat):
 def between(guide: Guide, low: float, high: float, share: float = 0.5) -> AlongLayer:
     """The layer on the plane at `low` mm along a guide, as high as it is to the plane at `high`, measured where it is cut, a
     share of the way up, along the normal there."""
-    first, middle, last = (guide.frame(way) for way in (low, low + share * (high - low), high))
-    z = middle[:3, 2]
-    level, slope = 0.0, np.zeros(2)
-    for pose, sense in ((last, 1.0), (first, -1.0)):
+    start, middle, top = (guide.frame(way) for way in (low, low + share * (high - low), high))
+    height, slope = 0.0, np.zeros(2)
+    for pose, sense in ((top, 1.0), (start, -1.0)):
         normal = pose[:3, 2]
-        level += sense * float((pose[:3, 3] - middle[:3, 3]) @ normal) / float(z @ normal)
-        slope -= sense * (normal @ middle[:3, :2]) / float(z @ normal)
-    return AlongLayer(first, level, slope)
+        height += sense * float((pose[:3, 3] - middle[:3, 3]) @ normal) / float(middle[:3, 2] @ normal)
+        slope -= sense * (normal @ middle[:3, :2]) / float(middle[:3, 2] @ normal)
+    return AlongLayer(start, height, slope)

@@ -35,11 +35,6 @@ class Charted:
         """Where in the part (n, 3) beads lie at places of the chart, and the unit normals (n, 3) there."""
 
     @property
-    def alike(self) -> tuple[float, ...]:
-        """Regions with the same borders are filled alike, whatever their charts."""
-        return ()
-
-    @property
     def period(self) -> None:
         """Nothing goes round it: what would is cut in pieces."""
         return None

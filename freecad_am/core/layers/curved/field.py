@@ -26,27 +26,26 @@ FACETS = 1.5  # chord errors between triangles of a face, however made
 REPORTED_DISTORTION = 0.05  # distortion of a piece that is told
 
 
-def slices(group: Group, substrate: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
-    """The layers of a group of solids outwards from the plane of its base and the `substrate` that they touch, or from the
+def slices(group: Group, surroundings: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+    """The layers of a group of solids outwards from the plane of its base and the surroundings that they touch, or from the
     start faces; several of one number where a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
     _refuse(strategy)
     base, bodies = group.base, group.bodies
     start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
     solids = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
-    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in substrate], name, start, strategy)
-    worst = 0.0
-    height, cut = strategy.layer_height, max(strategy.share_of_cut, 1e-3)
+    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in surroundings], name, start, strategy)
+    stretch, height, cut = 0.0, strategy.layer_height, max(strategy.share_of_cut, 1e-3)
     layers = int(np.ceil(found.top / height - cut + 1e-6))
     for number in range(max(layers, 0)):
         for piece in found.pieces((number + cut) * height):
             issues: tuple[Issue, ...] = ()
-            if piece.stretch > max(worst, REPORTED_DISTORTION):
-                worst = piece.stretch
+            if piece.stretch > max(stretch, REPORTED_DISTORTION):
+                stretch = piece.stretch
                 issues = (Issue(
-                    NOTE if worst <= 3.0 * REPORTED_DISTORTION else WARNING, "DISTORTED",
+                    NOTE if stretch <= 3.0 * REPORTED_DISTORTION else WARNING, "DISTORTED",
                     Text("a curved layer cannot be laid flat without distortion: beads are up to {:.2g} % nearer together "
-                        "or farther apart than the bead spacing", 100.0 * worst), number,
+                        "or farther apart than the bead spacing", 100.0 * stretch), number,
                 ),)
             regions = tuple(region.simple(BORDER * found.grid.step) for region in piece.regions)
             surface = ChartLayer(piece.chart, found, number * height)

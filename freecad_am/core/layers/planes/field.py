@@ -48,7 +48,7 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Ite
             0.99 * top / max(strategy.share_of_cut, 0.001),
         )
     for number, regions, issues in cut_together(cuts, layers, strategy):
-        yield Slice(number, base, PlaneLayer(number * strategy.layer_height), regions, issues)
+        yield Slice(number, base, PlaneLayer(number * strategy.layer_height), regions, issues, before=number / layers)
 
 
 def cut_together(

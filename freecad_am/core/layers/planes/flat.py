@@ -12,11 +12,6 @@ class Flat:
     """The part of `LayerSurface` that is the same for every plane."""
 
     @property
-    def alike(self) -> tuple[float, ...]:
-        """Regions with the same borders are filled alike on all planes."""
-        return ()
-
-    @property
     def period(self) -> None:
         """Nothing goes round it."""
         return None

@@ -30,9 +30,9 @@ CUT = 0.25  # share of the chord error, of cuts
 def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[Slice]:
     """The layers of a solid from the hub outwards, at 0, d, 2 d ... mm; those without any region are left out. InputError
     APEX_INSIDE, TOO_FAR_ROUND."""
-    surface, azimuth = base.surface, middle_azimuth(base, body.vertices)
-    assert isinstance(surface, Developable)
-    facets = Facets(surface, base.inside(body.vertices), body.triangles, body.name)
+    assert isinstance(base.surface, Developable)
+    azimuth = middle_azimuth(base, body.vertices)
+    facets = Facets(base.surface, base.inside(body.vertices), body.triangles, body.name)
     error, height = strategy.chord_error, strategy.layer_height
     below: list[list[Loop]] = []
     ahead: list[list[Loop]] = []
@@ -42,31 +42,29 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
             ahead.append(cut(facets, (number + len(ahead)) * height, CUT * error))
         loops = ahead.pop(0)
         where = f"{body.name} layer {number}"
-        offset = surface.offset(number * height)
+        surface = base.surface.offset(number * height)
         if sum(loop.turns for loop in loops):
             raise InputError(
                 "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, at {}, where equidistant surfaces "
-                "have an apex or an end; let it end beside the axis", base.where(_apex(loops, offset)),
+                "have an apex or an end; let it end beside the axis", base.where(_apex(loops, surface)),
             )
         below.append(loops)
         lots = within_margin(below, height, strategy.margin, facets.moved)
         if any(loop.turns for _, loops in lots for loop in loops):
             buried = () if thick > min(number, layers - 1 - number) else None
-            layer = Slice(number, base, RoundLayer(offset), _all_round(lots, offset, strategy), (), azimuth, buried)
+            layer = Slice(number, base, RoundLayer(surface), _all_round(lots, surface, strategy), (), azimuth, buried)
         else:
             neighbours = [facets.moved(loops, -k * height) for k, loops in _neighbours(below, ahead, thick)]
-            flat = opened(offset, [loop for loops in (*(loops for _, loops in lots), *neighbours) for loop in loops],
-                          azimuth, where)
-            next_loop = iter(flat.loops)
-            lots_flat = [(distance, [next(next_loop) for _ in loops]) for distance, loops in lots]
-            found, issues = regions_of(lots_flat, strategy.margin, error, number)
-            layer = Slice(number, base, RoundLayer(offset, flat.middle), found, issues, azimuth)
+            flat = opened(surface, [*(loops for _, loops in lots), *neighbours], azimuth, where)
+            layer = Slice(number, base, RoundLayer(surface, flat.middle), *regions_of(
+                [(distance, borders) for (distance, _), borders in zip(lots, flat.borders)], strategy.margin, error, number,
+            ), azimuth)
             if thick:
                 layer = layer._replace(buried=under_and_over([
-                    grown(regions([next(next_loop) for _ in loops]), strategy.margin, ARCS * error) for loops in neighbours
+                    grown(regions(borders), strategy.margin, ARCS * error) for borders in flat.borders[len(lots):]
                 ]))
         if layer.regions:
-            yield layer
+            yield layer._replace(before=number / layers)
 
 
 def _neighbours(

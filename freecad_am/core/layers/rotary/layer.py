@@ -24,11 +24,6 @@ class RoundLayer:
     middle: float = 0.0
 
     @property
-    def alike(self) -> tuple[float, ...]:
-        """Radius and height of the base circle."""
-        return self.surface.radius, self.surface.height
-
-    @property
     def period(self) -> Period:
         """A turn: a length of a cylinder, an angle about the apex of a cone."""
         if self.surface.is_cylinder:

@@ -44,38 +44,43 @@ class Loop:
 class Facets:
     """A closed mesh prepared for cuts with equidistant surfaces of one surface.
 
-    vertices (n, 3) mm in the hub's frame; faces (m, 3) with outward normals, every edge between two faces.
-    InputError 'OPEN_MESH' naming the place where an edge has one face, or more than two.
+    vertices (n, 3) mm in the hub's frame, at distances (n,) mm from the surface; triangles (m, 3) with outward normals,
+    every edge between two of them. InputError 'OPEN_MESH' naming the place where an edge has one of them, or more than two.
     """
 
-    def __init__(self, surface: Developable, vertices: Array, faces: Index, name: str = "part") -> None:
-        self.surface, self.vertices, self.faces = surface, vertices, faces
-        self.away = surface.distance(vertices)
-        following = faces[:, [1, 2, 0]]
-        key = (np.minimum(faces, following).astype(np.int64) * len(vertices) + np.maximum(faces, following)).ravel()
-        order = np.argsort(key, kind="stable")
-        ranked = key[order]
-        if len(ranked) % 2 or (ranked[::2] != ranked[1::2]).any() or (ranked[2::2] == ranked[1:-1:2]).any():
-            edges, counts = np.unique(ranked, return_counts=True)
-            place = vertices[list(divmod(int(edges[counts != 2][0]), len(vertices)))].mean(axis=0)
-            raise InputError(
-                "OPEN_MESH", name, "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's base; "
-                "close the mesh", int((counts != 2).sum()), place[0], place[1], place[2],
-            )
-        # per edge the vertices at its ends, and the sides of faces that it is: 3 face + side, doubled, and 1 where the face
-        # goes along it; all in one place, for a cut touches edges all over the memory
-        self.edges = np.empty((len(order) // 2, 4), dtype=np.int32)
-        self.edges[:, 0], self.edges[:, 1] = np.divmod(ranked[::2], len(vertices))
-        self.edges[:, 2:] = (2 * order + (faces < following).ravel().take(order)).reshape(-1, 2)
-        ends = [self.away.take(self.edges[:, k]) for k in range(2)]
+    def __init__(self, surface: Developable, vertices: Array, triangles: Index, name: str = "part") -> None:
+        self.surface, self.vertices, self.triangles, self.name = surface, vertices, triangles, name
+        self.distances = surface.distance(vertices)
+        self.edges = self._edges()
+        ends = [self.distances.take(self.edges[:, k]) for k in range(2)]
         self.lower, self.upper = np.minimum(*ends), np.maximum(*ends)
         self.dips, self.least = self._least_on_edges()
         self.pierced, self.piercing = self._pierced()
         self.around = [np.flatnonzero((self.edges[:, 2:] // 6 == face).any(axis=1)) for face in self.pierced]
 
+    def _edges(self) -> Edges:
+        """Per edge (k, 4) the vertices at its ends, and the sides of triangles that it is: 3 triangle + side, doubled, and 1
+        where the triangle goes along it; all in one place, for a cut touches edges all over the memory."""
+        following, count = self.triangles[:, [1, 2, 0]], len(self.vertices)
+        low, high = np.minimum(self.triangles, following), np.maximum(self.triangles, following)
+        sides = (low.astype(np.int64) * count + high).ravel()
+        order = np.argsort(sides, kind="stable")
+        sides = sides[order]
+        if len(sides) % 2 or (sides[::2] != sides[1::2]).any() or (sides[2::2] == sides[1:-1:2]).any():
+            each, counts = np.unique(sides, return_counts=True)
+            place = self.vertices[list(divmod(int(each[counts != 2][0]), count))].mean(axis=0)
+            raise InputError(
+                "OPEN_MESH", self.name, "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's "
+                "base; close the mesh", int((counts != 2).sum()), place[0], place[1], place[2],
+            )
+        edges = np.empty((len(order) // 2, 4), dtype=np.int32)
+        edges[:, 0], edges[:, 1] = np.divmod(sides[::2], count)
+        edges[:, 2:] = (2 * order + (self.triangles < following).ravel().take(order)).reshape(-1, 2)
+        return edges
+
     def cut(self, distance: float, chord_error: float) -> list[Loop]:
         """The loops in which the equidistant surface at `distance` mm cuts the mesh, in a fixed order."""
-        inside = self.away < distance
+        inside = self.distances < distance
         once = np.flatnonzero((self.lower < distance) & (self.upper >= distance))
         twice = self.dips[(self.least < distance) & (self.lower[self.dips] >= distance)]
         loops = [self._round(face, spot, distance, chord_error) for face, spot in self._islands(distance)]
@@ -127,12 +132,12 @@ class Facets:
 
     def _pierced(self) -> tuple[Index, Array]:
         """Faces that the axis goes through, and where (k, 3)."""
-        x, y = (column.take(self.faces.T) for column in columns(self.vertices[:, :2]))
+        x, y = (column.take(self.triangles.T) for column in columns(self.vertices[:, :2]))
         sides = [x[k] * y[(k + 1) % 3] - y[k] * x[(k + 1) % 3] for k in range(3)]
         found = np.flatnonzero((np.minimum.reduce(sides) > 0.0) | (np.maximum.reduce(sides) < 0.0))
         share = np.stack([sides[(k + 1) % 3][found] for k in range(3)], axis=1)
         share = share / share.sum(axis=1)[:, None]
-        z = (share * self.vertices[self.faces[found]][..., 2]).sum(axis=1)
+        z = (share * self.vertices[self.triangles[found]][..., 2]).sum(axis=1)
         return found, np.stack([np.zeros(len(z)), np.zeros(len(z)), z], axis=1)
 
     def _islands(self, distance: float) -> list[tuple[int, Array]]:
@@ -140,7 +145,7 @@ class Facets:
         if not len(self.pierced):
             return []
         low = self.surface.distance(self.piercing) < distance
-        clear = (self.away[self.faces[self.pierced]] >= distance).all(axis=1)
+        clear = (self.distances[self.triangles[self.pierced]] >= distance).all(axis=1)
         dipping = self.dips[self.least < distance]
         clear &= ~np.array([np.isin(edges, dipping).any() for edges in self.around])
         return [(int(self.pierced[k]), self.piercing[k]) for k in np.flatnonzero(low & clear)]
@@ -223,7 +228,7 @@ class Facets:
         return Loop(points if normal[2] < 0.0 else points[::-1], -1 if normal[2] > 0.0 else 1)
 
     def _normals(self, faces: Index) -> Array:
-        a, b, c = (self.vertices.take(corner, axis=0) for corner in self.faces.take(faces, axis=0).T)
+        a, b, c = (self.vertices.take(corner, axis=0) for corner in self.triangles.take(faces, axis=0).T)
         normal = _cross(b - a, c - a)
         unit: Array = normal / np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
         return unit

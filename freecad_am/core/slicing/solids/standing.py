@@ -55,7 +55,7 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
     for k, seat in enumerate(seats):
         # seats are on cylinders and cones
         facets = Facets(seat.base.surface, seat.base.inside(body.vertices), body.triangles, body.name)  # type: ignore[arg-type]
-        away[k] = facets.away.min(), facets.away.max()
+        away[k] = facets.distances.min(), facets.distances.max()
         for loop in cut(facets, 0.0, chord_error):
             step = np.linalg.norm(np.roll(loop.points, -1, axis=0) - loop.points, axis=1)
             middle = 0.5 * (loop.points + np.roll(loop.points, -1, axis=0))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -29,15 +30,15 @@ REACH = 0.05  # mm; a solid that begins no further from a surface stands on it
 
 
 class Flat(NamedTuple):
-    """Contours of one layer laid flat: loops (n, 2) mm, the solid to their left; middle: azimuth (rad) of x = 0."""
+    """Borders (n, 2) mm of layers laid flat, the solid to their left; middle: azimuth (rad) of x = 0."""
 
-    loops: tuple[Array, ...]
+    borders: list[list[Array]]
     middle: float
 
 
 def count(facets: Facets, height: float, margin: float, chord_error: float) -> int:
     """How many layers there are, at 0, `height`, twice that ... mm from the base."""
-    top = float(facets.away.max()) + margin
+    top = float(facets.distances.max()) + margin
     return max(math.ceil((top - ASIDE * chord_error) / height), 0)
 
 
@@ -48,29 +49,32 @@ def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
     is cut further out: a cut through them would be what noise makes of it. A face that only touches the surface, as a
     flat top does along a generatrix, touches it within TOUCH, wherever rounding has put it: it is not cut.
     """
-    corners = facets.away[facets.faces]
+    corners = facets.distances[facets.triangles]
     low, high = corners.min(axis=1), corners.max(axis=1)
     lying = (low > distance - chord_error) & (high < distance + chord_error)
-    lowest = float(facets.away.min())
+    lowest = float(facets.distances.min())
     gap = lowest - distance if distance < lowest < distance + REACH else 0.0
     aside = gap + ASIDE * chord_error if gap or lying.any() else -TOUCH * chord_error
     found = facets.cut(distance + aside, chord_error)
     return facets.moved(found, -aside)
 
 
-def opened(surface: Developable, loops: Sequence[Loop], centre: float, where: str) -> Flat:
-    """Loops of the surface that do not go round it laid flat; cut open opposite to the azimuth `centre`, or near that.
+def opened(surface: Developable, layers: Sequence[Sequence[Loop]], centre: float, where: str) -> Flat:
+    """Loops of layers moved onto one surface, none of which goes round it, laid flat together; cut open opposite to the
+    azimuth `centre`, or near that.
 
     InputError TOO_FAR_ROUND where a contour winds so far about a cone that it would lie on itself.
     """
+    loops = [loop for layer in layers for loop in layer]
     azimuths = [_followed(loop.points, surface) for loop in loops]
     spans = np.array([[azimuth.min(), azimuth.max()] for azimuth in azimuths]).reshape(-1, 2)
     for k in range(TRIES):
         middle = centre + k * STEP
         cutting = middle + 0.5 * TURN
         if (np.floor((spans[:, 0] - cutting) / TURN) == np.floor((spans[:, 1] - cutting) / TURN)).all():
-            return Flat(tuple(surface.flat(loop.points, middle) for loop in loops), middle)
-    return Flat(_in_one_piece(surface, loops, azimuths, centre, where), centre)
+            return Flat([[surface.flat(loop.points, middle) for loop in layer] for layer in layers], middle)
+    flat = iter(_in_one_piece(surface, loops, azimuths, centre, where))
+    return Flat([list(islice(flat, len(layer))) for layer in layers], centre)
 
 
 def _followed(points: Array, surface: Developable) -> Array:

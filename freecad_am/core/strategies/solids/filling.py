@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple, TypeVar
@@ -12,12 +13,12 @@ import numpy as np
 
 from ...filling.cover import Cover, covered, total
 from ...filling.curve import OVER, Beads, PlaneCurve
-from ...filling.fill import fill, open_at_slits, open_places
+from ...filling.fill import Gaps, fill, open_at_slits, open_places
 from ...filling.free_width import fitted, narrowed, shared
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest_among, steps
 from ...geometry.regions.region import Region
-from ...geometry.regions.strip import Strip
+from ...geometry.regions.strip import Period, Strip
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
@@ -39,16 +40,16 @@ INSTEAD = {  # round a hub
 
 
 class Filled(NamedTuple):
-    """The beads of a layer on the plane, what to know about them, the number of the region that each fills, and how well
-    all of them are covered."""
+    """The beads of a layer on the plane, what to know about them, the numbers of those that fill each region, from inside
+    out, and how well all of them are covered."""
 
     curves: list[PlaneCurve]
     issues: tuple[Issue, ...]
-    islands: list[int]
+    islands: list[list[int]]
     cover: Cover
 
 
-class _Asked(NamedTuple):
+class _Filling(NamedTuple):
     """What a layer is filled with, and at what angle, rad, on its plane."""
 
     beads: Beads
@@ -57,10 +58,12 @@ class _Asked(NamedTuple):
 
 
 class _Picture(NamedTuple):
-    """A region filled: its beads, places left open with their widths, and how well it is covered."""
+    """A region, what it is filled with, its beads, places left open with their widths, and how well it is covered."""
 
-    curves: tuple[PlaneCurve, ...]
-    gaps: list[tuple[Array, float]]
+    region: Region | Strip
+    filling: _Filling
+    curves: Sequence[PlaneCurve]
+    gaps: Gaps
     cover: Cover
 
 
@@ -73,44 +76,42 @@ class Pictures:
         self._strategy = strategy
         self._process = process
         self._width = width
-        self._known: dict[tuple[float, ...], list[tuple[Region, _Asked, _Picture]]] = {}
+        self._pictures: defaultdict[Period | None, list[_Picture]] = defaultdict(list)
 
     def filled(self, layer: Slice, name: str) -> Filled:
         """The beads of a layer of what messages call by a name; every other curve the other way round where directions of
         closed ones alternate, or starts of open ones are spread. InfeasibleError THIN_REGION."""
-        asked = self._asked(layer)
-        beads, _, _ = asked
+        strategy, filling = self._strategy, self._filling(layer)
         curves: list[PlaneCurve] = []
-        gaps: list[tuple[Array, float]] = []
-        islands: list[int] = []
+        gaps: Gaps = []
+        islands: list[list[int]] = []
         covers: list[Cover] = []
-        for number, region in enumerate(layer.regions):
+        for region in layer.regions:
             try:
-                found, left, cover = self._picture(layer, region, asked)
+                picture = self._picture(layer, region, filling)
             except InfeasibleError as error:
                 raise InfeasibleError(
                     error.code, f"{name} layer {layer.number}", error.message,
                     issues=(Issue("error", error.code, Text("{}: {}", name, error.message), layer.number),)
                 ) from None
-            covers.append(cover)
-            for curve in found:
-                odd = (layer.number + curve.ring) % 2 if curve.closed else layer.number % 2
-                if odd and (self._process.direction == "alternate" if curve.closed else beads.spread is not None):
+            island = range(len(curves), len(curves) + len(picture.curves))
+            for curve in picture.curves:
+                alternating = self._process.direction == "alternate" if curve.closed else strategy.starts == "spread"
+                if alternating and (layer.number + curve.ring if curve.closed else layer.number) % 2:
                     curve = curve.reversed()
                 curves.append(replace(curve, sheet=region.sheet) if isinstance(region, Region) else curve)
-            islands += [number] * len(found)
-            gaps += left
-        return Filled(curves, self._issues(layer, curves, gaps, beads), islands, total(covers))
+            if island:
+                islands.append(sorted(island, key=lambda number: -curves[number].ring))
+            gaps += picture.gaps
+            covers.append(picture.cover)
+        return Filled(curves, self._issues(layer, curves, gaps, filling), islands, total(covers))
 
-    def _issues(
-        self, layer: Slice, curves: Sequence[PlaneCurve], gaps: list[tuple[Array, float]], beads: Beads
-    ) -> tuple[Issue, ...]:
+    def _issues(self, layer: Slice, curves: Sequence[PlaneCurve], gaps: Gaps, filling: _Filling) -> tuple[Issue, ...]:
         """What is told of a layer: what beads leave open, single ones that stand out, a pattern that is another there."""
-        strategy, issues = self._strategy, []
+        strategy, beads, issues = self._strategy, filling.beads, []
         regions = [region for region in layer.regions if isinstance(region, Region)]
         if len(regions) == len(layer.regions) and strategy.fill_density == 1.0:
-            at_slits = open_at_slits(regions, curves, beads)
-            gaps = gaps if at_slits is None else at_slits
+            gaps = open_at_slits(regions, curves, beads, gaps)
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
             issues.append(Issue(
@@ -125,54 +126,53 @@ class Pictures:
             ))
         return tuple(issues)
 
-    def _asked(self, layer: Slice) -> _Asked:
+    def _filling(self, layer: Slice) -> _Filling:
         """What a layer is filled with: the same picture wherever round the hub its solid is, turned from layer to layer."""
         strategy, process = self._strategy, self._process
         turned = layer.surface.turned(layer.azimuth)  # the picture, by the cutting line
-        seam = process.seam.angle + layer.number * process.seam.step
         beads = Beads(
             strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.least_bead, strategy.thin,
-            process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error, layer.where,
-            self._width, layer.number * OVER if strategy.starts == "spread" else None,
+            process.direction == "clockwise", process.seam.angle + layer.number * process.seam.step - turned,
+            ARCS * strategy.chord_error, layer.where, self._width,
+            layer.number * OVER if strategy.starts == "spread" else None,
         )
         angle = strategy.fill_angle + layer.number * strategy.fill_angle_step - turned
         if strategy.fill_density == 1.0:
-            return _Asked(beads, angle, Infill())
+            return _Filling(beads, angle, Infill())
         height = layer.number * strategy.layer_height if strategy.fill == "gyroid" else 0.0
-        return _Asked(beads, angle, Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.buried))
+        return _Filling(beads, angle, Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.buried))
 
-    def _picture(self, layer: Slice, region: Region | Strip, asked: _Asked) -> _Picture:
-        """A region filled, as one before it where that was alike."""
+    def _picture(self, layer: Slice, region: Region | Strip, filling: _Filling) -> _Picture:
+        """A region filled, as one before it where that was the same."""
         flat = layer.surface.period is None
         if isinstance(region, Strip):
-            return self._made(region, asked._replace(infill=Infill()) if layer.buried == () else asked, flat)
-        known = self._known.setdefault(layer.surface.alike, [])
-        for other, before, picture in known:
-            if _alike(before, asked) and _equal(other.borders(), region.borders()):
+            return self._made(region, filling._replace(infill=Infill()) if layer.buried == () else filling, flat)
+        for picture in self._pictures[layer.surface.period]:
+            assert isinstance(picture.region, Region)
+            if _same(picture.filling, filling) and _equal(picture.region.borders(), region.borders()):
                 return picture
-        picture = self._made(region, asked, flat)
-        known.append((region, asked, picture))
-        return picture
+        self._pictures[layer.surface.period].append(self._made(region, filling, flat))
+        return self._pictures[layer.surface.period][-1]
 
-    def _made(self, region: Region | Strip, asked: _Asked, flat: bool) -> _Picture:
+    def _made(self, region: Region | Strip, filling: _Filling, flat: bool) -> _Picture:
         """A region filled; of what its beads leave open nothing is told where room is left on purpose. flat: nothing goes
         round the surface."""
-        strategy, (beads, angle, infill) = self._strategy, asked
-        whole, (least, most) = infill.density == 1.0, strategy.spacing_range
+        strategy, (beads, angle, infill) = self._strategy, filling
+        sparse, (least, most) = infill.density < 1.0, strategy.spacing_range
         links = strategy.longest_link * beads.spacing
-        fitting, share = beads, 1.0
-        if isinstance(region, Region) and whole and strategy.rounds_alone:
-            fitting, share = fitted(region, beads, least, most)
-        curves = fill(region, fitting, strategy.fill, angle, strategy.rounds, links, infill)
-        gaps = open_places(region, curves, fitting) if whole else []
-        if isinstance(region, Region) and whole:
-            curves = shared(region, curves, fitting, share, least, most)
+        share = 1.0
+        if isinstance(region, Region) and not sparse and strategy.rounds_alone:
+            beads, share = fitted(region, beads, least, most)
+        curves: Sequence[PlaneCurve] = fill(region, beads, strategy.fill, angle, strategy.rounds, links, infill)
+        gaps = [] if sparse else open_places(region, curves, beads)
+        if isinstance(region, Region) and not sparse:
+            curves = [*shared(region, curves, beads, share, least, most)]
+        beads = filling.beads
         cover = covered(region, curves, beads, infill.density)
-        if whole and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0:
-            twice = beads.spacing * math.fsum(_weighed(curve) for curve in curves) - cover.once
-            if twice > MUCH * cover.whole:  # no wider than their room
-                curves = narrowed(curves, beads, angle, strategy.narrowest)
-        return _Picture(curves, gaps, cover)
+        narrowing = not sparse and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0
+        if narrowing and cover.over(beads.spacing * math.fsum(map(_weighed, curves))) > MUCH * cover.area:
+            curves = narrowed(curves, beads, angle, strategy.narrowest)  # no wider than their room
+        return _Picture(region, filling, curves, gaps, cover)
 
 
 def _weighed(curve: PlaneCurve) -> float:
@@ -209,23 +209,23 @@ def bead_width(strategy: FilledParameters, process: ProcessParameters, model: Be
 
 def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
     """What is told of single beads in regions narrower than they are."""
-    single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]
-    if not single:
+    curves = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]
+    if not curves:
         return []
-    points = np.vstack([curve.points for curve in single])
-    share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in single])
+    points = np.vstack([curve.points for curve in curves])
+    share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in curves])
     out = share * beads.inset - nearest_among(layer.borders, points)[1]
     worst = int(np.argmax(out))
     if out[worst] <= TOLERANCE_MM or ((share < 1.0).any() and out[worst] < 0.02 * beads.inset):
         return []
     return [Issue(
         NOTE, "THIN_SINGLE", Text("{} bead(s) alone in regions narrower than a bead of {:.3g} mm stand out of them, by up "
-            "to {:.3g} mm at {}", len(single), 2.0 * beads.inset, out[worst], layer.where(points[worst])), layer.number,
+            "to {:.3g} mm at {}", len(curves), 2.0 * beads.inset, out[worst], layer.where(points[worst])), layer.number,
     )]
 
 
-def _alike(one: _Asked, other: _Asked) -> bool:
-    """Whether regions alike are filled alike."""
+def _same(one: _Filling, other: _Filling) -> bool:
+    """Whether equal regions are filled in the same way."""
     turned = max(abs(one.angle - other.angle), np.abs(np.subtract(one.beads.start, other.beads.start)).max())
     if turned >= 1e-9 or one.beads.spread != other.beads.spread:
         return False

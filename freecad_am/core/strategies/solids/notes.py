@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...issues import NOTE, WARNING, Issue, Text, Word
+from ...issues import NOTE, WARNING, Issue, Text, Word, one_of_each
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
@@ -28,15 +28,11 @@ HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
 
 def notes(
-    made: Sequence[MadeBead], layers: Sequence[Layer], mended: Sequence[Issue], strategy: FilledParameters,
+    made: Sequence[MadeBead], layers: Sequence[Layer], issues: Sequence[Issue], strategy: FilledParameters,
     process: ProcessParameters, model: BeadModel | None,
 ) -> list[Issue]:
-    """All of them; of what was mended one of each kind, with how many layers of solids there are like it."""
-    found = []
-    for code in sorted({issue.code for issue in mended}):
-        first, *others = [issue for issue in mended if issue.code == code]
-        text = Text("{} (more layers like it: {})", first.message, len(others)) if others else first.message
-        found.append(Issue(first.level, code, text, first.layer))
+    """All of them; of the issues of layers of solids one of each code, with how many there are like it."""
+    found = one_of_each(issues)
     if model is not None:
         found += of_model(made, strategy.layer_height, process, model)
     else:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -12,13 +11,13 @@ from ...filling.cover import Cover
 from ...geometry.beyond_hub import solids_beyond
 from ...geometry.on_hub import SolidsOnHub
 from ...issues import InputError, Issue
-from ...layers.field import Stack, stacks
+from ...layers import field
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
 from ...process.order import RankedBead, as_below, island_by_island, ordered, waited
-from ...toolpath import Toolpath
+from ...toolpath import Bead, Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
@@ -27,7 +26,6 @@ from .filling import Pictures, bead_width, spaced
 from .notes import lean_notes, notes
 from .volumes import twice, volumes
 
-FEWER = 1_000_000  # beads that a layer of a solid has
 LEVEL = 1e-6  # mm, and of the cosine of an angle
 
 
@@ -40,66 +38,61 @@ def plan(
     model: sets the speeds, None for the travel speed everywhere. progress(fraction, text) may raise to cancel. Raises
     InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
     THIN_REGION."""
-    planes, at = solids.on_planes(), None
-    _refuse_mode(planes, strategy, build)
+    _refuse_mode(solids.on_planes(), strategy, build)
     strategy = spaced(strategy, process)
-    found = size.of_solids(solids, strategy, strategy.bead_spacing)
-    size.refuse_absurd(found, strategy, None if strategy.bead_overlap is None else process.bead_width)
-    together = sum(len(group.bodies) for group in solids.groups) if strategy.order == "feature" else 1
-    expected = max(1.0, found.layers / together)  # of a stack
-    nominal = bead_width(strategy, process, model)
-    pictures = Pictures(strategy, process, nominal)
+    overlapping = strategy.bead_overlap is not None
+    size.refuse_absurd(
+        size.of_solids(solids, strategy, strategy.bead_spacing), strategy, process.bead_width if overlapping else None
+    )
+    width = bead_width(strategy, process, model)
+    pictures = Pictures(strategy, process, width)
     ranked: list[RankedBead] = []
     made: list[MadeBead] = []
-    mended: list[Issue] = []
+    issues: list[Issue] = []
     covers: list[Cover] = []
     heights: dict[int, list[float]] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
-    lots = _lots(solids, strategy)
-    for done, (group, solid, stack) in enumerate(lots):
+    point: Array | None = None  # where the torch is
+    stacks = list(field.stacks(solids, strategy))
+    for done, stack in enumerate(stacks):
         below: Array | None = None  # middles of the islands of the layer before
-        before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
-        for count, layer in enumerate(stack.slices):
-            through = min(1.0, count / expected) if layer.before is None else layer.before
-            progress((done + through) / len(lots), f"{stack.name} layer {layer.number}")
+        for layer in stack.layers:
+            progress((done + layer.before) / len(stacks), f"{stack.name} layer {layer.number}")
             filled = pictures.filled(layer, stack.name)
-            mended += [*layer.issues, *filled.issues]
+            issues += [*layer.issues, *filled.issues]
             if layer.heights is not None:
                 heights.setdefault(layer.number, []).extend(layer.heights[::2])
-            share = 1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
-            covers.append(Cover(*(share * area for area in filled.cover)))
-            here = [bead_of(curve, layer, strategy, build, process, model) for curve in filled.curves]
-            made += here
-            beads, ranks = [one.bead for one in here], [curve.ring for curve in filled.curves]
-            if planes:
-                if strategy.min_layer_time > 0.0 and beads:
+            covers.append(filled.cover.scaled(1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height))
+            beads: list[Bead] = []
+            for curve in filled.curves:
+                made.append(bead_of(curve, layer, strategy, build, process, model))
+                beads.append(made[-1].bead)
+            if beads and solids.on_planes():
+                if strategy.min_layer_time > 0.0:
                     order, below = as_below(beads, filled.islands, below)
                 else:
-                    order = island_by_island(beads, filled.islands, at)
-                ranks = (-solid * FEWER - before[layer.number] - np.argsort(order)).tolist()
-                before[layer.number] += len(beads)
-                at = beads[order[-1]].points[-1] if order else at
-            ranked += [RankedBead(group, solid, layer.number, *one) for one in zip(ranks, beads, strict=True)]
+                    order = island_by_island(beads, filled.islands, point)
+                point = beads[order[-1]].points[-1]
+                ranked += [
+                    RankedBead(stack.group, stack.solid, layer.number, -len(ranked) - rank, beads[number])
+                    for rank, number in enumerate(order)
+                ]
+            else:
+                ranked += [RankedBead(stack.group, stack.solid, layer.number, bead.ring, bead) for bead in beads]
     if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT", solids.label, "no bead of {:g} mm or more finds room in any layer; use a smaller bead "
             "spacing, or thin = single", strategy.least_bead,
         )
     layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
-    issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
+    issues = [*solids.issues, *notes(made, layers, issues, strategy, process, model), *lean_notes(made, layers, build)]
     return Toolpath(
-        layers, solids.frame, strategy.layer_height, strategy.chord_error, issues, process.overlap,
-        "solid" if planes else "developable",
-        solids.surroundings, None if model is None else model.law(process.acceleration), nominal,
+        layers, solids.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap,
+        "solid" if solids.on_planes() else "developable",
+        solids.surroundings, None if model is None else model.law(process.acceleration), width,
         volumes=volumes(None if strategy.margin else solids_beyond(solids), strategy, covers),
-        twice=twice(made, strategy, covers, nominal),
+        twice=twice(made, strategy, covers, width),
         uneven=np.array([(number, min(both), max(both)) for number, both in sorted(heights.items())]) if heights else None,
     )
-
-
-def _lots(solids: SolidsOnHub, strategy: FilledParameters) -> list[tuple[int, int, Stack]]:
-    """The stacks of all groups, each with the number of its group, and its own in that."""
-    return [(number, solid, stack) for number, group in enumerate(solids.groups)
-            for solid, stack in enumerate(stacks(group, solids.surroundings, strategy))]
 
 
 def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirectionParameters) -> None:

@@ -37,4 +37,4 @@ def twice(made: Sequence[MadeBead], strategy: FilledParameters, covers: Sequence
         high = np.ones(len(bead)) if bead.height is None else bead.height / strategy.layer_height
         section = wide * high * strategy.bead_spacing / width
         area += float((0.5 * (section[1:] + section[:-1])) @ step)
-    return max(area - total(covers).once, 0.0) * strategy.layer_height
+    return max(total(covers).over(area), 0.0) * strategy.layer_height
