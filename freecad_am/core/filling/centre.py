@@ -58,13 +58,13 @@ def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Bead
 
 
 def closing(
-    inner: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads, ring: int, filled: Sequence[Region] = ()
+    inner: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads, ring: int, ends: Sequence[Region] = ()
 ) -> list[PlaneCurve]:
-    """Beads in what other beads leave open of what beads can reach with their middles in `inner`, and of that without what
-    else is filled."""
+    """Beads in what other beads leave open of what beads can reach with their middles in `inner`, and of that without the
+    ends, `lines.Frame`, that lines fill."""
     gaps = left_open(curves, inner, beads)
-    if filled:
-        gaps = wider(without(gaps, filled), beads.gap, beads.chord_error)
+    if ends:
+        gaps = wider(without(gaps, ends), beads.gap, beads.chord_error)
     return centre_beads(gaps, beads, ring, inner, "closing")
 
 

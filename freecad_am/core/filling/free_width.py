@@ -69,8 +69,9 @@ def shared(
         elif curve.kind in CENTRES:
             points = _places(curve, PLACES * beads.spacing)
             distances = nearest_among(others, points)[1]
-            room = np.minimum(region.nearest(points)[1] / beads.inset, 2.0 * distances / beads.spacing - 1.0)
-            yield replace(curve, points=points, share=np.clip(share * room, least, most))
+            yield replace(curve, points=points, share=np.clip(share * np.minimum(
+                region.nearest(points)[1] / beads.inset, 2.0 * distances / beads.spacing - 1.0
+            ), least, most))
         else:
             yield replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
 

@@ -17,12 +17,11 @@ REACH = 3.0  # spacings beside a window that tell what is open in it
 
 def strip_closing(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring: int, kind: str) -> list[PlaneCurve]:
     """Beads in what curves leave open, wider than the gap allowed; cut where windows meet."""
-    closing = []
-    for window, gaps, inner in open_windows(strip, curves, beads):
-        for curve in centre_beads(gaps, beads, ring, inner, kind):
-            uv = strip.unrolled(window, curve.points)
-            closing.append(replace(curve, points=strip.period.unroll(uv), sheet=float(uv[:, 0].mean())))
-    return closing
+    return [
+        replace(curve, points=strip.period.unroll(uv), sheet=float(uv[:, 0].mean()))
+        for window, gaps, inner in open_windows(strip, curves, beads)
+        for curve in centre_beads(gaps, beads, ring, inner, kind) for uv in (strip.unrolled(window, curve.points),)
+    ]
 
 
 def open_windows(
@@ -31,7 +30,7 @@ def open_windows(
     """Window by window, laid flat about its middle, what is open and where beads may lie."""
     found = []
     for window, adjacent in near_windows(strip, curves, REACH * beads.spacing):
-        inner = grown(strip.flat(window, window.margin), -beads.inset, beads.chord_error)
+        inner = grown(strip.flat(window, with_margin=True), -beads.inset, beads.chord_error)
         if inner:
             found.append((window, list(common(left_open(adjacent, inner, beads), strip.pane(window))), inner))
     return found

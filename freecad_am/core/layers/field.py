@@ -43,7 +43,7 @@ def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
             continue
         assert isinstance(strategy, SolidParameters)
         if strategy.layers in ("geodesic", "offset"):
-            yield Stack(group.bodies[0].name, curved.slices(group, solids.surroundings, strategy), number, 0)
+            yield Stack(group.bodies[0].name, curved.slices(solids, group, strategy), number, 0)
             continue
         for solid, bodies in enumerate([group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]):
             layers: Iterable[Slice]

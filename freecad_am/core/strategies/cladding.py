@@ -14,7 +14,7 @@ from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.model.bead_model import BeadModel
 from ..process.order import RankedBead, island_by_island, ordered, waited
-from ..toolpath import Toolpath
+from ..toolpath import Bead, Toolpath
 from ..types import Array
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
@@ -35,41 +35,42 @@ def plan(
     InfeasibleError THIN_REGION.
     """
     strategy = spaced(strategy, process)
-    nominal = bead_width(strategy, process, model)
-    pictures = Pictures(strategy, process, nominal)
+    width = bead_width(strategy, process, model)
+    pictures = Pictures(strategy, process, width)
     found = [(sheet, piece) for sheet in given.sheets for piece in pieces(sheet, strategy)]
     ranked: list[RankedBead] = []
     made: list[MadeBead] = []
-    mended: list[Issue] = []
+    issues: list[Issue] = []
     covers: list[Cover] = []
     stretch = 0.0
     for number, (sheet, piece) in enumerate(found):
-        at: Array | None = None
+        point: Array | None = None
         for layer in slices(sheet, piece, strategy):
             progress((number + layer.number / strategy.layers) / len(found), f"layer {layer.number}")
-            filled = pictures.filled(layer, given.label)
-            mended += filled.issues
+            picture = pictures.filled(layer, given.label)
+            issues += picture.issues
             assert isinstance(layer.surface, FaceLayer)
             stretch = max(stretch, layer.surface.stretch)
-            covers.append(filled.cover)
-            here = [bead_of(curve, layer, strategy, build, process, model) for curve in filled.curves]
-            order = island_by_island([one.bead for one in here], filled.islands, at)
-            at = here[order[-1]].bead.points[-1] if order else at
-            ranked += [RankedBead(0, number, layer.number, -rank, here[k].bead) for rank, k in enumerate(order)]
-            made += here
+            covers.append(picture.cover)
+            beads: list[Bead] = []
+            for curve in picture.curves:
+                made.append(bead_of(curve, layer, strategy, build, process, model))
+                beads.append(made[-1].bead)
+            order = island_by_island(beads, picture.islands, point)
+            ranked += [RankedBead(0, number, layer.number, -rank, beads[k]) for rank, k in enumerate(order)]
+            point = ranked[-1].bead.points[-1] if order else point
     if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT", given.label, "no bead of {:g} mm or more finds room on its faces; use a smaller bead "
             "spacing, or thin = single", strategy.least_bead,
         )
     layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
-    noted = notes(made, layers, mended, strategy, process, model)
-    noted = [one for one in noted if one.code != "SINGLE_LAYER"]  # there are as many as were asked for
-    issues = (*given.issues, *_stretched(stretch), *noted, *lean_notes(made, layers, build))
+    noted = [one for one in notes(made, layers, issues, strategy, process, model) if one.code != "SINGLE_LAYER"]  # as asked
+    issues = [*given.issues, *_stretched(stretch), *noted, *lean_notes(made, layers, build)]
     return Toolpath(
-        layers, np.eye(4), strategy.layer_height, strategy.chord_error, issues, process.overlap, "cladding",
-        given.surroundings, None if model is None else model.law(process.acceleration), nominal,
-        volumes=of_layers(strategy, covers), twice=twice(made, strategy, covers, nominal),
+        layers, np.eye(4), strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap, "cladding",
+        given.surroundings, None if model is None else model.law(process.acceleration), width,
+        volumes=of_layers(strategy, covers), twice=twice(made, strategy, covers, width),
     )
 
 

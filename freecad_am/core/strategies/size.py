@@ -116,21 +116,25 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
         spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
     layers = points = squares = nodes = 0.0
     for group in solids.groups:
-        counts, volume = [], 0.0
+        heights, volume = [], 0.0
         for body in group.bodies:
             distances = group.base.surface.distance(group.base.inside(body.vertices))
             height, depth = max(0.0, float(distances.max())), max(0.0, -float(distances.min()))
-            counts.append((height + strategy.margin) / strategy.layer_height)
-            solid, extent = abs(SolidMesh(body.vertices, body.triangles).volume), np.ptp(body.vertices, axis=0)
+            heights.append(height + strategy.margin)
+            solid = abs(SolidMesh(body.vertices, body.triangles).volume)
             volume += solid
-            grown = solid * float(np.prod(1.0 + 2.0 * strategy.margin / extent))
-            length = grown * height / max(height + depth, 1e-9) / strategy.layer_height / spacing
+            length = (
+                solid * float(np.prod(1.0 + 2.0 * strategy.margin / np.ptp(body.vertices, axis=0)))  # grown by the margin
+                * height / max(height + depth, 1e-9) / strategy.layer_height / spacing
+            )
             # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
-            bend = group.base.surface.bend(height, float(np.linalg.norm(extent)))
-            points += length * max(0.5 / math.sqrt(4.0 * strategy.chord_error * bend), 2.0 / float(np.linalg.norm(extent)))
+            extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
+            points += length * max(
+                0.5 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(height, extent)), 2.0 / extent
+            )
             if strategy.margin > 0.0:  # rounded by it, each layer is another
                 squares += length / spacing
-        layers += sum(counts) if strategy.order == "feature" else max(counts, default=0.0)
+        layers += (sum(heights) if strategy.order == "feature" else max(heights, default=0.0)) / strategy.layer_height
         if getattr(strategy, "layers", "") in (GEODESIC, OFFSET):
             nodes += volume / step_of(volume, strategy.layer_height) ** 3
     return Size(layers, points, squares, nodes)

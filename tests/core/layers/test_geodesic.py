@@ -88,7 +88,7 @@ def test_directions_point_from_layer_to_layer(through_tee, layers):
 def test_what_no_way_leads_to_is_told():
     vertices, triangles = tee()
     solids = [SolidMesh(vertices + [x, 0.0, 0.0], triangles) for x in (0.0, 100.0)]
-    assert field(solids, _bottom(vertices, triangles), 1.5).lost == pytest.approx(0.5, abs=0.01)
+    assert field(solids, _bottom(vertices, triangles), 1.5).unreached == pytest.approx(0.5, abs=0.01)
     with pytest.raises(ValueError):
         field(solids, np.zeros((0, 3, 3)), 1.5)
 

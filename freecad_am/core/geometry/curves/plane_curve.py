@@ -44,6 +44,12 @@ def arcs(points: Array, closed: bool = False) -> Array:
     return np.asarray(np.r_[0.0, np.cumsum(np.hypot(*steps(points, closed).T))])
 
 
+def sines(vectors: Array, others: Array) -> Array:
+    """Sines (n,) of the angles from vectors (n, 2) to others (n, 2): positive for those to the left."""
+    cross = vectors[:, 0] * others[:, 1] - vectors[:, 1] * others[:, 0]
+    return np.asarray(cross / np.maximum(np.hypot(*vectors.T) * np.hypot(*others.T), 1e-300))
+
+
 def winding(rings: Sequence[Array], points: Array) -> NDArray[np.intp]:
     """How often rings (n, 2) go round each of points (k, 2), counted with their sense."""
     count = np.zeros(len(points), dtype=np.intp)

@@ -132,7 +132,7 @@ class Strip:
         pieces: list[list[Array]] = []
         for window in windows:
             found: list[Array] = []
-            for part in (part for region in self.flat(window, window.margin) for part in operation(region)):
+            for part in (part for region in self.flat(window, with_margin=True) for part in operation(region)):
                 uv = [self._cut(ring, window) for ring in part.borders()]
                 found += [ring for inner in regions(uv) for ring in _boxed(inner, window.low, window.high)]
             pieces.append(found)
@@ -150,8 +150,9 @@ class Strip:
         box = _box(low, high, *self.levels)
         return tuple(part for region in regions(loops) for part in region.common(regions([box])))
 
-    def flat(self, window: Window, margin: float = 0.0) -> list[Region]:
-        """The strip in a window, and up to `margin` mm of u beside it, as regions laid flat about its middle."""
+    def flat(self, window: Window, with_margin: bool = False) -> list[Region]:
+        """The strip in a window, with its margin or without, as regions laid flat about its middle."""
+        margin = window.margin if with_margin else 0.0
         return [
             part for region in self.between(window.low - margin, window.high + margin)
             for part in regions([self.period.unroll(ring, window.about) for ring in region.borders()])
@@ -190,9 +191,8 @@ class Strip:
 
     def windows(self, reach: float) -> tuple[Window, ...]:
         """The strip once round, for what looks `reach` mm around."""
-        turn = self.period.around
         margin, count = self._windows(reach)
-        cuts = np.linspace(-0.5 * turn, 0.5 * turn, count + 1).tolist()
+        cuts = np.linspace(-0.5 * self.period.around, 0.5 * self.period.around, count + 1).tolist()
         return tuple(Window(0.5 * (low + high), low, high, margin) for low, high in zip(cuts, cuts[1:]))
 
     def pane(self, window: Window) -> tuple[Region, ...]:

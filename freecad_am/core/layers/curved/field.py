@@ -9,47 +9,45 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...geometry.mesh.solid import Search, SolidMesh
-from ...geometry.obstacles import Body
-from ...geometry.on_hub import Group
+from ...geometry.on_hub import Group, SolidsOnHub
 from ...issues import NOTE, WARNING, InputError, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...types import Array
 from ..charts.layer import ChartLayer
-from ..margins import BORDER
 from ..surface import Slice
-from .geodesic import GeodesicField, field
+from . import geodesic
+from .geodesic import GeodesicField
 from .grid import COARSE, step_of
 
 STANDING = 0.05  # layer heights from the plane or the substrate; facets so near to it stand there
-LOST = 0.002  # share of a part that no way need lead to: rounding at corners
+UNREACHED = 0.002  # share of a part that no way need lead to: rounding at corners
 FACETS = 1.5  # chord errors between triangles of a face, however made
 REPORTED_DISTORTION = 0.05  # distortion of a piece that is told
 
 
-def slices(group: Group, surroundings: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iterator[Slice]:
     """The layers of a group of solids outwards from the plane of its base and the surroundings that they touch, or from the
     start faces; several of one number where a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
     _refuse(strategy)
     base, bodies = group.base, group.bodies
     start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
-    solids = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
+    meshes = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
-    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in surroundings], name, start, strategy)
-    stretch, height, cut = 0.0, strategy.layer_height, max(strategy.share_of_cut, 1e-3)
-    layers = int(np.ceil(found.top / height - cut + 1e-6))
+    substrate = [base.inside(body.vertices)[body.triangles] for body in solids.surroundings]
+    field = _field(meshes, substrate, name, start, strategy)
+    worst, height, cut = 0.0, strategy.layer_height, max(strategy.share_of_cut, 1e-3)
+    layers = int(np.ceil(field.top / height - cut + 1e-6))
     for number in range(max(layers, 0)):
-        for piece in found.pieces((number + cut) * height):
+        for chart, regions, stretch in field.pieces((number + cut) * height):
             issues: tuple[Issue, ...] = ()
-            if piece.stretch > max(stretch, REPORTED_DISTORTION):
-                stretch = piece.stretch
+            if stretch > max(worst, REPORTED_DISTORTION):
+                worst = stretch
                 issues = (Issue(
                     NOTE if stretch <= 3.0 * REPORTED_DISTORTION else WARNING, "DISTORTED",
                     Text("a curved layer cannot be laid flat without distortion: beads are up to {:.2g} % nearer together "
                         "or farther apart than the bead spacing", 100.0 * stretch), number,
                 ),)
-            regions = tuple(region.simple(BORDER * found.grid.step) for region in piece.regions)
-            surface = ChartLayer(piece.chart, found, number * height)
-            yield Slice(number, base, surface, regions, issues, before=number / layers)
+            yield Slice(number, base, ChartLayer(chart, field, number * height), regions, issues, before=number / layers)
 
 
 def _refuse(strategy: SolidParameters) -> None:
@@ -84,19 +82,19 @@ def _field(
                 "{:.4g} mm away; choose faces that it touches, or none", name, away,
             )
     try:
-        found = field(solids, start, step, through=strategy.layers == "geodesic")
+        field = geodesic.field(solids, start, step, through=strategy.layers == "geodesic")
     except ValueError:
         raise InputError(
             "NOT_STANDING", name, "no face of it lies on the plane through its lowest place along strategy.direction, or "
             "on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a "
             "substrate that it touches",
         ) from None
-    if found.lost > LOST:
+    if field.unreached > UNREACHED:
         raise InputError(
             "NOT_CONNECTED", name, "{:.3g} % of it hang together with nothing that stands on the platform or the substrate; "
-            "deposit these by themselves, or set strategy.direction", 100.0 * found.lost,
+            "deposit these by themselves, or set strategy.direction", 100.0 * field.unreached,
         )
-    return found
+    return field
 
 
 def _step(volume: float, name: str, strategy: SolidParameters) -> float:

@@ -19,6 +19,7 @@ from ...types import Array, Index, Mask
 from ..charts.chart import Chart
 from ..charts.flattening import flattened, turned
 from ..charts.parted import OVERLAID, stretch_of
+from ..margins import BORDER
 from .carried_on import carried_on, gradients
 from .eikonal import Links, arrival, links
 from .level import Cubes
@@ -43,14 +44,15 @@ class Piece(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class GeodesicField:
     """The distance u mm through solids from their start. cubes: u on a grid; depth: how deep inside them, mm, on the nodes
-    of the same; way: its gradient, smoothed; top: the largest distance; lost: share of the solids that no way leads to."""
+    of the same; way: its gradient, smoothed; top: the largest distance; unreached: share of the solids that no way
+    leads to."""
 
     grid: Voxels
     cubes: Cubes
     depth: Cubes
     way: tuple[Cubes, Cubes, Cubes]
     top: float
-    lost: float
+    unreached: float
 
     def pieces(self, distance: float) -> Iterator[Piece]:
         """What of the solid lies at a distance, mm, in pieces that can be laid flat."""
@@ -88,7 +90,7 @@ class GeodesicField:
             bounded = 0.5 * sum(doubled_area(loop) for loop in loops)
             if halvings == 0 or abs(sum(one.area for one in found) - bounded) <= OVERLAID * max(bounded, 0.0):
                 if found:
-                    yield Piece(chart, found, stretch)
+                    yield Piece(chart, tuple(one.simple(BORDER * self.grid.step) for one in found), stretch)
                 return
         for half in _halves(mesh, inside, MARGIN * self.grid.step):
             for part, own in _connected(half.mesh, half.inside > 0.0):

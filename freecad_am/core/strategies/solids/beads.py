@@ -10,7 +10,7 @@ import numpy as np
 
 from ...filling.curve import PlaneCurve
 from ...geometry.angles import TURN
-from ...geometry.curves.plane_curve import arcs
+from ...geometry.curves.plane_curve import arcs, divided, fractions
 from ...geometry.regions.region import simplified
 from ...geometry.regions.telling import telling
 from ...layers.surface import LayerSurface, Slice
@@ -56,21 +56,21 @@ def bead_of(
     surface, base, name = layer.surface, layer.base, classes.of_filled(curve.kind, layer.number)
     build, process = classes.leaning(build, process, name), process.for_class(name)
     line, share = _ended(curve, surface)
-    needed = None if share is None else telling(arcs(line), share, SHARES)
-    flat = dense(line, surface, WRAP_SHARE * strategy.chord_error, needed)
+    flat = dense(
+        line, surface, WRAP_SHARE * strategy.chord_error, None if share is None else telling(arcs(line), share, SHARES)
+    )
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
-    flat, local, normal, tool, turned = held(course, leaning(curve, layer, strategy, build), build, strategy.chord_error)
-    points = base.placed(local)
+    flat, points, normals, tool, turned = held(course, leaning(curve, layer, strategy, build), build, strategy.chord_error)
+    points = base.placed(points)
     if curve.closed:
         points[-1] = points[0]
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     bead = Bead(
-        points, base.turned(normal), base.turned(tool), TURN * way / way[-1], np.full(len(way), process.travel_speed),
+        points, base.turned(normals), base.turned(tool), TURN * way / way[-1], np.full(len(way), process.travel_speed),
         curve.closed, kind=curve.kind, ring=curve.ring, bead_class=name,
     )
     if share is not None:
-        arc, of_line = arcs(flat), arcs(line)
-        share = np.interp(arc / arc[-1], of_line / of_line[-1], share)
+        share = np.interp(fractions(flat), fractions(line), share)
     heights = surface.heights(flat) if model is None else None
     made = _with_speed(bead, flat, curve.closed and not curve.turns, share, heights, strategy, process, model)
     return _thinned(made)._replace(turned=turned)
@@ -141,9 +141,4 @@ def dense(line: Array, surface: LayerSurface, chord_error: float, besides: Mask 
     kept[[0, -1]] = True
     line = line[kept if besides is None else kept | besides]
     line = line[_sparse(line, np.ones(len(line) - 1), CLOSE)]
-    edge = np.diff(line, axis=0)
-    count = surface.pieces(line, chord_error)
-    first = np.repeat(np.arange(len(edge)), count)
-    number = np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
-    points = line[first] + (number / count[first])[:, None] * edge[first]
-    return np.asarray(np.vstack([points, line[-1:]]))
+    return divided(line, surface.pieces(line, chord_error))[0]

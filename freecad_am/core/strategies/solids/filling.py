@@ -159,19 +159,19 @@ class Pictures:
         round the surface."""
         strategy, (beads, angle, infill) = self._strategy, filling
         sparse, (least, most) = infill.density < 1.0, strategy.spacing_range
-        links = strategy.longest_link * beads.spacing
         share = 1.0
         if isinstance(region, Region) and not sparse and strategy.rounds_alone:
             beads, share = fitted(region, beads, least, most)
-        curves: Sequence[PlaneCurve] = fill(region, beads, strategy.fill, angle, strategy.rounds, links, infill)
+        curves: Sequence[PlaneCurve] = fill(
+            region, beads, strategy.fill, angle, strategy.rounds, strategy.longest_link * filling.beads.spacing, infill
+        )
         gaps = [] if sparse else open_places(region, curves, beads)
         if isinstance(region, Region) and not sparse:
             curves = [*shared(region, curves, beads, share, least, most)]
-        beads = filling.beads
-        cover = covered(region, curves, beads, infill.density)
+        cover = covered(region, curves, filling.beads, infill.density)
         narrowing = not sparse and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0
-        if narrowing and cover.over(beads.spacing * math.fsum(map(_weighed, curves))) > MUCH * cover.area:
-            curves = narrowed(curves, beads, angle, strategy.narrowest)  # no wider than their room
+        if narrowing and cover.over(filling.beads.spacing * math.fsum(map(_weighed, curves))) > MUCH * cover.area:
+            curves = narrowed(curves, filling.beads, angle, strategy.narrowest)  # no wider than their room
         return _Picture(region, filling, curves, gaps, cover)
 
 

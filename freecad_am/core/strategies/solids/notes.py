@@ -28,30 +28,30 @@ HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
 
 def notes(
-    made: Sequence[MadeBead], layers: Sequence[Layer], issues: Sequence[Issue], strategy: FilledParameters,
+    made: Sequence[MadeBead], layers: Sequence[Layer], issues: list[Issue], strategy: FilledParameters,
     process: ProcessParameters, model: BeadModel | None,
 ) -> list[Issue]:
     """All of them; of the issues of layers of solids one of each code, with how many there are like it."""
-    found = one_of_each(issues)
+    issues = one_of_each(issues)
     if model is not None:
-        found += of_model(made, strategy.layer_height, process, model)
+        issues += of_model(made, strategy.layer_height, process, model)
     else:
-        found += _speeds(layers, strategy, process)
-    found += _single_layers(layers, strategy)
+        issues += _speeds(layers, strategy, process)
+    issues += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     if waits and strategy.min_layer_time > 0.0:
-        found.append(Issue(
+        issues.append(Issue(
             NOTE, "WAITS", Text("the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
                 "layer takes less than {:g} s and no solid is returned to sooner than after {:g} s", len(waits), len(layers),
                 max(waits), sum(waits), strategy.min_layer_time, strategy.wait),
         ))
     elif waits:
-        found.append(Issue(
+        issues.append(Issue(
             NOTE, "WAITS", Text("the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
                 "solid is returned to sooner than after {:g} s", len(waits), len(layers), max(waits), sum(waits),
                 strategy.wait),
         ))
-    return found
+    return issues
 
 
 def _speeds(layers: Sequence[Layer], strategy: FilledParameters, process: ProcessParameters) -> list[Issue]:

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from ...filling.curve import PlaneCurve
-from ...geometry.curves.plane_curve import nearest_among, steps
+from ...geometry.curves.plane_curve import nearest_among, sines, steps
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
@@ -34,12 +34,9 @@ def leaning(
             return plain
         if count < len(adjacent):
             until = float(np.hypot(*steps(curve.points[:count], False).T).sum())
-    edge = steps(curve.points[:count], curve.closed and not curve.turns)
-    size = np.hypot(*edge.T)
-    longest = np.argsort(-size, kind="stable")[:PROBES]
-    middle = curve.points[longest] + 0.5 * edge[longest]
-    out = nearest_among(layer.borders, middle)[0] - middle
-    left = edge[longest, 0] * out[:, 1] - edge[longest, 1] * out[:, 0]
-    away = size[longest] * np.hypot(*out.T)
-    side = -1.0 if float((left / np.maximum(away, 1e-300)).sum()) > 0.0 else 1.0
+    edges = steps(curve.points[:count], curve.closed and not curve.turns)
+    longest = np.argsort(-np.hypot(*edges.T), kind="stable")[:PROBES]
+    middle = curve.points[longest] + 0.5 * edges[longest]
+    left = sines(edges[longest], nearest_among(layer.borders, middle)[0] - middle).sum() > 0.0  # the outline, of the curve
+    side = -1.0 if left else 1.0
     return Lean(build.lead, build.tilt + side * strategy.deflection, build.tilt, until)

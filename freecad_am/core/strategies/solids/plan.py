@@ -40,10 +40,8 @@ def plan(
     THIN_REGION."""
     _refuse_mode(solids.on_planes(), strategy, build)
     strategy = spaced(strategy, process)
-    overlapping = strategy.bead_overlap is not None
-    size.refuse_absurd(
-        size.of_solids(solids, strategy, strategy.bead_spacing), strategy, process.bead_width if overlapping else None
-    )
+    size.refuse_absurd(size.of_solids(solids, strategy, strategy.bead_spacing), strategy,
+                       None if strategy.bead_overlap is None else process.bead_width)
     width = bead_width(strategy, process, model)
     pictures = Pictures(strategy, process, width)
     ranked: list[RankedBead] = []
@@ -57,20 +55,20 @@ def plan(
         below: Array | None = None  # middles of the islands of the layer before
         for layer in stack.layers:
             progress((done + layer.before) / len(stacks), f"{stack.name} layer {layer.number}")
-            filled = pictures.filled(layer, stack.name)
-            issues += [*layer.issues, *filled.issues]
+            picture = pictures.filled(layer, stack.name)
+            issues += [*layer.issues, *picture.issues]
             if layer.heights is not None:
                 heights.setdefault(layer.number, []).extend(layer.heights[::2])
-            covers.append(filled.cover.scaled(1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height))
+            covers.append(picture.cover.scaled(1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height))
             beads: list[Bead] = []
-            for curve in filled.curves:
+            for curve in picture.curves:
                 made.append(bead_of(curve, layer, strategy, build, process, model))
                 beads.append(made[-1].bead)
             if beads and solids.on_planes():
                 if strategy.min_layer_time > 0.0:
-                    order, below = as_below(beads, filled.islands, below)
+                    order, below = as_below(beads, picture.islands, below)
                 else:
-                    order = island_by_island(beads, filled.islands, point)
+                    order = island_by_island(beads, picture.islands, point)
                 point = beads[order[-1]].points[-1]
                 ranked += [
                     RankedBead(stack.group, stack.solid, layer.number, -len(ranked) - rank, beads[number])
