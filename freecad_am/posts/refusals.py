@@ -235,7 +235,7 @@ def refuse_without_speeds(program: Program, axes: int) -> None:
         "NO_JOINT_SPEED", "cell.machine" if first < program.own_axes else "cell.external",
         "on this controller the speed of joint moves is programmed in percent of the axes' largest speeds, and the "
         "machine file of {} does not give them; add max_speed to its "
-        "joints", (program.axis_machines or (program.machine,) * axes)[first],
+        "joints, of a URDF velocity to the <limit> of each", (program.axis_machines or (program.machine,) * axes)[first],
     )
 
 

@@ -10603,8 +10603,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>on this controller the speed of joint moves is programmed in percent of the axes&apos; largest speeds, and the machine file of {0} does not give them; add max_speed to its joints</source>
-        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine de {0} ne les donne pas ; ajoutez max_speed à ses articulations</translation>
+        <source>on this controller the speed of joint moves is programmed in percent of the axes&apos; largest speeds, and the machine file of {0} does not give them; add max_speed to its joints, of a URDF velocity to the &lt;limit&gt; of each</source>
+        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine de {0} ne les donne pas ; ajoutez max_speed à ses articulations, dans un URDF velocity au &lt;limit&gt; de chacune</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
@@ -13527,7 +13527,7 @@
         <translation>{0} (ligne {1}, colonne {2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <location filename="../../freecad_am/core/issues.py"/>
         <source>{0} (more layers like it: {1})</source>
         <translation>{0} (autres couches de ce genre : {1})</translation>
     </message>
@@ -15400,6 +15400,11 @@
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0}, {1} of {2} cm3 of {3}, are not deposited</source>
         <translation>{0}, {1} des {2} cm3 de {3}, ne sont pas déposés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0}. Besides, {1}</source>
+        <translation>{0}. De plus, {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>

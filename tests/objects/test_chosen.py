@@ -10,7 +10,7 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.core.issues import AmError
+from freecad_am.core.issues import AmError, InputError
 
 COARSE = {"layer_height": 2.0, "chord_error": 0.1, "bead_spacing": 6.0, "layers": 1}
 
@@ -67,6 +67,26 @@ def test_another_number_of_the_chosen_face_is_told(doc, seed):
     (name,) = feature.Source[1]
     followed = name == f"Face{chosen + 1}" and (obj.Shape.getElement(name).CenterOfMass - middle).Length < 1e-6
     assert len(warnings(feature)) == (0 if followed else 1)  # FreeCAD 1.0 and later may have followed the face
+
+
+def test_a_feature_that_fails_for_another_face_tells_both(doc):
+    """Its own error, and that the face is not the one that was chosen, which is why."""
+    shape = Part.makeBox(60, 60, 5).fuse(Part.makeCylinder(20, 40, App.Vector(30, 30, 5)))
+    side = next(k for k, face in enumerate(shape.Faces) if face.Surface.TypeId == "Part::GeomCylinder")
+    obj = block(doc, shape)
+    feature = api.make_feature(doc, obj, [f"Face{side + 1}"], layer_height=5)
+    walls = [k for k, face in enumerate(shape.Faces) if len(face.Edges) == 4 and k != side]
+    order = list(range(len(shape.Faces)))
+    order[side], order[walls[0]] = walls[0], side
+    with pytest.raises(InputError) as caught:
+        put(obj, numbered(shape, order))
+    error, there = caught.value, walls[0] + 1
+    assert error.code not in ("FACES_CHANGED", "BAD_FACES") and feature.Status == "failed"
+    wanted = f"Face{side + 1} of Block is not the face that was chosen: that face is Face{there} now"
+    assert wanted in error.message and not error.message.startswith(wanted) and wanted in feature.Message
+    feature.Source = (obj, [f"Face{there}"])
+    api.recompute(doc)
+    assert (feature.Status, feature.Message) == ("up to date", "")
 
 
 def test_another_kind_of_surface_is_told_until_the_face_is_confirmed(doc, tmp_path):

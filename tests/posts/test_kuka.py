@@ -362,8 +362,9 @@ def test_axes_beside_the_robot():
 def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     """That of the robot, or of the positioner or track beside it."""
     slow, told = (*NOMINAL[:5], math.inf), json.loads((MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8"))
-    assert "file of a robot does not" in refusal(
+    message = refusal(
         dataclasses.replace(JOB, machine="a robot", max_speed=slow), code="NO_JOINT_SPEED", where="cell.machine")
+    assert "file of a robot does not" in message and "of a URDF velocity to the <limit>" in message
     for lacking, where in ((0, "cell.machine"), (1, "cell.external")):
         speeds = (*slow, 1.0, 1.0) if lacking == 0 else (*NOMINAL, 1.0, math.inf)
         message = refusal(beside(JOB, max_speed=speeds, axis_machines=("a robot",) * 6 + ("a table",) * 2),

@@ -9,7 +9,7 @@ in memory, and the next panel cannot be made, or FreeCAD crashes.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 from weakref import WeakMethod
 
@@ -19,7 +19,20 @@ from .worker import Worker
 
 WAIT = 300  # ms
 LOOK_EVERY = 30  # ms
-_GONE = (RuntimeError, ReferenceError)  # fields of a closed panel, objects of a closed document
+DELETED = ("already deleted", "of deleted object")  # in what PySide and FreeCAD say of a widget or a view that is gone
+
+
+@contextlib.contextmanager
+def while_there() -> Iterator[None]:
+    """Pass over that a field of a closed panel, or an object of a closed document, is gone, and nothing else: FreeCAD and
+    Python tell other errors as a RuntimeError too."""
+    try:
+        yield
+    except ReferenceError:
+        pass
+    except RuntimeError as error:
+        if not any(words in str(error) for words in DELETED):
+            raise
 
 
 class Later:
@@ -44,7 +57,7 @@ class Later:
 
     def _act(self) -> None:
         act = self.act()
-        with contextlib.suppress(*_GONE):  # FreeCAD has taken fields of a closed panel away before the timer
+        with while_there():  # FreeCAD has taken fields of a closed panel away before the timer
             if act is not None:
                 act()
 
@@ -83,5 +96,5 @@ class Background:
             return
         self.worker = self.show = None
         self.timer.stop()
-        with contextlib.suppress(*_GONE):
+        with while_there():
             show(worker)

@@ -4,6 +4,7 @@ changes."""
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from collections.abc import Sequence
 from typing import Any
@@ -15,6 +16,7 @@ from ..fields.properties import HIDDEN, OUTPUT
 from ..stage import Stage
 from ..stage_parts import Outcome
 from ..staleness import UP_TO_DATE
+from ..work import faults
 from . import nested
 from .bodies import shape_of
 from .marks import EDGE, FACE, LINE, PLANE, TOLERANCE, WHOLE, Mark, marks_of, read, whole_of
@@ -91,8 +93,18 @@ class FeatureStage(Stage):
         self._keep(obj, {link: []})
 
     def renew(self, obj: Any, force: bool = False) -> Any:
-        """As any stage; anew where what it warned about was confirmed."""
-        found = super().renew(obj, force or (is_warned(obj) and bool(self._unknown(obj))))
+        """As any stage; anew where what it warned about was confirmed. What fails says besides where a face or an edge is
+        not the one that was chosen: that may be why."""
+        try:
+            found = super().renew(obj, force or (is_warned(obj) and bool(self._unknown(obj))))
+        except InputError as error:
+            issues = self._others(obj)
+            if not issues:
+                raise
+            both = InputError(error.code, error.where, "{}. Besides, {}", error.message, issues[0].message,
+                              mended_by=error.mended_by)
+            self.say_failed(obj, both)
+            raise both from None
         self._learn(obj)  # where it fits once more what it was made from, after something else was refused
         return found
 
@@ -105,6 +117,14 @@ class FeatureStage(Stage):
             if not issues:
                 self._keep(obj, {link: marks})
         super()._store(obj, dataclasses.replace(outcome, issues=(*found, *outcome.issues)), *packed)
+
+    def _others(self, obj: Any) -> list[Issue]:
+        """What is not what was chosen, of a feature that failed; nothing where the part cannot be looked at."""
+        found: list[Issue] = []
+        with contextlib.suppress(AmError), faults.kernel(obj):
+            for link in self.chosen:
+                found += _compared(obj, link, _marks(obj, link))
+        return found
 
     def _unknown(self, obj: Any) -> list[str]:
         """The links of which nobody knows what they named when that was chosen."""
