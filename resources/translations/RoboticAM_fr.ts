@@ -8562,6 +8562,11 @@
         <translation>gyroïde</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
+        <source>halving the edges of the mesh of the wall down to {0} mm, by layer height and smallest radius, comes to no end, though about {1} triangles would do, as where a face is twisted like that of a coil; make it of shorter faces, or deposit the wall in parts or as a solid</source>
+        <translation>diviser par deux les arêtes du maillage de la paroi jusqu&apos;à {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, n&apos;a pas de fin, alors qu&apos;environ {1} triangles suffiraient, comme là où une face est tordue, telle celle d&apos;un ressort ; faites-la de faces plus courtes, ou déposez la paroi par parties ou comme un solide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>height</source>
         <translation>hauteur</translation>

@@ -9,6 +9,7 @@ import pytest
 from FreeCAD import Vector
 
 from freecad_am.brep.files.read import read_mesh
+from freecad_am.brep.walls import sheet
 from freecad_am.brep.walls.substrate import mesh_solid, substrate_of
 from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.geometry.walls.patch_wall import PatchWall
@@ -217,3 +218,11 @@ def test_a_branch_that_comes_out_on_both_sides_grows_on_both_and_one_from_the_bo
     branch = wall_on(Part.makeCylinder(5, 60).Faces[0], (), pipe(29.0), 3.0)
     assert not isinstance(branch, PatchWall)
     assert np.hypot(branch.first[:, 0], branch.first[:, 2]) == pytest.approx(RADIUS, abs=1e-9)
+
+
+def test_a_mesh_that_comes_to_no_end_is_not_said_to_have_too_many_triangles(monkeypatch):
+    monkeypatch.setattr(sheet, "refined", lambda *args, **more: None)
+    with pytest.raises(InputError) as caught:
+        wall_on(half_tube(), (), slab(), 4.0, "Wall", "Slab")
+    assert caught.value.code == "TOO_FINE"
+    assert "comes to no end, though about" in caught.value.message and "larger layer height" not in caught.value.message

@@ -54,11 +54,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
         places = Places(shape, patches, nodes, vertices, edge)
         made = refined(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES, turned=False)
     if made is None:
-        raise InputError(
-            "TOO_FINE", label, "with edges of {:.3g} mm, by layer height and smallest radius, the mesh of the wall has more "
-            "than {} triangles, about {:.2g}; use a larger layer height, round sharp bends more, or deposit the wall in "
-            "parts", edge, MAX_TRIANGLES, about,
-        )
+        raise _too_fine(edge, about, label)
     vertices, triangles, owner = made
     triangles, owner = collapsed(vertices, triangles, owner, COLLAPSE * edge, edge)
     triangles = flipped(vertices, triangles, owner)
@@ -74,6 +70,20 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     vertices, triangles = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
     return PatchWall(
         vertices, triangles, owner, uv, tuple(turned), (), np.zeros(len(vertices), dtype=bool), (), label, tuple(names)
+    )
+
+
+def _too_fine(edge: float, about: float, label: str) -> InputError:
+    if about >= MAX_TRIANGLES:
+        return InputError(
+            "TOO_FINE", label, "with edges of {:.3g} mm, by layer height and smallest radius, the mesh of the wall has more "
+            "than {} triangles, about {:.2g}; use a larger layer height, round sharp bends more, or deposit the wall in "
+            "parts", edge, MAX_TRIANGLES, about,
+        )
+    return InputError(
+        "TOO_FINE", label, "halving the edges of the mesh of the wall down to {:.3g} mm, by layer height and smallest "
+        "radius, comes to no end, though about {:.2g} triangles would do, as where a face is twisted like that of a coil; "
+        "make it of shorter faces, or deposit the wall in parts or as a solid", edge, about,
     )
 
 
