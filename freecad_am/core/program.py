@@ -25,6 +25,9 @@ JOINT_MOVE, LINEAR_MOVE = "joint", "linear"
 # speeds, and s where a controller is told a time
 FIRST_SHARE, FIRST_TIME = 0.1, 10.0
 SHORTEST_RAPID = 0.05  # s that a rapid is planned to take at least, however short its way
+# how far the tip, and how far the tool, of a rapid that is a linear move may be off the way that was looked at, straight in
+# the joints: clearance has that to spare. The way is cut to it when it is planned, and the text is held to it
+OFF_WAY_MM, OFF_WAY_RAD = 0.2, 1e-3
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,15 +11,12 @@ from freecad_am.core.types import Array, Mask
 from ..core.geometry import frames
 from ..core.geometry.columns import lengths
 from ..core.kinematics.cell import Cell
+from ..core.program import OFF_WAY_MM, OFF_WAY_RAD
 from .planned import Planned, pieces
 from .text_path import Joints, Path, tip_bounds
 
 # of the way between two points, where the path is looked at
 BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
-# mm: near a singularity digits may explain more than the clearance of rapids has to spare; then the text is none
-MOST_MM = 0.2
-# rad: how much a tool may turn otherwise on a rapid that was planned as a linear move, as it may leave the way by MOST_MM
-MOST_RAD = 1e-3
 
 
 def rapids_between(cell: Cell, planned: Planned, text: Joints, path: Path, linear: Mask) -> tuple[float, Mask]:
@@ -37,8 +34,9 @@ def rapids_between(cell: Cell, planned: Planned, text: Joints, path: Path, linea
     tilted = np.linalg.norm(np.where(along, straight_tool, driven_tool) - tool, axis=1)
     bound, tool_bound = tip_bounds(cell, looked_at, _between(text.reach, ends))
     # what runs straight where joints were looked at is refused elsewhere, unless it was planned so
-    most = np.where(along[:, 0], MOST_MM, np.minimum(bound, MOST_MM))
-    wrong = ~((apart <= most) & (tilted <= np.maximum(tool_bound, MOST_RAD * along[:, 0])))
+    # near a singularity digits may explain more than the clearance of rapids has to spare; then the text is none
+    most = np.where(along[:, 0], OFF_WAY_MM, np.minimum(bound, OFF_WAY_MM))
+    wrong = ~((apart <= most) & (tilted <= np.maximum(tool_bound, OFF_WAY_RAD * along[:, 0])))
     off[ends] = wrong.reshape(len(ends), -1).any(axis=1)
     return float(apart.max()), off
 

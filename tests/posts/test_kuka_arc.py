@@ -152,7 +152,7 @@ def test_the_way_onto_a_bead_stays_by_the_one_that_was_looked_at():
 
 def test_a_way_that_was_not_looked_at_is_found_by_reading_back(monkeypatch):
     cell, _, whole = planned("kuka positioner")
-    monkeypatch.setattr(linear_approach, "MOST_MM", 1.0)
+    monkeypatch.setattr(linear_approach, "OFF_WAY_MM", 1.0)
     program = build(whole, cell, LIT, ARC, "job")
     found = verify(cell, whole, program, kuka.write(program), kuka, CHORD_ERROR)
     assert {issue.code for issue in found.issues} == {"VERIFY_BETWEEN"}

@@ -19,12 +19,11 @@ from ...issues import InputError, Text
 from ...kinematics.cell import Cell
 from ...motion import Motion
 from ...parameters.program import ProgramParameters
+from ...program import OFF_WAY_MM, OFF_WAY_RAD
 from ...types import Array
 from .beads import ARC
 
-# mm and rad that a linear move may leave the way that was looked at, which clearance has to spare; and how much of that a
-# way is cut to
-MOST_MM, MOST_RAD, SHARE = 0.2, 1e-3, 0.75
+SHARE = 0.75  # of what a linear move may be off the way that was looked at, to which it is cut
 _BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 
@@ -42,8 +41,8 @@ def with_short_approaches(motion: Motion, cell: Cell) -> Motion:
     ends = ends[ends > 0]
     off, tilt = apart(motion, cell, ends)
     with np.errstate(divide="ignore"):  # how far it leaves grows with the square of the way
-        share = np.sqrt(SHARE / np.maximum(off / MOST_MM, tilt / MOST_RAD))
-    cut = (off > SHARE * MOST_MM) | (tilt > SHARE * MOST_RAD)
+        share = np.sqrt(SHARE / np.maximum(off / OFF_WAY_MM, tilt / OFF_WAY_RAD))
+    cut = (off > SHARE * OFF_WAY_MM) | (tilt > SHARE * OFF_WAY_RAD)
     ends, share = ends[cut], share[cut]
     if not len(ends):
         return motion
@@ -87,7 +86,7 @@ def check(motion: Motion, cell: Cell, rows: NDArray[np.intp], arriving: bool, ar
             "give a retract distance, or another {}", key,
         )
     off, tilt = apart(motion, cell, last)
-    if not (off[0] <= MOST_MM and tilt[0] <= MOST_RAD):
+    if not (off[0] <= OFF_WAY_MM and tilt[0] <= OFF_WAY_RAD):
         raise InputError(
             code, place, "the deposit begins with a linear move onto the bead, which would leave the checked way "
             "by {:.2g} mm; give a shorter retract distance, or another {}", off[0], key,
