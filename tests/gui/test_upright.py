@@ -23,6 +23,27 @@ def sides(area):
     return area.horizontalScrollBar().value(), area.widget().x()
 
 
+@pytest.mark.parametrize("machine", ["", "kuka-kr16-2"])
+def test_a_new_job_is_as_wide_as_what_is_seen_of_it(person, hand, hemisphere, machine):
+    """Also beside the bar that scrolls it up and down, which takes 14 pixels of the width."""
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    area = around(person, panel)
+    if machine:
+        hand.enter(panel, "Machine", machine)
+    panel.setMinimumHeight(2 * area.viewport().height())
+    try:
+        person.until(lambda: area.verticalScrollBar().isVisible(), "a bar", 5)
+        person.idle(0.3)
+        assert area.horizontalScrollBar().maximum() == 0
+        person.screenshot(f"new-job-{machine}")
+    finally:
+        panel.setMinimumHeight(0)
+    person.press("Cancel")
+    person.panel_closed()
+
+
 @pytest.mark.parametrize(("tool", "name", "field"), [
     ("RoboticAM_NewJob", "RoboticAM_NewJob", "ProgramName"),
     ("RoboticAM_Feature", "RoboticAM_RevolutionFeature", "LayerHeight"),

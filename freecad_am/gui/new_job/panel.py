@@ -35,6 +35,8 @@ from .fields import HowItStands, JobName, label, machines, shown
 from .left_out import left_out
 from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
 
+WIDEST_LABEL = 80  # pixels; with wider ones the choice of the set-up makes it wider than what is seen of it
+
 
 class JobPanel:
     """Follows the selection as long as it is open; OK makes all stages in one step."""
@@ -73,7 +75,7 @@ class JobPanel:
         self.machine = machines(before.machine(self.document), self.document)
         self.stands = HowItStands()
         self.name = JobName()
-        self.fold = Fold(tr("Inputs"), True)
+        self.fold = Fold(tr("Inputs"), True, WIDEST_LABEL)
         rows = (
             (tr("Deposit"), self.part), (tr("Grows on"), self.ground), (tr("Kind"), self.kind),
             (tr("Machine"), self.machine), (tr("Setup"), self.stands.setup),

@@ -54,9 +54,10 @@ class Note(QtGui.QLabel):
 
 
 class Fold:
-    """A heading with an arrow, and under it a form that it folds and unfolds."""
+    """A heading with an arrow, and under it a form that it folds and unfolds. widest_label: pixels."""
 
-    def __init__(self, title: str, unfolded: bool) -> None:
+    def __init__(self, title: str, unfolded: bool, widest_label: int = WIDEST_LABEL) -> None:
+        self.widest_label = widest_label
         self.widget = QtGui.QWidget()
         column = QtGui.QVBoxLayout(self.widget)
         column.setContentsMargins(0, 4, 0, 0)
@@ -102,9 +103,9 @@ class Fold:
             self.form.addRow(name)
             self.form.addRow(both)
         else:
-            if name.sizeHint().width() > WIDEST_LABEL:
+            if name.sizeHint().width() > self.widest_label:
                 name.setWordWrap(True)
-                name.setFixedWidth(WIDEST_LABEL)
+                name.setFixedWidth(self.widest_label)
             self.form.addRow(name, both)
         self.rows[widget.objectName()] = (name, both)
         return note
