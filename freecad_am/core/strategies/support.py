@@ -64,8 +64,8 @@ def over_edge(
     toolpath: Toolpath, frame: Array, diameter: float, bodies: Sequence[Body], feature: Array | None = None
 ) -> list[Issue]:
     """A warning where beads of the first layer lie on the plane of the platform, a disc of `diameter` mm about the origin of
-    the frame (4, 4) in part coordinates, and beyond its edge by more than half of their width, on none of the bodies.
-    feature: the frame that `cell.mount: feature` would have instead, which is tried."""
+    the frame (4, 4) in part coordinates, or of solids below it, and beyond its edge by more than half of their width, on
+    none of the bodies. feature: the frame that `cell.mount: feature` would have instead, which is tried."""
     first = cut(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
     beyond = _beyond(toolpath, first, frame, diameter)
     out = np.flatnonzero(beyond > 0.5 * first.width)
@@ -86,9 +86,10 @@ def over_edge(
 
 
 def _beyond(toolpath: Toolpath, first: Pieces, frame: Array, diameter: float) -> Array:
-    """How far (n,) mm pieces of the first layer on the plane of a platform are beyond its edge; -inf of all others."""
+    """How far (n,) mm pieces of the first layer on the plane of a platform, or of solids below it, are beyond its edge; -inf
+    of all others. The first layers of walls, hubs and curves may lie on what is not in the file."""
     local = (first.middle - frame[:3, 3]) @ frame[:3, :3]
-    on_plane = np.abs(local[:, 2]) <= ON * toolpath.layer_height
+    on_plane = (np.abs(local[:, 2]) if toolpath.family != "solid" else local[:, 2]) <= ON * toolpath.layer_height
     return np.where(on_plane, np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter, -np.inf)
 
 

@@ -313,6 +313,16 @@ def test_a_first_layer_over_the_edge_of_the_platform_is_told(lift, radius, over)
         assert most == pytest.approx(math.hypot(100.0, 20.0) - radius, abs=WIDTH * support.support.PIECE)
 
 
+@pytest.mark.parametrize(("family", "told_of"), [("solid", True), ("surface", False), ("developable", False)])
+def test_a_solid_that_begins_beside_the_platform_and_below_it_is_told(family, told_of):
+    """160 mm below the plane of the disc and 20 mm beside it; a wall or a hub may stand on what is not in the file."""
+    path = toolpath([rod(70.0, 110.0, 0.0, -160.0)], [rod(70.0, 110.0, 0.0, HEIGHT - 160.0)], family=family)
+    found = support.over_edge(path, np.eye(4), 100.0, ())
+    assert [issue.code for issue in found] == (["OVER_PLATFORM"] if told_of else [])
+    low = Body("plate", square(200.0)[0] - [0.0, 0.0, 160.0], square(200.0)[1])
+    assert not support.over_edge(path, np.eye(4), 100.0, (low,))
+
+
 def test_the_frame_of_the_feature_is_a_remedy_where_it_does():
     """A bead of 40 mm, beside a disc of 30 mm radius: with its middle on that of the disc it stands there, unless the disc
     is smaller, or the frame turned or higher; so it does not where it would bury a body."""
