@@ -32,6 +32,7 @@ from .core.kinematics.urdf import cell as urdf_cell
 from .core.kinematics.urdf import machine as urdf_machine
 from .core.one_thread import one_thread
 from .core.parameters.cell import CellParameters
+from .core.parameters.field import unknown_choice
 from .core.parameters.inspection import InspectionParameters
 from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
@@ -80,6 +81,8 @@ __all__ = (
     "make_toolpath", "make_trajectory", "open_part", "place", "proposed_name", "read_cell",
     "recompute", "result", "stages_of", "told_to",
 )
+
+STAGE_KINDS = ("cell", "feature", "toolpath", "joint path", "program", "inspection")
 
 
 def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | None = None, **values: Any) -> Any:
@@ -272,8 +275,10 @@ def issues(obj: Any) -> tuple[Issue, ...]:
 def stages_of(doc: Any, kind: str = "") -> list[Any]:
     """The stages of a document, inputs first; all, or those of a kind: `am.stages_of(doc, "program")`
 
-    Those that a FreeCAD without the workbench has saved as plain objects are stages again.
+    Those that a FreeCAD without the workbench has saved as plain objects are stages again. InputError BAD_VALUE for a kind
+    that there is not.
     """
     revive(checked_document(doc))
-    checked_text(kind, "kind")
+    if checked_text(kind, "kind") not in ("", *STAGE_KINDS):
+        raise unknown_choice("kind", kind, STAGE_KINDS)
     return [obj for obj in in_order(doc.Objects) if kind in ("", obj.Proxy.kind)]

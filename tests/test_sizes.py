@@ -13,7 +13,6 @@ LONG_FUNCTIONS = {
     "api.py make_all": 45,
     "batch/supervised.py supervised": 43,
     "brep/revolution/axis.py from_normals": 41,
-    "brep/walls/sheet.py sheet": 41,
     "core/collision/deposit.py of_beads": 54,
     "core/geometry/mesh/refined.py refined": 46,
     "core/geometry/regions/chained.py chained": 49,

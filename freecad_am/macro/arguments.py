@@ -24,6 +24,8 @@ def checked_document(doc: Any, where: str = "doc") -> Any:
 
 def checked_object(value: Any, where: str, doc: Any = None) -> Any:
     """The object, of a document where that is given. InputError BAD_INPUT for anything else, by the name of the argument."""
+    if isinstance(value, (tuple, list)) and value and isinstance(value[0], App.DocumentObject):
+        raise InputError("BAD_INPUT", where, "it takes one object alone; give that, and names of its faces apart")
     if not isinstance(value, App.DocumentObject) or is_gone(value):
         raise InputError("BAD_INPUT", where, "{} is not an object of a document; give one, such as doc.Body", named(value))
     if doc is not None and value.Document != doc:

@@ -29,7 +29,7 @@ def checked_links(doc: Any, links: Sequence[Link], values: dict[str, Any], of: A
             found[name] = _checked(doc, known[name], value)
         elif name in TEXTS:
             checked_text(value, TEXTS[name])
-        elif name == "Sequence" and value not in (BY_FEATURE, BY_HEIGHT):
+        elif name == "Sequence" and checked_text(value, "sequence") not in (BY_FEATURE, BY_HEIGHT):
             raise unknown_choice("sequence", value, (BY_FEATURE, BY_HEIGHT))
     after = [] if of is None else [of, *of.InListRecursive]
     for name in found.keys() & known.keys():

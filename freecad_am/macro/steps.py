@@ -76,13 +76,18 @@ def in_order(objects: Sequence[Any]) -> list[Any]:
 
 @contextlib.contextmanager
 def one_step(doc: Any, name: str) -> Iterator[None]:
-    """One step of undo, taken back whole when it fails; part of the step that is open, if there is one.
+    """One step of undo, taken back whole when it fails; part of the step that is open, if there is one. In a document that
+    keeps no undo steps, as those without a window, objects that were made in it go.
 
     InputError BAD_INPUT for what is not a document.
     """
     checked_document(doc)
-    if App.getActiveTransaction() or not doc.UndoMode:
+    if App.getActiveTransaction():
         yield
+        return
+    if not doc.UndoMode:
+        with _without_new_ones(doc):
+            yield
         return
     doc.openTransaction(name)
     try:
@@ -91,6 +96,19 @@ def one_step(doc: Any, name: str) -> Iterator[None]:
         _end_step(doc.abortTransaction, abort=True)
         raise
     _end_step(doc.commitTransaction, abort=False)
+
+
+@contextlib.contextmanager
+def _without_new_ones(doc: Any) -> Iterator[None]:
+    """Remove objects that were made within it where it fails, the last ones first."""
+    before = {obj.Name for obj in doc.Objects}
+    try:
+        yield
+    except BaseException:
+        for name in [obj.Name for obj in doc.Objects if obj.Name not in before][::-1]:
+            if doc.getObject(name) is not None:  # it may have gone with another one
+                doc.removeObject(name)
+        raise
 
 
 def _end_step(end: Callable[[], None], abort: bool) -> None:

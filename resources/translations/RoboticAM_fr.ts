@@ -9492,6 +9492,11 @@
         <translation>il repose sur un point et n&apos;a pas d&apos;extrémité ouverte où commencer ; donnez un substrat, ou tournez-le pour qu&apos;une extrémité repose sur le plateau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>it takes one object alone; give that, and names of its faces apart</source>
+        <translation>il faut un seul objet ; donnez-le, et à part les noms de ses faces</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes/cell_obstacles.py"/>
         <source>it touches the nozzle at the first point of the job already, however the arm stands; its pose is that in the maker&apos;s base frame, and files are in mm: move it, or the deposition point</source>
         <translation>il touche déjà la buse au premier point du travail, quelle que soit la posture du bras ; sa pose est donnée dans le repère de base du constructeur, et les fichiers sont en mm : déplacez-le, ou le point de dépôt</translation>

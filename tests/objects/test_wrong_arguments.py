@@ -186,6 +186,16 @@ def test_a_stage_is_not_made_from_what_follows_it(world):
             assert error.code == "BAD_INPUT" and "is made from" in error.message
 
 
+@pytest.mark.parametrize("wrong", [{"kind": "revolve"}, {"process": {"travel_speed": -1}}, {"post": 7}, {"source": "Box"}])
+def test_a_job_that_is_refused_leaves_nothing_where_no_undo_is_kept(world, wrong):
+    """As in documents of macros without a window: the cell stayed."""
+    world.doc.UndoMode = 0
+    try:
+        assert call(world, "make_all", {**RIGHT["make_all"](world), **wrong}) is not None
+    finally:
+        world.doc.UndoMode = 1
+
+
 def test_parameters_of_another_family_are_not_passed_over(world):
     wrong = SolidParameters(layer_height=2)
     error = call(world, "make_feature", {"doc": world.doc, "source": world.dome, "strategy": wrong})
