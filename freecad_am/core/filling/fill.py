@@ -81,7 +81,7 @@ def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Bea
     allowed."""
     if isinstance(region, Strip):
         return [
-            (region.period.unroll(region.unrolled(window, gap.inside()[None]))[0], gap.width)
+            (region.moved_back(window, gap.inside()[None])[0][0], gap.width)
             for window, gaps, _ in open_windows(region, curves, beads) for gap in gaps
         ]
     inner = region.grown(-beads.inset, beads.chord_error)

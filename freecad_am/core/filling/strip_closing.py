@@ -18,9 +18,10 @@ REACH = 3.0  # spacings beside a window that tell what is open in it
 def strip_closing(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring: int, kind: str) -> list[PlaneCurve]:
     """Beads in what curves leave open, wider than the gap allowed; cut where windows meet."""
     return [
-        replace(curve, points=strip.period.unroll(uv), sheet=float(uv[:, 0].mean()))
+        replace(curve, points=points, sheet=sheet)
         for window, gaps, inner in open_windows(strip, curves, beads)
-        for curve in centre_beads(gaps, beads, ring, inner, kind) for uv in (strip.unrolled(window, curve.points),)
+        for curve in centre_beads(gaps, beads, ring, inner, kind)
+        for points, sheet in (strip.moved_back(window, curve.points),)
     ]
 
 
@@ -38,9 +39,9 @@ def open_windows(
 
 def near_windows(strip: Strip, curves: Sequence[PlaneCurve], reach: float) -> Iterator[tuple[Window, list[PlaneCurve]]]:
     """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle."""
-    unrolled = [(curve, strip.period.followed(curve.points, curve.sheet, curve.turns)) for curve in curves]
     for window in strip.windows(reach):
         yield window, [
-            PlaneCurve(points, closed, curve.kind, curve.ring) for curve, uv in unrolled
-            for points, closed in strip.near(window, uv, curve.closed and not curve.turns)
+            PlaneCurve(points, closed, curve.kind, curve.ring) for curve in curves for points, closed in strip.near(
+                window, strip.period.followed(curve.points, curve.sheet, curve.turns), curve.closed and not curve.turns
+            )
         ]

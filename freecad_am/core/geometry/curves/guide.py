@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...types import Array
+from ...types import Array, Index
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicHermiteSpline
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 SEARCHED = 4  # places between two nodes at which the nearest one is looked for
 STEPS = 40  # of the search for a foot at most
 EXACT = 1e-9  # mm along the guide
+TIGHTEST = 0.95  # of the way to the centre of curvature
+JUMP = 20.0  # mm along the guide to a mm of an edge, at most
 SLOPE = 1e-3  # of a node's distance to the next, over which the turn of the tangent is taken
 
 
@@ -91,6 +93,17 @@ class Guide:
         turn = (self.at(way + step)[1] - self.at(way - step)[1]) / (2.0 * step)
         found: Array = ((points - foot) * turn).sum(axis=1)
         return found
+
+    def crossing(self, points: Array, triangles: Index, distances: Array) -> Array | None:
+        """Where (3,) its planes cross one another within a mesh, whose points (n, 3) lie in those at distances (n,) mm along
+        it: close to its centre of curvature, or where ends of an edge belong to planes far apart; None where none do."""
+        bent = self.bent(points, distances)
+        if bent.max() > TIGHTEST:
+            return np.asarray(points[bent.argmax()])
+        start, end = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).T
+        edges = np.linalg.norm(points[start] - points[end], axis=1)
+        leaps = np.abs(distances[start] - distances[end]) > JUMP * edges + 1e-6
+        return np.asarray(points[start[leaps.argmax()]]) if leaps.any() else None
 
     def bend(self, distance: float, extent: float) -> float:
         """The radius, mm, that beads of a part of an extent, mm, are about bent by."""

@@ -158,9 +158,10 @@ class Strip:
             for part in regions([self.period.unroll(ring, window.about) for ring in region.borders()])
         ]
 
-    def unrolled(self, window: Window, points: Array) -> Array:
-        """(u, v) (n, 2) of points (n, 2) laid flat about the middle of a window."""
-        return np.asarray(self.period.unrolled(points) + np.array([window.about, 0.0]))
+    def moved_back(self, window: Window, flat: Array) -> tuple[Array, float]:
+        """Points (n, 2) laid flat about the middle of a window laid flat about 0, and the u about which they lie, mm."""
+        uv = self.period.unrolled(flat) + np.array([window.about, 0.0])
+        return self.period.unroll(uv), float(uv[:, 0].mean())
 
     def _repeated(self, border: Array, low: float, high: float) -> Array:
         turn = self.period.around
@@ -261,8 +262,7 @@ def parts(rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: 
 
 def strips(loops: Sequence[tuple[Array, int]], period: Period) -> tuple[Strip | Region, ...]:
     """Strips and regions of the loops of a layer: points (n, 2) laid flat within one turn, and how often each goes round."""
-    rounds, closed = [], []
-    turn = period.around
+    rounds, closed, turn = [], [], period.around
     for flat, turns in loops:
         uv = period.unrolled(flat)
         step = np.diff(uv[:, 0], prepend=uv[:1, 0])

@@ -26,8 +26,6 @@ from ..surface import Slice
 from .layer import AlongLayer, between
 
 BENDS = np.cos(np.radians(10.0))  # between the planes of the ends of an edge; edges that see more of a bend are halved
-TIGHTEST = 0.95  # of the way to the centre of curvature
-JUMP = 20.0  # mm along the guide to a mm of an edge: what is next to one another belongs to planes far apart
 BEYOND = 0.02  # of the extent of a section by which the guide may be outside of what encloses it
 HEIGHT = "LAYER_HEIGHT"
 
@@ -89,24 +87,16 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
     return made
 
 
-def _refuse_tight(
-    base: Base, guide: Guide, name: str, points: Array, triangles: NDArray[np.intp], distances: Array
-) -> None:
+def _refuse_tight(base: Base, guide: Guide, name: str, points: Array, triangles: Index, distances: Array) -> None:
     """InputError GUIDE_TIGHT where planes cross one another within a body, given the distances (n,) mm along the guide of
     those of its points."""
-    bent = guide.bent(points, distances)
-    side = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    apart = np.abs(distances[side[:, 0]] - distances[side[:, 1]])
-    leaps = apart > JUMP * np.linalg.norm(points[side[:, 0]] - points[side[:, 1]], axis=1) + 1e-6
-    worst = int(bent.argmax())
-    if bent[worst] <= TIGHTEST and not leaps.any():
-        return
-    point = points[worst] if bent[worst] > TIGHTEST else points[side[np.argmax(leaps), 0]]
-    raise InputError(
-        "GUIDE_TIGHT", name, "the guide bends more tightly at {} than the part is wide there: planes normal to it cross one "
-        "another within the part, at {}; choose a guide nearer to the inside of the bend or with a larger radius, or "
-        "strategy.layers: geodesic", base.where(guide.at(guide.distance(point[None]))[0][0]), base.where(point),
-    )
+    point = guide.crossing(points, triangles, distances)
+    if point is not None:
+        raise InputError(
+            "GUIDE_TIGHT", name, "the guide bends more tightly at {} than the part is wide there: planes normal to it cross "
+            "one another within the part, at {}; choose a guide nearer to the inside of the bend or with a larger radius, "
+            "or strategy.layers: geodesic", base.where(guide.at(guide.distance(point[None]))[0][0]), base.where(point),
+        )
 
 
 def _heights(layer: Slice) -> tuple[float, float, float]:

@@ -33,8 +33,9 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
     start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
     meshes = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
-    substrate = [base.inside(body.vertices)[body.triangles] for body in solids.surroundings]
-    field = _field(meshes, substrate, name, start, strategy)
+    field = _field(
+        meshes, [base.inside(body.vertices)[body.triangles] for body in solids.surroundings], name, start, strategy
+    )
     worst, height, cut = 0.0, strategy.layer_height, max(strategy.share_of_cut, 1e-3)
     layers = int(np.ceil(field.top / height - cut + 1e-6))
     for number in range(max(layers, 0)):
