@@ -10,6 +10,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.issues import InputError
 from freecad_am.core.strategies import size
+from freecad_am.core.strategies.walls import fronts
 
 
 @pytest.fixture
@@ -83,6 +84,16 @@ def test_a_wall_that_reaches_below_the_platform_is_refused_with_its_depth(doc, t
         api.make_toolpath(doc, feature, api.make_cell(doc))
     assert found.value.code == "OFF_PLATFORM"
     assert api.make_toolpath(doc, feature, api.make_cell(doc, platform_diameter=0))
+
+
+def test_a_wall_that_begins_below_the_platform_is_refused_before_its_layers_are_looked_for(doc, tube, monkeypatch):
+    """Layers of walls of several faces, and of meshes, may take minutes."""
+    for obj in tube:
+        obj.Placement.Base = obj.Placement.Base - App.Vector(0, 0, 40)
+    feature = made(doc, tube, method="fronts")
+    monkeypatch.setattr(fronts, "plan", lambda *args, **more: pytest.fail("its layers are looked for"))
+    with pytest.raises(InputError, match=r"reaches 10\.34 mm below the platform"):
+        api.make_toolpath(doc, feature, api.make_cell(doc, mount="part"))
 
 
 def test_saved_and_read_back(doc, tube, tmp_path):

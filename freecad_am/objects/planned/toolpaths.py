@@ -173,13 +173,17 @@ def _of_wall(of: Given) -> CoreToolpath:
     else:
         from ...core.strategies.walls import plan as family
     on_another = getattr(of.wall, "ground", None) is None or of.stands is not None
+    remedy = platform.MOVE if on_another else platform.MOUNT
+    if isinstance(of.wall, PatchWall) and of.cell is not None and (of.stands is not None or of.cell.mount != "feature"):
+        # the first layer is where the wall begins: before the others are looked for, which may take minutes
+        begins = np.vstack([first.curve().points for first in of.wall.first])
+        stands = np.eye(4) if of.stands is None else of.stands
+        platform.refuse_below(of.wall.label, begins, stands, of.cell.platform_diameter, remedy)
     made = family.plan(of.wall, of.strategy, of.build, of.process, _share)
     if of.cell is not None:
         points = np.vstack([bead.points for _, _, bead in made])
         stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
-        platform.refuse_below(
-            of.wall.label, points, stands, of.cell.platform_diameter, platform.MOVE if on_another else platform.MOUNT
-        )
+        platform.refuse_below(of.wall.label, points, stands, of.cell.platform_diameter, remedy)
     return dataclasses.replace(made, surroundings=of.wall.surroundings)
 
 
