@@ -99,6 +99,18 @@ def test_a_path_that_was_not_given_by_a_macro_is_refused(nested):
     assert feature.Status == "up to date"
 
 
+def test_what_is_in_a_group_of_a_part_is_there_once(nested):
+    """FreeCAD has it a second time, with what is in the part itself: its edges were laid twice."""
+    assert len(global_shape(nested.Part).Solids) == 2
+    nested.Group.addObject(nested.B)
+    nested.recompute()
+    assert len(nested.Part.Shape.Solids) == 3
+    whole = global_shape(nested.Part)
+    assert whole.Volume == pytest.approx(nested.A.Shape.Volume + nested.B.Shape.Volume) and len(whole.Edges) == 24
+    assert ends(whole.Edges[0]) in [ends(global_shape(one).Edges[0]) for one in (nested.A, nested.B)]
+    assert api.make_solid_feature(nested, nested.Part, layer_height=5).Solids == 2
+
+
 def test_a_path_to_a_body_by_its_tip_is_the_body(doc):
     body = doc.addObject("PartDesign::Body", "Body")
     for kind, name in (("AdditiveBox", "Pad"), ("SubtractiveCylinder", "Bore")):

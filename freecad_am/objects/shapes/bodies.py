@@ -10,12 +10,14 @@ from typing import Any
 
 import FreeCAD as App
 import numpy as np
+import Part
 
 from ...brep.shapes import tessellate
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ..stage_parts import Link
 
+GROUPS = ("App::Part", "App::DocumentObjectGroup")
 FIXTURES = Link(
     "Fixtures", "", "Clamps and other bodies around the part, which the nozzle is kept clear of.", required=False,
     type_name="App::PropertyLinkList",
@@ -36,7 +38,27 @@ def shape_of(source: Any) -> Any:
     shape = getattr(source, "Shape", None)
     if shape is None or shape.isNull():
         raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
-    return shape
+    return _once(shape) if any(source.isDerivedFrom(kind) for kind in GROUPS) else shape
+
+
+def _once(shape: Any) -> Any:
+    """The shape of a part or group, with each body once: FreeCAD has what is in a group of a part a second time."""
+    leaves: list[Any] = []
+    left = [shape]
+    while left:
+        one = left.pop(0)
+        if one.ShapeType == "Compound":
+            left = [*one.childShapes(), *left]
+        else:
+            leaves.append(one)
+    unique = [one for k, one in enumerate(leaves) if not any(_is_same(one, other) for other in leaves[:k])]
+    return shape if len(unique) == len(leaves) else Part.makeCompound(unique)
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    """Whether two shapes are one in the same place, however they came there."""
+    places = one.Placement.toMatrix().A, other.Placement.toMatrix().A
+    return bool(one.isPartner(other) and np.allclose(*places, rtol=0.0, atol=1e-9))
 
 
 def outer_placement(source: Any) -> Any:

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...core.issues import InputError
-from .bodies import global_shape, outer_placement
+from .bodies import GROUPS, global_shape, outer_placement
 from .marks import EDGE, FACE, PLANE
 
-GROUPS = ("App::Part", "App::DocumentObjectGroup")
 LINES = ("App::Line", "PartDesign::Line")
 SKETCH_AXES = ("V_Axis", "H_Axis", "N_Axis")
 CODES = {FACE: "BAD_FACES", EDGE: "BAD_EDGES"}
