@@ -10,21 +10,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from .types import Array
+from .types import Array, ArrayLike, Integers, NDArray
 
 Characters = NDArray[np.uint8]
 _ZERO, _POINT, _MINUS, _SPACE = b"0.- "
 
 
-def whole(values: ArrayLike, decimals: int) -> NDArray[np.int64]:
+def whole(values: ArrayLike, decimals: int) -> Integers:
     """Numbers in units of the last of so many decimals, the nearest."""
-    found: NDArray[np.int64] = np.rint(np.asarray(values) * 10.0**decimals).astype(np.int64)
+    found: Integers = np.rint(np.asarray(values) * 10.0**decimals).astype(np.int64)
     return found
 
 
-def plain(numbers: NDArray[np.int64], decimals: int) -> Characters:
+def plain(numbers: Integers, decimals: int) -> Characters:
     """(w, n) whole numbers (n,) in units of the last of so many decimals, as short as they are: -0.250, 12."""
     left = np.abs(numbers)
     size = max(len(str(int(left.max(initial=0)))), decimals + 1)
@@ -64,7 +63,7 @@ def right_aligned(values: Array, decimals: int, width: int) -> Characters:
     return text
 
 
-def _digits(numbers: NDArray[np.int64], size: int) -> Characters:
+def _digits(numbers: Integers, size: int) -> Characters:
     """(size, n) the digits of whole numbers, none negative, with zeros before them."""
     text = np.empty((size, len(numbers)), dtype=np.uint8)
     # shorter whole numbers are divided in half the time

@@ -15,11 +15,8 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .types import Array
-
-Roles = NDArray[np.int64]
+from .types import Array, Integers, Mask
 
 # what the move that ends at a row is for: with deposit; away from the bead before; over to the next; onto its start
 DEPOSIT, RETRACT, TRAVEL, APPROACH = range(4)
@@ -43,10 +40,10 @@ class Motion:
     where left out.
     """
 
-    deposit: NDArray[np.bool_]
-    layer: NDArray[np.int64]
-    bead: NDArray[np.int64]
-    point: NDArray[np.int64]
+    deposit: Mask
+    layer: Integers
+    bead: Integers
+    point: Integers
     position: Array
     build: Array
     tool: Array
@@ -55,10 +52,10 @@ class Motion:
     joints: Array
     duration: Array
     wire: Array = None  # type: ignore[assignment]
-    role: Roles = None  # type: ignore[assignment]
-    bead_class: Roles = None  # type: ignore[assignment]
-    phase: Roles = None  # type: ignore[assignment]
-    halt: NDArray[np.bool_] = None  # type: ignore[assignment]
+    role: Integers = None  # type: ignore[assignment]
+    bead_class: Integers = None  # type: ignore[assignment]
+    phase: Integers = None  # type: ignore[assignment]
+    halt: Mask = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         n = len(self.deposit)
@@ -82,21 +79,21 @@ class Motion:
         return len(self.deposit)
 
     @property
-    def moves(self) -> NDArray[np.bool_]:
+    def moves(self) -> Mask:
         """(n,) bool: the rows a controller moves to; the first row of a bead repeats where it already stands."""
         return np.asarray(~(self.deposit & (self.point == 0)), dtype=np.bool_)
 
     @cached_property
-    def stops(self) -> NDArray[np.bool_]:
+    def stops(self) -> Mask:
         """(n,) bool: the rows at which the machine comes to a stop: all of a rapid, ends of beads, and where it halts."""
         # kept, as every bead of a program asks for its own rows
         last = np.append(~self.deposit[1:] | (self.point[1:] == 0), True)[: len(self)]
-        stops: NDArray[np.bool_] = ~self.deposit | last | self.halt
+        stops: Mask = ~self.deposit | last | self.halt
         stops.setflags(write=False)
         return stops
 
     @property
-    def reachable(self) -> NDArray[np.bool_]:
+    def reachable(self) -> Mask:
         """(n,) bool: rows with joint values."""
         return np.asarray(np.isfinite(self.joints).all(axis=1), dtype=np.bool_)
 
@@ -106,7 +103,7 @@ class Motion:
         return float(self.duration.sum())
 
 
-def _roles(deposit: NDArray[np.bool_]) -> Roles:
+def _roles(deposit: Mask) -> Integers:
     """(n,) what the rows are for, by what stands before and after them."""
     role = np.where(deposit, DEPOSIT, TRAVEL).astype(np.int64)
     edges = np.concatenate([[0], np.flatnonzero(deposit[1:] != deposit[:-1]) + 1, [len(deposit)]])

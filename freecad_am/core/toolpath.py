@@ -15,14 +15,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .geometry.columns import lengths
 from .geometry.curves.outline import Outline, estimated, outline
 from .geometry.fitted import Fitted, PredictedShape
 from .geometry.obstacles import Body
 from .issues import Issue
-from .types import Array
+from .types import Array, Index
 
 FILLED = ("developable", "solid", "cladding")  # families whose beads fill solids, or layers on faces
 PREDICTED = ("width", "height")  # columns of a bead that a bead model gives
@@ -152,7 +151,7 @@ class Bead:
         moved = self.external[-1] - self.external[0]
         return np.asarray(np.concatenate([self.external[index:-1], self.external[: index + 1] + moved]))
 
-    def halved(self, segments: NDArray[np.intp]) -> Bead:
+    def halved(self, segments: Index) -> Bead:
         """The bead with a point in the middle of each of the segments (k,), rising: on the curve that the points outline,
         not on its chords, and with directions halfway between its neighbours'."""
         at = segments + 1
@@ -215,11 +214,11 @@ class Bead:
         """Some of its points, two or more in a row, as an open bead of their own."""
         return dataclasses.replace(self, **self._rows(rows), closed=False, returns=self.returns and not rows.start)
 
-    def thinned(self, index: NDArray[np.intp]) -> Bead:
+    def thinned(self, index: Index) -> Bead:
         """The bead with some of its points alone, by their numbers, rising, the first and the last among them."""
         return dataclasses.replace(self, **self._rows(index))
 
-    def _rows(self, which: slice | NDArray[np.intp]) -> dict[str, Any]:
+    def _rows(self, which: slice | Index) -> dict[str, Any]:
         """Some of the rows of each column."""
         columns = [(entry.name, getattr(self, entry.name)) for entry in dataclasses.fields(self)]
         return {name: column[which] for name, column in columns if isinstance(column, np.ndarray)}
@@ -313,7 +312,7 @@ class Toolpath:
                 yield i, j, bead
 
     @property
-    def parts(self) -> tuple[tuple[Toolpath, NDArray[np.intp]], ...]:
+    def parts(self) -> tuple[tuple[Toolpath, Index], ...]:
         """The toolpath of each feature, and the numbers (n,) of its layers in this one; of one feature this one."""
         if not self.features:
             return ((self, np.arange(len(self.layers))),)

@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Index
 
 from ..core.geometry.frames import smallest_rotation
 from ..core.motion import Motion
@@ -36,7 +35,7 @@ class Line:
         """Such as L003 B01 or L003 rapid, from 0 as everywhere."""
         return f"L{self.layer:03d} B{self.bead:02d}" if self.deposit else f"L{self.layer:03d} rapid"
 
-    def chosen(self, rows: NDArray[np.intp]) -> Line:
+    def chosen(self, rows: Index) -> Line:
         """The line through some of its points, the speed towards each kept."""
         return Line(self.layer, self.bead, self.deposit, self.points[rows], self.tool[rows], self.speed[rows], self.closed)
 

@@ -12,9 +12,8 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, ArrayLike
 
 from ..core.geometry import frames
 from ..core.kinematics.machines.machine import Machine

@@ -9,9 +9,8 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask, NDArray
 
 INCH = 100.0  # pixels
 LEAST = 700, 450  # pixels that words beside the map have room in
@@ -27,7 +26,7 @@ class Cells:
     title: str
     up: str
     colours: NDArray[np.uint8]
-    hatched: NDArray[np.bool_]
+    hatched: Mask
     columns: list[tuple[float, str]]
     rows: list[tuple[float, str]]
     lines: tuple[list[float], list[float]]

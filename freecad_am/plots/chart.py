@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers, Mask
 
 LINE, STEP, DOTS, MARKED, OUTLINE = "line", "step", "dots", "marked", "outline"
 INF = float("inf")
@@ -45,7 +44,7 @@ class Curve:
     y: Array
     colour: int | str = 0
     kind: str = LINE
-    layer: NDArray[np.int64] | None = None
+    layer: Integers | None = None
     width: float = 0.0
 
 
@@ -79,13 +78,13 @@ class Chart:
     marks: tuple[tuple[float, str], ...] = ()
     upright: tuple[tuple[float, str], ...] = ()
     borders: Array | None = None
-    layers: NDArray[np.int64] | None = None
+    layers: Integers | None = None
     span: tuple[float, float] | None = None
     unlimited: str = ""
     plane: bool = False
     names: tuple[tuple[float, float, str], ...] = ()
 
-    def wrong(self, values: Array) -> NDArray[np.bool_]:
+    def wrong(self, values: Array) -> Mask:
         """Which values (n,) lie beyond the limits."""
         low, high = self.limits
         slack = 1e-9 * max(1.0, *(abs(end) for end in self.limits if np.isfinite(end)), 1.0)

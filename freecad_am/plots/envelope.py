@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Index
 
 POINTS_KEPT = 4  # points to a column that are drawn as they are
 
 
-def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> NDArray[np.intp]:
+def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> Index:
     """The points, rising numbers into x and y (n,), that look like all of them between x = low and high.
 
     x never falls. NaN in y is kept where it is to be seen as a gap. One point beyond either end is kept, for the lines that
@@ -30,5 +29,5 @@ def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> NDArr
     cuts = np.flatnonzero(np.diff(column[rising])) + 1
     least = rising[np.concatenate([[0], cuts])] if len(rising) else rising
     largest = rising[np.concatenate([cuts, [len(rising)]]) - 1] if len(rising) else rising
-    kept: NDArray[np.intp] = rows[np.unique(np.concatenate([begins, ends, least, largest]))]
+    kept: Index = rows[np.unique(np.concatenate([begins, ends, least, largest]))]
     return kept

@@ -9,12 +9,10 @@ from collections.abc import Iterator
 from html import escape
 
 import matplotlib
-import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from .chart import DOTS, Picture
 from .look import VARIABLES
@@ -93,7 +91,7 @@ def values(picture: Picture) -> Iterator[str]:
             yield from _rows(name, [chart.bars.edges[:-1], chart.bars.edges[1:], chart.bars.heights])
 
 
-def _table(columns: list[Array], whole: list[NDArray[np.int64]]) -> Iterator[str]:
+def _table(columns: list[Array], whole: list[Integers]) -> Iterator[str]:
     for start in range(0, len(columns[0]), _ROWS_AT_ONCE):
         part = slice(start, start + _ROWS_AT_ONCE)
         texts = [[_text(value) for value in column[part].tolist()] for column in columns]

@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Index, Integers, Mask
 
 from .chart import Quantity
 from .source import Source
@@ -26,13 +25,13 @@ class Rows:
     `quantity`. standing: (k,) bool, where the machine has stood at its row since the place before. borders: x of the
     beginnings of layers, and layers, their numbers."""
 
-    index: NDArray[np.intp]
+    index: Index
     x: Array
-    standing: NDArray[np.bool_]
-    layer: NDArray[np.int64]
+    standing: Mask
+    layer: Integers
     quantity: Quantity
     borders: Array
-    layers: NDArray[np.int64]
+    layers: Integers
 
     def at(self, values: Array) -> Array:
         """(k, ...) values (n, ...) of rows, such as where the axes are."""

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from ..core.geometry.on_hub import Group, SolidsOnHub
 from ..core.kinematics.cell import Cell
@@ -81,7 +80,7 @@ class Source:
         return achievable_feed(self.motion, self.cell.machine.max_speed, self.cell.machine.max_acceleration)
 
     @cached_property
-    def distances(self) -> tuple[Array, NDArray[np.int64]]:
+    def distances(self) -> tuple[Array, Integers]:
         """(n,) mm, the local distances between layers that are known, beads that close gaps left out; the layer of each."""
         beads = list(self.toolpath)
         local = spacing.local_distances(self.toolpath)

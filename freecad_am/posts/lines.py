@@ -7,7 +7,8 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Integers
 
 from . import catalogue
 
@@ -20,8 +21,8 @@ class Lines:
     """The lines of n moves, in the order of execution. files: names; file: (n,) which of them; line: (n,) from 0."""
 
     files: tuple[str, ...]
-    file: NDArray[np.int64]
-    line: NDArray[np.int64]
+    file: Integers
+    line: Integers
 
     def __len__(self) -> int:
         return len(self.line)

@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array, Mask
+from freecad_am.core.types import Array, Index, Mask
 
 from ..core.geometry import frames
 from ..core.geometry.columns import lengths
@@ -41,7 +40,7 @@ def rapids_between(cell: Cell, planned: Planned, text: Joints, path: Path, linea
     return float(apart.max()), off
 
 
-def _between(rows: Array, ends: NDArray[np.intp]) -> Array:
+def _between(rows: Array, ends: Index) -> Array:
     """(len(ends) * len(BETWEEN), ...) what lies on the straight way to the rows `ends` from those before."""
     step = (rows[ends] - rows[ends - 1])[:, None]
     between: Array = (rows[ends - 1, None] + BETWEEN[:, None] * step).reshape(-1, rows.shape[1])
@@ -73,12 +72,12 @@ def beads_between(cell: Cell, planned: Planned, shown: Array, path: Path, chord_
     return largest, off
 
 
-def _larger_at_ends(values: Array, ends: NDArray[np.intp]) -> Array:
+def _larger_at_ends(values: Array, ends: Index) -> Array:
     """(len(ends),) the larger of what is told of the row `ends` and of the one before; NaN where one is."""
     return np.maximum(values[ends - 1], values[ends])
 
 
-def _bow(cell: Cell, serial: Array, ends: NDArray[np.intp]) -> Array:
+def _bow(cell: Cell, serial: Array, ends: Index) -> Array:
     """(len(ends),) mm by how much the tip leaves its chord at most while joints run straight to the rows `ends`: an eighth
     of its second derivative, in which each turn acts on each other one over a lever no longer than the whole chain, and
     twice on what slides."""
@@ -104,7 +103,7 @@ def tools_between(
 
 
 def _off_segments(
-    planned: Planned, ends: NDArray[np.intp], tips: Array, path: Path, chord_error: float
+    planned: Planned, ends: Index, tips: Array, path: Path, chord_error: float
 ) -> tuple[float, Mask]:
     """Largest distance of tips (len(ends) * len(BETWEEN), 3) from the planned segments that end at the rows `ends`,
     and which of these (len(ends),) leave theirs by more than the chord error and the digits of their two points."""

@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array, Index, Mask
+from freecad_am.core.types import Array, Index, Integers, Mask
 
 from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
@@ -111,7 +110,7 @@ def _starts(read: ReadMoves) -> Index:
     return np.flatnonzero(begun)
 
 
-def _layers(events: tuple[Event, ...], starts: Index) -> NDArray[np.int64]:
+def _layers(events: tuple[Event, ...], starts: Index) -> Integers:
     """(beads,) the layer of each bead that begins with the moves `starts`, as remarks tell it; 0 where none does."""
     layers = [(event.row, int(float(event.value[0]))) for event in events if event.kind == "layer"]
     if not layers:
@@ -120,7 +119,7 @@ def _layers(events: tuple[Event, ...], starts: Index) -> NDArray[np.int64]:
     return np.asarray(numbers[np.maximum(np.searchsorted(rows, starts, side="right") - 1, 0)], dtype=np.int64)
 
 
-def _places(deposit: Mask, fresh: Mask, layers: NDArray[np.int64]) -> tuple[NDArray[np.int64], ...]:
+def _places(deposit: Mask, fresh: Mask, layers: Integers) -> tuple[Integers, ...]:
     """Layer, bead and point (n,) of the rows; rapids carry the bead that they lead to. fresh: the first rows of beads."""
     if not len(layers):
         nowhere = np.zeros(len(deposit), dtype=np.int64)

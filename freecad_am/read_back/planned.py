@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Mask
+from freecad_am.core.types import Index, Mask
 
 from ..core.issues import ERROR, Issue, Text
 from ..core.motion import Motion
@@ -19,7 +18,7 @@ PIECE = 4096  # moves that are looked at together: the poses of all of them at o
 class Planned:
     """The rows of the motion that a controller moves to, with the finding of a place."""
 
-    def __init__(self, motion: Motion, rows: NDArray[np.intp]) -> None:
+    def __init__(self, motion: Motion, rows: Index) -> None:
         self.rows, self.motion = rows, motion
         self.deposit, self.joints = motion.deposit[rows], motion.joints[rows]
         self.position, self.tool = motion.position[rows], motion.tool[rows]
@@ -43,6 +42,6 @@ class Planned:
         return layer, bead, point
 
 
-def pieces(rows: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+def pieces(rows: Index) -> list[Index]:
     """Rows (n,) in pieces that are looked at one after the other."""
     return [rows[start : start + PIECE] for start in range(0, len(rows), PIECE)]

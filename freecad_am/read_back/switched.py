@@ -6,9 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Index
 
 from ..core.issues import Text
 from ..core.motion import Motion
@@ -52,7 +51,7 @@ def _findings(motion: Motion, read: ReadMoves) -> Iterator[Finding]:
         yield _finding("DEPOSIT_SWITCH", message, motion, rows, len(rows))
 
 
-def _finding(code: str, message: Text, motion: Motion, rows: NDArray[np.intp], move: int) -> Finding:
+def _finding(code: str, message: Text, motion: Motion, rows: Index, move: int) -> Finding:
     """An error at a move; at the last one for what follows it."""
     return error_at(code, message, motion, int(rows[min(move, len(rows) - 1)]))
 

@@ -10,9 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array, Mask
+from freecad_am.core.types import Array, Index, Mask
 
 from ..core.geometry import frames
 from ..core.kinematics.cell import Cell
@@ -127,7 +126,7 @@ def text_joints(cell: Cell, near: Array, shown: Array | None, half: Array, path:
 _LEVER = 300.0
 
 
-def _to_flange(cell: Cell, serial: Array, path: Path, asked: Array, rows: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+def _to_flange(cell: Cell, serial: Array, path: Path, asked: Array, rows: Index) -> tuple[Array, Array, Array]:
     """Of the flange: how joints move it (n, 6, axes), how far it is from where it is asked to be (n, 6), and by how much
     that may be off (n, 6); mm, and radians times the lever."""
     at = cell.machine.chain.frames(serial)
@@ -144,7 +143,7 @@ def _to_flange(cell: Cell, serial: Array, path: Path, asked: Array, rows: NDArra
     return np.swapaxes(np.concatenate([moved, turned], axis=2), 1, 2), away, off
 
 
-def _to_tip(cell: Cell, serial: Array, path: Path, rows: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+def _to_tip(cell: Cell, serial: Array, path: Path, rows: Index) -> tuple[Array, Array, Array]:
     """The same of the tip and its direction in part coordinates, where the part is what the chain moves."""
     at = cell.machine.chain.frames(serial)
     slides = cell.machine.chain.sliding[:, None]

@@ -7,9 +7,8 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from ...core.geometry.located import located
 from ...core.geometry.mesh.file_unit import MESHES
@@ -20,7 +19,7 @@ from .read import read_mesh, read_shape
 FINENESS = 2e-3
 
 
-def triangles(path: Path) -> tuple[Array, NDArray[np.int64]]:
+def triangles(path: Path) -> tuple[Array, Integers]:
     """Points (n, 3) in the file's units and triangles (m, 3) of their indices, of a mesh or a shape; read-only.
 
     A file is read again only where it has changed. Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or
@@ -35,14 +34,14 @@ def triangles(path: Path) -> tuple[Array, NDArray[np.int64]]:
 
 
 @lru_cache(maxsize=64)
-def _known(path: Path, changed: int, size: int) -> tuple[Array, NDArray[np.int64]]:
+def _known(path: Path, changed: int, size: int) -> tuple[Array, Integers]:
     found = apart(_triangles, path)
     for array in found:
         array.flags.writeable = False
     return found
 
 
-def _triangles(path: Path) -> tuple[Array, NDArray[np.int64]]:
+def _triangles(path: Path) -> tuple[Array, Integers]:
     if path.suffix.lower() in MESHES:
         points, corners = read_mesh(path).Topology
     else:

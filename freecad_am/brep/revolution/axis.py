@@ -8,9 +8,8 @@ from typing import Any
 import FreeCAD  # noqa: F401  before Part, which crashes without
 import numpy as np
 import Part
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask
 
 from .cylindrical import as_array, edge_points
 
@@ -102,7 +101,7 @@ def _same(one: Axis, other: Axis) -> bool:
     return bool(_alike(np.concatenate(one)[None], other)[0])
 
 
-def _alike(rows: Array, axis: Axis) -> NDArray[np.bool_]:
+def _alike(rows: Array, axis: Axis) -> Mask:
     """Which of axes (n, 6), points and directions, are the same line as another."""
     apart, along = rows[:, :3] - axis[0], rows[:, 3:]
     across = apart - (apart * along).sum(axis=1)[:, None] * along

@@ -8,9 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import Part
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Index, Mask
 
 from .cylindrical import AxisFrame, as_array
 from .patch import planar
@@ -27,9 +26,9 @@ class Normals(NamedTuple):
 
     points: Array
     normals: Array
-    face: NDArray[np.intp]
-    flat: NDArray[np.bool_]
-    wide: NDArray[np.bool_]
+    face: Index
+    flat: Mask
+    wide: Mask
 
 
 def normals_of(faces: Sequence[Any]) -> Normals:
@@ -47,7 +46,7 @@ def normals_of(faces: Sequence[Any]) -> Normals:
     return Normals(as_array(places), as_array(directions), np.repeat(np.arange(len(faces)), counts), flat, wide)
 
 
-def surely_off(of: Normals, frame: AxisFrame) -> NDArray[np.bool_]:
+def surely_off(of: Normals, frame: AxisFrame) -> Mask:
     """(faces,) bool: faces that lean around the axis somewhere, so that they are not of revolution about it; those that lie
     along it, and only end a part of a turn, are not among them."""
     points, normals = frame.local(of.points), of.normals @ frame.rotation

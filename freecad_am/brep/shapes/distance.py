@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Index
 
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.issues import InputError
@@ -28,7 +27,7 @@ class Skin:
     (k,) of points (k, 3), outside with a plus, and the unit normals (k, 3) along which they count."""
 
     vertices: Array
-    triangles: NDArray[np.intp]
+    triangles: Index
     deflection: float
     exact: Callable[[Array], tuple[Array, Array]]
 
@@ -50,7 +49,7 @@ def skin(shape: Any, label: str) -> Skin:
     return Skin(vertices, triangles, deflection, exact)
 
 
-def _by_face(shape: Any, deflection: float) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
+def _by_face(shape: Any, deflection: float) -> tuple[Array, Index, Index]:
     """Vertices (n, 3), triangles (m, 3), and the number of the face (m,) of each."""
     points, corners = shape.tessellate(deflection)
     counts = [len(one.tessellate(deflection)[1]) if divided(one) else 0 for one in shape.Faces]
@@ -59,7 +58,7 @@ def _by_face(shape: Any, deflection: float) -> tuple[Array, NDArray[np.intp], ND
 
 
 def _exact(
-    points: Array, faces: list[Any], face: NDArray[np.intp], mesh: SolidMesh, search: Search, deflection: float,
+    points: Array, faces: list[Any], face: Index, mesh: SolidMesh, search: Search, deflection: float,
     closed: bool,
 ) -> tuple[Array, Array]:
     import FreeCAD

@@ -12,9 +12,8 @@ from typing import Any
 import FreeCAD
 import numpy as np
 import Part
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from ...core.collision.inside import inside_of
 from ...core.geometry.mesh.solid import Search, SolidMesh
@@ -84,7 +83,7 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
     return found
 
 
-def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
+def off_mesh(vertices: Array, triangles: Integers, points: Array) -> Array:
     """Distances (n,) mm of points (n, 3) outside of a mesh, 0 inside of any piece of it, whatever triangles of others cross
     that, and of any that is inside out. Holes count as closed, however large: which are, the feature has told."""
     whole = inside_of(Body("", vertices, triangles))
@@ -97,7 +96,7 @@ def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Ar
     return away
 
 
-def _off_pieces(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
+def _off_pieces(vertices: Array, triangles: Integers, points: Array) -> Array:
     """The same, each piece of the mesh mended and looked at by itself."""
     from ...core.geometry.mesh.repair import repaired  # few parts are meshes
 
@@ -113,7 +112,7 @@ def _off_pieces(vertices: Array, triangles: NDArray[np.int64], points: Array) ->
     return away
 
 
-def off_facets(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
+def off_facets(vertices: Array, triangles: Integers, points: Array) -> Array:
     """Distances (n,) mm of points (n, 3) from the triangles of a mesh, open or closed."""
     found: Array = _away(_searched(vertices, triangles), points)
     return found

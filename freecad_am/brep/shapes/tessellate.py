@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from freecad_am.core.types import Array, Index
@@ -14,8 +13,6 @@ from freecad_am.core.types import Array, Index
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ..kernel.process import in_kernel_process
-
-Corners = NDArray[np.intp]
 
 DEFLECTION = 0.1  # mm, largest distance of the triangles from a curved face
 WELDED = 1e-5  # mm; vertices of the tessellations of two faces
@@ -44,8 +41,8 @@ class Tessellation(NamedTuple):
     """Vertices (n, 3), triangles (m, 3), the face (m,) of each; of each face, the parameters (k, 2) of its vertices."""
 
     vertices: Array
-    triangles: Corners
-    owner: Corners
+    triangles: Index
+    owner: Index
     nodes: list[Array]
 
 
@@ -77,7 +74,7 @@ def divided(face: Any) -> bool:
     return True
 
 
-def welded(points: Array, triangles: Corners, owner: Corners) -> tuple[Array, Corners, Corners]:
+def welded(points: Array, triangles: Index, owner: Index) -> tuple[Array, Index, Index]:
     """Vertices closer than WELDED made one; triangles that lose a corner go."""
     tree = cKDTree(points)
     first = np.arange(len(points))

@@ -31,7 +31,7 @@ def of_beads(
 
     width, height: mm, of all or (n,). starts: the points at which beads begin, by numbers or (n,) marks. moments: (n,) at
     which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
-    this. beside: mm, pieces of the layer being laid are next to the tip no farther from it than they are wide, or than this.
+    this. foot: mm, pieces of the layer being laid are next to the tip no farther from it than they are wide, or than this.
     short: pieces are short against what is asked about them. like: the deposit of the same points before, with other
     directions alone: the same pieces with other corners.
     A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.

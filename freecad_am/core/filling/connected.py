@@ -12,11 +12,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.curves.plane_curve import nearest_among
 from ..geometry.regions.region import Region, along
-from ..types import Array
+from ..types import Array, Mask
 from .contours import centres, levels, rounds
 from .curve import Beads, PlaneCurve, begun, long_enough
 from .rings import AdjacentRings, Ring, crossed, side_by_side
@@ -257,7 +256,7 @@ def _walked(rings: list[Ring], links: list[list[Link]], shares: list[float]) -> 
 
     walk(0, 0.0, rings[0].length, 1)
     whole, wide = np.vstack(pieces), np.concatenate(share)
-    apart: NDArray[np.bool_] = np.r_[True, np.abs(np.diff(whole, axis=0)).max(axis=1) > 1e-9]
+    apart: Mask = np.r_[True, np.abs(np.diff(whole, axis=0)).max(axis=1) > 1e-9]
     if np.abs(whole[0] - whole[-1]).max() < 1e-9:
         apart[-1] = False
     return PlaneCurve(whole[apart], True, "connected", 0, share=None if wide.min() == 1.0 else wide[apart])

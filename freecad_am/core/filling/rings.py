@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, nearest
-from ..types import Array
+from ..types import Array, Index
 
 MARK = 0.25  # of the reach, mm between the places of a ring that tell which others are near
 
@@ -75,7 +74,7 @@ def side_by_side(rings: Sequence[Ring], reach: float) -> list[AdjacentRings]:
     """All pairs of rings that come nearer to each other than `reach` mm, both ways round."""
     marks = [np.arange(0.0, ring.length, MARK * reach) for ring in rings]
     places = np.vstack([ring.at(at) for ring, at in zip(rings, marks)])
-    number: NDArray[np.intp] = np.repeat(np.arange(len(rings)), [len(at) for at in marks])
+    number: Index = np.repeat(np.arange(len(rings)), [len(at) for at in marks])
     pairs = cKDTree(places).query_pairs(reach, output_type="ndarray")
     pairs = pairs[number[pairs[:, 0]] != number[pairs[:, 1]]]
     pairs = np.vstack([pairs, pairs[:, ::-1]])

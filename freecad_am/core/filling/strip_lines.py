@@ -8,13 +8,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.curves.plane_curve import dense
 from ..geometry.regions.region import Region, regions
 from ..geometry.regions.several import grown
 from ..geometry.regions.strip import Strip
-from ..types import Array
+from ..types import Array, Mask
 from .curve import Beads, PlaneCurve, contours_of, long_enough
 from .lines import levels_between
 from .strip_closing import strip_closing
@@ -115,7 +114,7 @@ class _Inside:
             for k in (-1, 0, 1):
                 self.unrolled += regions([uv + np.array([k * turn, 0.0]) for uv in borders])
 
-    def contains(self, uv: Array) -> NDArray[np.bool_]:
+    def contains(self, uv: Array) -> Mask:
         """Which of (u, v) (n, 2) within one turn lie in one of them."""
         inside = np.zeros(len(uv), dtype=bool)
         for piece in self.unrolled:
@@ -131,7 +130,7 @@ class _Inside:
         return within
 
 
-def _runs(inside: NDArray[np.bool_], closed: bool = True) -> list[tuple[int, int]]:
+def _runs(inside: Mask, closed: bool = True) -> list[tuple[int, int]]:
     """First and one past the last of each run of members; one across the end of a closed list goes past its length."""
     count = len(inside)
     if inside.all():

@@ -11,9 +11,8 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array
+from ..types import Array, Integers
 from .columns import dots
 from .developable import Developable
 from .mesh.facets import doubled_areas
@@ -24,7 +23,7 @@ from .on_hub import SolidsOnHub
 PLACES = 10_000  # of the solid's surface, if its triangles were squares
 
 
-def volume_beyond(surface: Developable, vertices: Array, triangles: NDArray[np.int64]) -> float:
+def volume_beyond(surface: Developable, vertices: Array, triangles: Integers) -> float:
     """Volume, mm3, of a closed mesh (n, 3), (m, 3) in the frame of a hub, outside of that; good to about 1e-4 of it."""
     corner = vertices[triangles]
     area = doubled_areas(corner) / 2.0

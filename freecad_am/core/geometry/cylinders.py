@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array
+from ..types import Array, Integers, Mask
 from .columns import lengths
 
 PIECES = 8  # a shape is cut into at most so many
@@ -30,13 +29,13 @@ class Cylinder:
         """From end to end, mm."""
         return float(np.linalg.norm(self.end - self.start))
 
-    def holds(self, points: Array) -> NDArray[np.bool_]:
+    def holds(self, points: Array) -> Mask:
         """(n,) whether points (n, 3) are in it, or on it."""
         axis = (self.end - self.start) / self.length
         offset = points - self.start
         along = offset @ axis
         away = lengths(offset - along[:, None] * axis)
-        held: NDArray[np.bool_] = (
+        held: Mask = (
             (along >= -_ROUNDING) & (along <= self.length + _ROUNDING) & (away <= self.radius + _ROUNDING)
         )
         return held
@@ -60,7 +59,7 @@ def about(points: Array) -> Cylinder:
     return min(found, key=lambda one: one[0])[1]
 
 
-def row(points: Array, triangles: NDArray[np.int64]) -> list[Cylinder]:
+def row(points: Array, triangles: Integers) -> list[Cylinder]:
     """Cylinders in a row that together hold a shape of triangles (m, 3) of points (n, 3): its pieces along its longest
     direction, each with its cylinder."""
     used = points[np.unique(triangles)]

@@ -8,9 +8,8 @@ are free everywhere, so that one call serves one pose and a hundred thousand.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..types import Array
+from ..types import Array, ArrayLike
 
 
 def pose(rotation: ArrayLike, origin: ArrayLike) -> Array:

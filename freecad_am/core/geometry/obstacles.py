@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array
+from ..types import Array, Integers
 
 DISC_SIDES = 72
 
@@ -23,7 +22,7 @@ class Body:
 
     name: str
     vertices: Array
-    triangles: NDArray[np.int64]
+    triangles: Integers
 
     def corners(self) -> Array:
         """(m, 3, 3) the three corners of each triangle."""

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..issues import Issue
-from ..types import Array
+from ..types import Array, Mask
 from .angles import TURN
 from .columns import columns
 from .curves.guide import Guide
@@ -57,7 +56,7 @@ class Stretch(NamedTuple):
     start: float = 0.0
     span: float = TURN
 
-    def near(self, points: Array, margin: float, all_round: bool = False) -> NDArray[np.bool_]:
+    def near(self, points: Array, margin: float, all_round: bool = False) -> Mask:
         """Which of points (n, 3) of the base's frame are on the face, or within `margin` mm past its ends; all_round:
         whatever their azimuths."""
         x, y, z = columns(points)

@@ -8,26 +8,27 @@ library. Of values alike to a grain the first is taken.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+
+from ..types import Array, ArrayLike, Index, Mask
 
 GRAIN, SHARE = 1e-9, 1e-14
 
 
-def alike(values: ArrayLike, best: ArrayLike) -> NDArray[np.bool_]:
+def alike(values: ArrayLike, best: ArrayLike) -> Mask:
     """Whether values are no greater than the best but for the grain; none that is NaN, all where the best is infinite."""
     most = np.asarray(best) + GRAIN + SHARE * np.abs(best)
-    good: NDArray[np.bool_] = np.asarray(values) <= most
+    good: Mask = np.asarray(values) <= most
     return good
 
 
-def first_least(values: NDArray[np.float64], axis: int = -1) -> NDArray[np.intp]:
+def first_least(values: Array, axis: int = -1) -> Index:
     """Index along the axis of the first of the values that are as small as the smallest, NaN being larger than any."""
     known = np.where(np.isnan(values), np.inf, values)
     with np.errstate(invalid="ignore"):
-        first: NDArray[np.intp] = alike(known, known.min(axis=axis, keepdims=True)).argmax(axis=axis)
+        first: Index = alike(known, known.min(axis=axis, keepdims=True)).argmax(axis=axis)
     return first
 
 
-def first_most(values: NDArray[np.float64], axis: int = -1) -> NDArray[np.intp]:
+def first_most(values: Array, axis: int = -1) -> Index:
     """Index along the axis of the first of the values that are as large as the largest, NaN being smaller than any."""
     return first_least(-values, axis)

@@ -9,9 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array, Index
+from ..types import Array, Index, Mask, NDArray
 from .frames import unit
 
 TURN = np.radians(20.0)  # a section is kept wherever the course has turned by this since the last one
@@ -41,7 +40,7 @@ class Mesh(NamedTuple):
     triangles: NDArray[np.int32]
 
 
-def frames(points: Array, build: Array, starts: Index, closed: NDArray[np.bool_]) -> Frames:
+def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
     """The frames of beads one after the other.
 
     points, build: (n, 3). starts: (m + 1,) first row of each bead, and n. closed: (m,), whether the last point is the first.
@@ -64,16 +63,16 @@ def frames(points: Array, build: Array, starts: Index, closed: NDArray[np.bool_]
     return Frames(side, up, 1.0 / np.maximum(0.5 * cosine, _SHARPEST), turn)
 
 
-def kept(turn: Array, starts: Index, stride: int) -> NDArray[np.bool_]:
+def kept(turn: Array, starts: Index, stride: int) -> Mask:
     """(n,) which points get a section: each `stride`-th, the ends of beads, and more where the course turns."""
-    keep: NDArray[np.bool_] = np.arange(len(turn)) % stride == 0
+    keep: Mask = np.arange(len(turn)) % stride == 0
     turned = np.floor(np.cumsum(turn) / TURN)
     keep[1:] |= np.diff(turned) > 0.0
     keep[np.concatenate([starts[:-1], starts[1:] - 1])] = True
     return keep
 
 
-def mesh(points: Array, across: Frames, width: Array, height: Array, ends: NDArray[np.bool_], sides: int) -> Mesh:
+def mesh(points: Array, across: Frames, width: Array, height: Array, ends: Mask, sides: int) -> Mesh:
     """Tubes through points (k, 3), which are in the middle of their foot.
 
     across: of these points. width, height: (k,) mm. ends: (k,) True at the last point of a tube. sides: a key of SECTIONS.
@@ -88,7 +87,7 @@ def mesh(points: Array, across: Frames, width: Array, height: Array, ends: NDArr
     return Mesh(corners.reshape(-1, 3), unit(normals).reshape(-1, 3), _triangles(ends, sides))
 
 
-def _triangles(ends: NDArray[np.bool_], sides: int) -> NDArray[np.int32]:
+def _triangles(ends: Mask, sides: int) -> NDArray[np.int32]:
     """Seen from outside, counterclockwise where `side`, `up` and the course are right-handed."""
     number, turn = np.arange(sides), np.roll(np.arange(sides), -1)
     rows = np.flatnonzero(~ends[:-1])[:, None] * sides

@@ -7,10 +7,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.formatting import round_step
-from ..types import Array
+from ..types import Array, Integers, Mask
 
 STEPS = 3  # tolerances at which bands end
 NICE = (1.0, 2.0, 5.0, 10.0)  # tolerances, times powers of ten
@@ -39,10 +38,10 @@ def bands(tolerance: float) -> tuple[Band, ...]:
     return tuple(Band(text, colour) for text, colour in zip(texts, _COLOURS, strict=True))
 
 
-def band_of(deviation: Array, tolerance: float) -> NDArray[np.int64]:
+def band_of(deviation: Array, tolerance: float) -> Integers:
     """The number in `bands` (n,) of deviations (n,)."""
     step = np.clip(np.ceil(np.abs(deviation) / tolerance - 1e-12) - 1.0, 0.0, STEPS)
-    band: NDArray[np.int64] = (STEPS + np.sign(deviation) * step).astype(np.int64)
+    band: Integers = (STEPS + np.sign(deviation) * step).astype(np.int64)
     return band
 
 
@@ -51,7 +50,7 @@ def css(colour: tuple[float, float, float]) -> str:
     return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
 
 
-def colours(deviation: Array, within: NDArray[np.bool_], tolerance: float) -> Array:
+def colours(deviation: Array, within: Mask, tolerance: float) -> Array:
     """Colours (n, 3) of deviations (n,); grey where they do not count."""
     found = np.array(_COLOURS)[band_of(deviation, tolerance)]
     found[~within] = PAST_EDGES

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import Meridian
 from ..issues import InputError, Text
-from ..types import Array
+from ..types import Array, Integers, Mask
 from .planned import Planned
 from .roundness import Round, least, narrowest
 
@@ -37,7 +36,7 @@ class Spread:
     within_95: float
     within: float
     edges: Array
-    counts: NDArray[np.int64]
+    counts: Integers
 
 
 @dataclass(frozen=True)
@@ -148,7 +147,7 @@ def _grown(meridian: Meridian, heights: Array, radius: Array, height: float) -> 
 
 
 def thickness(
-    feet: Array, deviation: Array, outer: NDArray[np.bool_], planned: float, reach: float
+    feet: Array, deviation: Array, outer: Mask, planned: float, reach: float
 ) -> Thickness | None:
     """Thickness where places (n, 3) of the planned surface that were measured on its outer side have others of the inner
     side within `reach` mm: `planned` mm and both deviations (n,). None where there are no such pairs."""

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.fitted import REMAINS, Fitted
@@ -20,7 +19,7 @@ from ..geometry.formatting import place
 from ..issues import NOTE, WARNING, InputError, Issue, Text
 from ..parameters.scan import ScanParameters
 from ..toolpath import Bead, Layer, Toolpath
-from ..types import Array
+from ..types import Array, Index
 from .scan_heights import Scan
 from .scanned_beads import STEP, Off, Scanned, Ways, along_beads, moved
 
@@ -90,7 +89,7 @@ def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out:
     )
 
 
-def moved_most(record: Fitted, layers: NDArray[np.intp]) -> Array:
+def moved_most(record: Fitted, layers: Index) -> Array:
     """(n,) mm that points of the layers (n,) were moved at most to fit them to a scan."""
     most = float(np.abs(record.off).max(initial=0.0))
     left = 1.0 - (record.remains / most if most else 0.0)  # of the way back, what the last layer has gone

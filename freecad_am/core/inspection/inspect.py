@@ -7,11 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..issues import NOTE, WARNING, InputError, Issue, Text
 from ..parameters.inspection import AXIS, BEST, BOTH, NONE, SHIFT, InspectionParameters
-from ..types import Array
+from ..types import Array, Mask
 from . import figures
 from .figures import Ball, Circle, Spread, Thickness
 from .planned import Planned, sided
@@ -51,8 +50,8 @@ class Inspected:
 
     points: Array
     deviation: Array
-    counted: NDArray[np.bool_]
-    fitted: NDArray[np.bool_]
+    counted: Mask
+    fitted: Mask
     motion: Array
     free: tuple[str, ...]
     tolerance: float
@@ -104,7 +103,7 @@ def inspect(measured: Measured, planned: Planned, parameters: InspectionParamete
 
 def _aligned(
     measured: Measured, planned: Planned, parameters: InspectionParameters
-) -> tuple[Registration, NDArray[np.bool_], Surface]:
+) -> tuple[Registration, Mask, Surface]:
     """The fit, which points are not past the edges, and the surface that was fitted to."""
     radius, trim, where = parameters.probe_radius, parameters.trim, measured.label
     points = measured.points
@@ -170,7 +169,7 @@ def _allowed(planned: Planned, parameters: InspectionParameters) -> Array | None
 
 
 def _thickness(
-    aligned: Array, deviation: Array, within: NDArray[np.bool_], planned: Planned, parameters: InspectionParameters
+    aligned: Array, deviation: Array, within: Mask, planned: Planned, parameters: InspectionParameters
 ) -> Thickness | None:
     if parameters.side != BOTH:
         return None
@@ -189,7 +188,7 @@ def _unlike(points: Array, planned: Planned) -> list[Issue]:
 
 
 def _issues(
-    found: Registration, planned: Planned, within: NDArray[np.bool_], fitted: NDArray[np.bool_], is_ball: bool
+    found: Registration, planned: Planned, within: Mask, fitted: Mask, is_ball: bool
 ) -> list[Issue]:
     free = ("turning it about the centre of the sphere",) if is_ball and len(found.free) == 3 else found.free
     issues = [Issue(NOTE, "FREE_MOTION", Text("{} changes no deviation: the points do not determine "

@@ -6,10 +6,9 @@ from __future__ import annotations
 import re
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..issues import InputError
-from ..types import Array
+from ..types import Array, Mask
 
 _PLY_TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
@@ -29,9 +28,9 @@ def stl(data: bytes, where: str) -> Array:
         corners = _numbers(re.findall(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", data), where)
     points = corners.astype(np.float64)
     points = points[np.lexsort(points.T[::-1])]  # as np.unique of rows has them, which holds up other threads meanwhile
-    other: NDArray[np.bool_] = np.ones(len(points), dtype=bool)
+    other: Mask = np.ones(len(points), dtype=bool)
     other[1:] = (points[1:] != points[:-1]).any(axis=1)
-    kept: NDArray[np.float64] = points[other]
+    kept: Array = points[other]
     return kept
 
 

@@ -7,14 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.walls.surface import dot
 from ..parameters.inspection import BOTH, INNER
-from ..types import Array, Mask
+from ..types import Array, Index, Mask
 from .registration import Surface
 
 PAST = 0.5  # mm past an edge that a point may be and still count
@@ -69,7 +68,7 @@ def sided(surface: Surface, side: str, thickness: float) -> Surface:
 
 
 def of_triangles(
-    name: str, vertices: Array, triangles: NDArray[np.intp], frame: Array | None = None, exact: Surface | None = None,
+    name: str, vertices: Array, triangles: Index, frame: Array | None = None, exact: Surface | None = None,
     chord: float = 0.0, most: int = 20_000,
 ) -> Planned:
     """A surface of triangles, those of a solid counter-clockwise seen from outside; or what they stand for, by `exact`."""
@@ -106,7 +105,7 @@ def of_beads(name: str, samples: Array, normals: Array, frame: Array, step: floa
         _, at = tree.query(points)
         return dot(points - samples[at], normals[at]), normals[at]
 
-    def off(points: Array) -> tuple[Array, NDArray[np.intp], Array]:
+    def off(points: Array) -> tuple[Array, Index, Array]:
         found = tree.query(points)
         distance, at = np.asarray(found[0]), np.asarray(found[1])
         along = dot(points - samples[at], normals[at])

@@ -7,10 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..toolpath import Bead
-from ..types import Array, Mask
+from ..types import Array, Index, Mask
 
 Ways = Callable[[Bead], Array]
 Off = Callable[[Array, Array], Array]  # points (n, 3) and directions (n, 3): mm (n,) along these
@@ -60,13 +59,13 @@ def along_beads(beads: Sequence[Bead], ways: Ways, off: Off, share: float, toler
     return [Scanned(bead, ways(bead), heights) for bead, heights in zip(known, found, strict=True)]
 
 
-def _between(ways: Array, segments: NDArray[np.intp]) -> Array:
+def _between(ways: Array, segments: Index) -> Array:
     mean = ways[segments] + ways[segments + 1]
     return np.asarray(mean / np.linalg.norm(mean, axis=1, keepdims=True))
 
 
 def _halved(
-    bead: Bead, off: Array, segments: NDArray[np.intp], middle: Array, share: float, close: float
+    bead: Bead, off: Array, segments: Index, middle: Array, share: float, close: float
 ) -> tuple[Bead, Array, Mask]:
     """The bead with those of the segments halved that need it, what the scan is off it, and which segments to look at
     next."""

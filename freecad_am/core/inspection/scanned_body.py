@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.mesh.refined import refined
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.obstacles import Body
-from ..types import Array
+from ..types import Array, Mask
 from .scan_heights import Scan
 
 PARTS = 40  # along the longest side of the body, of its triangles once they are divided
@@ -18,7 +17,7 @@ MAX_TRIANGLES = 100_000  # triangles
 FACING = 0.2  # cosine; faces that lean farther away from where layers grow are not scanned along their normals
 
 
-def facing(points: Array, body: Body, ways: Array) -> NDArray[np.bool_]:
+def facing(points: Array, body: Body, ways: Array) -> Mask:
     """Which of points (n, 3) are nearest to triangles of the body that face one of the directions (m, 3)."""
     solid = SolidMesh(body.vertices, body.triangles)
     extent = float(np.ptp(body.vertices, axis=0).max())

@@ -13,10 +13,9 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..geometry import frames
-from ..types import Array
+from ..types import Array, ArrayLike, Index, Mask
 
 # poses done together: what they need stays in the processor's cache, and a call is not longer than its work
 PIECE = 4096
@@ -42,8 +41,8 @@ class Chain:
     origins: Array
     directions: Array
     flange: Array
-    sliding: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
-    order: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    sliding: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    order: Index = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     _links: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -223,7 +222,7 @@ class Piece(NamedTuple):
 
     start: Array
     chain: Chain
-    values: NDArray[np.intp]
+    values: Index
 
 
 def joined(pieces: Sequence[Piece], end: Array) -> Chain:

@@ -16,12 +16,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..issues import InputError
 from ..parameters.external import PART, ROBOT, WHERE, External
-from ..types import Array
+from ..types import Array, Index
 from .chain import Chain, Piece, joined
 from .limits import Limits
 from .machines import machine as machines
@@ -40,7 +39,7 @@ class Mechanism:
     machine: Machine
     carries: str
     place: Array
-    values: NDArray[np.intp]
+    values: Index
     under: int | None
 
 
@@ -57,7 +56,7 @@ class ExternalAxes:
     to_robot: Chain
     up: Array
     turning: tuple[Array, ...]
-    turned: NDArray[np.intp]
+    turned: Index
     at_zero: Array
     along: Array | None = None
     slides: int | None = None
@@ -209,7 +208,7 @@ def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
     return joined(pieces, np.eye(4)), before
 
 
-def _mechanisms(found: Sequence[tuple[External, Machine]], values: Sequence[NDArray[np.intp]]) -> tuple[Mechanism, ...]:
+def _mechanisms(found: Sequence[tuple[External, Machine]], values: Sequence[Index]) -> tuple[Mechanism, ...]:
     """The mechanisms where they stand: those that carry the part on one another."""
     adjacent: list[Mechanism] = []
     under: int | None = None

@@ -13,9 +13,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..types import Array
+from ..types import Array, ArrayLike
 from . import eigen
 from .chain import Chain
 

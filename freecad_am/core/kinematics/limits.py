@@ -8,16 +8,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ..types import Array
+from ..types import Array, ArrayLike, Index, Mask
 
 
 class Smallest(NamedTuple):
     """The smallest margin of each joint vector, rad, and which limit it is to, as an index into `Limits.labels`."""
 
     margin: Array
-    label: NDArray[np.intp]
+    label: Index
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +47,9 @@ class Limits:
         return len(self.lower)
 
     @property
-    def continuous(self) -> NDArray[np.bool_]:
+    def continuous(self) -> Mask:
         """Which axes (axes,) turn without end."""
-        without: NDArray[np.bool_] = ~np.isfinite(self.upper - self.lower)
+        without: Mask = ~np.isfinite(self.upper - self.lower)
         return without
 
     def margin(self, q: ArrayLike) -> Array:
@@ -89,9 +88,9 @@ class Limits:
         index = np.argmin(margins, axis=-1)
         return Smallest(np.take_along_axis(margins, index[..., None], axis=-1)[..., 0], index)
 
-    def exceeded(self, q: ArrayLike, tolerance: float = 0.0) -> NDArray[np.bool_]:
+    def exceeded(self, q: ArrayLike, tolerance: float = 0.0) -> Mask:
         """Which limits (..., axes + m) the joint vectors (..., axes) exceed by more than `tolerance`, rad."""
-        result: NDArray[np.bool_] = self.margin(q) < -tolerance
+        result: Mask = self.margin(q) < -tolerance
         return result
 
 

@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array
+from ..types import Array, Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +18,7 @@ class PoseFrames:
     sign: float
     right: Array
 
-    def of(self, chosen: slice | NDArray[np.int64]) -> PoseFrames:
+    def of(self, chosen: slice | Integers) -> PoseFrames:
         """The frames of chosen points."""
         left = self.left if len(self.left) == 1 else self.left[chosen]
         right = self.right if len(self.right) == 1 else self.right[chosen]

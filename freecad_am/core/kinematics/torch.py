@@ -10,17 +10,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..collision.inside import inside_of
 from ..geometry.cylinders import Cylinder, about
 from ..geometry.obstacles import Body
 from ..issues import InputError, Text, Word
 from ..parameters.cell import NozzleParameters
-from ..types import Array
+from ..types import Array, Integers
 
-Triangles = NDArray[np.int64]
-Piece = tuple[Array, Triangles]
+Piece = tuple[Array, Integers]
 
 CODE, WHERE = "TORCH", "cell.nozzle.shape"
 FARTHEST = 50.0  # mm from the tip to the torch, which a wire is not longer; a file that is farther off has another origin
@@ -101,7 +99,7 @@ def _halves(piece: Piece) -> list[tuple[Piece, Piece]]:
     return found
 
 
-def cut(points: Array, triangles: Triangles, height: float, above: bool, axis: int = 2) -> Piece:
+def cut(points: Array, triangles: Integers, height: float, above: bool, axis: int = 2) -> Piece:
     """What of triangles (m, 3) of points (n, 3) is above, or below, a height along an axis: points and triangles."""
     side = (points[:, axis] - height) * (1.0 if above else -1.0)
     inside = side[triangles] >= 0.0
@@ -124,7 +122,7 @@ def cut(points: Array, triangles: Triangles, height: float, above: bool, axis: i
     return np.concatenate(more), np.concatenate(kept)
 
 
-def _crossing(points: Array, side: Array, one: NDArray[np.int64], other: NDArray[np.int64]) -> Array:
+def _crossing(points: Array, side: Array, one: Integers, other: Integers) -> Array:
     share = (side[one] / (side[one] - side[other]))[:, None]
     return np.asarray(points[one] + share * (points[other] - points[one]))
 

@@ -7,9 +7,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..issues import InputError
+from ..types import Array
 from . import field as f
 from .cell import Pose
 
@@ -64,7 +64,7 @@ class PlaceParameters:
             raise InputError("BAD_VALUE", "place.step", "these are {} poses, more than {}; give a larger step or a smaller "
                              "box", count, MAX_POSES)
 
-    def _values(self) -> list[NDArray[np.float64]]:
+    def _values(self) -> list[Array]:
         """What is added to each of the six numbers of a pose."""
         found = []
         for number, name in enumerate(SIDES):
@@ -73,11 +73,11 @@ class PlaceParameters:
             found.append(step * np.arange(-most, most + 1))
         return found
 
-    def changes(self) -> NDArray[np.float64]:
+    def changes(self) -> Array:
         """(P, 6) what is added to the six numbers of a pose, mm and rad; nothing for one of them, in the middle."""
         grids = np.meshgrid(*self._values(), indexing="ij")
         return np.stack([grid.ravel() for grid in grids], axis=1)
 
-    def poses(self, about: Pose) -> NDArray[np.float64]:
+    def poses(self, about: Pose) -> Array:
         """(P, 6) the poses of the box about one, mm and rad."""
         return np.asarray(np.array(about) + self.changes())

@@ -10,10 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..kinematics import jacobian as jac
-from ..types import Array
+from ..types import Array, Integers, Mask
 from .points import Points, steps
 from .task import Task
 
@@ -136,8 +135,8 @@ def _mean(points: Points, values: Array) -> Array:
     return mean
 
 
-def _is_worst(points: Points, values: Array) -> NDArray[np.bool_]:
+def _is_worst(points: Points, values: Array) -> Mask:
     # one point per bead, the first of the worst ones, so that a sum over points is the gradient of the maximum
     worst = values <= points.worst(values)[points.bead]
-    seen: NDArray[np.int64] = np.cumsum(worst) - (np.cumsum(worst) - worst)[points.first][points.bead]
+    seen: Integers = np.cumsum(worst) - (np.cumsum(worst) - worst)[points.first][points.bead]
     return np.asarray(worst & (seen == 1), dtype=np.bool_)

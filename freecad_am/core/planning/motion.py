@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.obstacles import Body
 from ..issues import Issue
@@ -17,7 +16,7 @@ from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
 from ..program import SHORTEST_RAPID
-from ..types import Array
+from ..types import Array, Integers
 from . import nozzle_obstacles
 from .arm.kept import Cylinders
 from .beads.retreat import turns_back
@@ -34,7 +33,7 @@ OF_ALL = ("layer", "bead", "bead_class")  # what is the same for all rows of a p
 class _Rows:
     """Some rows of a motion before they are joined."""
 
-    role: NDArray[np.int64]
+    role: Integers
     layer: int
     bead: int
     bead_class: int

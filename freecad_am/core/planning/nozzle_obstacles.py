@@ -6,7 +6,6 @@ among all that stands about the part."""
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..collision.nozzle import depositing
 from ..collision.scene import scene
@@ -14,7 +13,7 @@ from ..geometry import frames
 from ..issues import ERROR, Issue, Text, Word
 from ..kinematics.cell import Cell
 from ..motion import Motion
-from ..types import Array
+from ..types import Array, Mask
 from .rapids.clearance import evenly
 
 ON_BEADS = "CLEARANCE"
@@ -44,7 +43,7 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
     return found
 
 
-def met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
+def met(cell: Cell, start: Array, end: Array) -> Mask:
     """(k, n) which of what is `in_the_way` a nozzle meets on n moves straight in the joints (n, axes); none where these are
     NaN."""
     found = np.zeros((len(in_the_way(cell)), len(start)), dtype=bool)
@@ -57,7 +56,7 @@ def met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
     return found
 
 
-def _met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
+def _met(cell: Cell, start: Array, end: Array) -> Mask:
     nozzle, turned, obstacles = cell.nozzle, end - start, len(cell.obstacles)
     found = np.zeros((obstacles + len(cell.external_links), len(start)), dtype=bool)
     far = np.abs(turned / np.where(cell.machine.chain.sliding, SLIDE, STEP)).max(axis=1, initial=0.0)

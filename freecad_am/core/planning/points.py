@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.angles import TURN, shortest
 from ..kinematics.cell import Cell
 from ..kinematics.pose_frames import PoseFrames
 from ..toolpath import Bead
-from ..types import Array
+from ..types import Array, Integers, Mask
 
 PIECE = 4096  # points whose poses and Jacobians are held together
 UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
@@ -30,12 +29,12 @@ class Points:
     position: Array
     tool: Array
     parameter: Array
-    first: NDArray[np.int64]
-    bead: NDArray[np.int64]
-    closed: NDArray[np.bool_]
+    first: Integers
+    bead: Integers
+    closed: Mask
     frames: PoseFrames
     external: Array | None = None
-    sliding: NDArray[np.bool_] | None = None
+    sliding: Mask | None = None
 
     def __len__(self) -> int:
         return len(self.position)
@@ -51,13 +50,13 @@ class Points:
         return self.parameter[self.first], self.parameter[np.append(self.first[1:], len(self)) - 1]
 
     @cached_property
-    def starts(self) -> NDArray[np.bool_]:
+    def starts(self) -> Mask:
         """(T,) bool, true at the first point of a bead."""
         starts = np.zeros(len(self.position), dtype=bool)
         starts[self.first] = True
         return starts
 
-    def each(self, index: NDArray[np.int64]) -> Points:
+    def each(self, index: Integers) -> Points:
         """Chosen points, each as a bead of its own."""
         alone = np.arange(len(index))
         return Points(
@@ -143,7 +142,7 @@ def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None)
     return PoseFrames(np.concatenate([part.left for part in parts]), parts[0].sign, parts[0].right)
 
 
-def thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:
+def thinned(bead: Bead, most: int | None) -> Integers:
     """Which points of a bead are looked at, `most` per turn about the axis: all with None."""
     if most is None:
         return np.arange(len(bead))
@@ -155,9 +154,9 @@ def thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:
 
 
 @lru_cache(maxsize=64)
-def _evenly(count: int, most: int) -> NDArray[np.int64]:
+def _evenly(count: int, most: int) -> Integers:
     """So many of a count of points, both ends among them: beads have the same counts again and again."""
-    chosen: NDArray[np.int64] = np.unique(np.round(np.linspace(0, count - 1, most)).astype(np.int64))
+    chosen: Integers = np.unique(np.round(np.linspace(0, count - 1, most)).astype(np.int64))
     chosen.flags.writeable = False
     return chosen
 

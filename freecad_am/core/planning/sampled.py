@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.angles import TURN
 from ..parameters.joints import given_polynomials
 from ..toolpath import Bead, Toolpath
+from ..types import Index
 
 PER_TURN = 16  # points of a turn that are kept, about
 FEWEST_PER_TURN = 5  # where beads of many turns are too few to leave some out: all sides are seen, axes still counted on
@@ -82,7 +82,7 @@ def _one_in(beads: Sequence[Bead], most: int, per_turn: int) -> int:
     return max(1, min(math.ceil(total / most), int(total / (per_turn * max(turns, 1.0)))))
 
 
-def _kept(bead: Bead, points: int) -> NDArray[np.intp]:
+def _kept(bead: Bead, points: int) -> Index:
     """The numbers of the points of a bead that are kept: one of so many, more of a short one and of turns with few."""
     last = len(bead) - 1
     step = max(1, min(points, last // LEAST))

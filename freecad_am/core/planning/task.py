@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.angles import TURN
 from ..kinematics import jacobian as jac
@@ -17,7 +16,7 @@ from ..kinematics.inverse.serial_arm import SerialArm
 from ..kinematics.pose_frames import PoseFrames
 from ..parameters.joints import JointParameters
 from ..toolpath import Toolpath
-from ..types import Array
+from ..types import Array, Index, Mask
 from .arm.kept import ArmKept
 from .limit_rows import LimitRows, limit_rows
 from .points import Points, in_pieces, unwrapped, unwrapped_by_turns
@@ -25,7 +24,7 @@ from .reserve import RESERVE
 from .turns import configurations as following
 from .turns.directed import Lock
 
-Parts = tuple[tuple[Toolpath, NDArray[np.intp]], ...]  # of a toolpath: that of each feature, and its layers in all of it
+Parts = tuple[tuple[Toolpath, Index], ...]  # of a toolpath: that of each feature, and its layers in all of it
 
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
@@ -68,12 +67,12 @@ class Task:
         return limit_rows(self.cell.limits)
 
     @cached_property
-    def continuous(self) -> NDArray[np.bool_]:
+    def continuous(self) -> Mask:
         """(axes,) bool, axes without limits."""
         return self.cell.limits.continuous
 
     @cached_property
-    def unturned(self) -> NDArray[np.bool_]:
+    def unturned(self) -> Mask:
         """(axes,) bool, axes whose whole turns count for nothing: those without limits, and those that slide."""
         return np.asarray(self.continuous | self.cell.machine.chain.sliding, dtype=np.bool_)
 

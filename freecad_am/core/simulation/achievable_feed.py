@@ -11,11 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..geometry.ramps import below
 from ..motion import Motion
-from ..types import Array
+from ..types import Array, ArrayLike, Index, Integers, Mask
 from .margins import speed_ratios
 
 # a share of an axis's speed that counts as more than it can do: what rounding leaves is none
@@ -41,11 +40,11 @@ class AchievableFeed:
     """
 
     ratio: Array
-    axis: NDArray[np.int64]
+    axis: Integers
     asked: Array
     achieved: Array
     duration: Array
-    slowed: NDArray[np.bool_]
+    slowed: Mask
     lost: float
 
 
@@ -84,8 +83,8 @@ def _rates(motion: Motion) -> Array:
 
 
 def _accelerated(
-    motion: Motion, factor: Array, axis: NDArray[np.int64], largest: Array
-) -> tuple[Array, NDArray[np.int64]]:
+    motion: Motion, factor: Array, axis: Integers, largest: Array
+) -> tuple[Array, Integers]:
     """The factors (n,) of speed that also keep the accelerations, and the axes that ask for them.
 
     With a clock u that runs evenly at the speed asked for and the pace p = du/dt, an axis moves with q' p and accelerates
@@ -123,10 +122,10 @@ class _Way:
     largest: Array
     most: Array
     bound: Array
-    by_bend: NDArray[np.intp]
+    by_bend: Index
 
     @staticmethod
-    def of(speed: Array, time: Array, square: Array, largest: Array, block: NDArray[np.int64]) -> _Way:
+    def of(speed: Array, time: Array, square: Array, largest: Array, block: Integers) -> _Way:
         """The way of segments with their bounds of p^2; it rests at both ends and between blocks."""
         bend = np.zeros((len(speed) + 1, speed.shape[1]))
         bend[1:-1] = np.abs(np.diff(speed, axis=0)) / (0.5 * (time[:-1] + time[1:]))[:, None]
@@ -157,7 +156,7 @@ class _Way:
         lower: Array = np.maximum(np.minimum(below(ceiling, total), ceiling), 0.0)
         return lower
 
-    def gain(self, ceiling: Array) -> tuple[Array, NDArray[np.intp]]:
+    def gain(self, ceiling: Array) -> tuple[Array, Index]:
         """(m,) by how much p^2 may change over each segment while it is below the ceiling, and the axis that bounds it."""
         with np.errstate(divide="ignore", invalid="ignore"):
             left = self.largest - np.where(self.bend > 0.0, self.bend * ceiling[:, None], 0.0)
@@ -166,11 +165,11 @@ class _Way:
         return np.minimum(slopes.min(axis=1) * self.time, _ANY), slopes.argmin(axis=1)
 
 
-def _blocks(motion: Motion) -> NDArray[np.int64]:
+def _blocks(motion: Motion) -> Integers:
     """(n,) int, the same for rows that a program runs through without a stop."""
     columns = (motion.deposit.astype(np.int64), motion.layer, motion.bead)
     new = np.any([np.diff(column, prepend=column[:1]) != 0 for column in columns], axis=0)
-    blocks: NDArray[np.int64] = np.cumsum(new)
+    blocks: Integers = np.cumsum(new)
     return blocks
 
 

@@ -7,9 +7,8 @@ Rows with unreachable points have NaN joints, and NaN here too.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array
+from ..types import Array, Integers, Mask
 
 
 def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:
@@ -24,14 +23,14 @@ def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:
     return np.divide(speed, most, out=np.zeros_like(speed), where=np.isfinite(most) | np.isnan(speed))
 
 
-def on_deposit(deposit: NDArray[np.bool_], values: Array) -> Array:
+def on_deposit(deposit: Mask, values: Array) -> Array:
     """(n,) the values (k,) of the k rows that deposit, such as the condition of a joint path's beads; NaN on the others."""
     found = np.full(len(deposit), np.nan)
     found[deposit] = values
     return found
 
 
-def from_next(deposit: NDArray[np.bool_], point: NDArray[np.int64], values: Array) -> Array:
+def from_next(deposit: Mask, point: Integers, values: Array) -> Array:
     """(n,) values of segments, with the first row of each bead, that ends none, taking that of the row after it.
 
     deposit, point: (n,) as in a motion.

@@ -10,12 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..geometry import frames
 from ..kinematics.cell import Cell
 from ..kinematics.inverse.five_axis import TURNING, FiveAxis
-from ..types import Array
+from ..types import Array, ArrayLike
 from .table_links import standing_link
 
 # rotations about the nozzle that are looked at for a robot at rest

@@ -11,12 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES
 from ..parameters.process import ProcessParameters
-from ..types import Array
+from ..types import Array, ArrayLike, Integers, Mask
 
 # rapid rows between beads that begin with the withdrawal from the bead before; fewer begin on it
 WITH_WITHDRAWAL = 3
@@ -32,12 +31,12 @@ class State:
     standing: bool. speed: mm/s at the deposition point, as asked; 0 while it stands.
     """
 
-    row: NDArray[np.int64]
+    row: Integers
     share: Array
     joints: Array
     position: Array
-    deposit: NDArray[np.bool_]
-    standing: NDArray[np.bool_]
+    deposit: Mask
+    standing: Mask
     speed: Array
 
 
@@ -53,8 +52,8 @@ class Timeline:
     arrive: Array
     leave: Array
     lit: Array
-    layers: NDArray[np.int64]
-    layer_rows: NDArray[np.int64]
+    layers: Integers
+    layer_rows: Integers
 
     @property
     def total(self) -> float:

@@ -9,14 +9,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..issues import NOTE, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import LINKS_MORE
 from ..kinematics.links.rounds import NONE
 from ..motion import Motion
-from ..types import Array
+from ..types import Array, ArrayLike, Index, Integers, Mask
 from .achievable_feed import AchievableFeed
 from .arm import ArmTouches
 
@@ -51,25 +50,25 @@ class Watch:
     NONE where none does; arm_known: whether that was looked at."""
 
     margin: Array
-    limit: NDArray[np.intp]
+    limit: Index
     condition: Array
     threshold: Array
     findings: tuple[Finding, ...]
-    touching: NDArray[np.int64]
+    touching: Integers
     arm_known: bool
 
     @cached_property
-    def past(self) -> NDArray[np.bool_]:
+    def past(self) -> Mask:
         """(n,) rows past a limit."""
         with np.errstate(invalid="ignore"):
-            past: NDArray[np.bool_] = self.margin < -_ROUNDING
+            past: Mask = self.margin < -_ROUNDING
         return past
 
     @cached_property
-    def singular(self) -> NDArray[np.bool_]:
+    def singular(self) -> Mask:
         """(n,) rows nearer to a singularity than is allowed."""
         with np.errstate(invalid="ignore"):
-            near: NDArray[np.bool_] = self.condition < self.threshold * (1.0 - 1e-9)
+            near: Mask = self.condition < self.threshold * (1.0 - 1e-9)
         return near
 
 
@@ -83,7 +82,7 @@ def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
 
 def bad_links(
     cell: Cell, margins: ArrayLike, ratios: ArrayLike, singular: bool, reachable: bool, touching: int = NONE
-) -> NDArray[np.bool_]:
+) -> Mask:
     """(axes + 1,) links to be marked, base first: those whose axis is at or past a limit, near one, or asked to be faster
     than it can be; those of a coupled limit; the one that is `touching` something; all that move where the machine is near a
     singularity or does not reach.
@@ -148,7 +147,7 @@ def _touching(arm: ArmTouches) -> list[Finding]:
     return [Finding(int(row), TOUCHES, arm.links[arm.link[row]], other=arm.names[arm.what[row]]) for row in starts]
 
 
-def _runs(mask: NDArray[np.bool_], values: Array) -> list[tuple[int, int]]:
+def _runs(mask: Mask, values: Array) -> list[tuple[int, int]]:
     """First row, and row of the smallest value, of every run of rows in which the mask holds."""
     starts = np.flatnonzero(mask & ~np.concatenate([[False], mask[:-1]]))
     ends = np.flatnonzero(mask & ~np.concatenate([mask[1:], [False]])) + 1

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pivy import coin
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask
 
 from ...core.kinematics.links.external_links import ExternalLink
 from .machine_links import BAD, move, of_mesh
@@ -41,7 +40,7 @@ class ExternalLinkNodes:
         for matrix, frame in zip(self.matrices, frames):
             move(matrix, frame)
 
-    def paint(self, bad: NDArray[np.bool_]) -> None:
+    def paint(self, bad: Mask) -> None:
         """bad: (k,) of the external axes, those whose links are to be red; the others get their own colours back."""
         red = np.array([link.link > 0 and bool(bad[link.axis]) for link in self.links], dtype=bool)
         for index in np.flatnonzero(red != self.bad):

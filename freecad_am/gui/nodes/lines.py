@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pivy import coin
+
+from freecad_am.core.types import NDArray
 
 Array = NDArray[Any]
 

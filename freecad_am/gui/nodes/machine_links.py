@@ -9,10 +9,9 @@ from typing import Any
 
 import FreeCAD as App
 import numpy as np
-from numpy.typing import NDArray
 from pivy import coin
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers, Mask, NDArray
 
 from ...core.issues import InputError
 from ...core.kinematics.links import robot as robot_links
@@ -93,7 +92,7 @@ class MachineNodes:
             for matrix, pose in zip(self.matrices, links):
                 move(matrix, pose)
 
-    def paint(self, bad: NDArray[np.bool_]) -> None:
+    def paint(self, bad: Mask) -> None:
         """Links (axes + 1,) to be red; the others get their own colours back."""
         for index in np.flatnonzero(bad != self.bad):
             for material, colour in self.materials[index]:
@@ -146,7 +145,7 @@ def of_mesh(mesh: Mesh) -> Any:
     return group
 
 
-def _corners(triangles: NDArray[np.int64]) -> NDArray[np.int32]:
+def _corners(triangles: Integers) -> NDArray[np.int32]:
     """Corners as Coin wants them, each triangle with its end."""
     corners = np.full((len(triangles), 4), -1, dtype=np.int32)
     corners[:, :3] = triangles

@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from ...core.placement.judge import UNREACHED
 from ...core.placement.moved import outer
@@ -30,7 +29,7 @@ class Coloured:
     """shown: (m,) numbers of the poses that are drawn, the best of each place. colours: (m, 3). least, most: of the figures
     that colours tell, NaN where there is none."""
 
-    shown: NDArray[np.int64]
+    shown: Integers
     colours: Array
     least: float
     most: float

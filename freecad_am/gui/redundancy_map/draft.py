@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
 from ...core.parameters.joints import OF_CELL, given_text
@@ -37,10 +36,10 @@ class Sampled:
     plan. row: (T,) numbers of the points among all."""
 
     points: Points
-    kept: tuple[NDArray[np.int64], ...]
+    kept: tuple[Integers, ...]
     lasts: Array
     planned: Array
-    row: NDArray[np.int64]
+    row: Integers
 
 
 class Draft:
@@ -118,7 +117,7 @@ class Draft:
 
     # ---- the curve
 
-    def phi(self, points: Points, bead: NDArray[np.int64]) -> Array:
+    def phi(self, points: Points, bead: Integers) -> Array:
         """The rotation (T,) of the curve at points of beads (T,)."""
         task = self.source.task(self.branch)
         if self.kind == CONSTANT:

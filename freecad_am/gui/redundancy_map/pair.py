@@ -6,10 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask
 
 from ...core.planning.redundancy import across as rotation_across
 from ...core.planning.redundancy import map as redundancy_map
@@ -40,7 +39,7 @@ class Pair:
             task, self.cells, redundancy_map.ROTATION, self.source.toolpath.surroundings, np.array([self.phi]))
         return found, rotation_across.in_rows(redundancy_map.picture(task, found, branch), len(self.values))
 
-    def arm(self, branch: int, known: RedundancyMap) -> NDArray[np.bool_]:
+    def arm(self, branch: int, known: RedundancyMap) -> Mask:
         """(R, C) where links of the robot touch something."""
         source = self.source
         moment = source.starts[self.cells.bead] + self.cells.point

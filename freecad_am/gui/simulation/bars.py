@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide import QtCore, QtGui
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask
 
 from ..texts.translation import tr
 
@@ -34,7 +33,7 @@ class JointBars(QtGui.QWidget):
         self.setToolTip(tr("Each joint in its range, how far it is from the nearer limit, and the share of its largest "
                            "speed that is asked of it"))
 
-    def set(self, values: Array, margins: Array, ratios: Array, bad: NDArray[np.bool_]) -> None:
+    def set(self, values: Array, margins: Array, ratios: Array, bad: Mask) -> None:
         """(axes,) values and margins in the units shown, shares of the largest speeds, and which are to be red."""
         self.values, self.margins, self.ratios, self.bad = values, margins, ratios, bad
         self.update()

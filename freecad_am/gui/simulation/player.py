@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask
 
 from ...core.simulation.margins import speed_ratios
 from ...core.simulation.timeline import State
@@ -29,8 +28,8 @@ class Moment:
     values: Array
     margins: Array
     ratios: Array
-    bad: NDArray[np.bool_]
-    links: NDArray[np.bool_]
+    bad: Mask
+    links: Mask
     asked: float
     achieved: float
     condition: float

@@ -13,10 +13,9 @@ from typing import Any
 
 import FreeCAD as App
 import numpy as np
-from numpy.typing import NDArray
 from pivy import coin
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask
 
 from ...core.geometry import frames
 from ...core.kinematics.links.rounds import NONE
@@ -99,7 +98,7 @@ class Scene:
 
     # ---- each frame
 
-    def show(self, row: int, joints: Array, position: Array, running: bool, bad: NDArray[np.bool_]) -> None:
+    def show(self, row: int, joints: Array, position: Array, running: bool, bad: Mask) -> None:
         """Everything as it is on the way to a row, or at it. joints: (axes,), NaN leaves the machine where it is."""
         if np.isfinite(joints).all():
             self._place(placing(self.run.cell, joints))
@@ -145,9 +144,9 @@ class Scene:
                 self.view.setCamera(self.camera_text)
 
 
-def _wrong(run: Run) -> NDArray[np.bool_]:
+def _wrong(run: Run) -> Mask:
     """(n,) rows that are past a limit, near a singularity or out of reach, or at which a link touches something."""
-    wrong: NDArray[np.bool_] = (
+    wrong: Mask = (
         run.watch.past | run.watch.singular | (run.watch.touching != NONE) | ~run.motion.reachable
     )
     return wrong

@@ -9,9 +9,8 @@ from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers, Mask
 
 from ...core.issues import ERROR, InputError
 from ...core.kinematics.external import coupled
@@ -33,10 +32,10 @@ from .toolpath import band_of, width_of
 class Course:
     """Those columns of a motion of n rows that are drawn: to open a document they alone are read."""
 
-    deposit: NDArray[np.bool_]
-    layer: NDArray[np.int64]
-    bead: NDArray[np.int64]
-    point: NDArray[np.int64]
+    deposit: Mask
+    layer: Integers
+    bead: Integers
+    point: Integers
     position: Array
     width: Array
     joints: Array

@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from ...core.issues import Issue
 from ...core.kinematics.cell import Cell
@@ -58,7 +57,7 @@ def as_run(
     return AsRun(motion, condition[rows], threshold[rows], issues)
 
 
-def _renumbered(issue: Issue, before: Motion, after: Motion, origin: NDArray[np.int64]) -> Issue:
+def _renumbered(issue: Issue, before: Motion, after: Motion, origin: Integers) -> Issue:
     """A finding by the number that its point has among added ones, or of the last one before it where it is left out."""
     here = before.deposit & (before.layer == issue.layer) & (before.bead == issue.bead) & (before.point == issue.point)
     if issue.point is None or not here.any():

@@ -12,11 +12,8 @@ import zlib
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
-
-Bits = NDArray[np.int64]
+from freecad_am.core.types import Array, Integers
 
 PIECE = 8192  # numbers that have one order of differences, and are packed together
 HIGHEST = 8  # order; another one would double what is left of rounding, and foretell no better
@@ -72,7 +69,7 @@ def _packed(numbers: Array, share: int) -> bytes:
     return bytes([order]) + zlib.compress(planes, 1)
 
 
-def _order_of(differences: Bits) -> int:
+def _order_of(differences: Integers) -> int:
     """How many times differences are to be taken."""
     sizes = []
     for k in range(HIGHEST + 1):
@@ -81,7 +78,7 @@ def _order_of(differences: Bits) -> int:
     return sizes.index(min(sizes))
 
 
-def _once_more(differences: Bits) -> Bits:
+def _once_more(differences: Integers) -> Integers:
     """Differences of differences; the first is one to 0."""
     higher = np.empty_like(differences)
     higher[:1] = differences[:1]
@@ -89,7 +86,7 @@ def _once_more(differences: Bits) -> Bits:
     return higher
 
 
-def _unpack(piece: bytes, bits: Bits) -> None:
+def _unpack(piece: bytes, bits: Integers) -> None:
     """Fill the bits of the numbers of a piece."""
     planes = np.frombuffer(zlib.decompress(memoryview(piece)[1:], bufsize=8 * len(bits)), dtype=np.uint8)
     if len(planes) != 8 * len(bits) or piece[0] > HIGHEST:
@@ -113,12 +110,12 @@ def _unpack(piece: bytes, bits: Bits) -> None:
     np.bitwise_xor(sums, sign, out=bits)
 
 
-def _turned(bits: Bits) -> Bits:
+def _turned(bits: Integers) -> Integers:
     """Bits of numbers as whole numbers in their order, and the other way round."""
     return bits ^ (bits >> 63 & _BUT_SIGN)
 
 
-def _bits_of(differences: Bits) -> int:
+def _bits_of(differences: Integers) -> int:
     """How many bits differences have in all once they are folded; near enough to choose by."""
     size = differences ^ (differences >> 63)
     exponents = size.astype(np.float64).view(np.int64)

@@ -14,9 +14,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array, Index
+from freecad_am.core.types import Array, Index, Mask, NDArray
 
 Words = NDArray[np.uint64]
 
@@ -152,11 +151,11 @@ def _joined(pieces: list[tuple[Array, int]], size: int) -> Array:
     return numbers
 
 
-def _kept(size: int, copies: Index) -> NDArray[np.bool_]:
+def _kept(size: int, copies: Index) -> Mask:
     step = np.zeros(size + 1, dtype=np.int8)
     step[copies[:, 0]] += 1
     step[copies[:, 0] + copies[:, 2]] -= 1
-    kept: NDArray[np.bool_] = np.cumsum(step[:-1], dtype=np.int8) == 0
+    kept: Mask = np.cumsum(step[:-1], dtype=np.int8) == 0
     return kept
 
 

@@ -23,7 +23,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Integers, NDArray
 
 from ...core.issues import InputError
 from . import differences, repeats
@@ -58,12 +59,12 @@ def pack(value: Any, key: str) -> tuple[list[float], str]:
     return floats.tolist(), f"{key} {json.dumps(layout, separators=(',', ':'))}"
 
 
-def numbers_of(floats: list[float]) -> NDArray[np.float64]:
+def numbers_of(floats: list[float]) -> Array:
     """The floats of a document as an array. The list is best let go then: Python looks through it now and again."""
     return np.frombuffer(array.array("d", floats))  # twice as fast as numpy by itself
 
 
-def unpack(floats: Sequence[float] | NDArray[np.float64], text: str, key: str, where: str) -> Any:
+def unpack(floats: Sequence[float] | Array, text: str, key: str, where: str) -> Any:
     """The value of `pack`; InputError 'BAD_RESULT' naming `where` for one that is damaged, unknown, or of another key.
 
     While a step is undone, floats, text and key come back one after the other: for a moment they do not belong together.
@@ -72,7 +73,7 @@ def unpack(floats: Sequence[float] | NDArray[np.float64], text: str, key: str, w
 
 
 def picked(
-    floats: Sequence[float] | NDArray[np.float64], text: str, key: str, where: str, *places: Place
+    floats: Sequence[float] | Array, text: str, key: str, where: str, *places: Place
 ) -> tuple[Any, ...]:
     """Values within that of `pack`, nothing else of it read: by the field names and indices that lead to each. Errors as
     `unpack`."""
@@ -95,7 +96,7 @@ def _within(tree: Any, place: Place) -> Any:
     return tree
 
 
-def _newer(layout: Any, floats: NDArray[np.float64], all_of_it: bool) -> tuple[Any, _Reader]:
+def _newer(layout: Any, floats: Array, all_of_it: bool) -> tuple[Any, _Reader]:
     """The tree of a layout, and what reads it, or parts of it, from the floats."""
     packed, *lengths = layout["p"]
     ends = np.cumsum([packed, *lengths[0], *lengths[1]]).tolist()
@@ -109,7 +110,7 @@ def _newer(layout: Any, floats: NDArray[np.float64], all_of_it: bool) -> tuple[A
     return layout["v"], _Reader(unfolded, lambda: data[:packed], layout["t"])
 
 
-def _older(tree: Any, floats: NDArray[np.float64]) -> tuple[Any, _Reader]:
+def _older(tree: Any, floats: Array) -> tuple[Any, _Reader]:
     """As `_newer`, of a result that was stored before there were tables and differences."""
     numbers = floats[:]
     numbers.flags.writeable = False  # parts share it
@@ -127,13 +128,13 @@ def _older(tree: Any, floats: NDArray[np.float64]) -> tuple[Any, _Reader]:
     return tree, _Reader(unfolded, lambda: older_bytes(unfolded, *data), ())
 
 
-def _split(numbers: NDArray[np.float64], count: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _split(numbers: Array, count: int, columns: int) -> tuple[Array, Integers]:
     """What comes before a table at the end, and the table."""
     rest, table = np.split(numbers, [len(numbers) - columns * count])
     return rest, _table(table, columns)
 
 
-def _table(numbers: NDArray[np.float64], columns: int) -> NDArray[np.int64]:
+def _table(numbers: Array, columns: int) -> Integers:
     return numbers.astype(np.int64).reshape(-1, columns)
 
 
@@ -204,7 +205,7 @@ class _Packer:
         """Of each table dtype, rows, and the shape of a row."""
         return [[dtype, rows, *shape] for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)]
 
-    def columns(self) -> NDArray[np.float64]:
+    def columns(self) -> Array:
         """All tables column by column."""
         whole, start = np.empty(sum(value.size for arrays in self.tables for value in arrays)), 0
         for arrays, rows in zip(self.tables, self.rows, strict=True):

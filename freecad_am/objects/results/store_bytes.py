@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from . import repeats
 
@@ -13,7 +14,7 @@ _HIGHEST_BYTE = 0x40  # makes any seven bytes below it an ordinary number
 _OLDER_BYTES = 6  # of a whole number
 
 
-def floats_of(data: bytes) -> NDArray[np.float64]:
+def floats_of(data: bytes) -> Array:
     count, over = divmod(len(data), _BYTES_PER_FLOAT)
     whole = np.full((count + (over > 0), 8), _HIGHEST_BYTE, dtype=np.uint8)
     seven = np.frombuffer(data, dtype=np.uint8)
@@ -22,7 +23,7 @@ def floats_of(data: bytes) -> NDArray[np.float64]:
     return whole.view("<f8").ravel().astype(np.float64, copy=False)
 
 
-def bytes_of(floats: NDArray[np.float64], length: int) -> bytes:
+def bytes_of(floats: Array, length: int) -> bytes:
     whole = floats[: -(-length // _BYTES_PER_FLOAT)].astype("<f8", copy=False).view(np.uint8).reshape(-1, 8)
     return np.ascontiguousarray(whole[:, :_BYTES_PER_FLOAT]).ravel()[:length].tobytes()
 

@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask, NDArray
 
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
@@ -161,7 +160,7 @@ class Track:
             direction_digits=float(direction_digits.max()), **read,  # type: ignore[arg-type]
         )
 
-    def _numbers(self, tips: NDArray[np.bool_]) -> dict[str, object]:
+    def _numbers(self, tips: Mask) -> dict[str, object]:
         corners, numbers = np.array(self.corners), np.array(self.numbers)
         read: dict[str, object] = {"tool_frame": numbers[:, 1], "user_frame": numbers[:, 0] if tips.any() else None}
         given = ~np.isnan(corners).all()
@@ -173,7 +172,7 @@ class Track:
         values = np.array([float(text or "nan") for text in self.wires])
         return {"wire": values, "wire_digits": _half_digits(self.wires), "wire_output": self.output}
 
-    def _values(self, names: Sequence[str], given: NDArray[np.bool_], each: bool = False) -> tuple[Array, Array]:
+    def _values(self, names: Sequence[str], given: Mask, each: bool = False) -> tuple[Array, Array]:
         """Values (n, names) of the rows told, else NaN, and half of the last digit of each name, or of each value."""
         values = np.full(given.shape, np.nan)
         halves = np.zeros(given.shape)
@@ -192,12 +191,12 @@ def _half_digits(texts: Sequence[str]) -> Array:
     return half
 
 
-def _first(mask: NDArray[np.bool_]) -> int:
+def _first(mask: Mask) -> int:
     return int(np.argmax(mask))
 
 
 def _durations(
-    sorts: NDArray[np.str_], axes: Array, linear: NDArray[np.bool_], feeds: Array, digits: Array
+    sorts: NDArray[np.str_], axes: Array, linear: Mask, feeds: Array, digits: Array
 ) -> tuple[Array, Array]:
     """(n,) s of the moves of axes (n, axes) in mm and deg, NaN where the feed is the speed of the tip, and by how much
     their digits may be off."""

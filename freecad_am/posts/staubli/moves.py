@@ -7,15 +7,12 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from ...core.issues import Text, Word
 from ...core.read_moves import ReadMoves
 from .files import AXES, POSE, Application, Data, numbers, poses, rotations, unreadable
-
-Indices = NDArray[np.int64]
 
 _UNLIMITED = 99999.0
 
@@ -28,9 +25,9 @@ class Step:
     where: str
     linear: bool
     names: tuple[str, str, str]
-    point: Indices
-    tool: Indices
-    speed: Indices
+    point: Integers
+    tool: Integers
+    speed: Integers
     deposit: bool
     stops: bool = False
 

@@ -13,15 +13,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Integers
 
 from ...core.issues import Text, Word
 from ...core.read_moves import Event, ReadMoves
 from ..packed import Lines
 from .files import Application, Data, applications, unreadable
 from .moves import Step, moves_of
-
-Indices = NDArray[np.int64]
 
 _INDEX = r"(?:\[(\d+|l_nI(?:[+-]\d+)?)\])?"
 _MOVE = re.compile(rf"move([jl])\((\w+){_INDEX},(\w+){_INDEX},(\w+){_INDEX}\)$")
@@ -175,7 +174,7 @@ def _number(link: str, where: str) -> float:
     return float(number[1]) + 1.0
 
 
-def _move(app: Application, line: str, counter: Indices, run: _Run, where: str) -> None:
+def _move(app: Application, line: str, counter: Integers, run: _Run, where: str) -> None:
     match = _MOVE.match(line)
     assert match is not None
     letter, *arguments = match.groups()
@@ -192,7 +191,7 @@ def _move(app: Application, line: str, counter: Indices, run: _Run, where: str) 
     run.steps.append(Step(app, where, letter == "l", (names[0], names[1], names[2]), rows[0], rows[1], rows[2], run.on))
 
 
-def _indices(index: str | None, counter: Indices) -> Indices | None:
+def _indices(index: str | None, counter: Integers) -> Integers | None:
     """The rows an index takes for each value of the counter; None for a counter outside its loop."""
     if index is None or index.isdigit():
         return np.full(max(len(counter), 1), int(index or 0))

@@ -6,9 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers
 
 from ...core.program import LINEAR_MOVE, Program
 from ..parts import Piece, Run
@@ -17,10 +16,10 @@ AXES, BASE = "SLURBT", "BS1"  # of a robot, and the group of the track that carr
 END_OF_LINE = "\r\n"
 
 
-def pulses(program: Program, joints: Array) -> NDArray[np.int64]:
+def pulses(program: Program, joints: Array) -> Integers:
     """(n, axes) whole pulses of controller joint values (n, axes), rad, and mm of a track."""
     values = np.where(program.slides, joints, np.degrees(joints))
-    counts: NDArray[np.int64] = np.rint(values * np.array(program.pulses_per_degree)).astype(np.int64)
+    counts: Integers = np.rint(values * np.array(program.pulses_per_degree)).astype(np.int64)
     return counts
 
 

@@ -10,11 +10,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from freecad_am.core.motion import Motion
 from freecad_am.core.simulation.margins import from_next, speed_ratios
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers, Mask, NDArray
 
 if TYPE_CHECKING:
     from freecad_am.plots.source import Source  # slow to import, and not every report has a page
@@ -25,7 +24,6 @@ NONE = 65535  # stands for no value
 _UNIT = 32767  # of a component of a direction
 _ROUND = 1e-9
 
-Rows = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +41,7 @@ class Shown:
     what may colour the path; axes: the joints."""
 
     motion: Motion
-    rows: Rows
+    rows: Integers
     times: Array
     columns: Sequence[Column]
     axes: Sequence[Column]
@@ -120,7 +118,7 @@ def _columns(source: Source) -> list[Column]:
     return [one for one in found if np.isfinite(one.values).any()]
 
 
-def _starts(motion: Motion) -> Rows:
+def _starts(motion: Motion) -> Integers:
     """The first row of each stretch of rapids and of each bead."""
     changed = np.ones(len(motion), dtype=bool)
     for column in (motion.deposit, motion.layer, motion.bead):
@@ -128,7 +126,7 @@ def _starts(motion: Motion) -> Rows:
     return np.flatnonzero(~changed | (np.arange(len(motion)) == 0))
 
 
-def _thinned(motion: Motion) -> Rows:
+def _thinned(motion: Motion) -> Integers:
     """The rows that are shown: all, or every k-th of each bead with its ends, as evenly as it goes."""
     every = -(-len(motion) // MOST_ROWS)
     if every <= 1:
@@ -180,13 +178,13 @@ def packed(of: Shown, into: Bytes) -> dict[str, Any]:
     }
 
 
-def _deposited(motion: Motion, rows: Rows) -> NDArray[np.bool_]:
+def _deposited(motion: Motion, rows: Integers) -> Mask:
     """(k,) whether the way to a row, from the one shown before, is laid."""
-    found: NDArray[np.bool_] = motion.deposit[rows] & (motion.point[rows] > 0)
+    found: Mask = motion.deposit[rows] & (motion.point[rows] > 0)
     return found
 
 
-def _coloured(column: Column, deposited: NDArray[np.bool_]) -> dict[str, float]:
+def _coloured(column: Column, deposited: Mask) -> dict[str, float]:
     """The least and the most value of what is laid, between which colours go."""
     values = column.values[deposited & np.isfinite(column.values)]
     least, most = (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...types import Array, Index, Mask
 
@@ -50,7 +49,7 @@ def sines(vectors: Array, others: Array) -> Array:
     return np.asarray(cross / np.maximum(np.hypot(*vectors.T) * np.hypot(*others.T), 1e-300))
 
 
-def winding(rings: Sequence[Array], points: Array) -> NDArray[np.intp]:
+def winding(rings: Sequence[Array], points: Array) -> Index:
     """How often rings (n, 2) go round each of points (k, 2), counted with their sense."""
     count = np.zeros(len(points), dtype=np.intp)
     for ring in rings:

@@ -12,10 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ...issues import Issue
-from ...types import Array
+from ...types import Array, ArrayLike, Index
 from ..obstacles import Body
 from ..walls.part_depths import PartDepths
 
@@ -125,7 +124,7 @@ class Meridian:
         tangent = slope / np.linalg.norm(slope, axis=1, keepdims=True)
         return np.maximum(point[:, 0], 0.0), point[:, 1], tangent
 
-    def _locate(self, s: Array) -> tuple[NDArray[np.intp], Array, Array]:
+    def _locate(self, s: Array) -> tuple[Index, Array, Array]:
         # a layer that falls on a kink up to rounding belongs below it; side='left' then skips the doubled node
         i = np.clip(np.searchsorted(self.s, s - 1e-9, side="left") - 1, 0, len(self.s) - 2)
         i = np.where(self.s[i + 1] > self.s[i], i, np.minimum(i + 1, len(self.s) - 2))

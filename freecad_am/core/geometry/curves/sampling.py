@@ -7,9 +7,8 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ...types import Array
+from ...types import Array, ArrayLike, Mask
 from .profile import arc_lengths
 
 Curve = Callable[[Array], tuple[Array, Array]]
@@ -60,7 +59,7 @@ def _evaluate(curve: Curve, t: Array) -> tuple[Array, Array]:
     return points, tangents / size
 
 
-def _agrees(p: Array, a: Array, q: Array, b: Array, middle: Array, tangent: Array) -> NDArray[np.bool_]:
+def _agrees(p: Array, a: Array, q: Array, b: Array, middle: Array, tangent: Array) -> Mask:
     first = _lengths(p, a, middle, tangent)
     length = first + _lengths(middle, tangent, q, b)
     u = (first / length)[:, None]
@@ -68,7 +67,7 @@ def _agrees(p: Array, a: Array, q: Array, b: Array, middle: Array, tangent: Arra
     point = p + u * (a + u * (3.0 * d - 2.0 * a - b + u * (a + b - 2.0 * d)))
     off = np.linalg.norm(point - middle, axis=1)
     # the error of a cubic's slope is largest off the middle, 3.1 times its largest position error over its length
-    good: NDArray[np.bool_] = (off < POINT_TOLERANCE) & (3.1 * off < TANGENT_TOLERANCE * length + 1e-12)
+    good: Mask = (off < POINT_TOLERANCE) & (3.1 * off < TANGENT_TOLERANCE * length + 1e-12)
     return good
 
 

@@ -6,16 +6,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ...types import Index
+from ...types import Array, Index
 
 CLASS_RATIO = 1.5  # largest to smallest ball of a class in which they are looked for together
 BLOCK = 2_000_000  # pairs held at a time
 
 
-def near_pairs(middle: NDArray[np.float64], reach: NDArray[np.float64]) -> Iterator[Index]:
+def near_pairs(middle: Array, reach: Array) -> Iterator[Index]:
     """The pairs (k, 2), lower one first, of balls with middles (n, 3) and radii (n,) that may touch, all of them, in blocks
     of about BLOCK.
 

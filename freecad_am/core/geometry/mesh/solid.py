@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...issues import InputError
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 from ..columns import sides
 from ..formatting import place
 from ..walls.surface import dot
@@ -186,14 +185,14 @@ class Search:
         return at_vertex, at_edge, edges.of
 
 
-def spread(corners: Array, longest: float, kept: Callable[[Array], NDArray[np.bool_]] | None = None) -> tuple[Array, Index]:
+def spread(corners: Array, longest: float, kept: Callable[[Array], Mask] | None = None) -> tuple[Array, Index]:
     """Middles (k, 3) of the parts of triangles (m, 3, 3), none with a side beyond `longest` mm; the triangle of each.
     kept: says of triangles (n, 3, 3), whole ones and parts, which (n,) are parted further; the others are left out."""
     return _spread(corners, longest, kept) if len(corners) else (np.zeros((0, 3)), np.zeros(0, dtype=np.intp))
 
 
 def _spread(
-    corner: Array, longest: float, kept: Callable[[Array], NDArray[np.bool_]] | None = None
+    corner: Array, longest: float, kept: Callable[[Array], Mask] | None = None
 ) -> tuple[Array, Index]:
     """Middles (k, 3) of the parts of triangles (m, 3, 3) with no side longer than `longest`, and the triangle of each."""
     of, done = np.arange(len(corner)), []

@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csgraph
 from scipy.spatial import cKDTree
 
@@ -116,7 +115,7 @@ class Mesh:
         count, label = csgraph.connected_components(links, directed=False)
         linked = np.zeros(count, dtype=bool)
         linked[label[seeds]] = True
-        reached: NDArray[np.bool_] = inside & linked[label]
+        reached: Mask = inside & linked[label]
         return reached
 
     def part(self, faces: Index) -> tuple[Mesh, Index]:

@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.angles import shortest
-from ...types import Array
+from ...types import Array, ArrayLike, Index
 from ..chain import Chain
 from ..jacobian import jacobian
 from .serial_arm import SerialArm
@@ -59,12 +58,12 @@ class CalibratedArm:
         given = np.ascontiguousarray(poses, float)
         return self._brought(given, branch)
 
-    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+    def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
         found = self.inverse(poses)
         return found, np.where(np.isnan(found[..., 0]), -1, np.arange(len(found))[:, None])
 
-    def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
+    def branch_of(self, q: ArrayLike) -> Index:
         """The configuration (...) that joint angles `q` (..., 6) are in."""
         return self.near.branch_of(q)
 

@@ -13,10 +13,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.columns import columns
-from ...types import Array
+from ...types import Array, ArrayLike, Index
 from .opw_inverse import solve
 
 SHOULDERS, ELBOWS, WRISTS = ("front", "back"), ("up", "down"), ("noflip", "flip")
@@ -119,12 +118,12 @@ class OpwArm:
         )
         return bent
 
-    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+    def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
         found = self.inverse(poses)
         return found, np.where(np.isnan(found[..., 0]), -1, np.arange(8)[:, None])
 
-    def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
+    def branch_of(self, q: ArrayLike) -> Index:
         """The branch index (...) that joint angles `q` (..., 6) are in."""
         angles = np.asarray(q, float)
         turned = columns(angles * np.array(self.signs, float) - np.array(self.offsets))
@@ -136,5 +135,5 @@ class OpwArm:
         if self.offsets[4]:
             bent = bent - self.signs[4] * self.offsets[4]
             bent = bent - 2.0 * math.pi * np.rint(bent * (0.5 / math.pi))
-        result: NDArray[np.intp] = 4 * back + 2 * down + (bent < 0.0)
+        result: Index = 4 * back + 2 * down + (bent < 0.0)
         return result

@@ -13,9 +13,8 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ...types import Array
+from ...types import Array, ArrayLike, Mask
 
 if TYPE_CHECKING:
     from .opw import OpwArm
@@ -124,7 +123,7 @@ def _side(arm: OpwArm, centre: Array, distance: tuple[Array, Array], back: int) 
     return _Side(sine, cosine, signed - arm.a1, centre[2] - arm.c1)
 
 
-def _triangle(arm: OpwArm, side: _Side) -> tuple[_Triangle, NDArray[np.bool_] | None]:
+def _triangle(arm: OpwArm, side: _Side) -> tuple[_Triangle, Mask | None]:
     """The triangle of a side, and where it does not close (None: everywhere it does)."""
     upper, fore = arm.c2, arm.forearm
     squared = side.ahead * side.ahead

@@ -12,12 +12,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ...geometry import frames
 from ...geometry.angles import TURN
 from ...geometry.columns import columns
-from ...types import Array
+from ...types import Array, ArrayLike, Index
 
 CHUNK = 2048
 # how far rounding may take a pose that is reached past a stretched arm (as 1 - cos^2 of the elbow), and past `beside` (mm)
@@ -76,12 +75,12 @@ class ParallelAxesArm:
         result: Array = self._solved(poses, (branch,))[0]
         return result
 
-    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+    def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
         found = self.inverse(poses)
         return found, np.where(np.isnan(found[..., 0]), -1, np.arange(8)[:, None])
 
-    def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
+    def branch_of(self, q: ArrayLike) -> Index:
         """The configuration (...) that joint angles `q` (..., 6) are in."""
         angles = np.asarray(q, float)
         theta = columns(angles * np.array(self.signs, float) + np.array(self.zeros))
@@ -91,7 +90,7 @@ class ParallelAxesArm:
         back = ahead < 0.0
         down = (np.sin(theta[2]) < 0.0) != back
         bent = np.sin(theta[4]) * self.signs[4] < 0.0
-        result: NDArray[np.intp] = 4 * back + 2 * down + bent
+        result: Index = 4 * back + 2 * down + bent
         return result
 
     def bend(self, q: ArrayLike) -> Array:

@@ -5,10 +5,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from ...types import Array
+from ...types import Array, ArrayLike, Index
 
 
 class SerialArm(Protocol):
@@ -36,10 +33,10 @@ class SerialArm(Protocol):
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
         """Joint angles (n, 6) of one configuration of words; else as `inverse`."""
 
-    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+    def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (configurations, n) whose words each bears, -1 where there is none."""
 
-    def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
+    def branch_of(self, q: ArrayLike) -> Index:
         """The configuration (...) of joint angles `q` (..., 6)."""
 
     def bend(self, q: ArrayLike) -> Array:

@@ -29,7 +29,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ...collision.bodies import of_bodies
 from ...collision.nozzle import depositing
@@ -41,7 +40,7 @@ from ...geometry.columns import dots
 from ...geometry.cylinders import Cylinder, about, row
 from ...geometry.obstacles import Body, disc
 from ...parameters.external import ROBOT
-from ...types import Array, Index, Mask
+from ...types import Array, ArrayLike, Index, Mask
 from ..cell import Cell
 from .external_links import STANDS, ExternalLink
 from .nozzle_body import NOZZLE, nozzle_body

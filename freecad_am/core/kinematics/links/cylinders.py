@@ -5,16 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ...geometry.cylinders import Cylinder, about, needed, row
-from ...types import Array
+from ...types import Array, Integers
 from ..chain import Chain
 from . import robot as robot_links
 from .solids import Solid
 
-Mesh = tuple[Array, NDArray[np.int64]]
+Mesh = tuple[Array, Integers]
 
 
 def of_robot(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Cylinder]]:

@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ...geometry import frames
-from ...types import Array, Index
+from ...types import Array, ArrayLike, Index
 from .contact import ArmContact, Group
 from .nozzle_body import NOZZLE
 from .rounds import NONE, Solid

@@ -6,10 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ...geometry import frames
-from ...types import Array
+from ...types import Array, ArrayLike, Integers
 
 BODY, DARK, BRIGHT = "body", "dark", "bright"
 SIDES = 40
@@ -21,7 +20,7 @@ class Solid:
 
     points: Array
     normals: Array
-    triangles: NDArray[np.int64]
+    triangles: Integers
     tone: str = BODY
 
     def moved(self, pose: Array) -> Solid:
@@ -119,7 +118,7 @@ def box(centre: ArrayLike, x: ArrayLike, y: ArrayLike, size: tuple[float, float,
     axes = np.stack([first, second, np.cross(first, second)])
     points: list[Array] = []
     normals: list[Array] = []
-    triangles: list[NDArray[np.int64]] = []
+    triangles: list[Integers] = []
     for axis in range(3):
         u, v = axes[(axis + 1) % 3] * size[(axis + 1) % 3], axes[(axis + 2) % 3] * size[(axis + 2) % 3]
         for sign in (-1.0, 1.0):

@@ -15,11 +15,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.located import is_there, located
 from ...issues import InputError, Text
-from ...types import Array
+from ...types import Array, ArrayLike, Mask
 from ..arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
 from ..chain import Chain
 from ..inverse.calibrated import CalibratedArm
@@ -139,7 +138,7 @@ class Machine:
         return result
 
 
-def unit_values(sliding: NDArray[np.bool_]) -> Array:
+def unit_values(sliding: Mask) -> Array:
     """rad of a degree for axes (axes,) that turn, 1 for those that slide."""
     return np.where(sliding, 1.0, math.radians(1.0))
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.guide import Guide
 from ...geometry.mesh.split_edges import split
@@ -20,7 +19,7 @@ from ...geometry.on_hub import Base
 from ...issues import ERROR, InfeasibleError, InputError, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 from ..planes import field as planes
 from ..surface import Slice
 from .layer import AlongLayer, between
@@ -45,7 +44,7 @@ class AlongCuts(PlaneCuts):
             _refuse_tight(base, guide, body.name, points, triangles, distances)
             normals = guide.at(distances)[1]
 
-            def bends(ends: Index, normals: Array = normals) -> NDArray[np.bool_]:
+            def bends(ends: Index, normals: Array = normals) -> Mask:
                 return np.asarray((normals[ends[0]] * normals[ends[1]]).sum(axis=1) < BENDS)
 
             points, triangles, more = split(points, triangles, bends)

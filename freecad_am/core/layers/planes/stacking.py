@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision.inside import inside_of
 from ...geometry.columns import columns
@@ -17,7 +16,7 @@ from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ...geometry.plane import Plane
 from ...issues import NOTE, Issue, Text, Word
 from ...parameters.filled import SolidParameters
-from ...types import Array
+from ...types import Array, Index
 
 AXES = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64)
 LARGEST = 12  # flat faces that the part may be laid on, beside the axes
@@ -87,7 +86,7 @@ def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Ar
 
 
 def _free(
-    bodies: Sequence[Body], own: NDArray[np.intp], corners: Array, normals: Array, areas: Array, slit: float
+    bodies: Sequence[Body], own: Index, corners: Array, normals: Array, areas: Array, slit: float
 ) -> Array:
     """The share (m,) of each triangle, of the body `own` (m,), a slit (mm) outside of which no other body is."""
     parts = np.clip(np.ceil(np.sqrt(PLACES * areas / areas.sum())), 1, MAX_PIECES).astype(np.intp)

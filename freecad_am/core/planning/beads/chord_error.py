@@ -7,12 +7,11 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...toolpath import Bead
-from ...types import Array
+from ...types import Array, Index, Integers
 from ..joint_path import BeadPath
 from ..task import Task
 
@@ -72,7 +71,7 @@ def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Arra
     return _deviation(task, bead.points, joints, np.arange(len(joints) - 1), chord_error)
 
 
-def _deviation(task: Task, points: Array, joints: Array, segments: NDArray[np.intp], chord_error: float) -> Array:
+def _deviation(task: Task, points: Array, joints: Array, segments: Index, chord_error: float) -> Array:
     """(k,) the same of the segments (k,) that begin at those of the points (n, 3) with their joints (n, axes)."""
     seen = _looked_at(task, points, joints, segments, INSIDE)
     away: Array = np.maximum.reduce(seen)
@@ -94,7 +93,7 @@ def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
     return angle
 
 
-def _looked_at(task: Task, points: Array, joints: Array, segments: NDArray[np.intp], shares: Array) -> Array:
+def _looked_at(task: Task, points: Array, joints: Array, segments: Index, shares: Array) -> Array:
     """The same at shares (s,) of their length: (s, k) mm."""
     start, way = joints[segments], joints[segments + 1] - joints[segments]
     away = task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - points[segments, None]
@@ -106,7 +105,7 @@ def _looked_at(task: Task, points: Array, joints: Array, segments: NDArray[np.in
     return distance
 
 
-def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath:
+def _halved(task: Task, path: BeadPath, segments: Integers) -> BeadPath:
     """The path with a point in the middle of each of the segments."""
     at = segments + 1
 

@@ -13,16 +13,13 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import frames
 from ...kinematics.cell import Cell
 from ...motion import Motion
 from ...toolpath import Bead
-from ...types import Array
+from ...types import Array, Integers
 from ..turns import configurations as following
-
-Rows = NDArray[np.int64]
 
 
 def refined_to_chord_error(motion: Motion, cell: Cell, chord_error: float, beads: Sequence[Bead]) -> Motion:
@@ -57,12 +54,12 @@ def refined_to_chord_error(motion: Motion, cell: Cell, chord_error: float, beads
     return Motion(**columns)
 
 
-def origins(motion: Motion, cell: Cell, chord_error: float) -> Rows:
+def origins(motion: Motion, cell: Cell, chord_error: float) -> Integers:
     """(m,) the row of the motion that each row of `refined_to_chord_error` is, or that it is on the way to."""
     return np.repeat(np.arange(len(motion)), _pieces(motion, cell, chord_error))
 
 
-def _on_curves(motion: Motion, beads: Sequence[Bead], end: Rows, share: Array) -> Array:
+def _on_curves(motion: Motion, beads: Sequence[Bead], end: Integers, share: Array) -> Array:
     """(n, 3) points of the beads a share (n,) of the way along the segments that end at the rows (n,)."""
     number = np.cumsum(motion.deposit & (motion.point == 0)) - 1
     result = np.empty((len(end), 3))
@@ -72,7 +69,7 @@ def _on_curves(motion: Motion, beads: Sequence[Bead], end: Rows, share: Array) -
     return result
 
 
-def _pieces(motion: Motion, cell: Cell, chord_error: float) -> Rows:
+def _pieces(motion: Motion, cell: Cell, chord_error: float) -> Integers:
     """(n,) into how many pieces the segment that ends at each row is cut; 1 where it is none of a bead."""
     pieces = np.ones(len(motion), dtype=np.int64)
     inside = motion.deposit[1:] & (motion.point[1:] > 0) & motion.reachable[1:] & motion.reachable[:-1]
@@ -94,7 +91,7 @@ def _rotation_vector(start: Array, end: Array) -> Array:
     return vector
 
 
-def _turned(motion: Motion, cell: Cell, start: Rows, end: Rows, share: Array, position: Array) -> Array:
+def _turned(motion: Motion, cell: Cell, start: Integers, end: Integers, share: Array, position: Array) -> Array:
     """(n, 4, 4) flange poses a share of the way from row to row in rotation, with points of the part at the nozzle."""
     first, last = (cell.machine.chain.forward(motion.joints[rows])[:, :3, :3] for rows in (start, end))
     vector = _rotation_vector(first, last)

@@ -11,7 +11,6 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.columns import dots, lengths
 from ...issues import ERROR, Issue, Text
@@ -19,10 +18,8 @@ from ...kinematics.cell import Cell
 from ...motion import AT_END, AT_START, MIDDLE
 from ...parameters.ramp import SHORTEST, ramp
 from ...toolpath import Bead
-from ...types import Array
+from ...types import Array, Index
 from ..joint_path import BeadPath
-
-Rows = NDArray[np.intp]
 
 STEPS = 4  # of which each leaves a small share of what was off before
 END_MM = 1e-3  # mm; a point so near to where a phase ends is where it ends
@@ -98,7 +95,7 @@ def _timed(bead: Bead, along: Array, stretches: Sequence[Stretch]) -> Bead:
     return dataclasses.replace(bead, speed=speed, phase=phase)
 
 
-def _shares(cell: Cell, path: BeadPath, segment: Rows, lengths_in: Array) -> Array:
+def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Array:
     """(k,) shares of the turn of the joints at which the tip is so far (k,) mm into segments (k,): it runs unevenly."""
     start, way = path.bead.points[segment], path.bead.points[segment + 1] - path.bead.points[segment]
     size = lengths(way)

@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.columns import lengths
 from ...geometry.ramps import below
 from ...issues import ERROR, WARNING, Issue, Text, Word
 from ...kinematics.cell import Cell
 from ...toolpath import Bead, SpeedLaw
-from ...types import Array
+from ...types import Array, Mask
 from ..joint_path import BeadPath
 
 SLOWED = "SLOWED"
@@ -136,7 +135,7 @@ def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None)
     return np.minimum(np.sqrt(below(np.asarray(square, float), 2.0 * law.acceleration * middle)), speed * share)
 
 
-def _runs(chosen: NDArray[np.bool_]) -> list[list[int]]:
+def _runs(chosen: Mask) -> list[list[int]]:
     """First and one past the last of each run of true values."""
     ends: list[list[int]] = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int))).reshape(-1, 2).tolist()
     return ends

@@ -10,19 +10,16 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...controller import Controller
 from ...motion import Motion
-from ...types import Array, Mask
-
-Rows = NDArray[np.intp]
+from ...types import Array, Index, Mask
 
 OFF = 0.4  # of the chord error, that points left out may lie off
 REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
 
 
-def programmed(motion: Motion, controller: Controller, chord_error: float, blend: float) -> tuple[Motion, Rows]:
+def programmed(motion: Motion, controller: Controller, chord_error: float, blend: float) -> tuple[Motion, Index]:
     """The motion that programs of a controller tell, and which rows (m,) of all these are. blend: percent."""
     step, blended = controller.least_step, controller.least_blend
     if not step:

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...geometry.angles import TURN
 from ...issues import NOTE, Issue
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 from ..joint_path import BeadPath
 from ..points import Points, gather, steps
 from ..task import Task
@@ -148,7 +148,7 @@ def _best_known(task: Task, points: Points, path: BeadPath) -> float:
     at = _grouped(steps(path.joints, points), task.weights)
     chosen, scale, threshold = points.each(at), task.weights / np.diff(at)[:, None], path.threshold[at]
 
-    def broken(phi: Array, joints: Array) -> course.Mask:
+    def broken(phi: Array, joints: Array) -> Mask:
         return course.broken_by(task, chosen, threshold, phi, joints)
 
     return course.best(lambda phi: task.raw_joints(chosen, phi), scale, path.phi[at], False, broken)[1]

@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.angles import shortest
 from ...kinematics import jacobian as jac
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 from ..points import Points
 from ..task import Task
 
@@ -27,7 +26,7 @@ def divided(phi: Array, half: float) -> Array:
     return np.asarray((phi[:, None] + parts).ravel())
 
 
-def possible(task: Task, points: Points, index: Index, phi: Array, half: Array, threshold: Array) -> NDArray[np.bool_]:
+def possible(task: Task, points: Points, index: Index, phi: Array, half: Array, threshold: Array) -> Mask:
     """(n,) whether a rotation in the cells phi +- half (n,), rad, at points `index` (n,) may keep limits and condition, of
     which threshold (n,) is the smallest allowed, from their middle and ends. Joints are taken to bend at most twice as much
     between these as their second differences say."""
@@ -58,7 +57,7 @@ def possible(task: Task, points: Points, index: Index, phi: Array, half: Array, 
     return np.asarray(found)
 
 
-def _goes_on(index: Index, phi: Array, half: Array) -> NDArray[np.bool_]:
+def _goes_on(index: Index, phi: Array, half: Array) -> Mask:
     """(n,) whether a cell phi +- half at a point begins where the one before it ends, at the same point."""
     found = np.zeros(len(phi), dtype=bool)
     apart = np.abs(phi[1:] - phi[:-1] - half[1:] - half[:-1])
@@ -66,7 +65,7 @@ def _goes_on(index: Index, phi: Array, half: Array) -> NDArray[np.bool_]:
     return found
 
 
-def _within(task: Task, joints: Array, reach: Array) -> NDArray[np.bool_]:
+def _within(task: Task, joints: Array, reach: Array) -> Mask:
     """Whether joints (n, axes), moved by up to `reach` and by whole turns, can be within the limits of each axis."""
     limits = task.cell.limits
     beyond = np.abs(_short(joints - task.middle)) - np.where(task.continuous, np.inf, 0.5 * (limits.upper - limits.lower))

@@ -8,7 +8,7 @@ import dataclasses
 import numpy as np
 
 from ...issues import Issue
-from ...types import Array
+from ...types import Array, Mask
 from ..beads.chord_error import refined_to_chord_error
 from ..joint_path import BeadPath
 from ..points import gather, steps
@@ -39,7 +39,7 @@ def closed(task: Task, path: BeadPath) -> BeadPath:
         return path
     points = gather([path.bead], task.cell)
 
-    def broken(phi: Array, joints: Array) -> course.Mask:
+    def broken(phi: Array, joints: Array) -> Mask:
         return course.broken_by(task, points, path.threshold, phi, joints)
 
     def joints_at(phi: Array) -> Array:

@@ -6,10 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.angles import TURN, shortest
-from ...types import Array
+from ...types import Array, Mask
 from ..points import Points
 from ..task import FITS, Task
 
@@ -21,7 +20,6 @@ SHORTEST = 0.02  # of a Newton step that is still tried
 DONE = 1e-7  # share of the value by which a step has to lower it
 
 
-Mask = NDArray[np.bool_]
 Joints = Callable[[Array], Array]
 Broken = Callable[[Array, Array], Mask]
 

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.angles import TURN, shortest
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 from ..points import Points
 from ..task import Task
 from .cells import possible
@@ -23,7 +22,6 @@ EVENLY = 0.25  # share of rotations that are not where joints move much
 LARGEST_SHARE = 12.0  # times the mean
 COARSE = 60  # cells of a turn that are looked at first: those beside an impossible one are divided
 
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry.angles import TURN
-from ...types import Array, Index
-from .lattice import COARSE, NO_FIVE, Lattice, Mask
+from ...types import Array, Index, Mask
+from .lattice import COARSE, NO_FIVE, Lattice
 
 # of a fourth difference, which makes a 96th of itself within a step of the middle of five, a 24th further out: twice that
 OFF, FURTHER_OFF = 2.0 / 96.0, 2.0 / 24.0

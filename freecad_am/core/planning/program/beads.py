@@ -9,11 +9,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...issues import InputError, Word
-from ...motion import AT_END, AT_START, MIDDLE, Roles
+from ...motion import AT_END, AT_START, MIDDLE
 from ...parameters.process import ProcessParameters
 from ...parameters.program import ProgramParameters
 from ...program import Block, Call, DepositOff, DepositOn, Moves, Schedule, Weave
-from ...types import Array
+from ...types import Array, Integers
 
 OUTPUT, ARC, CALL = "output", "arc", "call"
 # rad, or mm of what slides: a move that takes no axis farther than this takes no time that a switch could be ahead by
@@ -56,7 +56,7 @@ def deposited(
     return [*blocks, *still, off] if off.ahead is None else [*blocks, off, *still]
 
 
-def parted(phase: Roles, own: ProcessParameters) -> list[tuple[slice, int | None]]:
+def parted(phase: Integers, own: ProcessParameters) -> list[tuple[slice, int | None]]:
     """Stretches of the moves of a bead, by the phase (n,) of each, that have one schedule, and this. own: the process of the
     bead's class."""
     of_phase = {MIDDLE: own.schedule, AT_START: own.start.schedule, AT_END: own.end.schedule}

@@ -7,7 +7,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import motion as motions
 from ...controller import Controller
@@ -42,6 +41,7 @@ from ...program import (
     WaitInput,
 )
 from ...toolpath import Toolpath
+from ...types import Integers, Mask
 from ..joint_path import BeadPath
 from . import linear_approach
 from .beads import ARC, deposited, parted, standing
@@ -141,7 +141,7 @@ def carried(cell: Cell, parameters: ProgramParameters) -> Six | None:
     return six_of(frames_of(cell, parameters)[1]) if isinstance(parameters.origin, str) else None
 
 
-def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
+def rows_from(motion: Motion, start: StartParameters) -> Mask:
     """(n,) bool: the rows run when a job resumes at a bead; its retract from the bead before is left out."""
     run = (motion.layer > start.layer) | (motion.layer == start.layer) & (motion.bead >= start.bead)
     if not (run & motion.deposit).any() or not ((motion.layer == start.layer) & (motion.bead == start.bead)).any():
@@ -190,7 +190,7 @@ class _Blocks:
             layer = here
         return standing(blocks)
 
-    def _bead(self, number: int, rows: NDArray[np.int64]) -> list[Block]:
+    def _bead(self, number: int, rows: Integers) -> list[Block]:
         """A bead, switched on and off, by the group of rows of that number."""
         kind = _class_of(self.motion, int(rows[0]))
         parts = parted(self.motion.phase[rows[1:]], self.process.for_class(kind))
@@ -198,7 +198,7 @@ class _Blocks:
         return deposited(runs, kind, self.process, self.parameters)
 
     def _approach(
-        self, rows: NDArray[np.int64], returns: Collection[tuple[int, int]], arriving: bool = False
+        self, rows: Integers, returns: Collection[tuple[int, int]], arriving: bool = False
     ) -> list[Block]:
         """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
         cooling = self.process.cooling
@@ -212,7 +212,7 @@ class _Blocks:
         down = self._onto(rows[onto], arriving and not above)
         return [*above, WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *place), *down]
 
-    def _onto(self, rows: NDArray[np.int64], arriving: bool) -> list[Block]:
+    def _onto(self, rows: Integers, arriving: bool) -> list[Block]:
         """Rapids onto a bead, the last one as a linear move where the controller needs one."""
         if not linear_approach.asked(self.parameters, self.controller):
             return [self._moves(rows, RAPID, arriving)]
@@ -220,7 +220,7 @@ class _Blocks:
         before = [self._moves(rows[:-1], RAPID, arriving)] if len(rows) > 1 else []
         return [*before, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
 
-    def _moves(self, rows: NDArray[np.int64], kind: str, arriving: bool = False) -> Moves:
+    def _moves(self, rows: Integers, kind: str, arriving: bool = False) -> Moves:
         """A run of rows; arriving: the first one comes from where the machine happens to stand."""
         motion, cell, parameters = self.motion, self.cell, self.parameters
         duration = motion.duration[rows].copy()
@@ -257,7 +257,7 @@ def _class_of(motion: Motion, row: int) -> str:
     return "" if number == motions.UNKNOWN else CLASSES[number]
 
 
-def _groups(motion: Motion, rows: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+def _groups(motion: Motion, rows: Integers) -> list[Integers]:
     """Rows in runs of the same kind, layer and bead."""
     new = (
         (np.diff(motion.deposit[rows].astype(int)) != 0)
@@ -279,7 +279,7 @@ def _between(between: BetweenLayersParameters, cooling: float) -> list[Block]:
     return blocks
 
 
-def _roles(role: NDArray[np.int64]) -> tuple[str, ...]:
+def _roles(role: Integers) -> tuple[str, ...]:
     """The words (n,) of roles; those of a bead are alike."""
     if (role == role[0]).all():
         return (ROLES[int(role[0])],) * len(role)

@@ -11,7 +11,6 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import motion as motions
 from ...controller import Controller
@@ -20,7 +19,7 @@ from ...kinematics.cell import Cell
 from ...motion import Motion
 from ...parameters.program import ProgramParameters
 from ...program import OFF_WAY_MM, OFF_WAY_RAD
-from ...types import Array
+from ...types import Array, Index
 from .beads import ARC
 
 SHARE = 0.75  # of what a linear move may be off the way that was looked at, to which it is cut
@@ -61,7 +60,7 @@ def with_short_approaches(motion: Motion, cell: Cell) -> Motion:
     return Motion(**columns)
 
 
-def apart(motion: Motion, cell: Cell, ends: NDArray[np.intp]) -> tuple[Array, Array]:
+def apart(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, Array]:
     """(k,) mm and rad by which a linear move to each of the rows `ends` (k,) leaves the way straight in the joints."""
     joints, position, tool = (
         (column[ends - 1, None] + _BETWEEN[:, None] * (column[ends] - column[ends - 1])[:, None]).reshape(-1, width)
@@ -74,7 +73,7 @@ def apart(motion: Motion, cell: Cell, ends: NDArray[np.intp]) -> tuple[Array, Ar
     return off, tilt
 
 
-def check(motion: Motion, cell: Cell, rows: NDArray[np.intp], arriving: bool, arc: bool = True) -> None:
+def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = True) -> None:
     """Raises InputError SCHEDULE, of another program than one of an `arc` TRIGGER, where a linear move to the last of rapid
     `rows`, at a bead, would leave the way that was looked at. arriving: where the first of them comes from is not known."""
     last = rows[-1:]
@@ -93,6 +92,6 @@ def check(motion: Motion, cell: Cell, rows: NDArray[np.intp], arriving: bool, ar
         )
 
 
-def _ends(motion: Motion) -> NDArray[np.intp]:
+def _ends(motion: Motion) -> Index:
     """The rows of the last moves onto beads."""
     return np.flatnonzero(~motion.deposit[:-1] & motion.deposit[1:])

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision.bead_ends import Beads
 from ...geometry.obstacles import Body
@@ -16,7 +15,7 @@ from ...issues import Issue
 from ...kinematics.cell import Cell
 from ...motion import APPROACH, RETRACT, TRAVEL
 from ...parameters.joints import JointParameters
-from ...types import Array, Mask
+from ...types import Array, Integers, Mask
 from .. import nozzle_obstacles
 from ..arm.kept import Cylinders, clearance_issue, contact_of, on_moves
 from ..joint_path import BeadPath, JointPath
@@ -37,7 +36,7 @@ class Way:
 
     start: Array | None
     joints: Array
-    role: NDArray[np.int64]
+    role: Integers
     singular: float | None = None  # the condition of a row between, where it is below the floor
 
 

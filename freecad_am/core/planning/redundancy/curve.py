@@ -8,12 +8,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.angles import TURN
 from ...issues import Issue, has_errors
 from ...toolpath import Bead
-from ...types import Array, Mask
+from ...types import Array, Integers, Mask
 from .. import criteria
 from ..findings import ROUNDING, findings
 from ..joint_path import BeadPath
@@ -60,7 +59,7 @@ class Sums:
     displacement: float
 
 
-def durations(beads: Sequence[Bead], kept: Sequence[NDArray[np.int64]] | None = None) -> Array:
+def durations(beads: Sequence[Bead], kept: Sequence[Integers] | None = None) -> Array:
     """(T,) s from each point to the next at travel speed, as the time of the segment that ends at a point; 0 where a bead
     begins. kept: the points of each bead that are looked at, all of them where they are not given."""
     found = []

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kinematics.limits import Limits
-from ...types import Array
+from ...types import Array, Integers
 from ..joint_path import BeadPath
 from ..redundancy.curve import durations
 
@@ -60,7 +59,7 @@ def _speeds(path: BeadPath) -> Array:
     return np.concatenate([speed[:1], speed])
 
 
-def _worst(values: Array, layer: NDArray[np.int64], labels: Sequence[str], largest: bool = False) -> Worst | None:
+def _worst(values: Array, layer: Integers, labels: Sequence[str], largest: bool = False) -> Worst | None:
     """Of (T, k) values of k things."""
     if not np.isfinite(values).any():
         return None

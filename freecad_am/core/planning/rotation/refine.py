@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.ties import alike
 from ...kinematics import jacobian as jac
-from ...types import Array
+from ...types import Array, Integers, Mask
 from ..points import Points
 from ..task import Task
 from . import basis, feasible
@@ -44,7 +43,7 @@ class Refined:
 
 
 def refine(
-    task: Task, points: Points, thresholds: Array, starts: Array, wanted: NDArray[np.bool_] | None = None,
+    task: Task, points: Points, thresholds: Array, starts: Array, wanted: Mask | None = None,
     report: Callable[[float], None] = lambda share: None,
 ) -> Refined:
     """Improve the coefficients of every bead, or of the wanted (B,); points are all points of the beads.
@@ -182,7 +181,7 @@ def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, in
     return start + directions @ x, reason, iterations
 
 
-def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: NDArray[np.int64]) -> Any:
+def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers) -> Any:
     from scipy.optimize import minimize  # slow to import, and most jobs on parts of revolution never need it
 
     states: dict[bytes, State] = {}
@@ -224,7 +223,7 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: NDArray[n
     )
 
 
-def _tightest(values: Array, points: int) -> NDArray[np.int64]:
+def _tightest(values: Array, points: int) -> Integers:
     """Which constraints are told to the optimiser: of each row those at its local minima along the bead and beside them,
     but for those that are FAR_OFF from being violated."""
     value = values.reshape(-1, points)

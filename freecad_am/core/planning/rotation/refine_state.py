@@ -6,10 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kinematics import jacobian as jac
-from ...types import Array
+from ...types import Array, Integers
 from .. import criteria
 from ..points import Points, in_pieces
 from ..task import Task
@@ -133,7 +132,7 @@ def _share(task: Task, phi: Array) -> Array:
     return (phi - 0.5 * (low + high)) / (0.5 * (high - low))
 
 
-def _where_worst(points: Points, values: Array, worst: Array) -> NDArray[np.int64]:
+def _where_worst(points: Points, values: Array, worst: Array) -> Integers:
     """(B,) index of the first point of each bead that has the bead's smallest value."""
     hits = np.flatnonzero(values <= worst[points.bead])
     _, position = np.unique(points.bead[hits], return_index=True)

@@ -12,11 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.ties import first_least, first_most
 from ...kinematics import jacobian as jac
-from ...types import Array, Index, Mask
+from ...types import Array, Index, Integers, Mask
 from .. import criteria
 from ..limit_rows import UNREACHABLE
 from ..points import Points, in_pieces, steps
@@ -58,7 +57,7 @@ class Found:
         """The candidates of some beads (k,) alone."""
         return Found(self.coefficients[:, beads], self.objective[:, beads], self.margin[:, beads])
 
-    def best(self) -> NDArray[np.int64]:
+    def best(self) -> Integers:
         """(B,) index of the candidate with the least objective among the feasible, else of the largest margin."""
         return self._best(self.margin)
 
@@ -67,7 +66,7 @@ class Found:
         found: Mask = np.arange(len(margin))[:, None] == self._best(margin)
         return found
 
-    def _best(self, margin: Array) -> NDArray[np.int64]:
+    def _best(self, margin: Array) -> Integers:
         feasible = margin >= 0.0
         ranked = first_least(np.where(feasible, self.objective, np.inf), axis=0)
         return np.asarray(np.where(feasible.any(axis=0), ranked, first_most(margin, axis=0)), dtype=np.int64)
@@ -191,7 +190,7 @@ def _turned(points: Points, joints: Array) -> Array:
 
 
 def _screened_condition_margin(
-    task: Task, points: Points, phi: Array, joints: Array, index: NDArray[np.int64], thresholds: Array
+    task: Task, points: Points, phi: Array, joints: Array, index: Integers, thresholds: Array
 ) -> Array:
     """Condition margins of chosen poses: exact near the threshold, by the bound where that settles the sign."""
     length, threshold = task.parameters.characteristic_length, thresholds[index]

@@ -11,11 +11,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.angles import TURN, shortest
 from ...geometry.ties import alike, first_least, first_most
-from ...types import Array, Mask
+from ...types import Array, ArrayLike, Integers, Mask
 from ..points import Points
 from ..task import Task
 from . import search
@@ -50,9 +49,9 @@ def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) 
     return np.where(improved[:, None], near.coefficients[chosen, np.arange(points.beads)], coefficients)
 
 
-def as_good(task: Task, objective: ArrayLike, best: Array) -> NDArray[np.bool_]:
+def as_good(task: Task, objective: ArrayLike, best: Array) -> Mask:
     """Whether objectives count as equal to the best ones."""
-    good: NDArray[np.bool_] = np.asarray(objective) <= best * (1.0 + FLAT) + task.parameters.tolerance
+    good: Mask = np.asarray(objective) <= best * (1.0 + FLAT) + task.parameters.tolerance
     return good
 
 
@@ -76,7 +75,7 @@ def _moved(coefficients: Array, offsets: Array) -> Array:
     return moved
 
 
-def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) -> NDArray[np.int64]:
+def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) -> Integers:
     """(B,) index of each bead's candidate: of those close to its largest margin, the nearest to the bead before."""
     start = _joints_at(task, points, candidates, points.first)
     end = _joints_at(task, points, candidates, np.append(points.first[1:], len(points)) - 1)
@@ -92,7 +91,7 @@ def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) 
     return chosen
 
 
-def _joints_at(task: Task, points: Points, candidates: Array, index: NDArray[np.int64]) -> Array:
+def _joints_at(task: Task, points: Points, candidates: Array, index: Integers) -> Array:
     """(C, B, axes) joints at one point of each bead, zero where unreachable."""
     at = points.each(index)
     value = np.stack([at.polynomial(row) for row in candidates])

@@ -7,11 +7,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.angles import TURN
 from ...kinematics.inverse.rotary_pair import Turns
-from ...types import Array
+from ...types import Array, Mask
 
 # rad; a direction this near to the pole counts as on it, or the axis would race round to meet it
 AT_POLE = math.radians(0.1)
@@ -31,7 +30,7 @@ def courses(found: Turns) -> list[Array]:
     return continuous(turned)
 
 
-def led_over(course: Array, free: NDArray[np.bool_], place: Array) -> Array:
+def led_over(course: Array, free: Mask, place: Array) -> Array:
     """Angles (n,) along places (n,) mm of a bead: those that are free, between others, led evenly from one to the other, so
     that the axis has all of the way to turn and need not turn where it ends."""
     known = np.flatnonzero(~free)
@@ -53,7 +52,7 @@ def continuous(turned: Array) -> list[Array]:
     return [np.unwrap(turned[(start + swaps) % 2, rows], axis=0) for start in range(2)]
 
 
-def kept(angles: Array, free: NDArray[np.bool_]) -> Array:
+def kept(angles: Array, free: Mask) -> Array:
     """Angles (2, n) with those that are free as they were before, or as they come to be where none was before."""
     known = np.flatnonzero(~free)
     if not len(known):
@@ -74,7 +73,7 @@ def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
 
 
 def chosen(
-    ways: Sequence[Array], before: Array, lower: Array, upper: Array, speed: Array, turning: NDArray[np.bool_],
+    ways: Sequence[Array], before: Array, lower: Array, upper: Array, speed: Array, turning: Mask,
     least_motion: bool = False,
 ) -> Array:
     """Of all courses (n, a) and whole turns of the axes that turn (a,) the one within the limits (a,) that starts nearest to

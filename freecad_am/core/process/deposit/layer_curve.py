@@ -15,11 +15,10 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.columns import columns, crosses, lengths, unit_rows
 from ...geometry.curves.outline import derivatives
-from ...types import Array, Index, Mask
+from ...types import Array, Index, Mask, NDArray
 
 CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
 SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
@@ -237,7 +236,7 @@ def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tu
 
 
 def _arcs(
-    points: Array, start: Array, end: Array, smooth: NDArray[np.bool_], smooth_end: NDArray[np.bool_]
+    points: Array, start: Array, end: Array, smooth: Mask, smooth_end: Mask
 ) -> tuple[Array, ...]:
     """The columns for segments with the unit tangents (n - 1, 3) at their ends, which go on smoothly or do not."""
     return (
@@ -246,13 +245,13 @@ def _arcs(
     )
 
 
-def _corners(before: Array, after: Array, closed: bool) -> NDArray[np.bool_]:
+def _corners(before: Array, after: Array, closed: bool) -> Mask:
     """(n,) whether the path of segments with the unit directions (n, 3) has a corner at the start of each of them."""
     turn = np.arctan2(lengths(crosses(before, after)), np.einsum("ij,ij->i", before, after))
     if not closed:
         turn[0] = 0.0
     adjacent = np.maximum(_before(turn), _after(turn))
-    corners: NDArray[np.bool_] = (turn >= CORNER) | ((turn > SLIGHT) & (turn > SUDDEN * adjacent))
+    corners: Mask = (turn >= CORNER) | ((turn > SLIGHT) & (turn > SUDDEN * adjacent))
     return corners
 
 

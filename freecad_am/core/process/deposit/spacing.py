@@ -7,10 +7,9 @@ from collections.abc import Iterator
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...toolpath import Bead, Layer, Toolpath
-from ...types import Array
+from ...types import Array, Mask
 from .layer_curve import Curve, columns_of, distance, distances
 
 LEVEL = 1e-6  # mm; a layer whose points differ no more in height is a plane
@@ -105,7 +104,7 @@ def _planes(toolpath: Toolpath) -> Array | None:
     return ends.mean(axis=1) if (np.ptp(ends, axis=1) <= LEVEL).all() else None
 
 
-def _quarters(bead: Bead) -> Iterator[tuple[NDArray[np.bool_], Curve]]:
+def _quarters(bead: Bead) -> Iterator[tuple[Mask, Curve]]:
     """Per quarter turn after the first turn: which points (n,) are its, and the stretch one turn before."""
     angle = np.abs(bead.parameter - bead.parameter[0])
     quarter = 0.5 * np.pi

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.process import ProcessParameters
 from ...toolpath import Bead, Toolpath
-from ...types import Array
+from ...types import Array, Index
 from .bead_model import MINUTE, BeadModel
 from .wire import with_model
 
@@ -48,7 +47,7 @@ def segments(beads: Sequence[Bead]) -> Segments:
     )
 
 
-def beads(toolpath: Toolpath, numbers: Sequence[int] | NDArray[np.intp] | None = None) -> dict[str, Any] | None:
+def beads(toolpath: Toolpath, numbers: Sequence[int] | Index | None = None) -> dict[str, Any] | None:
     """The key `beads` of a report; None without a bead model, and for several features. numbers: of the layers of one of
     several, in the whole.
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.columns import columns
-from ...types import Array
+from ...types import Array, Index, Mask
 
 SCAN = 48  # tilts tried before the first good one is refined
 AT_ONCE, PARTS = 8, 4  # of these tried together, and parts that the place of the first good one is narrowed to at once
@@ -76,8 +75,8 @@ def tilted_back(build: Array, angle: Array) -> Array:
 
 
 def least_tilt_back(
-    build: Array, low: Array, good: Callable[[NDArray[np.intp], Array], NDArray[np.bool_]], within: float = 1e-14,
-    about: Array | None = None, free: NDArray[np.bool_] | None = None,
+    build: Array, low: Array, good: Callable[[Index, Array], Mask], within: float = 1e-14,
+    about: Array | None = None, free: Mask | None = None,
 ) -> Array:
     """Smallest tilt-back (n,) rad, `low` (n,) or more, at which each row is good, to `within` rad; NaN where none is up to
     the axis.
@@ -113,8 +112,8 @@ def least_tilt_back(
 
 
 def _narrow(
-    rows: NDArray[np.intp], some: NDArray[np.intp], tried: Array,
-    good: Callable[[NDArray[np.intp], Array], NDArray[np.bool_]], bad: Array, fine: Array,
+    rows: Index, some: Index, tried: Array,
+    good: Callable[[Index, Array], Mask], bad: Array, fine: Array,
 ) -> None:
     """Bring the bounds of some rows, in place, to the first of the rising angles tried (k, s) that is good and to the last
     one before it."""

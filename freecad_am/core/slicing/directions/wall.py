@@ -10,13 +10,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.columns import columns
 from ...geometry.frames import unit
 from ...geometry.walls.surface import dot
 from ...issues import InputError
-from ...types import Array
+from ...types import Array, Mask
 
 LEAST = 1e-6  # a direction shorter than this after projection points nowhere
 HALVINGS = 30  # of the width over which directions are spread
@@ -164,7 +163,7 @@ def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | N
     return unit(mean)
 
 
-def _distance_along(s: Array, fast: NDArray[np.bool_], closed: bool) -> Array:
+def _distance_along(s: Array, fast: Mask, closed: bool) -> Array:
     """Length along the bead (n,) from each point to the nearest segment that turns too fast."""
     ends = np.unique(np.r_[s[:-1][fast], s[1:][fast]])
     if closed:

@@ -15,14 +15,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.angles import TURN
 from ...geometry.columns import columns
 from ...geometry.developable import Developable
 from ...geometry.mesh.triangle_mesh import chains
 from ...issues import InputError
-from ...types import Array, Index, Mask
+from ...types import Array, Index, Mask, NDArray
 
 Edges = NDArray[np.int32]
 

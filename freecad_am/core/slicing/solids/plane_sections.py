@@ -12,16 +12,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.mesh.triangle_mesh import chains
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 
 MOST_SIDES = 16  # pairs of triangles that meet in an edge
 AT_ONCE = 1_000_000  # crossings of planes worked on together; bounds the memory
 
 
-def _paired(key: Index, forward: NDArray[np.bool_]) -> Index:
+def _paired(key: Index, forward: Mask) -> Index:
     """Numbers (n,) of edges by their keys and which way a triangle goes along them: where a solid touches itself along an
     edge, so that four triangles or more meet there, each number is of two, one of either way. Which two they are is all the
     same: loops that touch bound the same area however they go on."""

@@ -6,13 +6,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.formatting import place
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group, Seat, SolidsOnHub, downwards, middle_azimuth
 from ...issues import InputError, Issue, Text, Word
-from ...types import Array
+from ...types import Array, Mask
 from .equidistant import Facets
 from .overlap import refuse_overlaps
 from .unrolled import cut
@@ -92,7 +91,7 @@ def _of_units(body: Body, seats: Sequence[Seat]) -> str:
     return ""
 
 
-def _near(seat: Seat, points: Array, all_round: bool = False) -> NDArray[np.bool_]:
+def _near(seat: Seat, points: Array, all_round: bool = False) -> Mask:
     return np.asarray(np.any([face.near(points, PAST_END_MM, all_round) for face in seat.faces], axis=0), dtype=np.bool_)
 
 

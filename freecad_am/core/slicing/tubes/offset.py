@@ -14,11 +14,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import Surface, dot
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 
 STEPS = 25
 CONVERGED = 1e-11  # of the layer height
@@ -162,7 +161,7 @@ class Offset:
         target, run_of, u, w = (np.concatenate(column) for column in zip(*parts))
         return target, run_of, u, w
 
-    def _solved(self, v: Array, u: Array, w: Array, run: Index) -> tuple[Array, Array, NDArray[np.bool_]]:
+    def _solved(self, v: Array, u: Array, w: Array, run: Index) -> tuple[Array, Array, Mask]:
         """Newton in u and w at fixed v; which of the candidates came to a place of their own branch."""
         fan = np.array([r.fan for r in self.runs], dtype=bool)[run]
         low, high = (np.array([r[k] for r in self.runs])[run] for k in (4, 5))

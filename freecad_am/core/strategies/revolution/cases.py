@@ -6,7 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...types import Array, Index, Mask
 
@@ -18,7 +17,7 @@ class Cases:
 
     bead: Index
     build: Array
-    rising: NDArray[np.bool_]
+    rising: Mask
     chained: bool = False
 
     def before(self, some: Mask) -> Mask:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.polyline import turn_segments
 from ...geometry.curves.profile import RevolvedWall
@@ -20,7 +19,7 @@ from ...parameters.strategy import RevolutionParameters
 from ...process import classes, seam
 from ...slicing import arc_length, iso_height
 from ...toolpath import Bead, Layer, Toolpath
-from ...types import Array
+from ...types import Array, Index
 from .. import size
 from ..progress import Progress, silent
 from . import platform, spiral
@@ -33,7 +32,7 @@ SPACING_BAND = 0.2  # of the layer height (Chalvin 2020, section 2.1)
 class Slices:
     """The beads of all layers in the order of deposit: layer index (m,), radius and height (m,) mm, tangent (m, 2)."""
 
-    layer: NDArray[np.intp]
+    layer: Index
     radius: Array
     height: Array
     tangent: Array

@@ -6,14 +6,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.profile import RevolvedWall
 from ...geometry.formatting import place
 from ...geometry.mesh.solid import spread
 from ...geometry.on_hub import SolidsOnHub
 from ...issues import WARNING, InputError, Issue, Text, Word
-from ...types import Array
+from ...types import Array, Mask
 
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
 TOUCH = 1e-6  # mm
@@ -94,7 +93,7 @@ def refuse_below(label: str, points: Array, frame: Array, diameter: float, remed
 
 def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> None:
     """The same of solids on a hub, of what is outside of the surfaces that they stand on."""
-    def over(corners: Array) -> NDArray[np.bool_]:
+    def over(corners: Array) -> Mask:
         """Which triangles (n, 3, 3) may come over the disc, or below it."""
         flat = (corners - frame[:3, 3]) @ frame[:3, :2]
         middle = flat.mean(axis=1)

@@ -7,7 +7,6 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.polyline import largest_step
 from ...geometry.curves.profile import Meridian, RevolvedWall
@@ -18,7 +17,7 @@ from ...parameters.strategy import RevolutionParameters
 from ...process import seam
 from ...slicing import arc_length
 from ...toolpath import Bead, Layer
-from ...types import Array
+from ...types import Array, Index
 from ..clearance.places import SEAM
 from .clearance import Deposit, Tips
 from .tilt import Tilting
@@ -107,7 +106,7 @@ def _directions(
     points = meridian.at(s)
     number = np.arange(len(s))
 
-    def tips(where: tuple[Array, Array, Array], turned: Array, moment: NDArray[np.intp]) -> Tips:
+    def tips(where: tuple[Array, Array, Array], turned: Array, moment: Index) -> Tips:
         # what was laid in the last turn is of the layer being laid
         own = np.searchsorted(turns, turned - 2.0 * math.pi - SEAM)
         return Tips(where[0], where[1], sense * turned, moment, own)

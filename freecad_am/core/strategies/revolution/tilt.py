@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision.scene import Scene
 from ...geometry.curves.profile import RevolvedWall
@@ -21,7 +20,7 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
 from ...parameters.strategy import RevolutionParameters
 from ...slicing.directions import revolution as directions
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 from .cases import Cases
 from .clearance import CHORD, CONVERGED, Clearance, Deposit, Tips, around, of_nozzle
 from .platform import Platform
@@ -82,7 +81,7 @@ class Tilting:
         return np.split(build, every), np.split(self._tool(build, cases.rising), every), issues
 
     def _resolved_arcs(
-        self, radius: Array, height: Array, build: Array, azimuths: Sequence[Array], rising: NDArray[np.bool_], layer: Index,
+        self, radius: Array, height: Array, build: Array, azimuths: Sequence[Array], rising: Mask, layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
         """The same where directions (k, 3) differ from point to point along the beads: the nozzle is looked at in LOOKS
         places of each, and then at all points."""
@@ -133,7 +132,7 @@ class Tilting:
         angle = np.where(stuck, directions.from_vertical(cases.build), angle)
         return angle, self._issues(cases, angle, capped, stuck, layer)
 
-    def _circles(self, tangent: Array, rising: NDArray[np.bool_]) -> Cases:
+    def _circles(self, tangent: Array, rising: Mask) -> Cases:
         return Cases(np.arange(len(tangent)), self.build(tangent), rising)
 
     def _means(self, tangent: Array, azimuths: Sequence[Array]) -> Array:
@@ -151,7 +150,7 @@ class Tilting:
     def _upright(self) -> bool:
         return self.parameters.lead == 0.0 and self.parameters.tilt == 0.0
 
-    def _tool(self, build: Array, rising: NDArray[np.bool_]) -> Array:
+    def _tool(self, build: Array, rising: Mask) -> Array:
         tool = np.empty_like(build)
         for sense in (True, False):
             rows = rising == sense
@@ -164,7 +163,7 @@ class Tilting:
         if self._upright:
             return np.maximum(directions.from_vertical(cases.build) - cap, 0.0)
 
-        def good(some: Index, angle: Array) -> NDArray[np.bool_]:
+        def good(some: Index, angle: Array) -> Mask:
             tool = self._tool(directions.tilted_back(cases.build[some], angle), cases.rising[some])
             return np.asarray(directions.from_vertical(tool) <= cap + 1e-12)
 
@@ -225,7 +224,7 @@ class Tilting:
             back = np.interp(deposit.case, number, angle)
             among = clearance.standing(directions.tilted_back(deposit.build, back), among)
 
-            def good(some: Index, tried: Array, among: Scene = among) -> NDArray[np.bool_]:
+            def good(some: Index, tried: Array, among: Scene = among) -> Mask:
                 tool = self._tool(directions.tilted_back(cases.build[some], tried), cases.rising[some])
                 return clearance.clear(among, some, tool)
 
@@ -246,7 +245,7 @@ class Tilting:
         return np.where(stuck, np.nan, now)
 
     def _issues(
-        self, cases: Cases, angle: Array, capped: Array, stuck: NDArray[np.bool_], layer: Index
+        self, cases: Cases, angle: Array, capped: Array, stuck: Mask, layer: Index
     ) -> list[Issue]:
         at = layer[cases.bead]
         cap = Text("{:.6g} deg", np.degrees(self.parameters.max_tilt))

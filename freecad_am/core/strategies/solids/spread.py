@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...types import Array
+from ...types import Array, Index
 
 SLOPE = 0.75  # of half a stretch: the wider of the two boxes that make the trapezoid; a jump's ramp is steepest over it
 BLOCK = 128  # places worked on at once: their integrals begin nearby and keep their digits
@@ -138,7 +137,7 @@ class Zones:
             half = np.r_[half, 2.0 * LEAST]
         return Zones(low, high, half, self.length)
 
-    def _nearest(self, places: Array) -> tuple[NDArray[np.intp], Array]:
+    def _nearest(self, places: Array) -> tuple[Index, Array]:
         """The zone (n,) next to each of the places (n,), and how far (n,) mm off it is."""
         best, away = np.zeros(len(places), dtype=np.intp), np.zeros(len(places))
         for at in range(0, len(places), BLOCK):

@@ -6,12 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface_wall import Placed
 from ...slicing.tubes.wall_layer import WallLayer
-from ...types import Array
+from ...types import Array, Mask
 
 SAME_END = 1e-6  # mm; what is above the end by no more than this lies on it
 FINER = 8  # places per arc at which above and below are told apart
@@ -53,7 +52,7 @@ def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
     return [Stretch(front, float(a), float(b), False) for a, b in zip(low, high, strict=True)]
 
 
-def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> NDArray[np.bool_]:
+def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> Mask:
     """Which places (n,) of a front lie below the end. Where u is an angle, as along a bend, it is the front that tells which
     turn a place is on: a surface knows its own points only up to whole turns."""
     u, v = surface.inverse(front.curve.at(w)[0])
@@ -61,7 +60,7 @@ def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> NDArray[n
     if surface.rise_period is not None:
         about = front.heights(surface, front.curve.wrapped(w))[0]
         u = u + surface.rise_period * np.round((about - u) / surface.rise_period)
-    below: NDArray[np.bool_] = (u - end) * rate <= SAME_END
+    below: Mask = (u - end) * rate <= SAME_END
     return below
 
 

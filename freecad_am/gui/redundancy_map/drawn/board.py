@@ -7,10 +7,9 @@ import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from freecad_am.core.geometry.angles import TURN
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Integers, Mask
 
 from ....core.planning.joint_path import BeadPath
 from ....core.planning.redundancy import across as rotation_across
@@ -86,18 +85,18 @@ class Board:
         self.pictures[made[1].branch] = made[1]
 
     @property
-    def moment(self) -> NDArray[np.int64]:
+    def moment(self) -> Integers:
         """(C,) how many points of the job are deposited before each column."""
         return np.asarray(self.source.starts[self.columns.bead] + self.columns.point)
 
-    def arm(self, branch: int, every: int) -> NDArray[np.bool_]:
+    def arm(self, branch: int, every: int) -> Mask:
         """(R, C) where links of the robot touch something; one of so many rows is looked at."""
         assert self.map is not None
         if self.pair is not None:
             return self.pair.arm(branch, self.map)
         return redundancy_map.arm_touched(self.source.task(branch), self.map, branch, self.source.arm, self.moment, every)
 
-    def take_arm(self, branch: int, touched: NDArray[np.bool_], every: int) -> None:
+    def take_arm(self, branch: int, touched: Mask, every: int) -> None:
         """Keep what was looked at."""
         self.looked[branch] = every if self.pair is None else 1
         self.pictures[branch] = dataclasses.replace(self.pictures[branch], arm=touched)
@@ -128,12 +127,12 @@ class Board:
     # ---- places
 
     @property
-    def seams(self) -> NDArray[np.int64]:
+    def seams(self) -> Integers:
         """Columns at which beads begin."""
         return np.flatnonzero(np.diff(self.columns.bead, prepend=-1) != 0)
 
     @property
-    def marks(self) -> NDArray[np.int64]:
+    def marks(self) -> Integers:
         """Columns before which a line is drawn, but for the first: where beads begin, or the external axis is planned."""
         if self.offsets is None:
             return self.seams

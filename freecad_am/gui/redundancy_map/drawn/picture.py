@@ -6,7 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Mask, NDArray
 
 from ....core.planning.redundancy.map import Picture
 from ...colours import ramp
@@ -23,7 +24,7 @@ class Painted:
     """Colours (R, C, 3) 0..255 of cells, hatched (R, C) ones, the scale of the ramp, and classes that there are."""
 
     colours: Pixels
-    hatched: NDArray[np.bool_]
+    hatched: Mask
     scale: Scale
     classes: tuple[tuple[str, tuple[float, float, float]], ...]
 

@@ -13,11 +13,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ....geometry import frames
 from ....geometry.angles import TURN
-from ....types import Array, Mask
+from ....types import Array, ArrayLike, Index, Mask
 from ...chain import Chain
 from . import on_axis, polynomial, search
 from .plane import Curves, geometry
@@ -80,7 +79,7 @@ class OffsetWristArm:
         result: Array = self.inverse(poses)[branch]
         return result
 
-    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+    def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (16, n) whose words each bears, -1 where there is none."""
         given = np.asarray(poses, float)
         result = np.full((MAX_SOLUTIONS, len(given), 6), np.nan)
@@ -90,7 +89,7 @@ class OffsetWristArm:
             self._solve_piece(given[piece], result[:, piece], words[:, piece])
         return result, words
 
-    def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
+    def branch_of(self, q: ArrayLike) -> Index:
         """The configuration (...) that joint angles `q` (..., 6) are in."""
         angles = np.asarray(q, float)
         flat = angles.reshape(-1, 6)
@@ -120,10 +119,10 @@ class OffsetWristArm:
         back = self.ahead + self.upper * np.sin(two) + self.fore * np.sin(three) < 0.0
         return np.asarray(back), np.asarray(np.sin(three - two) >= 0.0)
 
-    def _words(self, back: Mask, left: Mask, rising: Mask) -> NDArray[np.intp]:
+    def _words(self, back: Mask, left: Mask, rising: Mask) -> Index:
         down = back == left
         flip = rising == np.array(self.flips)[2 * back.astype(int) + left.astype(int)]
-        result: NDArray[np.intp] = 4 * back.astype(np.intp) + 2 * down + flip
+        result: Index = 4 * back.astype(np.intp) + 2 * down + flip
         return result
 
     def _curves(self, poses: Array) -> Curves:
@@ -147,7 +146,7 @@ class OffsetWristArm:
             (math.cos(self.lean), math.sin(self.lean)), square, self.ahead,
         )
 
-    def _solve_piece(self, poses: Array, out: Array, named: NDArray[np.intp]) -> None:
+    def _solve_piece(self, poses: Array, out: Array, named: Index) -> None:
         """Write the solutions `out` (16, m, 6) of poses (m, 4, 4), and their words (16, m)."""
         curves = self._curves(poses)
         zeros, plane = on_axis.exact(curves, polynomial.zeros(curves))

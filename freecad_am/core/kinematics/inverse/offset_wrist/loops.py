@@ -7,9 +7,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ....types import Array, Index
+from ....types import Array, Index, Mask
 from . import shoulder_loops
 from .plane import TINY, Curves
 
@@ -31,8 +30,8 @@ class Loops(NamedTuple):
     half: Array
     near: Array
     far: Array
-    stretched: NDArray[np.bool_]
-    folded: NDArray[np.bool_]
+    stretched: Mask
+    folded: Mask
     mean: Array
     swing: Array
 
