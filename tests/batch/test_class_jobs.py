@@ -104,7 +104,7 @@ def _figures(report, rows):
         begins = {(row["layer"], row["bead"]) for row in rows if row["kind"] == "deposit" and row["class"] == told["class"]}
         assert told["beads"] == len(begins)
     assert [row["schedule"] for row in report["classes"]] == [1, 3, 9]
-    assert fed(report)["ok"] is None and fed(report)["how"].endswith("to feed contour, first_layer")
+    assert fed(report)["ok"] is None and fed(report)["how"].endswith("the feed of contour, first_layer")
     count = {row["class"]: row["beads"] for row in report["classes"]}
     assert report["totals"]["wait_s"] == pytest.approx(0.8 * count["contour"] + 1.5 * count["fill"], abs=1e-9)
 

@@ -110,7 +110,7 @@ def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(
     assert len(found) == done.err.count("note[BODIES_NOT_KNOWN] job: ") == bool(untold), done.err
     assert all(level == "note" and message.startswith(untold) for level, message in found)
     (line,) = [one["how"] for one in report["preflight"] if one["promise"].startswith("Positioner and track")]
-    assert ("not checked: no file tells" in line) == bool(untold)
+    assert ("not checked: no file says" in line) == bool(untold)
 
 
 def test_one_urdf_of_a_whole_cell_moves_as_its_mechanisms_named_one_by_one(workshop, written):

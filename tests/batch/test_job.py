@@ -170,7 +170,7 @@ def test_a_calibration_is_beside_the_job(read, tmp_path):
     ("{name: ur-ur10e}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
     ("{file: arm.urdf, calibration: my.yaml}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
     ("{base: base_link}", "cell.machine.file", "write machine: {file: robot.urdf}"),
-    ("{file: arm.json}", "cell.machine.file", "arm.json is no URDF"),
+    ("{file: arm.json}", "cell.machine.file", "arm.json is not a URDF"),
     ("{file: arm.urdf, top: tool0}", "cell.machine.top", "there is no key 'top'; did you mean tip"),
     ("{file: arm.urdf, tip: 3}", "cell.machine.tip", "3 is not a text"),
 ])

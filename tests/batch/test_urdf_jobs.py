@@ -74,7 +74,7 @@ def test_a_mirrored_mesh_is_told_in_the_job_and_changes_no_path(planned, worksho
 
 def test_a_program_is_refused_for_a_controller_that_a_urdf_does_not_tell_of(planned):
     done = planned("arm.urdf", "fanuc")
-    assert done.status == 2 and "does not tell what the controller shows; plan without a program" in done.err
+    assert done.status == 2 and "does not say what the controller shows; plan without a program" in done.err
 
 
 def test_an_arm_without_a_closed_form_is_refused_with_the_reason(planned, workshop):

@@ -87,7 +87,8 @@ def _found(obj: Any, name: str, where: str) -> tuple[Any, str]:
         name = f"{name}."  # an object, which FreeCAD would have the path end with a dot for
     element = name.rsplit(".", maxsplit=1)[-1]
     owner, own = (owner_of if element.startswith(FACE) else line_of)(obj, name)
-    if obj.getSubObject(name, retType=1) is None or (element and not own):
+    gapped = "" in name.split(".")[:-1]  # which FreeCAD 1.0 takes for a path without the gap
+    if gapped or obj.getSubObject(name, retType=1) is None or (element and not own):
         raise InputError(_code(name), where, "{} is not there in {}; choose it in the 3D view, or by the object that it "
                          "belongs to", name, obj.Label)
     return owner, own

@@ -38,7 +38,7 @@ from .file import Node, read
 
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
-UNKNOWN_REMARK = "a URDF does not tell what the controller shows"
+UNKNOWN_REMARK = "a URDF does not say what the controller shows"
 REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is not a machine file
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
