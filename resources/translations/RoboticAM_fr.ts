@@ -13877,6 +13877,11 @@
         <translation>{0} a des axes de translation ; utilisez {1}, ou choisissez une autre machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>{0} has what is in a group of it twice, so that numbers of its faces are not certain; name an object in it, or take that out of the group</source>
+        <translation>{0} a deux fois ce qui est dans un de ses groupes, si bien que les numéros de ses faces ne sont pas sûrs ; nommez un objet qu’il contient, ou sortez-le du groupe</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
         <source>{0} has {1} numbers, a pose has six; {2}</source>
         <translation>{0} a {1} nombres, une pose en a six ; {2}</translation>
@@ -15000,6 +15005,11 @@
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} of {1} is chosen, which the rest of it stands on</source>
         <translation>{0} de {1} est choisie, sur laquelle se dresse le reste</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/nested.py"/>
+        <source>{0} of {1} is not certain: FreeCAD has what is in a group of it twice, and numbers both; choose it of the object that it belongs to</source>
+        <translation>{0} de {1} n’est pas certain : FreeCAD a deux fois ce qui est dans un de ses groupes, et numérote les deux ; choisissez-le dans l’objet auquel il appartient</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>

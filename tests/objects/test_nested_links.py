@@ -8,6 +8,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.issues import InputError
 from freecad_am.objects.shapes.bodies import global_shape
+from freecad_am.objects.shapes.part_file import part_shape
 
 
 @pytest.fixture
@@ -109,6 +110,37 @@ def test_what_is_in_a_group_of_a_part_is_there_once(nested):
     assert whole.Volume == pytest.approx(nested.A.Shape.Volume + nested.B.Shape.Volume) and len(whole.Edges) == 24
     assert ends(whole.Edges[0]) in [ends(global_shape(one).Edges[0]) for one in (nested.A, nested.B)]
     assert api.make_solid_feature(nested, nested.Part, layer_height=5).Solids == 2
+
+
+@pytest.mark.parametrize("order", ["AGC", "GAC", "ACG"])
+def test_names_of_a_part_that_has_something_twice_are_those_of_freecad_or_refused(doc, order, tmp_path):
+    """Left out what is there a second time, faces and edges that follow have other numbers than FreeCAD shows."""
+    held = {name: doc.addObject("Part::Box", name) for name in "ABC"}
+    for k, box in enumerate(held.values()):
+        box.Placement.Base.x, box.Length = 20 * k, 5 + k
+    part, group = doc.addObject("App::Part", "Part"), doc.addObject("App::DocumentObjectGroup", "Group")
+    group.addObject(held["B"])
+    for name in order:
+        part.addObject({**held, "G": group}[name])
+    doc.recompute()
+    freecads, found = part.Shape, []
+    assert len(freecads.Edges) == 48 and len(global_shape(part).Edges) == 36
+    for number in range(1, 49):
+        try:
+            feature = api.make_curves_feature(doc, part, [f"Edge{number}"])
+        except InputError as error:
+            assert error.code in ("BAD_EDGES", "UNKNOWN_EDGE"), error.line()
+            continue
+        found.append(number)
+        assert laid(feature) == ends(freecads.Edges[number - 1])
+    assert found == (list(range(1, 37)) if order == "ACG" else [])
+    doc.saveAs(str(tmp_path / "part.FCStd"))
+    if order == "ACG":
+        assert part_shape(doc.FileName, "Part")[0].Edges[35].Length == pytest.approx(freecads.Edges[35].Length)
+        return
+    with pytest.raises(InputError, match="twice") as caught:
+        part_shape(doc.FileName, "Part")
+    assert caught.value.code == "NO_OBJECT"
 
 
 def test_a_path_to_a_body_by_its_tip_is_the_body(doc):

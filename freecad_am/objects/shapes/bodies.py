@@ -38,21 +38,38 @@ def shape_of(source: Any) -> Any:
     shape = getattr(source, "Shape", None)
     if shape is None or shape.isNull():
         raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
-    return _once(shape) if any(source.isDerivedFrom(kind) for kind in GROUPS) else shape
+    return _once(shape) if _is_group(source) else shape
+
+
+def renumbers(source: Any) -> bool:
+    """Whether faces and edges of a part or group have other numbers in its `shape_of` than FreeCAD gives them: something is
+    there twice, and others follow."""
+    shape = getattr(source, "Shape", None) if _is_group(source) else None
+    kept = [] if shape is None or shape.isNull() else _kept(_leaves(shape))
+    return kept != list(range(len(kept)))
+
+
+def _is_group(source: Any) -> bool:
+    return any(source.isDerivedFrom(kind) for kind in GROUPS)
 
 
 def _once(shape: Any) -> Any:
     """The shape of a part or group, with each body once: FreeCAD has what is in a group of a part a second time."""
-    leaves: list[Any] = []
-    left = [shape]
-    while left:
-        one = left.pop(0)
-        if one.ShapeType == "Compound":
-            left = [*one.childShapes(), *left]
-        else:
-            leaves.append(one)
-    unique = [one for k, one in enumerate(leaves) if not any(_is_same(one, other) for other in leaves[:k])]
-    return shape if len(unique) == len(leaves) else Part.makeCompound(unique)
+    leaves = _leaves(shape)
+    kept = _kept(leaves)
+    return shape if len(kept) == len(leaves) else Part.makeCompound([leaves[k] for k in kept])
+
+
+def _leaves(shape: Any) -> list[Any]:
+    """What a compound is made of, in the order in which FreeCAD numbers its faces and edges."""
+    if shape.ShapeType != "Compound":
+        return [shape]
+    return [leaf for one in shape.childShapes() for leaf in _leaves(one)]
+
+
+def _kept(leaves: list[Any]) -> list[int]:
+    """The numbers of shapes that no earlier one is the same as."""
+    return [k for k, one in enumerate(leaves) if not any(_is_same(one, other) for other in leaves[:k])]
 
 
 def _is_same(one: Any, other: Any) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...core.issues import InputError
-from .bodies import GROUPS, global_shape, outer_placement
+from .bodies import GROUPS, global_shape, outer_placement, renumbers
 from .marks import EDGE, FACE, PLANE
 
 LINES = ("App::Line", "PartDesign::Line")
@@ -67,11 +67,16 @@ def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]
 
 
 def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
-    """Refuse paths to faces and edges of other objects than the one that is linked: the same names are others on it.
-    InputError as `resolved`."""
+    """Refuse paths to faces and edges of other objects than the one that is linked: the same names are others on it. And
+    names of a part that has something twice. InputError as `resolved`."""
     for name in names:
         element = name.rsplit(".", maxsplit=1)[-1]
-        if "." not in name or element.startswith("?"):  # what FreeCAD knows to be lost
+        if element.startswith("?"):  # what FreeCAD knows to be lost
+            continue
+        if "." not in name:
+            if renumbers(obj):
+                raise InputError(_code(name), where, "{} of {} is not certain: FreeCAD has what is in a group of it "
+                                 "twice, and numbers both; choose it of the object that it belongs to", name, obj.Label)
             continue
         owner, own = _found(obj, name, where)
         if owner != obj or own != element:

@@ -15,7 +15,7 @@ from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import InputError
 from ..work import hooks
 from . import document_file
-from .bodies import global_shape, outer_placement
+from .bodies import global_shape, outer_placement, renumbers
 
 # what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
 ORIGIN = ("App::Line", "App::Plane", "App::Point")
@@ -68,5 +68,8 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
         asked = repr(object_name) if object_name else "one object that nothing else is made from"
         raise InputError("NO_OBJECT", path, "{} is not found among the objects with a shape ({}); name one", asked, names)
     if found[0] in shapes:
+        if renumbers(found[0]):
+            raise InputError("NO_OBJECT", path, "{} has what is in a group of it twice, so that numbers of its faces are "
+                             "not certain; name an object in it, or take that out of the group", found[0].Label)
         return global_shape(found[0]).copy(), found[0].Label
     return placed_mesh(found[0].Mesh, outer_placement(found[0])), found[0].Label
