@@ -263,3 +263,13 @@ def test_parts_of_revolution_wait_for_no_splines_and_no_optimiser():
 
 def test_every_row_of_the_table_exists():
     assert {home(path) for path in modules() if path.name != "__init__.py"} == set(OURS)
+
+
+def test_types_of_arrays_have_one_name_each():
+    """The names of core/types, which nothing that runs loads numpy.typing for."""
+    named = re.compile(r"NDArray\[np\.(float64|bool_|intp|int64)\]|numpy\.typing")
+    again = {path.relative_to(PACKAGE).as_posix() for path in modules() if named.search(path.read_text(encoding="utf-8"))}
+    assert again == {"core/types.py"}
+    look = "import sys, freecad_am.core.planning.plan; print('numpy.typing' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", look], cwd=PACKAGE.parent, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
