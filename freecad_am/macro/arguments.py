@@ -86,9 +86,10 @@ def checked_list(values: Any, where: str) -> list[Any]:
 
 def checked_target(path: Any, where: str) -> str:
     """As `checked_path`, of what is to be written: it has a name."""
-    if not checked_path(path, where).strip():
+    text = checked_path(path, where)
+    if not text.strip():
         raise InputError("BAD_INPUT", where, "{} is not a path; give one as a text, such as \"cup.step\"", named(path))
-    return checked_path(path, where)
+    return text
 
 
 def checked_path(path: Any, where: str) -> str:

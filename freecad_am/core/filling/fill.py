@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TypeVar
 
 from ..geometry.regions.region import Region, joined
 from ..geometry.regions.strip import Strip
@@ -27,7 +26,6 @@ PATTERNS = ("contours", "connected", "lines", "spiral", "zigzag", "grid", "trian
 CURVED = ("contours", "connected", "spiral")  # without walls: the border's parallel curves are all they have
 WHOLE = Infill()
 LINK = 3.0  # of the spacing
-Otherwise = TypeVar("Otherwise")
 Gaps = list[tuple[Array, float]]  # a place (2,) in each, and how wide it is, mm
 
 
@@ -89,12 +87,11 @@ def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Bea
 
 
 def open_at_slits(
-    regions: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads, gaps: Otherwise
-) -> Gaps | Otherwise:
+    regions: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads
+) -> Gaps | None:
     """As `open_places`, of all regions of a layer with their beads, where slits thinner than the gap allowed divide them:
-    what beads leave open on both sides of a slit is one gap. gaps: of the regions one by one, which are returned where no
-    slits do."""
+    what beads leave open on both sides of a slit is one gap. None where no slits do."""
     whole = joined(regions, beads.gap)
     if whole == tuple(regions):
-        return gaps
+        return None
     return [gap for region in whole for gap in open_places(region, curves, beads)]

@@ -69,15 +69,15 @@ def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]
 def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
     """Refuse paths to faces and edges of other objects than the one that is linked: the same names are others on it. And
     names of a part that has something twice. InputError as `resolved`."""
-    for name in names:
+    there = [name for name in names if not name.rsplit(".", maxsplit=1)[-1].startswith("?")]  # FreeCAD knows the others lost
+    plain = [name for name in there if "." not in name]
+    if plain and renumbers(obj):
+        raise InputError(_code(plain[0]), where, "{} of {} is not certain: FreeCAD has what is in a group of it "
+                         "twice, and numbers both; choose it of the object that it belongs to", plain[0], obj.Label)
+    for name in there:
+        if name in plain:
+            continue
         element = name.rsplit(".", maxsplit=1)[-1]
-        if element.startswith("?"):  # what FreeCAD knows to be lost
-            continue
-        if "." not in name:
-            if renumbers(obj):
-                raise InputError(_code(name), where, "{} of {} is not certain: FreeCAD has what is in a group of it "
-                                 "twice, and numbers both; choose it of the object that it belongs to", name, obj.Label)
-            continue
         owner, own = _found(obj, name, where)
         if owner != obj or own != element:
             raise InputError(_code(name), where, "{} of {} is {} of {}; choose it of that object", name, obj.Label,

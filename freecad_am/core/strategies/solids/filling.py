@@ -111,7 +111,8 @@ class Pictures:
         strategy, beads, issues = self._strategy, filling.beads, []
         regions = [region for region in layer.regions if isinstance(region, Region)]
         if len(regions) == len(layer.regions) and strategy.fill_density == 1.0:
-            gaps = open_at_slits(regions, curves, beads, gaps)
+            at_slits = open_at_slits(regions, curves, beads)
+            gaps = gaps if at_slits is None else at_slits
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
             issues.append(Issue(
