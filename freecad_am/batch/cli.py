@@ -184,6 +184,9 @@ def _count(text: str) -> int:
 
 
 def _plan(options: Any, session: Any) -> int:
+    from freecad_am.batch import paths
+
+    paths.load_meanwhile()
     from freecad_am.batch import run
     from freecad_am.batch.job import job
 

@@ -16,7 +16,6 @@ from ..core.kinematics.urdf import reference as urdf_reference
 from ..core.parameters import external, obstacles, touched
 from ..core.parameters import field as f
 from ..core.parameters.cell import NO_SHAPE, CellParameters
-from ..objects import user_machines
 from . import fields, paths, quantity, tree
 
 PAPERS = "paper"  # limits
@@ -74,6 +73,8 @@ def _proposed(cell: CellParameters, own_branch: bool) -> CellParameters:
     if (cell.machine, cell.limits) == (CellParameters().machine, PAPERS):
         return cell
     with contextlib.suppress(InputError):  # of the machine, which is told where it is planned for
+        from ..objects import user_machines  # with FreeCAD, which may still be loading
+
         return proposed_cell.proposed(cell, user_machines.folders(), own_branch)
     return cell
 
