@@ -42,6 +42,7 @@ class Stages:
     toolpath: Any = None
     joint_path: Any = None
     program: Any = None
+    look: Any = None  # what takes long of the preflight, looked for meanwhile
     issues: list[Issue] = field(default_factory=list)
     timing: dict[str, float] = field(default_factory=dict)
 
@@ -158,7 +159,9 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`. fails: code
     of the error that what was chosen ends with, where the job leaves it open."""
     from freecad_am import api
+    from freecad_am.core.copies import meanwhile
     from freecad_am.core.process.model.predicted import HEIGHTS
+    from freecad_am.objects.checks import preflight
 
     stages = as_far_as_toolpath(job, document, session, fails)
     job = stages.job
@@ -170,6 +173,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
         controllers.check_beads(api.result(stages.toolpath), job.program.post, job.program.max_points)
     with stages.timed("joint_path", session):
         stages.joint_path = api.make_joint_path(document, stages.toolpath, stages.cell, joints=job.joints)
+    stages.look = meanwhile(preflight.look_at(stages.toolpath, stages.joint_path, job.program))
     found = api.issues(stages.joint_path)
     if any(issue.code == HEIGHTS for issue in found):  # at the speeds as run, not only as asked for
         stages.issues = [issue for issue in stages.issues if issue.code != HEIGHTS]

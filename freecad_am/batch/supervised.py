@@ -15,6 +15,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from freecad_am.core import copies
 from freecad_am.core.issues import AmError, InputError
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -95,7 +96,7 @@ def _carry_out(work: Callable[[], int], channel: int, passed: list[int]) -> None
     try:
         for number in SIGNALS:
             signal.signal(number, _interrupted)
-        end_with_parent()
+        copies.end_with_parent()
         status = INTERRUPTED if passed else work()
     except KeyboardInterrupt:
         status = INTERRUPTED
@@ -133,14 +134,3 @@ def _tidied(folder: str, made: list[str]) -> None:
         staging.clear(folder)
         for path in reversed(made):
             os.rmdir(path)
-
-
-def end_with_parent() -> None:
-    """Have the system end this process when the one that has made it ends, however that does."""
-    import ctypes
-
-    parent = os.getppid()
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
-    if os.getppid() != parent:
-        os._exit(1)

@@ -20,8 +20,6 @@ if TYPE_CHECKING:  # slow to import, and jobs without a cell have none
     from freecad_am.core.preflight.promise import Promise
     from freecad_am.objects.joint_path import Planned
 
-Promised = Callable[[Sequence[Array]], "tuple[Promise, ...]"]
-
 
 @dataclass(frozen=True)
 class Feature:
@@ -48,11 +46,13 @@ class Job:
 @dataclass(frozen=True)
 class Results:
     """What was made of a job. toolpath: as it was cut. planned: None where there is no joint path; seconds: that it took.
-    issues: of all stages. programs: names of the files. preflight: its promises, by the distances between the layers."""
+    issues: of all stages. programs: names of the files. distances: between the layers as they are run. preflight: its
+    promises."""
 
     toolpath: Toolpath
     planned: Planned | None
     seconds: float
     issues: Sequence[Issue]
     programs: Sequence[str]
-    preflight: Promised
+    distances: Callable[[], Sequence[Array]]
+    preflight: Callable[[], tuple[Promise, ...]]

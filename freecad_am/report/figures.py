@@ -37,10 +37,10 @@ VERSION = 1
 
 
 def build(
-    name: str, toolpath: Toolpath, motion: Motion, spacing: Sequence[Array], process: ProcessParameters,
-    issues: Sequence[Issue],
+    name: str, toolpath: Toolpath, motion: Motion, process: ProcessParameters, issues: Sequence[Issue]
 ) -> dict[str, Any]:
-    """The report of a toolpath alone; `add_joints` completes it. Lengths mm, times s; None where there is no value."""
+    """The report of a toolpath alone; `add_joints` and what `made` looks at complete it. Lengths mm, times s; None where
+    there is no value."""
     times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
     sums = totals.totals(motion, times, process, toolpath)
     return {
@@ -54,7 +54,7 @@ def build(
         "length_mm": toolpath.length,
         "duration_s": sums.time,
         "totals": totals.as_dict(sums),
-        "spacing_mm": spread(spacing),
+        "spacing_mm": None,
         "layer_heights": [] if toolpath.uneven is None else [
             {"layer": int(layer), "least_mm": float(least), "largest_mm": float(largest)}
             for layer, least, largest in toolpath.uneven

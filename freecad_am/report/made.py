@@ -69,21 +69,22 @@ def made(job: Job, results: Results, cell: Cell | None, timed: Timed, tell: Tell
     """The report of a job. timed: takes the time of a step by its name, tell: says what is done. `timing_s` stays empty."""
     toolpath, motion = as_run(results, cell)
     with timed("report"):
-        distances = spacing.between_layers(toolpath)
-        found = figures.build(job.name, toolpath, motion, distances, job.process, results.issues)
+        found = figures.build(job.name, toolpath, motion, job.process, results.issues)
         if results.planned is not None and cell is not None:
             figures.add_joints(found, results.planned.joint_path, cell, job.joints, results.seconds)
+        balances = [
+            deposit_balance.of_toolpath(one.shape(), part, one.process.bead_width)
+            for one, (part, _) in zip(job.features, toolpath.parts, strict=True)
+        ]
+        found["deposit"] = deposit_balance.as_dict(deposit_balance.together(balances))
+    with timed("preflight"):  # after what can be done while some of it is still looked for
+        found["preflight"] = [one.as_dict() for one in results.preflight()]
+    distances = results.distances()
+    found["spacing_mm"] = figures.spread(distances)
     with timed("spacing_comparison"):
         shown = compared_walls(job, toolpath, distances)
         if not toolpath.features:
             found["spacing_comparison"] = with_motion(job, shown[0], results, cell, tell)
-    with timed("preflight"):
-        found["preflight"] = [one.as_dict() for one in results.preflight(distances)]
-    balances = [
-        deposit_balance.of_toolpath(one.shape(), part, one.process.bead_width)
-        for one, (part, _) in zip(job.features, toolpath.parts, strict=True)
-    ]
-    found["deposit"] = deposit_balance.as_dict(deposit_balance.together(balances))
     if toolpath.features:
         found["features"] = figures.features(job.features, toolpath, motion, balances, [list(one.rows) for one in shown])
     found["programs"] = sorted(results.programs)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -48,12 +49,13 @@ def reported(obj: Any) -> Callable[[], str]:
             raise InputError("NO_RESULT", one.Label, "no result fits its inputs ({}); recompute it first", why)
     settings = None if program is None else program.Proxy.parameters(program, ProgramParameters)
     read = None if program is None else preflight.read_back_of(program)
-    promised = preflight.prepared(toolpath, path, settings, read, () if program is None else issues_of(program))
+    look = functools.cache(preflight.look_at(toolpath, path, settings))
+    promised = preflight.prepared(toolpath, path, settings, read, () if program is None else issues_of(program), look)
     job, folders = _job(toolpath, path), tuple(user_machines.folders())
     results = Results(
         toolpath.Proxy.value(toolpath), None if path is None else planned_of(path, path.Label)[0],
         0.0 if path is None else path.Seconds, _issues(features, toolpath, path, program), _files(program),
-        lambda _: promised(),
+        lambda: look().distances, promised,
     )
     spent = {one.Proxy.kind.replace(" ", "_"): one.Seconds for one in stages}
 
@@ -126,10 +128,10 @@ def _steps(job: Job, results: Results, cell: cells.Cell | None) -> Made:
 
     @contextlib.contextmanager
     def timed(stage: str) -> Iterator[None]:
-        if stage == "spacing_comparison":
-            progress.report(0.1, "comparing the spacing of layers")
-        elif stage == "preflight":
-            progress.report(0.4, "looking at what is promised")
+        if stage == "preflight":
+            progress.report(0.1, "looking at what is promised")
+        elif stage == "spacing_comparison":
+            progress.report(0.4, "comparing the spacing of layers")
         yield
 
     progress.report(0.0, "measuring the path")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What a process that plans asks of the system: what it has freed it takes again, and what it does not need it leaves."""
 
+import json
+import os
 import platform
 import subprocess
 import sys
@@ -61,3 +63,55 @@ def test_a_part_of_revolution_loads_nothing_slow_that_others_need(tmp_path):
         cwd=ROOT,
     )
     assert ran.stdout.split("\n")[-2] == "0"
+
+
+MEANWHILE = """
+import os, sys, threading
+from freecad_am.batch import host, paths
+host.find_freecad()
+paths.load_meanwhile()
+import freecad_am.batch.job.job, freecad_am.batch.run
+early = "FreeCAD" in sys.modules  # then it would have been waited for
+for thread in threading.enumerate():
+    if thread is not threading.main_thread():
+        thread.join()
+with open("/proc/self/maps", encoding="utf-8") as stream:
+    loaded = "MeshPart" in stream.read()
+import FreeCAD, Part, MeshPart
+found = MeshPart.meshFromShape(Shape=Part.makeBox(1, 1, 1), LinearDeflection=0.1).CountFacets
+print(early, loaded, found, flush=True)
+os._exit(0)
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="elsewhere FreeCAD is loaded when it is imported")
+def test_freecad_is_loaded_while_our_modules_are_imported_which_do_not_wait_for_it():
+    if "freecad" in Path(sys.executable).name.lower():
+        pytest.skip("FreeCAD's own interpreter has it loaded")
+    ran = subprocess.run([sys.executable, "-c", MEANWHILE], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert ran.stdout.split() == ["False", "True", "12"]
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2, reason="one processor")
+def test_the_outputs_are_the_same_on_one_processor(tmp_path):
+    """On two a copy of the process looks for what takes long of the preflight."""
+    job = tmp_path / "job.yaml"
+    job.write_text(JOB.format(part=ROOT / "resources" / "examples" / "hemisphere.step"))
+    one = min(os.sched_getaffinity(0))
+    outputs = []
+    for how in ({one}, os.sched_getaffinity(0)):
+        out = tmp_path / str(len(how))
+        subprocess.run(
+            [str(ROOT / "freecad-am"), "plan", str(job), "-o", str(out), "--no-page"], check=True, capture_output=True,
+            preexec_fn=lambda how=how: os.sched_setaffinity(0, how),
+        )
+        report = json.loads((out / "report.json").read_text())
+        del report["timing_s"], report["joints"]["planning_time_s"]
+        files = {
+            path.name: path.read_bytes() for path in sorted(out.rglob("*"))
+            if path.is_file() and path.suffix not in (".json", ".FCStd")
+        }
+        outputs.append((report, files))
+    assert outputs[0] == outputs[1]
+    preflight = {entry["promise"]: entry for entry in outputs[0][0]["preflight"]}
+    assert len(preflight) > 10 and all(entry["how"] for entry in preflight.values())

@@ -34,14 +34,14 @@ def test_the_joint_path_and_the_report_tell_the_same_sums(doc, tmp_path):
     from freecad_am.report import figures  # after FreeCAD is found
 
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
-    told = figures.build("x", api.result(toolpath), api.result(path).motion, (), process, ())
+    told = figures.build("x", api.result(toolpath), api.result(path).motion, process, ())
     sums = json.loads(figures.text(told))["totals"]
     assert told["duration_s"] == pytest.approx(path.TotalTime)
     assert [sums[key] for key in ("time_s", "deposit_s", "wait_s", "deposit_mm", "volume_cm3", "mass_g")] == pytest.approx(
         [path.TotalTime, path.DepositTime, path.WaitTime, path.DepositLength.Value, path.DepositVolume, path.DepositMass]
     )
     for density in (7.85, 11.34):
-        other = figures.build("x", api.result(toolpath), api.result(path).motion, (), replace(process, density=density), ())
+        other = figures.build("x", api.result(toolpath), api.result(path).motion, replace(process, density=density), ())
         mass = json.loads(figures.text(other))["totals"]["mass_g"]
         assert mass == pytest.approx(density * length * 4.0 * 15.0 / 1000.0, rel=1e-6)
     assert sums["fed_cm3"] == pytest.approx(path.DepositVolume, rel=1e-6)  # the wire balances by default

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from freecad_am.core import copies
 from freecad_am.core.issues import AmError, Issue, has_errors
 from freecad_am.sections import tree
 
@@ -79,7 +80,7 @@ def stop(process: Any) -> None:
 
 def _carry_out(order: Order, sender: Any) -> None:
     """The work of the process."""
-    supervised.end_with_parent()
+    copies.end_with_parent()
     quiet = _Quiet()
     status, message, result = 1, "", {}
     try:

@@ -21,6 +21,7 @@ from typing import Any, TypeVar
 
 import FreeCAD
 
+from ...core import copies
 from ...core.issues import InputError, Text, Word
 from ..kernel import process as kernel_process
 from . import answers
@@ -102,7 +103,7 @@ def answer(
     if sys.platform == "win32":
         answers.tell(answer_file, geometry, read, path, rest)
         return
-    _take_no_signals()
+    copies.take_no_signals()
     spent = resource.getrusage(resource.RUSAGE_SELF)
     with contextlib.ExitStack() as before:
         limits = [(resource.RLIMIT_CPU, round(spent.ru_utime + spent.ru_stime + seconds)), (resource.RLIMIT_CORE, 0)]
@@ -154,8 +155,8 @@ def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
     _is_apart = True
     status = CRASHED
     try:
-        _take_no_signals()
-        _end_with_parent()
+        copies.take_no_signals()
+        copies.end_with_parent()
         now = _pages(0)
         _limit(resource.RLIMIT_CORE, 0)
         _limit(resource.RLIMIT_CPU, round(seconds))
@@ -170,12 +171,6 @@ def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
         os._exit(status)
 
 
-def _take_no_signals() -> None:
-    """A fault of memory ends the process: FreeCAD and the kernel would go on with what is broken."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGXCPU):
-        signal.signal(number, signal.SIG_DFL)
-
-
 def _pages(column: int) -> int:
     """Bytes of this process, all of them (0) or those in memory (1)."""
     with open("/proc/self/statm", encoding="ascii") as stream:
@@ -185,13 +180,6 @@ def _pages(column: int) -> int:
 def _limit(kind: int, value: int) -> None:
     _, hard = resource.getrlimit(kind)
     resource.setrlimit(kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
-
-
-def _end_with_parent() -> None:
-    import ctypes
-
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
 def _refused(where: str, ended: int, used: float, seconds: float, memory: float) -> InputError:

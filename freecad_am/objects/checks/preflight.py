@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from freecad_am.core.types import Array
 
 from ...core.issues import Issue, has_errors
+from ...core.kinematics.cell import Cell
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters, NozzleParameters
 from ...core.parameters.process import ProcessParameters
@@ -19,13 +20,19 @@ from ...core.preflight.checks import Evidence, promises
 from ...core.preflight.promise import Promise
 from ...core.preflight.written import ReadBack
 from ...core.process.deposit import balance as deposit_balance
+from ...core.process.deposit import spacing
+from ...core.process.deposit.balance import Balance
 from ...core.simulation import rapid_look
+from ...core.simulation.arm import ArmTouches
+from ...core.simulation.rapid_look import RapidsLooked
 from ...core.strategies.clearance import look as clearance_look
+from ...core.strategies.clearance.look import Looked
+from ...core.toolpath import Toolpath
 from ...posts import catalogue
 from ...verify import Verification
 from .. import user_machines
 from ..joint_path import Planned
-from ..results.as_run import as_run
+from ..results.as_run import AsRun, as_run
 from ..results.findings import issues_of
 from ..shapes.cell_obstacles import resolved
 from ..shapes.link_meshes import meshes_of
@@ -40,15 +47,29 @@ ARM_PLACES, NOZZLE_PLACES, RAPID_PLACES = 6_000, 4_000, 12_000
 Work = Callable[[], tuple[Promise, ...]]
 
 
-def of_stages(
-    toolpath: Any, path: Any = None, program: Any = None, distances: tuple[Array, ...] | None = None
-) -> tuple[Promise, ...]:
-    """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). distances:
-    between the layers as they are run, where they are known. Raises InputError 'NO_RESULT' where one has no result."""
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What takes long to find, as `Evidence` has it: of a toolpath and, where there is one, of its joint path."""
+
+    distances: tuple[Array, ...]
+    balance: Balance | None
+    looked: Looked | None
+    rapids: RapidsLooked | None = None
+    arm: ArmTouches | None = None
+
+
+Look = Callable[[], Found]
+Running = tuple[Toolpath, Planned, Cell, AsRun]  # what runs: of what, of which path, where and how
+Run = Callable[[tuple[Issue, ...]], Running]
+
+
+def of_stages(toolpath: Any, path: Any = None, program: Any = None, look: Look | None = None) -> tuple[Promise, ...]:
+    """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). look: as
+    `look_at` makes it, where it was made already. Raises InputError 'NO_RESULT' where one has no result."""
     if program is None:
-        return prepared(toolpath, path, distances=distances)()
+        return prepared(toolpath, path, look=look)()
     settings = program.Proxy.parameters(program, ProgramParameters)
-    return prepared(toolpath, path, settings, read_back_of(program), tuple(issues_of(program)), distances)()
+    return prepared(toolpath, path, settings, read_back_of(program), tuple(issues_of(program)), look)()
 
 
 def read_back_of(program: Any) -> Verification | None:
@@ -59,67 +80,109 @@ def read_back_of(program: Any) -> Verification | None:
 
 def prepared(
     toolpath: Any, path: Any = None, settings: ProgramParameters | None = None, read: Verification | None = None,
-    more: tuple[Issue, ...] = (), distances: tuple[Array, ...] | None = None,
+    more: tuple[Issue, ...] = (), look: Look | None = None,
 ) -> Work:
     """What makes the preflight of a toolpath and of its joint path (document objects), without the document, from which all
-    is read now. settings: of the program that is written of it; read: how that was read back; more: its findings. Raises
-    InputError 'NO_RESULT' where one has no result."""
-    features = features_of(toolpath)
-    builds = [feature.Proxy.parameters(feature, BuildDirectionParameters) for feature in features]
-    stages = [stage for stage in (*features, toolpath, path) if stage is not None]
+    is read now. settings: of the program that is written of it; read: how that was read back; more: its findings; look: as
+    `look_at` makes it. Raises InputError 'NO_RESULT' where one has no result."""
+    stages = [stage for stage in (*features_of(toolpath), toolpath, path) if stage is not None]
     issues = tuple(dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more)))
+    planned, process = toolpath.Proxy.reader(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
+    looks, run = look or look_at(toolpath, path, settings), None if path is None else _run(path, settings)
+
+    def preflight() -> tuple[Promise, ...]:
+        running = None if run is None else run(issues)
+        seen = looks()  # last: it may be waited for
+        known = Evidence(
+            planned(), process, issues, distances=seen.distances, balance=seen.balance, looked=seen.looked,
+            rapids=seen.rapids, arm=seen.arm,
+        )
+        return promises(known if running is None else _with_motion(known, running, settings, read))
+
+    return preflight
+
+
+def look_at(toolpath: Any, path: Any, settings: ProgramParameters | None) -> Look:
+    """What finds of a toolpath and its joint path (document objects), run as a program with `settings`, what takes long,
+    without the document, from which all is read now. Raises InputError 'NO_RESULT' where one has no result."""
+    features, process = features_of(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
+    builds = [feature.Proxy.parameters(feature, BuildDirectionParameters) for feature in features]
     planned, shapes = toolpath.Proxy.reader(toolpath), [feature.Proxy.reader(feature) for feature in features]
     widths = [one.bead_width for one in toolpath.Proxy.processes(toolpath)]
-    process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
+    cell = None if toolpath.Cell is None else toolpath.Cell.Proxy.value(toolpath.Cell)
+    run = None if path is None else _run(path, settings)
 
-    looks = None if toolpath.Cell is None else toolpath.Cell.Proxy.value(toolpath.Cell)
-    nozzle = NozzleParameters() if looks is None else looks.nozzle
-
-    def known() -> Evidence:
+    def look() -> Found:
         made = planned()
-        return Evidence(
-            made, process, issues, distances=distances,
-            balance=deposit_balance.together([
-                deposit_balance.of_toolpath(shape(), part, width)
-                for shape, width, (part, _) in zip(shapes, widths, made.parts, strict=True)
-            ]),
-            looked=clearance_look.together([
-                clearance_look.looked_at(
-                    made, (*made.surroundings, *platforms(looks, made)), nozzle, NOZZLE_PLACES // len(builds), number
-                )
-                for number, build in enumerate(builds) if build.clearance != "none"
-            ]),
-        )
+        balance = deposit_balance.together([
+            deposit_balance.of_toolpath(shape(), part, width)
+            for shape, width, (part, _) in zip(shapes, widths, made.parts, strict=True)
+        ])
+        looked = _nozzle_looked(made, cell, [build.clearance != "none" for build in builds])
+        if run is None:
+            return Found(tuple(spacing.between_layers(made)), balance, looked)
+        return _of_motion(Found((), balance, looked), process, *run(()))
 
-    if path is None:
-        return lambda: promises(known())
-    joints, cell = path.Proxy.reader(path), path.Cell.Proxy.value(path.Cell)
-    folders = tuple(user_machines.folders())
-    return lambda: of_motion(known(), joints(), cell, folders, settings, read)
+    return look
 
 
-def of_motion(
-    known: Evidence, planned: Planned, looks: CellParameters, folders: tuple[str, ...], settings: ProgramParameters | None,
-    read: Verification | None,
-) -> tuple[Promise, ...]:
-    """The preflight of a joint path, or of the program that is written of it with `settings`; known: of its toolpath. read:
-    None where that was not read back."""
-    toolpath = known.toolpath
-    cell = resolved(looks, toolpath, folders)
-    settings = None if settings is None or settings.post == "none" else settings
-    shapes = meshes_of(cell.machine)
-    run = as_run(planned, cell, toolpath.chord_error, settings, known.issues)
-    return promises(replace(
-        known, toolpath=planned.joint_path.toolpath(toolpath), issues=run.issues, cell=cell, motion=run.motion,
-        rapids=rapid_look.looked_at(
-            planned.motion, [one.bead for one in planned.joint_path.beads], cell, toolpath.surroundings,
-            toolpath.bead_width or known.process.bead_width, toolpath.layer_height, RAPID_PLACES,
-        ), condition=run.condition, threshold=run.threshold,
-        arm=arm_of(run.motion, cell, toolpath, known.process, shapes, ARM_PLACES, cell.arm_clearance or 0.0),
-        true_shapes=bool(shapes) and None not in shapes,
+def _nozzle_looked(toolpath: Toolpath, cell: CellParameters | None, asked: list[bool]) -> Looked | None:
+    """What the nozzle touches on the features that ask for clearance."""
+    bodies = (*toolpath.surroundings, *platforms(cell, toolpath)) if any(asked) else ()
+    nozzle = NozzleParameters() if cell is None else cell.nozzle
+    return clearance_look.together([
+        clearance_look.looked_at(toolpath, bodies, nozzle, NOZZLE_PLACES // len(asked), number)
+        for number, clear in enumerate(asked) if clear
+    ])
+
+
+def _of_motion(
+    of_deposit: Found, process: ProcessParameters, toolpath: Toolpath, planned: Planned, cell: Cell, as_it_runs: AsRun
+) -> Found:
+    """What was found of the deposit, at the distances that it is run at, with what is found of the motion."""
+    path = planned.joint_path
+    rapids = rapid_look.looked_at(
+        planned.motion, [one.bead for one in path.beads], cell, toolpath.surroundings,
+        toolpath.bead_width or process.bead_width, toolpath.layer_height, RAPID_PLACES,
+    )
+    shapes, clearance = meshes_of(cell.machine), cell.arm_clearance or 0.0
+    arm = arm_of(as_it_runs.motion, cell, toolpath, process, shapes, ARM_PLACES, clearance)
+    return replace(of_deposit, distances=tuple(spacing.between_layers(path.toolpath(toolpath))), rapids=rapids, arm=arm)
+
+
+def _run(path: Any, settings: ProgramParameters | None) -> Run:
+    """What makes of findings about a joint path (document object): its toolpath, what was planned, its cell, and how it is
+    run, without the document."""
+    toolpath, planned = path.Toolpath.Proxy.reader(path.Toolpath), path.Proxy.reader(path)
+    looks, folders = path.Cell.Proxy.value(path.Cell), tuple(user_machines.folders())
+    settings = _if_written(settings)
+
+    def run(issues: tuple[Issue, ...]) -> Running:
+        made, of_path = toolpath(), planned()
+        cell = resolved(looks, made, folders)
+        return made, of_path, cell, as_run(of_path, cell, made.chord_error, settings, issues)
+
+    return run
+
+
+def _with_motion(
+    known: Evidence, running: Running, settings: ProgramParameters | None, read: Verification | None
+) -> Evidence:
+    """What is known of a joint path, or of the program that is written of it with `settings`; known: of its toolpath, and
+    what was looked for. read: None where that was not read back."""
+    toolpath, planned, cell, as_it_runs = running
+    shapes, settings = meshes_of(cell.machine), _if_written(settings)
+    return replace(
+        known, toolpath=planned.joint_path.toolpath(toolpath), issues=as_it_runs.issues, cell=cell, motion=as_it_runs.motion,
+        condition=as_it_runs.condition, threshold=as_it_runs.threshold, true_shapes=bool(shapes) and None not in shapes,
         read=None if read is None else _read_back(read, toolpath.chord_error),
         on_controller=() if settings is None else catalogue.load(settings.post).ON_CONTROLLER,
-    ))
+    )
+
+
+def _if_written(settings: ProgramParameters | None) -> ProgramParameters | None:
+    """The settings of a program that is written; None where none is."""
+    return None if settings is None or settings.post == "none" else settings
 
 
 def _read_back(read: Verification, chord_error: float) -> ReadBack:
