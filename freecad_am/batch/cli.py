@@ -13,6 +13,7 @@ from typing import Any
 
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
 COMMANDS = ("plan", "export", "batch", "inspect", "check", "place", "machines")
+SHAPES = ("plan", "export", "inspect", "place")  # read shapes, for which all of FreeCAD is loaded
 USAGE = """usage: freecad-am COMMAND
 
   plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
@@ -39,7 +40,7 @@ def main(argv: list[str]) -> int:
     """
     from freecad_am.batch import console
 
-    if argv[:1] in (["plan"], ["export"], ["inspect"], ["place"]) and argv[1:]:
+    if argv[1:] and argv[0] in SHAPES:
         from freecad_am.batch import supervised
 
         def say(line: str) -> None:
@@ -86,6 +87,10 @@ def _run(argv: list[str], session: Any) -> int:
         session.out(parser.format_help())
         return DONE
     options = parser.parse_args(words)
+    if command in SHAPES:
+        from freecad_am.batch import paths
+
+        paths.load_meanwhile()
     status: int = getattr(sys.modules[__name__], f"_{command}")(options, session)
     return status
 
@@ -184,9 +189,6 @@ def _count(text: str) -> int:
 
 
 def _plan(options: Any, session: Any) -> int:
-    from freecad_am.batch import paths
-
-    paths.load_meanwhile()
     from freecad_am.batch import run
     from freecad_am.batch.job import job
 

@@ -25,7 +25,7 @@ def require_freecad() -> None:
 
 
 def load_meanwhile() -> None:
-    """Have a thread load FreeCAD's libraries, and import what a plan needs of ours: either takes a tenth of a second.
+    """Have a thread load FreeCAD's libraries, and import what most commands need of ours: either takes a tenth of a second.
 
     Who imports FreeCAD before the libraries are there waits for them. Where it is loaded already, or is not found, nothing
     is done.
