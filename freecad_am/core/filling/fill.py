@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..geometry.regions.region import Region, joined
+from ..geometry.regions.region import Region
 from ..geometry.regions.strip import Strip
 from ..issues import InputError
 from ..types import Array
@@ -46,7 +46,13 @@ def fill(
     if pattern not in CURVED and math.isinf(walls):
         pattern, infill = "contours", WHOLE
     if isinstance(region, Strip):
-        return tuple(long_enough(_fill_strip(region, beads, pattern, angle, walls, infill.density), beads.shortest))
+        inner = region.grown(-beads.inset, beads.chord_error)
+        if pattern in CURVED or not inner:
+            curves = strip_contours(region, inner, beads)
+        else:
+            upright = abs(math.sin(angle)) > abs(math.cos(angle))
+            curves = (lines_along if upright else lines_round)(region, inner, beads, int(walls), infill.density)
+        return tuple(long_enough(curves, beads.shortest))
     inner = region.grown(-beads.inset, beads.chord_error)
     if pattern in CURVED and infill.density == 1.0:
         curves = {"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, inner, beads)
@@ -59,19 +65,8 @@ def fill(
             curves += lines(framed, beads, angle, rounds, link)
             curves += closing(inner, curves, beads, rounds)
         else:
-            curves += closing(inner, curves, beads, rounds, framed.ends) if framed.curves else []
-            curves += sparse(framed, beads, pattern, angle, rounds, link, infill)
+            curves += sparse(framed, inner, beads, pattern, angle, rounds, link, infill)
     return tuple(long_enough(curves, beads.shortest))
-
-
-def _fill_strip(
-    strip: Strip, beads: Beads, pattern: str, angle: float, walls: float, density: float
-) -> list[PlaneCurve]:
-    inner = strip.grown(-beads.inset, beads.chord_error)
-    if pattern in CURVED or not inner:
-        return strip_contours(strip, inner, beads)
-    upright = abs(math.sin(angle)) > abs(math.cos(angle))
-    return (lines_along if upright else lines_round)(strip, inner, beads, int(walls), density)
 
 
 def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Gaps:
@@ -84,14 +79,3 @@ def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Bea
         ]
     inner = region.grown(-beads.inset, beads.chord_error)
     return [(gap.inside(), gap.width) for gap in left_open(curves, inner, beads)] if inner else []
-
-
-def open_at_slits(
-    regions: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads
-) -> Gaps | None:
-    """As `open_places`, of all regions of a layer with their beads, where slits thinner than the gap allowed divide them:
-    what beads leave open on both sides of a slit is one gap. None where no slits do."""
-    whole = joined(regions, beads.gap)
-    if whole == tuple(regions):
-        return None
-    return [gap for region in whole for gap in open_places(region, curves, beads)]

@@ -34,11 +34,12 @@ class Infill:
 
 
 def sparse(
-    framed: Frame, beads: Beads, pattern: str, angle: float, walls: int, longest_link: float | None, infill: Infill
+    framed: Frame, inner: Sequence[Region], beads: Beads, pattern: str, angle: float, walls: int, longest_link: float | None,
+    infill: Infill,
 ) -> list[PlaneCurve]:
-    """What is inside of walls, see `Infill`. angle (rad): of lines and zigzags, and of the lines where the whole is filled.
-    longest_link: as of `lines`."""
-    curves = []
+    """What is inside of walls, see `Infill`, and beads that close gaps between these. inner: where the middles of beads may
+    lie. angle (rad): of lines and zigzags, and of the lines where the whole is filled. longest_link: as of `lines`."""
+    curves = closing(inner, framed.thin + framed.curves, beads, walls, framed.ends) if framed.curves else []
     loose, whole = _divided(framed.ends, infill.buried, beads)
     for part in whole:
         curves += _whole(part, beads, angle, walls, longest_link)

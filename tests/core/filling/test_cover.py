@@ -12,7 +12,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.filling.curve import Beads
-from freecad_am.core.filling.fill import fill, open_at_slits, open_places
+from freecad_am.core.filling.fill import fill, open_places
 from freecad_am.core.geometry.regions.region import joined, regions
 from freecad_am.core.geometry.regions.strip import Period, strips
 from freecad_am.core.parameters.filled import DevelopableParameters
@@ -181,12 +181,13 @@ def test_slits_are_closed_and_wedges_beside_them_told():
     assert joined(apart, 0.05) == apart and len(apart) == 2
     curves = [curve for region in apart for curve in fill(region, BEADS)]
     assert [place for region in apart for place in open_places(region, curves, BEADS)] == []
-    told = open_at_slits(apart, curves, BEADS)
+    told = [gap for region in joined(apart, GAP) for gap in open_places(region, curves, BEADS)]
     tree = shapes.tree([(curve.points, curve.closed) for curve in curves], 0.02)
     assert told  # one place along the slit
     for place, width in told:
         assert tree.query(place)[0] > 0.5 * S and width > GAP
-    assert open_at_slits(regions(REGIONS["L"]), [], BEADS) is None
+    single = regions(REGIONS["L"])
+    assert joined(single, GAP) == single
 
 
 def test_strips_of_beads_wider_than_their_spacing_stay_inside():

@@ -13,11 +13,11 @@ import numpy as np
 
 from ...filling.cover import Cover, covered, total
 from ...filling.curve import OVER, Beads, PlaneCurve
-from ...filling.fill import Gaps, fill, open_at_slits, open_places
+from ...filling.fill import Gaps, fill, open_places
 from ...filling.free_width import fitted, narrowed, shared
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest_among, steps
-from ...geometry.regions.region import Region
+from ...geometry.regions.region import Region, joined
 from ...geometry.regions.strip import Period, Strip
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text
 from ...layers.margins import ARCS
@@ -109,10 +109,12 @@ class Pictures:
     def _issues(self, layer: Slice, curves: Sequence[PlaneCurve], gaps: Gaps, filling: _Filling) -> tuple[Issue, ...]:
         """What is told of a layer: what beads leave open, single ones that stand out, a pattern that is another there."""
         strategy, beads, issues = self._strategy, filling.beads, []
-        regions = [region for region in layer.regions if isinstance(region, Region)]
-        if len(regions) == len(layer.regions) and strategy.fill_density == 1.0:
-            at_slits = open_at_slits(regions, curves, beads)
-            gaps = gaps if at_slits is None else at_slits
+        regions = tuple(region for region in layer.regions if isinstance(region, Region))
+        all_round = len(regions) < len(layer.regions)
+        if not all_round and strategy.fill_density == 1.0:
+            regions = joined(regions, beads.gap)
+            if regions != layer.regions:  # what beads leave open on both sides of a slit is one gap
+                gaps = [gap for region in regions for gap in open_places(region, curves, beads)]
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
             issues.append(Issue(
@@ -120,7 +122,7 @@ class Pictures:
                     "{:.3g} mm", len(gaps), width, layer.where(point), beads.gap), layer.number,
             ))
         issues += _standing_out(layer, curves, beads)
-        if strategy.fill in INSTEAD and len(regions) < len(layer.regions):
+        if strategy.fill in INSTEAD and all_round:
             issues.append(Issue(
                 NOTE, "PATTERN_ROUND_HUB", Text("a layer all the way round the hub is filled with {}; strategy.fill = {} is "
                     "for regions with an end", INSTEAD[strategy.fill], strategy.fill), layer.number,
