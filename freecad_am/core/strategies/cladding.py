@@ -7,7 +7,7 @@ import numpy as np
 
 from ..filling.cover import Cover
 from ..geometry.walls.clad_faces import CladFaces
-from ..issues import NOTE, InputError, Issue, Text
+from ..issues import NOTE, InputError, Issue, Text, one_of_each
 from ..layers.curved.on_faces import FaceLayer, pieces, slices
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
@@ -19,7 +19,7 @@ from ..types import Array
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
 from .solids.filling import Pictures, bead_width, spaced
-from .solids.notes import lean_notes, notes
+from .solids.notes import notes
 from .solids.volumes import of_layers, twice
 
 REPORTED_DISTORTION = 0.02  # distortion that is told
@@ -65,8 +65,8 @@ def plan(
             "spacing, or thin = single", strategy.least_bead,
         )
     layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
-    noted = [one for one in notes(made, layers, issues, strategy, process, model) if one.code != "SINGLE_LAYER"]  # as asked
-    issues = [*given.issues, *_stretched(stretch), *noted, *lean_notes(made, layers, build)]
+    noted = [one for one in notes(made, layers, strategy, build, process, model) if one.code != "SINGLE_LAYER"]  # as asked
+    issues = [*given.issues, *_stretched(stretch), *one_of_each(issues), *noted]
     return Toolpath(
         layers, np.eye(4), strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap, "cladding",
         given.surroundings, None if model is None else model.law(process.acceleration), width,

@@ -41,7 +41,13 @@ class AlongCuts(PlaneCuts):
         more = True
         while more:
             distances = guide.distance(points)
-            _refuse_tight(base, guide, body.name, points, triangles, distances)
+            if (point := guide.crossing(points, triangles, distances)) is not None:
+                raise InputError(
+                    "GUIDE_TIGHT", body.name, "the guide bends more tightly at {} than the part is wide there: planes "
+                    "normal to it cross one another within the part, at {}; choose a guide nearer to the inside of the bend "
+                    "or with a larger radius, or strategy.layers: geodesic",
+                    base.where(guide.at(guide.distance(point[None]))[0][0]), base.where(point),
+                )
             normals = guide.at(distances)[1]
 
             def bends(ends: Index, normals: Array = normals) -> Mask:
@@ -84,18 +90,6 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
         made.append(layer._replace(heights=_heights(layer), before=number / layers))
     _refuse_uneven(made, strategy)
     return made
-
-
-def _refuse_tight(base: Base, guide: Guide, name: str, points: Array, triangles: Index, distances: Array) -> None:
-    """InputError GUIDE_TIGHT where planes cross one another within a body, given the distances (n,) mm along the guide of
-    those of its points."""
-    point = guide.crossing(points, triangles, distances)
-    if point is not None:
-        raise InputError(
-            "GUIDE_TIGHT", name, "the guide bends more tightly at {} than the part is wide there: planes normal to it cross "
-            "one another within the part, at {}; choose a guide nearer to the inside of the bend or with a larger radius, "
-            "or strategy.layers: geodesic", base.where(guide.at(guide.distance(point[None]))[0][0]), base.where(point),
-        )
 
 
 def _heights(layer: Slice) -> tuple[float, float, float]:

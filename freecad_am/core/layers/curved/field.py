@@ -33,10 +33,17 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
     start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
     meshes = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
-    field = _field(
-        meshes, [base.inside(body.vertices)[body.triangles] for body in solids.surroundings], name, start, strategy
-    )
     worst, height, cut = 0.0, strategy.layer_height, max(strategy.share_of_cut, 1e-3)
+    volume = sum(one.volume for one in meshes)
+    step = step_of(volume, height)
+    if step > COARSE * height:
+        raise InputError(
+            "TOO_FINE", "strategy.layer_height", "{:g} mm is too fine for curved layers of {}, {:.4g} cm3; give at least "
+            "{:.2g} mm, or layers: planes", height, name, volume / 1000.0, step / COARSE,
+        )
+    field = _field(
+        meshes, [base.inside(body.vertices)[body.triangles] for body in solids.surroundings], name, start, step, strategy
+    )
     layers = int(np.ceil(field.top / height - cut + 1e-6))
     for number in range(max(layers, 0)):
         for chart, regions, stretch in field.pieces((number + cut) * height):
@@ -64,9 +71,9 @@ def _refuse(strategy: SolidParameters) -> None:
 
 
 def _field(
-    solids: Sequence[SolidMesh], substrate: Sequence[Array], name: str, chosen: Array | None, strategy: SolidParameters
+    solids: Sequence[SolidMesh], substrate: Sequence[Array], name: str, chosen: Array | None, step: float,
+    strategy: SolidParameters,
 ) -> GeodesicField:
-    step = _step(sum(one.volume for one in solids), name, strategy)
     near = STANDING * strategy.layer_height
     if chosen is None:
         below = [triangles for triangles in substrate if triangles[:, :, 2].min() < -near]
@@ -96,18 +103,6 @@ def _field(
             "deposit these by themselves, or set strategy.direction", 100.0 * field.unreached,
         )
     return field
-
-
-def _step(volume: float, name: str, strategy: SolidParameters) -> float:
-    """Mm from node to node. InputError TOO_FINE."""
-    height = strategy.layer_height
-    step = step_of(volume, height)
-    if step > COARSE * height:
-        raise InputError(
-            "TOO_FINE", "strategy.layer_height", "{:g} mm is too fine for curved layers of {}, {:.4g} cm3; give at least "
-            "{:.2g} mm, or layers: planes", height, name, volume / 1000.0, step / COARSE,
-        )
-    return step
 
 
 def _standing(solid: SolidMesh, substrate: Sequence[Array], near: float, plane: bool = True) -> Array:

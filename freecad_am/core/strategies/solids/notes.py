@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...issues import NOTE, WARNING, Issue, Text, Word, one_of_each
+from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
@@ -28,15 +28,12 @@ HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
 
 def notes(
-    made: Sequence[MadeBead], layers: Sequence[Layer], issues: list[Issue], strategy: FilledParameters,
+    made: Sequence[MadeBead], layers: Sequence[Layer], strategy: FilledParameters, build: BuildDirectionParameters,
     process: ProcessParameters, model: BeadModel | None,
 ) -> list[Issue]:
-    """All of them; of the issues of layers of solids one of each code, with how many there are like it."""
-    issues = one_of_each(issues)
-    if model is not None:
-        issues += of_model(made, strategy.layer_height, process, model)
-    else:
-        issues += _speeds(layers, strategy, process)
+    """All of them."""
+    height = strategy.layer_height
+    issues = _speeds(layers, strategy, process) if model is None else of_model(made, height, process, model)
     issues += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     if waits and strategy.min_layer_time > 0.0:
@@ -51,7 +48,7 @@ def notes(
                 "solid is returned to sooner than after {:g} s", len(waits), len(layers), max(waits), sum(waits),
                 strategy.wait),
         ))
-    return issues
+    return issues + _leans(made, layers, build)
 
 
 def _speeds(layers: Sequence[Layer], strategy: FilledParameters, process: ProcessParameters) -> list[Issue]:
@@ -113,7 +110,7 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
     )]
 
 
-def lean_notes(made: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
+def _leans(made: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
     """At most one issue of a kind, at the bead where it is worst."""
     turned = {id(one.bead): one.turned for one in made if one.turned is not None}
     places = [(bead, i, j) for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)]

@@ -10,7 +10,7 @@ import numpy as np
 from ...filling.cover import Cover
 from ...geometry.beyond_hub import solids_beyond
 from ...geometry.on_hub import SolidsOnHub
-from ...issues import InputError, Issue
+from ...issues import InputError, Issue, one_of_each
 from ...layers import field
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
@@ -23,7 +23,7 @@ from .. import size
 from ..progress import Progress, silent
 from .beads import MadeBead, bead_of
 from .filling import Pictures, bead_width, spaced
-from .notes import lean_notes, notes
+from .notes import notes
 from .volumes import twice, volumes
 
 LEVEL = 1e-6  # mm, and of the cosine of an angle
@@ -82,7 +82,7 @@ def plan(
             "spacing, or thin = single", strategy.least_bead,
         )
     layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
-    issues = [*solids.issues, *notes(made, layers, issues, strategy, process, model), *lean_notes(made, layers, build)]
+    issues = [*solids.issues, *one_of_each(issues), *notes(made, layers, strategy, build, process, model)]
     return Toolpath(
         layers, solids.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap,
         "solid" if solids.on_planes() else "developable",
