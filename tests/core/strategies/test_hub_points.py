@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.filling.curve import PlaneCurve
+from freecad_am.core.geometry.curves.plane_curve import divided
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
@@ -15,7 +16,7 @@ from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.strategies.solids.beads import CLOSE, bead_of, dense
+from freecad_am.core.strategies.solids.beads import CLOSE, bead_of, needed
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -25,7 +26,8 @@ def test_points_that_all_but_coincide_are_one(seed):
     angle = rng.uniform(-1.0, 1.0, count)
     steps = 10.0 ** rng.uniform(-9.0, 0.5, (count, 1)) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     line = np.vstack([[0.0, 0.0], np.cumsum(steps, axis=0)])
-    got = dense(line, RoundLayer(Developable(60.0, 200.0)), 0.01)
+    got = needed(line, 0.01)
+    got = divided(got, RoundLayer(Developable(60.0, 200.0)).pieces(got, 0.01))[0]
     np.testing.assert_array_equal(got[[0, -1]], line[[0, -1]])
     gaps = np.linalg.norm(np.diff(got, axis=0), axis=1)
     if line[-1, 0] > 2.0 * CLOSE:

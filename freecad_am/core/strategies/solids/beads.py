@@ -56,9 +56,9 @@ def bead_of(
     surface, base, name = layer.surface, layer.base, classes.of_filled(curve.kind, layer.number)
     build, process = classes.leaning(build, process, name), process.for_class(name)
     line, share = _ended(curve, surface)
-    flat = dense(
-        line, surface, WRAP_SHARE * strategy.chord_error, None if share is None else telling(arcs(line), share, SHARES)
-    )
+    error = WRAP_SHARE * strategy.chord_error
+    flat = needed(line, error, None if share is None else telling(arcs(line), share, SHARES))
+    flat = divided(flat, surface.pieces(flat, error))[0]
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
     flat, points, normals, tool, turned = held(course, leaning(curve, layer, strategy, build), build, strategy.chord_error)
     points = base.placed(points)
@@ -132,13 +132,13 @@ def _sparse(points: Array, speed: Array, least: float) -> Mask:
     return kept
 
 
-def dense(line: Array, surface: LayerSurface, chord_error: float, besides: Mask | None = None) -> Array:
-    """A polyline (n, 2) on the plane with so many points that its chords, wrapped, keep within the chord error, without
-    those that it needs not for that, but for those (n,) needed besides."""
+def needed(line: Array, chord_error: float, besides: Mask | None = None) -> Array:
+    """A polyline (n, 2) on the plane without points that the chord error needs not, but for those (n,) needed besides, and
+    without those that all but coincide."""
     grid = np.ascontiguousarray(np.round(line, GRID) + 0.0)  # of points alike the same wherever the hub stands
-    needed = np.ascontiguousarray(simplified(grid, NEEDLESS * chord_error))
-    kept = np.isin(grid.view(np.complex128).ravel(), needed.view(np.complex128).ravel())
+    simple = np.ascontiguousarray(simplified(grid, NEEDLESS * chord_error))
+    kept = np.isin(grid.view(np.complex128).ravel(), simple.view(np.complex128).ravel())
     kept[[0, -1]] = True
     line = line[kept if besides is None else kept | besides]
-    line = line[_sparse(line, np.ones(len(line) - 1), CLOSE)]
-    return divided(line, surface.pieces(line, chord_error))[0]
+    found: Array = line[_sparse(line, np.ones(len(line) - 1), CLOSE)]
+    return found
