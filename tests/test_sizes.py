@@ -26,7 +26,7 @@ LONG_FUNCTIONS = {
     "core/simulation/rapid_look.py looked_at": 45,
     "core/strategies/cladding.py plan": 47,
     "core/strategies/solids/lean.py _spread": 46,
-    "core/strategies/solids/plan.py plan": 63,
+    "core/strategies/solids/plan.py plan": 62,
     "gui/redundancy_map/controls.py __init__": 50,
     "gui/tools/export_path.py __init__": 46,
     "objects/planned/proposed_family.py proposed": 66,
