@@ -84,7 +84,9 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     paths.require_freecad()
     import FreeCAD
 
-    with named_by_keys(job):
+    from freecad_am.brep.files.read import reading_shape
+
+    with named_by_keys(job), reading_shape(job.features[0].part.file):  # while the rest is checked
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
             stages = otherwise.planned(

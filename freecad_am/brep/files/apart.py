@@ -40,6 +40,7 @@ NO_MEMORY = 77  # exit status of a copy that has come to its limit
 CRASHED = 1  # or any other
 
 _is_apart = False  # whether this is such a process
+_begun: dict[tuple[Any, ...], _Copy] = {}  # by what is read
 
 
 def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, patience: float = 1.0) -> T:
@@ -56,31 +57,44 @@ def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, pati
         raise InputError("BAD_FILE", where, message)
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return read(path, *rest)
-    seconds, memory = patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
-    with _with_window() if FreeCAD.GuiUp else _in_memory() as (answer_file, geometry):
-        if FreeCAD.GuiUp:
-            question = (answer_file, geometry, read.__module__, read.__qualname__, path, rest, seconds, memory)
-            how = kernel_process.limited(answer, question, LONGER * seconds)
+    limits = _limits(size, patience)
+    if not FreeCAD.GuiUp:
+        with _begun.pop((read, path, rest), None) or _Copy(read, path, rest, *limits) as copy:
+            ended, used = copy.wait()
+            if ended:
+                raise _refused(where, ended, used, *limits)
+            found = answers.hear(*copy.files)
+    else:
+        with _with_window() as files:
+            how = kernel_process.limited(
+                answer, (*files, read.__module__, read.__qualname__, path, rest, *limits), LONGER * limits[0])
             if how is None:  # there is no other process
                 return read(path, *rest)
-        else:
-            how = _forked(lambda: answers.tell(answer_file, geometry, read, path, rest), seconds, memory)
-        ended, used = how
-        if ended == 0:
-            found = answers.hear(answer_file, geometry)
-            return read(path, *rest) if isinstance(found, str) and found == answers.AGAIN else found
-        raise _refused(where, ended, used, seconds, memory)
+            if how[0]:
+                raise _refused(where, *how, *limits)
+            found = answers.hear(*files)
+    return read(path, *rest) if isinstance(found, str) and found == answers.AGAIN else found
 
 
 @contextlib.contextmanager
-def _in_memory() -> Iterator[tuple[str, str]]:
-    """The paths of two files that only this process and its copies have."""
-    answer_file, geometry = os.memfd_create("told"), os.memfd_create("geometry")
+def ahead(read: Callable[..., object], path: str | os.PathLike[str], *rest: Any) -> Iterator[None]:
+    """Within it a copy of this process has begun with what `apart` is asked for first with these words. Beside a window, or
+    with one processor, nothing is begun."""
+    size, linux = _size(path) / MB, sys.platform.startswith("linux")
+    if FreeCAD.GuiUp or not linux or not 0.0 < size <= LARGEST or len(os.sched_getaffinity(0)) < 2:
+        yield
+        return
+    _begun[read, path, rest] = copy = _Copy(read, path, rest, *_limits(size, 1.0))
     try:
-        yield f"/proc/self/fd/{answer_file}", f"/proc/self/fd/{geometry}"
+        yield
     finally:
-        os.close(answer_file)
-        os.close(geometry)
+        _begun.pop((read, path, rest), None)
+        copy.close()
+
+
+def _limits(size: float, patience: float) -> tuple[float, float]:
+    """s of the processor and MB of memory that reading a file of so many MB may take."""
+    return patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
 
 
 @contextlib.contextmanager
@@ -123,30 +137,51 @@ def _size(path: str | os.PathLike[str]) -> float:
         return 0.0
 
 
-def _forked(work: Callable[[], None], seconds: float, memory: float) -> tuple[int, float]:
-    """How a copy of this process ended that does the work within limits, as Popen tells it, and the memory, MB, that it used
-    beside what this process has."""
-    ours, theirs = os.pipe()
-    before = _pages(1)
-    sys.stdout.flush()
-    sys.stderr.flush()
-    pid = os.fork()
-    if not pid:
-        _work(work, seconds, memory)
-    os.close(theirs)
-    ended = False
-    try:
-        until = time.monotonic() + LONGER * seconds
-        while not ended and time.monotonic() < until:
-            ended = bool(select.select([ours], [], [], 0.5)[0])  # the end of the copy closes it
-    finally:
-        os.close(ours)
-        if not ended:
+class _Copy:
+    """A copy of this process that reads a file within limits; nothing is left of it once it is closed."""
+
+    def __init__(self, read: Callable[..., object], path: Any, rest: tuple[Any, ...], seconds: float, memory: float) -> None:
+        self._descriptors = [os.memfd_create("told"), os.memfd_create("geometry")]
+        told, geometry = self._descriptors
+        self.files = f"/proc/self/fd/{told}", f"/proc/self/fd/{geometry}"  # that this process and its copies have
+        self._ours, theirs = os.pipe()
+        self._before, self._until = _pages(1), time.monotonic() + LONGER * seconds
+        sys.stdout.flush()
+        sys.stderr.flush()
+        self._pid = os.fork()
+        if not self._pid:
+            _work(lambda: answers.tell(*self.files, read, path, rest), seconds, memory)
+        os.close(theirs)
+
+    def __enter__(self) -> _Copy:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def wait(self) -> tuple[int, float]:
+        """How it ended, as Popen tells it, and the memory, MB, that it used beside what this process has."""
+        ended = False
+        while not ended and time.monotonic() < self._until:
+            ended = bool(select.select([self._ours], [], [], 0.5)[0])  # the end of the copy closes it
+        status, usage = self._end(kill=not ended)
+        code = os.waitstatus_to_exitcode(status)
+        return (code if ended else -signal.SIGXCPU), max(0.0, (1024.0 * usage.ru_maxrss - self._before) / MB)
+
+    def close(self) -> None:
+        if self._pid:
+            self._end(kill=True)
+        while self._descriptors:
+            os.close(self._descriptors.pop())
+
+    def _end(self, kill: bool) -> tuple[int, resource.struct_rusage]:
+        os.close(self._ours)
+        if kill:
             with contextlib.suppress(OSError):
-                os.kill(pid, signal.SIGKILL)
-        _, status, usage = os.wait4(pid, 0)
-    code = os.waitstatus_to_exitcode(status)
-    return (code if ended else -signal.SIGXCPU), max(0.0, (1024.0 * usage.ru_maxrss - before) / MB)
+                os.kill(self._pid, signal.SIGKILL)
+        _, status, usage = os.wait4(self._pid, 0)
+        self._pid = 0
+        return status, usage
 
 
 def _work(work: Callable[[], None], seconds: float, memory: float) -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ import Part
 from ...core.geometry.located import located
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import InputError
-from .apart import apart
+from . import apart
 
 READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 FARTHEST = 1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
@@ -51,7 +51,13 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
         raise InputError("BAD_FILE", where, "it cannot be read: {}; choose a file that can", error.strerror) from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
-    return apart(_shape, file, where)
+    return apart.apart(_shape, file, where)
+
+
+def reading_shape(path: str | os.PathLike[str]) -> AbstractContextManager[None]:
+    """Within it reading that shape has begun, and `read_shape` waits for the rest alone."""
+    file = located(path)
+    return apart.ahead(_shape, file, file.name) if file.suffix.lower() in READABLE else nullcontext()
 
 
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
@@ -63,7 +69,7 @@ def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
         raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
     if file.stat().st_size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
-    return apart(_mesh, file, where, scale)
+    return apart.apart(_mesh, file, where, scale)
 
 
 def placed_mesh(mesh: Any, placement: Any) -> Any:
