@@ -84,11 +84,10 @@ def _widths(curve: PlaneCurve) -> tuple[list[Line], list[float]]:
     """A bead in lines along which its width is one, and the share of the usual width of each."""
     if curve.share is None:
         return [(curve.points, curve.closed)], [1.0]
-    share, points = curve.share, curve.points
-    if np.ptp(share) < SHARES:
-        return [(points, curve.closed)], [float(share.mean())]
-    if curve.closed:
-        share, points = np.r_[share, share[:1]], np.vstack([points, points[:1]])
+    if np.ptp(curve.share) < SHARES:
+        return [(curve.points, curve.closed)], [float(curve.share.mean())]
+    points, share = curve.whole()
+    assert share is not None
     level = np.round(0.5 * (share[1:] + share[:-1]) / SHARES)
     starts = np.flatnonzero(np.diff(level, prepend=np.nan))
     ends = np.r_[starts[1:], len(level)]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.curves.plane_curve import begun_at, doubled_area, length, up_to
 from ..geometry.regions.region import Region
-from ..geometry.regions.strip import Strip
+from ..geometry.regions.strip import Period, Strip
 from ..types import Array
 
 NEXT, OVER = 0.7548776662, 0.5698402910  # of a length: starts of the next contour, of the next layer (the sequence R2)
@@ -42,6 +42,15 @@ class PlaneCurve:
         if self.closed:
             points, share = np.roll(points, 1, axis=0), None if share is None else np.roll(share, 1)
         return replace(self, points=points, share=share)
+
+    def whole(self, period: Period | None = None) -> tuple[Array, Array | None]:
+        """Its points and shares; of a closed one the first again at the end, a period on where it goes round."""
+        if not self.closed:
+            return self.points, self.share
+        start = self.points[:1]
+        if self.turns and period is not None:
+            start = period.moved(start, self.turns)
+        return np.vstack([self.points, start]), None if self.share is None else np.r_[self.share, self.share[:1]]
 
 
 def on_plane(point: Array) -> str:

@@ -89,7 +89,7 @@ def narrowed(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: fl
     """The curves with the share of their usual width that they have room for: halfway to others of their kind, and as far as
     those that come first reach, contours before lines before beads in the middle. Links of zigzags lay what their lines,
     which end before the contour, do not. angle: of the lines, rad. least: share that no bead is laid below."""
-    lines, corners = zip(*(_divided(curve, STEP * beads.spacing) for curve in curves))
+    lines, corners = zip(*(divided_by_step(curve.whole()[0], STEP * beads.spacing) for curve in curves))
     edges = _edges(lines, [curve.closed for curve in curves])
     widths = _free_widths(edges, np.array([FIRST.get(curve.kind, LAST) for curve in curves], dtype=np.intp), beads.spacing)
     share = widths.sum(axis=1) / beads.spacing
@@ -99,12 +99,6 @@ def narrowed(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: fl
     share = np.clip(share, least, 1.0)
     cuts = np.searchsorted(edges.bead, np.arange(1, len(curves)))
     return tuple(_with(*one) for one in zip(curves, lines, corners, np.split(share, cuts)))
-
-
-def _divided(curve: PlaneCurve, step: float) -> tuple[Array, Mask]:
-    """The points (n, 2) of a curve, the first of a closed one again at its end, and more, at most `step` mm apart; which of
-    them (n,) are the curve's own."""
-    return divided_by_step(np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points, step)
 
 
 def _edges(lines: Sequence[Array], closed: Sequence[bool]) -> _Edges:

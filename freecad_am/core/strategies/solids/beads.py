@@ -13,7 +13,7 @@ from ...geometry.angles import TURN
 from ...geometry.curves.plane_curve import arcs, divided, fractions
 from ...geometry.regions.region import simplified
 from ...geometry.regions.telling import telling
-from ...layers.surface import LayerSurface, Slice
+from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
@@ -55,7 +55,7 @@ def bead_of(
     its polynomial's variable is the arc length, 2 pi in all."""
     surface, base, name = layer.surface, layer.base, classes.of_filled(curve.kind, layer.number)
     build, process = classes.leaning(build, process, name), process.for_class(name)
-    line, share = _ended(curve, surface)
+    line, share = curve.whole(surface.period)
     error = WRAP_SHARE * strategy.chord_error
     flat = needed(line, error, None if share is None else telling(arcs(line), share, SHARES))
     flat = divided(flat, surface.pieces(flat, error))[0]
@@ -72,19 +72,8 @@ def bead_of(
     if share is not None:
         share = np.interp(fractions(flat), fractions(line), share)
     heights = surface.heights(flat) if model is None else None
-    made = _with_speed(bead, flat, curve.closed and not curve.turns, share, heights, strategy, process, model)
-    return _thinned(made)._replace(turned=turned)
-
-
-def _ended(curve: PlaneCurve, surface: LayerSurface) -> tuple[Array, Array | None]:
-    """The points of a curve and their shares of the usual width; of a closed one the first again at the end, a period on
-    where it goes round."""
-    if not curve.closed:
-        return curve.points, curve.share
-    start = curve.points[:1]
-    if curve.turns and surface.period is not None:
-        start = surface.period.moved(start, curve.turns)
-    return np.vstack([curve.points, start]), None if curve.share is None else np.r_[curve.share, curve.share[:1]]
+    closed = curve.closed and not curve.turns
+    return _thinned(_with_speed(bead, flat, closed, share, heights, strategy, process, model))._replace(turned=turned)
 
 
 def _thinned(made: MadeBead) -> MadeBead:

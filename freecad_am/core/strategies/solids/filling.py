@@ -16,7 +16,7 @@ from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import Gaps, fill, open_places
 from ...filling.free_width import fitted, narrowed, shared
 from ...filling.sparse import Infill
-from ...geometry.curves.plane_curve import nearest_among, steps
+from ...geometry.curves.plane_curve import nearest_among
 from ...geometry.regions.region import Region, joined
 from ...geometry.regions.strip import Period, Strip
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text
@@ -139,11 +139,11 @@ class Pictures:
             ARCS * strategy.chord_error, layer.where, self._width,
             layer.number * OVER if strategy.starts == "spread" else None,
         )
-        angle = strategy.fill_angle + layer.number * strategy.fill_angle_step - turned
-        if strategy.fill_density == 1.0:
-            return _Filling(beads, angle, Infill())
-        height = layer.number * strategy.layer_height if strategy.fill == "gyroid" else 0.0
-        return _Filling(beads, angle, Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.buried))
+        infill = Infill()
+        if strategy.fill_density < 1.0:
+            height = layer.number * strategy.layer_height if strategy.fill == "gyroid" else 0.0
+            infill = Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.buried)
+        return _Filling(beads, strategy.fill_angle + layer.number * strategy.fill_angle_step - turned, infill)
 
     def _picture(self, layer: Slice, region: Region | Strip, filling: _Filling) -> _Picture:
         """A region filled, as one before it where that was the same."""
@@ -180,11 +180,9 @@ class Pictures:
 
 def _weighed(curve: PlaneCurve) -> float:
     """mm of usual bead that lays as much as a curve."""
-    way = np.hypot(*steps(curve.points, curve.closed).T)
-    if curve.share is None:
-        return float(way.sum())
-    share = np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share
-    return float(0.5 * (share[1:] + share[:-1]) @ way)
+    points, share = curve.whole()
+    way = np.hypot(*np.diff(points, axis=0).T)
+    return float(way.sum() if share is None else 0.5 * (share[1:] + share[:-1]) @ way)
 
 
 def spaced(strategy: Same, process: ProcessParameters) -> Same:
