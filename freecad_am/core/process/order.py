@@ -36,29 +36,34 @@ class Course(NamedTuple):
     solids: tuple[tuple[tuple[int, int], ...], ...]
 
 
-def island_by_island(beads: Sequence[Bead], islands: Sequence[Sequence[int]], point: Array | None) -> list[int]:
-    """The numbers of beads in the order of deposit. islands: those of the beads of each, from inside out. point: (3,) mm,
-    where the torch is; None: the first island comes first."""
-    islands = list(islands)
-    order: list[int] = []
-    while islands:
-        points = np.array([beads[island[0]].points[0] for island in islands])
-        order += islands.pop(0 if point is None else int(np.argmin(np.linalg.norm(points - point, axis=1))))
-        point = beads[order[-1]].points[-1]
-    return order
+@dataclasses.dataclass
+class IslandOrder:
+    """In which order the islands of one layer after the other are laid: the nearest next, or as those under them were.
 
+    as_below: the latter, so that all of them cool for as long as a layer takes. point: (3,) mm, where the torch is; None:
+    the first island comes first. below: middles (k, 3) of the islands of the layer before, in their order; None: no layer is
+    below.
+    """
 
-def as_below(
-    beads: Sequence[Bead], islands: Sequence[Sequence[int]], below: Array | None
-) -> tuple[list[int], Array]:
-    """The numbers of beads in the order in which the islands under them were laid, so that all of them cool for as long as
-    a layer takes; and the middles (k, 3) of the islands in that order. islands: as of `island_by_island`. below: the middles
-    of the layer before, None for the first."""
-    middle = [np.vstack([beads[number].points for number in sorted(island)]).mean(axis=0) for island in islands]
-    order = list(range(len(islands)))
-    if below is not None:
-        order.sort(key=lambda number: int(np.argmin(np.linalg.norm(below - middle[number], axis=1))))
-    return [number for island in order for number in islands[island]], np.array([middle[number] for number in order])
+    as_below: bool = False
+    point: Array | None = None
+    below: Array | None = None
+
+    def of(self, beads: Sequence[Bead], islands: Sequence[Sequence[int]]) -> list[Bead]:
+        """The beads of a layer in the order of deposit. islands: the numbers of those of each, from inside out."""
+        if self.as_below and islands:
+            middle = [np.vstack([beads[number].points for number in sorted(island)]).mean(axis=0) for island in islands]
+            order = list(range(len(islands)))
+            if (below := self.below) is not None:
+                order.sort(key=lambda number: int(np.argmin(np.linalg.norm(below - middle[number], axis=1))))
+            self.below = np.array([middle[number] for number in order])
+            return [beads[number] for island in order for number in islands[island]]
+        islands, order = list(islands), []
+        while islands:
+            points = np.array([beads[island[0]].points[0] for island in islands])
+            order += islands.pop(0 if self.point is None else int(np.argmin(np.linalg.norm(points - self.point, axis=1))))
+            self.point = beads[order[-1]].points[-1]
+        return [beads[number] for number in order]
 
 
 def ordered(beads: Sequence[RankedBead], order: str) -> Course:

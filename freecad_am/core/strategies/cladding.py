@@ -13,9 +13,8 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.model.bead_model import BeadModel
-from ..process.order import RankedBead, island_by_island, ordered, waited
+from ..process.order import IslandOrder, RankedBead, ordered, waited
 from ..toolpath import Bead, Toolpath
-from ..types import Array
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
 from .solids.filling import Pictures, bead_width, spaced
@@ -44,7 +43,7 @@ def plan(
     covers: list[Cover] = []
     stretch = 0.0
     for number, (sheet, piece) in enumerate(found):
-        point: Array | None = None
+        order = IslandOrder()
         for layer in slices(sheet, piece, strategy):
             progress((number + layer.number / strategy.layers) / len(found), f"layer {layer.number}")
             picture = pictures.filled(layer, given.label)
@@ -56,9 +55,8 @@ def plan(
             for curve in picture.curves:
                 made.append(bead_of(curve, layer, strategy, build, process, model))
                 beads.append(made[-1].bead)
-            order = island_by_island(beads, picture.islands, point)
-            ranked += [RankedBead(0, number, layer.number, -rank, beads[k]) for rank, k in enumerate(order)]
-            point = ranked[-1].bead.points[-1] if order else point
+            beads = order.of(beads, picture.islands)
+            ranked += [RankedBead(0, number, layer.number, -rank, bead) for rank, bead in enumerate(beads)]
     if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT", given.label, "no bead of {:g} mm or more finds room on its faces; use a smaller bead "

@@ -16,9 +16,8 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
-from ...process.order import RankedBead, as_below, island_by_island, ordered, waited
+from ...process.order import IslandOrder, RankedBead, ordered, waited
 from ...toolpath import Bead, Toolpath
-from ...types import Array
 from .. import size
 from ..progress import Progress, silent
 from .beads import MadeBead, bead_of
@@ -49,10 +48,10 @@ def plan(
     issues: list[Issue] = []
     covers: list[Cover] = []
     heights: dict[int, list[float]] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
-    point: Array | None = None  # where the torch is
+    order = IslandOrder(as_below=strategy.min_layer_time > 0.0)
     stacks = list(field.stacks(solids, strategy))
     for done, stack in enumerate(stacks):
-        below: Array | None = None  # middles of the islands of the layer before
+        order.below = None
         for layer in stack.layers:
             progress((done + layer.before) / len(stacks), f"{stack.name} layer {layer.number}")
             picture = pictures.filled(layer, stack.name)
@@ -64,15 +63,10 @@ def plan(
             for curve in picture.curves:
                 made.append(bead_of(curve, layer, strategy, build, process, model))
                 beads.append(made[-1].bead)
-            if beads and solids.on_planes():
-                if strategy.min_layer_time > 0.0:
-                    order, below = as_below(beads, picture.islands, below)
-                else:
-                    order = island_by_island(beads, picture.islands, point)
-                point = beads[order[-1]].points[-1]
+            if solids.on_planes():
                 ranked += [
-                    RankedBead(stack.group, stack.solid, layer.number, -len(ranked) - rank, beads[number])
-                    for rank, number in enumerate(order)
+                    RankedBead(stack.group, stack.solid, layer.number, -len(ranked) - rank, bead)
+                    for rank, bead in enumerate(order.of(beads, picture.islands))
                 ]
             else:
                 ranked += [RankedBead(stack.group, stack.solid, layer.number, bead.ring, bead) for bead in beads]
