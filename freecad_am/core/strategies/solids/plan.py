@@ -51,7 +51,7 @@ def plan(
     order = IslandOrder(as_below=strategy.min_layer_time > 0.0)
     stacks = list(field.stacks(solids, strategy))
     for done, stack in enumerate(stacks):
-        order.below = None
+        order.below = None  # no layer of this stack yet
         for layer in stack.layers:
             progress((done + layer.before) / len(stacks), f"{stack.name} layer {layer.number}")
             picture = pictures.filled(layer, stack.name)
