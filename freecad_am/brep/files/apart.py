@@ -142,8 +142,8 @@ class _Copy:
 
     def __init__(self, read: Callable[..., object], path: Any, rest: tuple[Any, ...], seconds: float, memory: float) -> None:
         self._descriptors = [os.memfd_create("told"), os.memfd_create("geometry")]
-        told, geometry = self._descriptors
-        self.files = f"/proc/self/fd/{told}", f"/proc/self/fd/{geometry}"  # that this process and its copies have
+        text, geometry = self._descriptors
+        self.files = f"/proc/self/fd/{text}", f"/proc/self/fd/{geometry}"  # that this process and its copies have
         self._ours, theirs = os.pipe()
         self._before, self._until = _pages(1), time.monotonic() + LONGER * seconds
         sys.stdout.flush()
