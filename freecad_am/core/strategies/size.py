@@ -104,8 +104,7 @@ def of_fronts(wall: PatchWall, strategy: SurfaceParameters) -> Size:
     # beads are bent as the first ones are, or as a circle through the whole wall would be, whichever is less
     chords = [_chords(curve.points, curve.closed, strategy.chord_error) for curve in wall.first]
     per_mm = sum(count for count, _ in chords) / sum(length for _, length in chords)
-    extent = float(np.linalg.norm(np.ptp(wall.vertices, axis=0)))
-    per_mm = min(per_mm, 1.0 / math.sqrt(4.0 * strategy.chord_error * extent))
+    per_mm = min(per_mm, 1.0 / math.sqrt(4.0 * strategy.chord_error * np.linalg.norm(np.ptp(wall.vertices, axis=0))))
     return Size(layers, max(FEWEST * layers, per_mm * area / strategy.layer_height))
 
 

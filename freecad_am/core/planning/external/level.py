@@ -39,9 +39,7 @@ def ways(cell: Cell, toolpath: Toolpath) -> Iterator[Levelled]:
     first = levelled(cell, toolpath)
     yield first
     again = levelled(cell, toolpath, whole_turns=True)
-    if [len(bead) for bead in again[0]] != [len(bead) for bead in first[0]] or any(
-        (one.points[0] != other.points[0]).any() for one, other in zip(first[0], again[0], strict=True)
-    ):
+    if [(len(bead), *bead.points[0]) for bead in again[0]] != [(len(bead), *bead.points[0]) for bead in first[0]]:
         yield again
 
 
