@@ -11,6 +11,7 @@ from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.process.deposit import layer_curve
 from freecad_am.core.slicing.first_layer import on_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
+from freecad_am.core.slicing.fronts.feet import feet
 from freecad_am.core.slicing.tubes import constant_distance, iso_parameter, smooth_spacing
 from freecad_am.core.slicing.tubes.wall_layer import even_grid
 from tests.core.patch_walls import tube
@@ -124,3 +125,35 @@ def test_near_segments_from_a_tree_are_those_that_all_of_them_tell(monkeypatch, 
     chords = (below.start + fine * (below.end - below.start)).reshape(-1, 3)
     nearest = np.array([np.linalg.norm(chords - place, axis=1).min() for place in places])
     assert (np.abs(found[0] - nearest) < 0.6 * (2.0 * np.pi * 53.0 / points)).all()
+
+
+def small_rings(count):
+    """Rings of 4 mm in a row, 10 mm apart."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 33)
+    found = []
+    for k in range(count):
+        points = np.column_stack([10.0 * k + 2.0 * np.cos(angle), 2.0 * np.sin(angle), np.zeros(33)])
+        points[-1] = points[0]
+        slope = np.column_stack([-2.0 * np.sin(angle), 2.0 * np.cos(angle), np.zeros(33)])
+        found.append(SpaceCurve(angle, points, slope, slope, True))
+    return found
+
+
+def test_of_a_layer_in_many_pieces_each_point_looks_at_those_near_it_alone(evaluated):
+    """A real wall whose layers broke into 55 pieces took a minute longer: each point was looked at from each piece."""
+    points = np.random.default_rng(4).uniform([0.0, -3.0, -1.0], [390.0, 3.0, 1.0], (2_000, 3))
+    work = []
+    for count in (5, 40):
+        rings = small_rings(count)
+        near = points[points[:, 0] < 10.0 * count - 10.0]
+        evaluated[0] = 0
+        found = feet(rings, near)
+        work.append(evaluated[0] / len(near))
+        # the same, to the bit, as from each of them
+        every = [ring.nearest(near) for ring in rings]
+        front = np.argmin([one[0] for one in every], axis=0)
+        assert (found.front == front).all()
+        row = np.arange(len(near))
+        assert (found.point == np.stack([one[1] for one in every])[front, row]).all()
+        assert (found.w == np.stack([one[2] for one in every])[front, row]).all()
+    assert work[1] < 1.3 * work[0]

@@ -132,6 +132,17 @@ def test_a_limit_that_cannot_be_kept_is_refused():
     assert refused.value.code == "TURN_LIMIT"
 
 
+def test_a_short_bead_gets_the_mean_of_all_of_it_before_it_is_refused():
+    """As one of a real wall, of 1.04 mm, which turns by 30 deg at one end; its mean has a direction."""
+    points = np.linspace(0.0, 1.04, 26)[:, None] * [1.0, 0.0, 0.0]
+    angle = np.radians(np.where(np.arange(26) < 5, -18.0 - np.arange(26), 10.0 - 0.45 * np.arange(26)))
+    build = np.stack([np.sin(angle), 0.0 * angle, np.cos(angle)], axis=1)
+    rate = np.radians(20.0)
+    found, departure = wall_direction.limited(points, build, False, rate)
+    assert wall_direction.turn_rates(points, found).max() <= rate
+    assert 0.1 < departure.max() < 0.5
+
+
 def test_directions_that_lean_over_too_far_are_turned_back_to_the_limit_alone():
     angle = np.linspace(0.0, 2.5, 26)
     leaning = np.stack([np.sin(angle) * 0.6, np.sin(angle) * 0.8, np.cos(angle)], axis=1)

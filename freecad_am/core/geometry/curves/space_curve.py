@@ -140,6 +140,13 @@ class SpaceCurve:
         return float((np.linalg.norm(slope, axis=-1) * 0.5 * weight * self.span[:, None]).sum())
 
     @cached_property
+    def box(self) -> tuple[Array, Array]:
+        """The lowest and highest coordinates (3,), mm, of what holds it: its nodes and the handles of its arcs."""
+        nodes, third = self.points, self.span[:, None] / 3.0
+        every = np.vstack([nodes, nodes[:-1] + third * self.out[:-1], nodes[1:] - third * self.into[1:]])
+        return every.min(axis=0), every.max(axis=0)
+
+    @cached_property
     def _samples(self) -> tuple[cKDTree, Index, Array]:
         """Samples in the middle of about equally long cells, with their arcs and places on them."""
         chord = np.linalg.norm(np.diff(self.points, axis=0), axis=1)

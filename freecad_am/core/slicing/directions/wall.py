@@ -117,7 +117,7 @@ def limited(
     low, high = 0.0, 1e-3 * s[-1]  # narrow ones first
     while (best := spread(high)) is None:
         low, high = high, 1.5 * high
-        if high > 2.0 * s[-1]:
+        if low > 2.0 * s[-1]:  # beyond which each is the mean over the whole bead
             raise InputError(
                 "TURN_LIMIT", label, "build directions cannot be brought below {:.3g} deg/mm on a bead of {:.4g} mm: allow "
                 "a faster turn, or use the mode fixed", np.degrees(rate), s[-1],

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...geometry.columns import lengths
 from ...geometry.curves.space_curve import SpaceCurve
 from ...types import Array, Index, Mask
 
@@ -36,10 +37,36 @@ class Feet(NamedTuple):
 
 
 def feet(fronts: list[SpaceCurve], points: Array) -> Feet:
-    """The nearest of all places on the fronts for each point (n, 3)."""
-    distance, foot, w = (np.stack(column) for column in zip(*(front.nearest(points) for front in fronts)))
-    front, row = np.argmin(distance, axis=0), np.arange(len(points))
-    return Feet.between(points, foot[front, row], front, w[front, row])
+    """The nearest of all places on the fronts for each point (n, 3).
+
+    A front is looked at for those points alone to which its box is nearer than any place found: where a layer is in many
+    pieces, few of these come into question for a point.
+    """
+    if len(fronts) == 1:
+        distance, foot, w = fronts[0].nearest(points)
+        return Feet.between(points, foot, np.zeros(len(points), dtype=np.intp), w)
+    least = np.stack([_to_box(points, *front.box) for front in fronts])
+    front = np.argmin(least, axis=0)  # those that are likely
+    distance, foot, w = np.empty(len(points)), np.empty((len(points), 3)), np.empty(len(points))
+    for k in np.unique(front):
+        own = np.flatnonzero(front == k)
+        distance[own], foot[own], w[own] = fronts[k].nearest(points[own])
+    asked = least <= distance
+    asked[front, np.arange(len(points))] = False
+    for k in np.flatnonzero(asked.any(axis=1)):
+        some = np.flatnonzero(asked[k] & (least[k] <= distance))
+        found, place, at = fronts[k].nearest(points[some])
+        # of places at the same distance that on the first front
+        nearer = (found < distance[some]) | ((found == distance[some]) & (k < front[some]))
+        own = some[nearer]
+        distance[own], foot[own], w[own], front[own] = found[nearer], place[nearer], at[nearer], k
+    return Feet.between(points, foot, front, w)
+
+
+def _to_box(points: Array, low: Array, high: Array) -> Array:
+    """Distances (n,) of points (n, 3) to a box, by a hair less than they are."""
+    out = np.maximum(np.maximum(low - points, points - high), 0.0)
+    return (1.0 - 1e-9) * lengths(out) - 1e-9
 
 
 def local_distances(front: SpaceCurve, below: list[SpaceCurve], finer: int = 1) -> Array:
