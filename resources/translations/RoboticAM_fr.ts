@@ -8342,6 +8342,11 @@
         <translation>les faces courbées dans les deux sens ne peuvent pas être mises à plat sans déformation : les cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que l&apos;espacement des cordons ; strategy.distortion le limite</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>facets meet at sharp angles along about {0} mm of edges; finding layers around these takes about {1} min of the processor; a larger strategy.layer_height, or a mesh with rounded edges, takes less</source>
+        <translation>des facettes se rejoignent à angle vif le long d&apos;environ {0} mm d&apos;arêtes ; y trouver les couches prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou un maillage aux arêtes arrondies, en prend moins</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>failed</source>
         <translation>échoué</translation>

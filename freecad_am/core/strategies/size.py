@@ -43,6 +43,9 @@ SECONDS_A_LAYER = 0.05  # s of the processor through all stages, however few poi
 SECONDS_A_SQUARE = 1.5e-4  # s of the processor that filling layers that differ takes by the square of the spacing, measured
 SECONDS_A_REMEDY = 8e-3  # s of the processor that a point takes with each remedy on an arm with an offset wrist, measured
 SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
+# s of the processor that finding layers takes by the mm of folds in a mesh: measured are 0.0018 where layers run along those
+# of an even mesh to 0.011 where they meet those of an uneven one at all angles
+SECONDS_A_FOLD = 5e-3
 SECONDS_A_NODE = 5e-5  # s of the processor that curved layers take by the node of their grid, measured: flat ones a third
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to
 # layer, and layers of cladding are laid flat to be filled
@@ -54,12 +57,14 @@ _SECONDS_A_POINT: dict[type, float] = {
 @dataclass(frozen=True)
 class Size:
     """About how many layers and points a toolpath would have. squares: with sides of the bead spacing, as many as there are
-    in all layers, where each of these is filled by itself. nodes: of the grids on which curved layers are looked for."""
+    in all layers, where each of these is filled by itself. nodes: of the grids on which curved layers are looked for. folds:
+    of the mesh of a wall, mm of their length."""
 
     layers: float
     points: float
     squares: float = 0.0
     nodes: float = 0.0
+    folds: float = 0.0
 
 
 def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
@@ -105,7 +110,7 @@ def of_fronts(wall: PatchWall, strategy: SurfaceParameters) -> Size:
     chords = [_chords(curve.points, curve.closed, strategy.chord_error) for curve in wall.first]
     per_mm = sum(count for count, _ in chords) / sum(length for _, length in chords)
     per_mm = min(per_mm, 1.0 / math.sqrt(4.0 * strategy.chord_error * np.linalg.norm(np.ptp(wall.vertices, axis=0))))
-    return Size(layers, max(FEWEST * layers, per_mm * area / strategy.layer_height))
+    return Size(layers, max(FEWEST * layers, per_mm * area / strategy.layer_height), folds=wall.folds)
 
 
 def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | None = None) -> Size:
@@ -184,25 +189,38 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
 
 def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES; one more where the grids of curved
-    layers take longer than all points, and these take LARGE_GIGABYTES. Raises InputError as `refuse_absurd`."""
+    layers or the folds of a mesh take longer than all points, and these take LARGE_GIGABYTES. Raises InputError as
+    `refuse_absurd`."""
     refuse_absurd(size, strategy)
     a_point = next(seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind))
     seconds = max(size.points * a_point, size.layers * SECONDS_A_LAYER, size.squares * SECONDS_A_SQUARE)
     gigabytes = size.points * GIGABYTES_A_POINT
-    grids: tuple[Issue, ...] = ()
-    if size.nodes * SECONDS_A_NODE > max(seconds, LARGE_SECONDS):
-        minutes = at_least(size.nodes * SECONDS_A_NODE / 60.0)
-        grids = (Issue(
-            NOTE, LARGE, Text("curved layers are searched for on a grid of about {} nodes, which takes about {:g} min of "
-                "the processor; a larger strategy.layer_height, or layers: planes, takes less", count(size.nodes), minutes),
-        ),)
-    if gigabytes < LARGE_GIGABYTES and (grids or seconds < LARGE_SECONDS):
-        return grids
-    return (*grids, Issue(
+    shapes = _of_shape(size, max(seconds, LARGE_SECONDS))
+    if gigabytes < LARGE_GIGABYTES and (shapes or seconds < LARGE_SECONDS):
+        return shapes
+    return (*shapes, Issue(
         NOTE, LARGE, Text("about {} points in {} layers are planned, which takes about {:g} min of the processor and {:g} "
             "GB of memory; a larger strategy.layer_height or strategy.chord_error makes them fewer", count(size.points),
             count(size.layers), at_least(seconds / 60.0), at_least(gigabytes)),
     ))
+
+
+def _of_shape(size: Size, seconds: float) -> tuple[Issue, ...]:
+    """A note LARGE where it is the shape that takes longer than so many seconds, however few points its beads have."""
+    grids, folds = size.nodes * SECONDS_A_NODE, size.folds * SECONDS_A_FOLD
+    if grids > seconds:
+        return (Issue(
+            NOTE, LARGE, Text("curved layers are searched for on a grid of about {} nodes, which takes about {:g} min of "
+                "the processor; a larger strategy.layer_height, or layers: planes, takes less", count(size.nodes),
+                at_least(grids / 60.0)),
+        ),)
+    if folds > seconds:
+        return (Issue(
+            NOTE, LARGE, Text("facets meet at sharp angles along about {} mm of edges; finding layers around these takes "
+                "about {:g} min of the processor; a larger strategy.layer_height, or a mesh with rounded edges, takes less",
+                count(size.folds), at_least(folds / 60.0)),
+        ),)
+    return ()
 
 
 def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:

@@ -284,3 +284,16 @@ def test_a_bend_of_one_surface_has_by_fronts_the_layers_that_its_parameter_gives
         assert cKDTree(dense(below)).query(inside)[0] == pytest.approx(8.0, abs=3e-3)
         assert cKDTree(dense(other.beads)).query(points)[0].max() < 0.02
     assert max(np.abs(bead.tool[:, 1]).max() for _, _, bead in toolpath) < 1e-9
+
+
+def test_other_directions_leave_the_layers_as_they_are(monkeypatch):
+    """What would clear the nozzle is tried with another direction: a minute of it went into the same layers."""
+    wall, asked, layers = tube(FLOOR, 40.0, 5.0), [], fronts.layers
+    monkeypatch.setattr(fronts, "layers", lambda wall, height, *rest: asked.append(height) or layers(wall, height, *rest))
+    leaning, upright = planned(wall, 6.0), planned(wall, 6.0, mode="fixed")
+    assert asked == [6.0]
+    for (_, _, one), (_, _, other) in zip(leaning, upright, strict=True):
+        assert (one.points == other.points).all()
+    planned(wall, 7.0)
+    planned(wall, 7.0, strategy={"spacing": "smooth"})
+    assert asked == [6.0, 7.0, 7.0]

@@ -86,6 +86,16 @@ class Mesh:
         a, b = self.vertices[self.edges].transpose(1, 0, 2)
         return float(np.median(np.linalg.norm(a - b, axis=1)))
 
+    def folded(self, angle: float) -> float:
+        """Length of the edges, mm, at which two faces meet at more than `angle` rad."""
+        order = np.argsort(self._sides, kind="stable")
+        sides, face = self._sides[order], order // 3
+        at = np.flatnonzero(sides[1:] == sides[:-1])
+        one, other = self.area_vectors[face[at]], self.area_vectors[face[at + 1]]
+        along = self.vertices[self._half_edges[order[at]]]
+        turn = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other))
+        return float(np.linalg.norm(along[:, 1] - along[:, 0], axis=1)[turn > angle].sum())
+
     @cached_property
     def tree(self) -> cKDTree:
         """Search tree of the vertices."""

@@ -21,6 +21,7 @@ from ..mesh.refined import Edges, flipped, refined
 from ..mesh.repair import WELDS, connected_triangles, mended_issues
 from ..mesh.smooth import SmoothMesh
 from ..mesh.solid import Search, SolidMesh
+from ..mesh.triangle_mesh import Mesh
 from ..mesh.uncrossed import uncrossed
 from .patch_wall import PatchWall
 from .rims import outward_volume
@@ -31,6 +32,7 @@ COLLAPSE = 0.55  # of the longest edge; shorter ones are drawn together
 CREASE = np.cos(np.radians(20.0))  # facets that meet at more are areas of their own, whose edges stay where they are
 PLANE = np.cos(np.radians(3.0))  # and for facets larger than the mesh's edges where it would run across such meetings
 ACROSS = 0.05  # of the length of an edge, mm off the facets from which on this is looked at
+FOLD = 0.25  # rad between facets: a bend whose radius is less than four edges, which they cannot follow
 PIECE = 1000  # places done together; bounds the memory
 REPORTED_FROM_MM = 0.02  # mm off the mesh that the smooth surface may be before it is told
 
@@ -54,6 +56,12 @@ class MeshWall(PatchWall):
         """How far, mm, the smooth surface is off the mesh, at most."""
         at_vertices = 0.0 if self.samples is None else float(np.linalg.norm(self.vertices - self.samples, axis=1).max())
         return max(at_vertices, self.between)
+
+    @property
+    def folds(self) -> float:
+        """Of what is deposited."""
+        ahead = self.triangles[~self.behind[self.triangles].any(axis=1)]
+        return Mesh(self.vertices, ahead).folded(FOLD)
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
         """On the smooth surface, which goes on a little beyond the edges of the wall."""

@@ -105,6 +105,11 @@ class PatchWall:
         whole = len(self.patches) == 1 and self.patches[0].kind == TORUS and all(rim.closed for rim in self.rims)
         return np.array(self.patches[0].frame[:3, 2]) if whole else None
 
+    @property
+    def folds(self) -> float:
+        """Length of places, mm, at which it bends more sharply than its mesh can follow; exact pieces have none."""
+        return 0.0
+
     @cached_property
     def mesh(self) -> Mesh:
         """The mesh, for level lines."""

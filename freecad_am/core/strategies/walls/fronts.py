@@ -9,6 +9,7 @@ that begins nearest to where the last one ended.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -36,6 +37,8 @@ from .front_tree import Piece, events, shorn, tree, whole
 FINER = 4  # places per arc of a front at which its distance from the layer below is measured
 FINDING = 0.7  # of the time goes into finding the layers
 
+_SLICED: WeakKeyDictionary[PatchWall, tuple[float, Smoothing | None, slicing.Sliced]] = WeakKeyDictionary()
+
 
 def plan(
     wall: PatchWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters,
@@ -53,7 +56,7 @@ def plan(
     settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
     height = strategy.layer_height
     smoothing = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
-    sliced = slicing.layers(wall, height, smoothing, lambda done, text: progress(FINDING * done, text))
+    sliced = _sliced(wall, height, smoothing, progress)
     pieces = tree(sliced.fronts, sliced.rims)
     full = [len(layer) for layer in pieces]
     pieces, omitted = _kept(pieces, sliced.rims, strategy, wall.label)
@@ -70,6 +73,16 @@ def plan(
         layers, wall.frame, height, strategy.chord_error, (*issues, *departures), process.overlap, "surface",
         bead_width=process.bead_width,
     )
+
+
+def _sliced(wall: PatchWall, height: float, smoothing: Smoothing | None, progress: Progress) -> slicing.Sliced:
+    """The layers of a wall. They are kept with it, for they take most of the time, and directions change none."""
+    kept = _SLICED.get(wall)
+    if kept is not None and kept[:2] == (height, smoothing):
+        return kept[2]
+    found = slicing.layers(wall, height, smoothing, lambda done, text: progress(FINDING * done, text))
+    _SLICED[wall] = (height, smoothing, found)
+    return found
 
 
 def _refuse(strategy: SurfaceParameters) -> None:
