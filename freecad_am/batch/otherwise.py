@@ -9,7 +9,7 @@ from typing import Any
 
 from freecad_am.core.issues import ERROR, NOTE, Issue, Text, has_errors
 
-from .job.features import UPRIGHT, leans
+from .job.features import UPRIGHT, JobFeature, leans
 from .job.job import Job
 
 Plan = Callable[[Job, str], Any]  # the stages of a job, given the code of the error that what was chosen ends with
@@ -56,6 +56,17 @@ def _leaning(job: Job, stages: Any) -> bool:
     return any(asked.sections is not None and leans(asked, one.strategy) for asked, one in chosen)
 
 
+def _with(feature: JobFeature, alone: bool) -> JobFeature:
+    """A feature with what is tried to clear its nozzle: a wall with one direction, curved layers, alone, as plane ones."""
+    from freecad_am.core.parameters.filled import GEODESIC, OFFSET, PLANES
+
+    if leans(feature, feature.strategy):
+        return dataclasses.replace(feature, build_direction=dataclasses.replace(feature.build_direction, mode=UPRIGHT))
+    if alone and getattr(feature.strategy, "layers", "") in (GEODESIC, OFFSET):
+        return dataclasses.replace(feature, strategy=dataclasses.replace(feature.strategy, layers=PLANES))
+    return feature
+
+
 def _with_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]) -> Any:
     """The stages with a note on whether the whole job is feasible with what would clear the nozzle, if its toolpath told
     something that does; the stages as they are, if not."""
@@ -64,10 +75,7 @@ def _with_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]
     text = next((issue for issue in stages.issues if issue.code == REMEDY), None)
     if text is None or stages.joint_path is not None or job.cell is None:
         return stages
-    features = tuple(
-        dataclasses.replace(one, build_direction=dataclasses.replace(one.build_direction, mode=UPRIGHT))
-        if leans(one, one.strategy) else one for one in stages.job.features
-    )
+    features = tuple(_with(one, len(stages.job.features) == 1) for one in stages.job.features)
     what = text.message.values[0]
     other = plan(dataclasses.replace(job, features=features), "")
     feasible = not has_errors(other.issues)

@@ -22,7 +22,7 @@ from .checks.on_its_part import looked_at
 from .fields import rows
 from .planned.in_sequence import member, planned_in_sequence
 from .planned.toolpaths import Given, planned, seen_of
-from .planned.upright import with_remedy
+from .planned.upright import in_planes, with_remedy
 from .results import keys
 from .shapes.bodies import taken
 from .stage import Stage, stage_of
@@ -104,7 +104,8 @@ class Toolpath(Stage):
             more = deposit_balance.issues(
                 deposit_balance.of_toolpath(given[0].wall, toolpath, given[0].process.bead_width)
             )
-            return _outcome(with_remedy(look(dataclasses.replace(toolpath, issues=(*more, *toolpath.issues))), fixed))
+            other = in_planes(given[0], fit) if fixed is None else fixed
+            return _outcome(with_remedy(look(dataclasses.replace(toolpath, issues=(*more, *toolpath.issues))), other))
 
         return work
 

@@ -8618,8 +8618,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
-        <source>however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}; use a slimmer nozzle, a larger build_direction.max_tilt or another place for what is in the way</source>
-        <translation>de quelque façon que l&apos;outil soit incliné, la buse touche substrat, montage, plateau ou dépôt en {0} point(s) des couches {1} à {2} ; utilisez une buse plus fine, un plus grand build_direction.max_tilt ou une autre place pour ce qui gêne</translation>
+        <source>however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}</source>
+        <translation>quelle que soit l&apos;inclinaison de l&apos;outil, la buse touche le substrat, un montage, la plateforme ou le dépôt en {0} point(s) des couches {1} à {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
@@ -9495,6 +9495,11 @@
         <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>it stands on a point and has no open end to start from; give a substrate that it grows on, or turn it so that an end lies on the platform</source>
         <translation>il repose sur un point et n&apos;a pas d&apos;extrémité ouverte où commencer ; donnez un substrat, ou tournez-le pour qu&apos;une extrémité repose sur le plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <source>it still does with {0}, each of which was tried; {1}</source>
+        <translation>elle le fait aussi avec {0}, qui ont été essayés un à un ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
@@ -12957,6 +12962,11 @@
         <translation>cela fait {0} poses, plus que {1} ; donnez un pas plus grand ou une boîte plus petite</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <source>these points would have room with {0}, which was not tried for the others</source>
+        <translation>ces points auraient de la place avec {0}, ce qui n&apos;a pas été essayé pour les autres</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>theta, d, a and alpha must be numbers; give all four</source>
         <translation>theta, d, a et alpha doivent être des nombres ; donnez les quatre</translation>
@@ -13247,6 +13257,11 @@
         <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <source>use other layers or another direction, or leave out what these points belong to</source>
+        <translation>prenez d&apos;autres couches ou une autre direction, ou laissez de côté ce à quoi ces points appartiennent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
         <source>v in mm/min; R² {:.4f}, RMSE {:.3f} mm</source>
         <translation>v en mm/min ; R² {:.4f}, RMSE {:.3f} mm</translation>
@@ -13445,6 +13460,11 @@
         <location filename="../../freecad_am/core/strategies/size.py"/>
         <source>with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on beads of {0} points; finding slower ones takes up to {1} min of the processor; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none, saves it</source>
         <translation>avec des inclinaisons qui dégagent la buse, l&apos;outil tourne plus vite que build_direction.max_turn sur des cordons de {0} points ; en chercher de plus lentes prend jusqu&apos;à {1} min de processeur ; un build_direction.max_turn plus grand, une buse plus fine, ou clearance: none, l&apos;évitent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <source>with {0} the nozzle is clear, which was tried</source>
+        <translation>avec {0} la buse est dégagée, ce qui a été essayé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/upright.py"/>
@@ -15090,6 +15110,11 @@
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} or {1}</source>
         <translation>{0} ou {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/clearance/helpful.py"/>
+        <source>{0} out of the way</source>
+        <translation>{0} hors du chemin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>

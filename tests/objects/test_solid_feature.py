@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Solids in plane layers in documents: sections against OpenCASCADE's own, beads inside the shape, meshes, refusals."""
 
+import dataclasses
 from pathlib import Path
 
 import FreeCAD as App
@@ -11,9 +12,10 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Issue
 from freecad_am.core.layers.planes import field as planes
 from freecad_am.core.parameters.filled import SolidParameters
+from freecad_am.objects.planned import toolpaths
 
 UP = App.Vector(0, 0, 1)
 FAST = {"layer_height": 5, "chord_error": 0.1, "bead_spacing": 5}
@@ -257,3 +259,25 @@ def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):
     (whole, _, beside), told = balanced(doc, Part.makeBox(60, 3.2, 8))
     assert beside > 0.8 * whole
     assert f"about {beside / 1000.0:.3g} cm3 of beads lie outside the 1.54" in told["DEPOSITED_BESIDE"]
+
+
+@pytest.mark.parametrize("lid", [22.0, None])
+def test_plane_layers_are_tried_where_curved_ones_have_no_room(doc, monkeypatch, lid):
+    """Two real brackets were told to need a slimmer nozzle, which did not help; in planes they get programs."""
+    box = part(doc, Part.makeBox(20, 20, 20))
+    fixtures = [] if lid is None else [part(doc, Part.makeBox(400, 400, 5, App.Vector(-190, -190, lid)), "Lid")]
+    feature = api.make_solid_feature(doc, box, fixtures=fixtures, layers="geodesic", **FAST)
+    if lid is None:
+        cleared, touches = toolpaths.kept_clear, Issue("error", "CLEARANCE", "the nozzle touches", 1, 0, 0)
+
+        def kept_clear(made, of, *rest):
+            made = cleared(made, of, *rest)
+            return made if of.strategy.layers == "planes" else dataclasses.replace(made, issues=(*made.issues, touches))
+
+        monkeypatch.setattr(toolpaths, "kept_clear", kept_clear)
+    made = api.make_toolpath(doc, feature)
+    told = [str(issue.message) for issue in api.issues(made) if issue.code in ("REMEDY", "NO_REMEDY")]
+    assert told == [
+        "the nozzle is not clear with `strategy.layers: planes` either, which was tried" if lid is not None else
+        "with `strategy.layers: planes` the nozzle is clear; the toolpath was planned so, joints were not"
+    ]

@@ -23,3 +23,7 @@ class Watch(NamedTuple):
     def within(self, low: float, high: float) -> Watch:
         """Of a part of the search, which begins and ends at these shares of it."""
         return self._replace(share=lambda share: self.share(low + share * (high - low)))
+
+    def at_end(self) -> Watch:
+        """Of what is looked at when the search is through: told that it goes on alone."""
+        return Watch(share=lambda share: self.share(1.0))

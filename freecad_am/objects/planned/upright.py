@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What clears the nozzle of a wall that leans: one build direction for all of it, tried where no tilt does."""
+"""What clears the nozzle where no tilt does, tried: of a wall that leans one build direction for all of it, of a solid in
+curved layers plane ones."""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ...core.issues import ERROR, NOTE, AmError, Issue, Text, has_errors
+from ...core.parameters.filled import GEODESIC, OFFSET, PLANES
 from ...core.toolpath import Toolpath
 from ..work import progress
+from .toolpaths import Given, planned
 
 if TYPE_CHECKING:
     from ...core.planning.tried import Fixed
@@ -16,9 +20,21 @@ if TYPE_CHECKING:
 CLEARANCE = "CLEARANCE"
 
 
+def in_planes(given: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed | None:
+    """A solid in curved layers that start where it stands, planned in plane ones; None for others."""
+    if getattr(given.strategy, "layers", "") not in (GEODESIC, OFFSET) or any(
+        group.start is not None for group in given.wall.groups
+    ):
+        return None
+    from ...core.planning.tried import Fixed
+
+    flat = dataclasses.replace(given, strategy=dataclasses.replace(given.strategy, layers=PLANES))
+    return Fixed("`strategy.layers: planes`", lambda: planned(flat) if fit is None else planned(flat, fit))
+
+
 def with_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
     """A toolpath on which the nozzle touches something, and nothing else is wrong, with a note on whether it does with fixed
-    build directions, planned so; others as they are."""
+    build directions, or plane layers, planned so; others as they are."""
     errors = {issue.code for issue in toolpath.issues if issue.level == ERROR}
     if fixed is None or errors != {CLEARANCE}:
         return toolpath

@@ -25,8 +25,8 @@ def tilt_issues(places: list[tuple[int, int]], begin: Index, tilt: Array, lost: 
         at, point = place(places, begin, int(np.argmax(lost)))
         issues.append(Issue(
             ERROR, "CLEARANCE", Text("however the tool is tilted, the nozzle touches substrate, fixture, platform or "
-                "deposit at {} point(s) of layers {} to {}; use a slimmer nozzle, a larger build_direction.max_tilt or "
-                "another place for what is in the way", int(lost.sum()), layer[lost].min(), layer[lost].max()), *at, point,
+                "deposit at {} point(s) of layers {} to {}", int(lost.sum()), layer[lost].min(), layer[lost].max()), *at,
+            point,
         ))
     moved = ~lost & (tilt > 1e-9)
     if moved.any():

@@ -21,7 +21,7 @@ import numpy as np
 
 from ...geometry.obstacles import Body
 from ...geometry.walls.surface import dot
-from ...issues import InputError, Issue
+from ...issues import InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
 from ...slicing.directions.wall import limited, turn_rates
@@ -29,10 +29,12 @@ from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..progress import Watch
 from . import knots as clearance_knots
+from .helpful import Change, Touching, what_helps
 from .notes import tilt_issues, turn_issues
 from .places import Space, beads_of, halved, space_of, touched_between
 from .tilt_search import SPREAD, TiltSearch
 
+TOUCHES = "CLEARANCE"
 SLOWER = 6  # times that a bead is tilted anew where it turns too fast
 SEARCHED = 0.7  # of the search when that begins
 ROUNDING = 1e-9
@@ -41,14 +43,15 @@ HALVINGS = 3  # of a segment halfway on which the nozzle touches
 
 def kept_clear(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None = None, feature: int | None = None, watch: Watch | None = None,
+    plane: Array | None = None, feature: int | None = None, watch: Watch | None = None, remedy: bool = True,
 ) -> Toolpath:
     """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
 
     bodies: all that counts, the platform too. plane: unit normal (3,) of the plane that the tool must stay in. Where no
-    tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE. Beads get points halfway between
-    those that are clear where the nozzle would touch there. feature: of several features, the one whose beads are kept
-    clear, of what is deposited of the others by then too. watch: is told where tilts are searched for.
+    tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE, which with `remedy` says what would.
+    Beads get points halfway between those that are clear where the nozzle would touch there. feature: of several features,
+    the one whose beads are kept clear, of what is deposited of the others by then too. watch: is told where tilts are
+    searched for.
     """
     known: list[_Way | None] = [None for _ in toolpath]
     for turn in range(HALVINGS + 1):
@@ -59,7 +62,26 @@ def kept_clear(
         marks = np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1])
         known = [None if mark.any() else way for way, mark in zip(ways, marks, strict=True)]
         toolpath = halved(toolpath, between)
-    return found
+    if not remedy or not _touches(found, toolpath):
+        return found
+    lost = [np.zeros(len(bead), dtype=bool) if way is None else way.lost for (_, _, bead), way in zip(toolpath, ways)]
+    end = (watch or Watch()).at_end()
+
+    def clears(change: Change) -> bool:
+        made = kept_clear(toolpath, change.bodies, change.nozzle, change.build, plane, feature, end, remedy=False)
+        return not _touches(made, toolpath)
+
+    touching = Touching(toolpath, np.flatnonzero(np.concatenate(lost)), plane, feature)
+    words = what_helps(touching, Change(bodies, nozzle, build, Text("")), clears)
+    return dataclasses.replace(found, issues=tuple(
+        dataclasses.replace(issue, message=Text("{}; {}", issue.message, words))
+        if issue.code == TOUCHES and issue not in toolpath.issues else issue for issue in found.issues
+    ))
+
+
+def _touches(made: Toolpath, before: Toolpath) -> bool:
+    """Whether a toolpath made of another is told to touch."""
+    return any(issue.code == TOUCHES for issue in made.issues[len(before.issues) :])
 
 
 class _Way(NamedTuple):

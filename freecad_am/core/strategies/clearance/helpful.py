@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What would give the nozzle room where no tilt does: changes that are tried at the points it has none, one at a time."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry import frames
+from ...geometry.obstacles import Body
+from ...issues import Text
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.cell import NozzleParameters
+from ...toolpath import Toolpath
+from ...types import Array, Index
+from .places import CAP, Space, space_of
+from .tilt_search import AZIMUTHS, LARGEST, RING
+
+LOOKED_AT = 240  # points, at most
+TOGETHER = 24  # of them; where one has no room the others are not looked at
+SHARES = (0.75, 0.5, 0.25)  # of the half angle of the nozzle, which are looked at
+FARTHER = np.radians(15.0)  # by which the largest tilt is raised
+WHOLE = 4  # changes with which all beads are tilted anew, at most
+LONGEST = 20_000  # points of a toolpath that is
+
+
+class Change(NamedTuple):
+    """Bodies, nozzle and build directions in place of others, and the words for it."""
+
+    bodies: Sequence[Body]
+    nozzle: NozzleParameters
+    build: BuildDirectionParameters
+    words: Text
+
+
+class Touching(NamedTuple):
+    """A toolpath with the axes asked for, and the points (k,) that no tilt clears. plane, feature: as of
+    `tilt_back.kept_clear`."""
+
+    toolpath: Toolpath
+    rows: Index
+    plane: Array | None
+    feature: int | None
+
+    def clear_at(self, change: Change) -> bool:
+        """Whether each of the points has a clear tilt, by up to LARGEST, after a change; of very many points, of so many
+        evenly chosen."""
+        space = space_of(self.toolpath, change.bodies, change.nozzle, change.build.max_tilt, False, self.feature or 0)
+        chosen = self.rows[np.unique(np.linspace(0, len(self.rows) - 1, min(LOOKED_AT, len(self.rows))).astype(np.intp))]
+        asked = np.concatenate([bead.tool for _, _, bead in self.toolpath])
+        return all(
+            self._clear_at(space, asked, chosen[first : first + TOGETHER]) for first in range(0, len(chosen), TOGETHER)
+        )
+
+    def _clear_at(self, space: Space, asked: Array, rows: Index) -> bool:
+        for number in range(round(LARGEST / RING) + 1):
+            axes = self._cone(asked[rows], number * RING)
+            free = space.clear(np.repeat(rows, axes.shape[1]), axes.reshape(-1, 3)).reshape(len(rows), -1).any(axis=1)
+            rows = rows[~free]
+            if not len(rows):
+                return True
+        return False
+
+    def _cone(self, asked: Array, angle: float) -> Array:
+        """Axes (k, s, 3) at an angle, rad, from those asked for (k, 3)."""
+        if self.plane is not None:
+            sides = np.cross(self.plane, asked)[:, None] * np.array([1.0, -1.0])[:, None]
+        else:
+            turn = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS
+            level = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(AZIMUTHS)])
+            sides = np.einsum("sj,kij->ksi", level, frames.smallest_rotation(np.array([0.0, 0.0, 1.0]), asked))
+        axes: Array = np.cos(angle) * asked[:, None] + np.sin(angle) * sides
+        return axes
+
+
+def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]) -> Text:
+    """What to do, in words that end a message: the first change with which the nozzle is clear, or that none is known.
+    clears: tilts all beads anew."""
+    tried: list[Text] = []
+    whole = WHOLE
+    for changes in (_tilts(now), _half_angles(now), _cleared_away(now)):
+        for change in _of_use(touching, changes):
+            if touching.toolpath.point_count > LONGEST:
+                return Text("these points would have room with {}, which was not tried for the others", change.words)
+            whole -= 1
+            if whole >= 0 and clears(change):
+                return Text("with {} the nozzle is clear, which was tried", change.words)
+        tried += [change.words for change in changes[-1:] if whole >= 0]
+    other = Text("use other layers or another direction, or leave out what these points belong to")
+    return Text("it still does with {}, each of which was tried; {}", Text.joined(", ", tried), other) if tried else other
+
+
+def _of_use(touching: Touching, changes: list[Change]) -> list[Change]:
+    """The least of changes with which all points have room, and the largest; none where they have none with that."""
+    if not changes or not touching.clear_at(changes[-1]):
+        return []
+    least = next((change for change in changes[:-1] if touching.clear_at(change)), changes[-1])
+    return [least] if least is changes[-1] else [least, changes[-1]]
+
+
+def _tilts(now: Change) -> list[Change]:
+    """Larger tilts, the largest last."""
+    most = now.build.max_tilt
+    angles = [min(np.pi, most + FARTHER * (k + 1)) for k in range(int(np.ceil((np.pi - most) / FARTHER - CAP)))]
+    return [
+        now._replace(build=dataclasses.replace(now.build, max_tilt=angle),
+                     words=Text("`build_direction.max_tilt: {:.3g} deg`", np.degrees(angle))) for angle in angles
+    ]
+
+
+def _cleared_away(now: Change) -> list[Change]:
+    """Nothing but the deposit itself in the way."""
+    names = Text.joined(", ", (body.name for body in now.bodies))
+    return [now._replace(bodies=(), words=Text("{} out of the way", names))] if now.bodies else []
+
+
+def _half_angles(now: Change) -> list[Change]:
+    """Slimmer nozzles, half angles in whole degrees, the slimmest last."""
+    half = float(np.degrees(now.nozzle.half_angle))
+    angles = sorted({round(share * half) for share in SHARES} - {0}, reverse=True)
+    return [
+        now._replace(nozzle=dataclasses.replace(now.nozzle, half_angle=float(np.radians(angle))),
+                     words=Text("`cell.nozzle.half_angle: {:d} deg`", angle)) for angle in angles if angle < half
+    ]
