@@ -184,3 +184,25 @@ def test_large_facets_are_followed_where_they_meet():
     away = np.linalg.norm(made.smooth.project(places)[0] - places, axis=1)
     assert away.max() < 0.25 and away.max() < made.smoothing + 0.05
     assert "SMOOTHED" in codes(made)
+
+
+def lying_bend(sides=60, rows=24):
+    """Points and triangles of a quarter of a torus of 60 and 20 mm that lies on a floor beside its open end, at
+    Y = 0, and turns up."""
+    v, u = np.meshgrid(np.linspace(0.0, 0.5 * np.pi, rows + 1), 2.0 * np.pi * np.arange(sides) / sides, indexing="ij")
+    away = 60.0 + 20.0 * np.cos(u)
+    points = np.stack([20.0 * np.sin(u), away * np.sin(v), -away * np.cos(v)], axis=-1).reshape(-1, 3)
+    k, row = np.meshgrid(np.arange(sides), sides * np.arange(rows))
+    a, b = row + k, row + (k + 1) % sides
+    return points, np.stack([a, b, a + sides, b, b + sides, a + sides], axis=-1).reshape(-1, 3)
+
+
+def test_a_first_layer_about_a_floor_goes_on_to_the_open_end_beside_it():
+    """That of a real pipe ended a facet short of it, and those after it, around its ends, ran 0.6 mm past the pipe's end."""
+    made = wall(*lying_bend())
+    (first,) = made.first
+    assert not first.closed
+    assert np.abs(first.points[[0, -1], 1]).max() < 0.05 and np.abs(first.points[:, 2] + 78.0).max() < 1e-5
+    for one in layers(made):
+        for bead in one.beads:
+            assert bead.points[:, 1].min() > -0.05

@@ -20,7 +20,7 @@ STEPS = 40
 CORNER = np.radians(0.1)  # rad; smaller turns of the substrate are smooth joints
 CLOSE = 0.3  # of the wall's typical edge; of nearer points of a chain one is enough
 ROUNDS, SAGITTAS = 8, 1.2  # of points added between others; what a smooth curve may be off a facet, in its sagittas
-WITHIN = 1e-5  # mm between the points of a chain and both surfaces
+WITHIN, ON_GROUND = 1e-5, 1e-6  # mm between the points of a chain and both surfaces, and at them
 # of each arc; where a curvature jumps within it, its middle may be right by chance
 THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
 
@@ -61,7 +61,10 @@ def _curve(wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ..
         for end in (0, -1):
             points[end] = wall.project(_on_rim(points[end], rims, ground)[None])[0][0]
         piece = ground.located(points)[2]
-    sound = np.abs(dot(points - ground.on(piece, points)[0], ground.on(piece, points)[1])) < 1e-6
+        for end in (0, -1):  # on a smooth surface through a mesh, which is a little off its edge
+            if abs(_above(ground, points[[end]], piece[[end]])[0]) >= ON_GROUND:
+                points[[end]], piece[[end]] = _converged(wall, ground, points[[end]])
+    sound = np.abs(_above(ground, points, piece)) < ON_GROUND
     points, piece = points[sound], piece[sound]
     if len(points) < 4:
         return None, 0.0
@@ -92,7 +95,7 @@ def _refined(wall: PatchWall, ground: Ground, first: FirstCurve) -> tuple[FirstC
         points, piece = _converged(wall, ground, middle)
         slope = unit(np.cross(wall.project(points)[1], ground.on(piece, points)[1]))
         slope *= np.where(dot(slope, along) < 0.0, -1.0, 1.0)[:, None]
-        sound = np.abs(dot(points - ground.on(piece, points)[0], ground.on(piece, points)[1])) < 1e-6
+        sound = np.abs(_above(ground, points, piece)) < ON_GROUND
         sound &= np.linalg.norm(points - middle, axis=1) < 0.5 * curve.span[bad]
         if not sound.any():
             break
@@ -102,6 +105,12 @@ def _refined(wall: PatchWall, ground: Ground, first: FirstCurve) -> tuple[FirstC
             np.insert(first.out, at, slope, axis=0), first.closed,
         )
     return first, float(max(off.max(), _off(ground, first.points).max()))
+
+
+def _above(ground: Ground, points: Array, piece: Index) -> Array:
+    """How far (n,) points are above their pieces of the ground, mm."""
+    foot, up = ground.on(piece, points)
+    return dot(points - foot, up)
 
 
 def _off(ground: Ground, points: Array) -> Array:
