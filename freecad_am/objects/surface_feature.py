@@ -52,6 +52,11 @@ class SurfaceFeature(FeatureStage):
         source, faces = source_of(obj)
         substrates = () if obj.Substrate is None else (taken(obj.Substrate),)
         part, label, edges, fixtures = taken(source), source.Label, _start_edges(obj), fixtures_of(obj)
+        if obj.Substrate == source and not edges:
+            raise InputError(
+                "OWN_SUBSTRATE", f"{obj.Label}.Substrate", "the wall and what it grows on are the same, {}; choose the part "
+                "that is there before it, or none where the wall starts on the platform or from edges", label,
+            )
         if part.shape is None and faces:
             raise InputError("UNKNOWN_FACE", label, "a mesh has no faces to choose; leave them out")
 

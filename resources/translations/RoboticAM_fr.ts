@@ -7307,6 +7307,11 @@
         <translation>toutes ses faces sont planes ; choisissez une pièce, ou des faces, de révolution</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
+        <source>all of the wall lies on the surface of {0}, as if it were a part of it; give the part that is there before the wall, or none where the wall starts on the platform or from edges</source>
+        <translation>toute la paroi est sur la surface de {0}, comme si elle en faisait partie ; donnez la pièce qui est là avant la paroi, ou aucune si la paroi commence sur la plateforme ou à des arêtes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/roundness.py"/>
         <source>all points lie in one line, which no circle fits; measure further round</source>
         <translation>tous les points sont sur une ligne, à laquelle aucun cercle ne convient ; mesurez plus loin sur le tour</translation>
@@ -12620,6 +12625,11 @@
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>the vertices of a mesh are taken as points</source>
         <translation>les sommets d&apos;un maillage sont pris comme points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>the wall and what it grows on are the same, {0}; choose the part that is there before it, or none where the wall starts on the platform or from edges</source>
+        <translation>la paroi et ce sur quoi elle croît sont la même pièce, {0} ; choisissez la pièce qui est là avant elle, ou aucune si la paroi commence sur la plateforme ou à des arêtes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>

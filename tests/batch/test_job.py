@@ -76,7 +76,8 @@ program:
 
 @pytest.fixture
 def read(tmp_path):
-    (tmp_path / "part.step").write_text("")
+    for name in ("part.step", "wall.step"):
+        (tmp_path / name).write_text("")
 
     def read_text(text, name="job.yaml"):
         path = tmp_path / name
@@ -310,7 +311,7 @@ def test_the_examples_are_valid_and_are_those_of_the_paper(root, name):
 
 
 SURFACE = """\
-part: {file: part.step}
+part: {file: wall.step}
 substrate: {file: part.step}
 strategy:
   kind: surface
@@ -323,7 +324,7 @@ build_direction: {mode: symmetry-plane, clearance: none}
 
 def test_fixtures(read):
     job = read(SURFACE + "fixtures:\n- {file: part.step}\n- {file: part.step}\n")
-    assert job.fixtures == (job.part, job.part)
+    assert job.fixtures == (job.substrate, job.substrate)
     assert read(SURFACE).fixtures == ()
     for entry, code, where in (
         ("{file: part.step}", "BAD_VALUE", "fixtures"),
@@ -339,7 +340,7 @@ def test_fixtures(read):
 def test_a_wall_on_a_substrate(read):
     job = read(SURFACE)
     assert job.strategy == SurfaceParameters(layer_height=5.0, band=0.1, end="whole")
-    assert job.substrate.file == job.part.file
+    assert job.substrate.file == job.part.file.replace("wall.step", "part.step")
     assert read("part: {file: part.step}\n").substrate is None
 
 
@@ -360,3 +361,18 @@ def test_refusals_of_walls_on_a_substrate(read, old, new, code, where, says):
     error = refused(read, SURFACE.replace(old, new, 1))
     assert (error.code, says in error.message) == (code, True), error
     assert where in error.where
+
+
+@pytest.mark.parametrize(("part", "substrate", "same"), [
+    ("file: part.step, faces: [Face1]", "file: ./part.step", True), ("file: part.step", "file: part.step", True),
+    ("file: part.step, solids: [Solid1]", "file: part.step, solids: [Solid2]", False),
+    ("file: part.step, start_edges: [Edge1]", "file: part.step", False),
+])
+def test_a_wall_on_itself_is_refused_at_the_substrate(read, part, substrate, same):
+    text = f"part: {{{part}}}\nsubstrate: {{{substrate}}}\nstrategy: {{kind: surface}}\n"
+    if not same:
+        assert read(text).substrate.file.endswith("part.step")
+        return
+    error = refused(read, text)
+    assert (error.code, error.where.split(": ")[-1]) == ("OWN_SUBSTRATE", "substrate") and "part.step" in error.message
+    assert error.message.endswith("(line 2)")

@@ -176,3 +176,21 @@ def test_needs_a_solid_substrate(doc, tube):
     with pytest.raises(InputError) as caught:
         api.make_surface_feature(doc, tube[0], ["Face1"], plane)
     assert caught.value.code == "NO_SOLID" and caught.value.where == "Plane"
+
+
+def test_a_wall_that_is_its_own_substrate_is_refused_where_that_is_said(doc, tube):
+    """It was told to lie wholly in it, 0 mm deep and nowhere less; as a mesh it ended with an internal error."""
+    branch, _ = tube
+    with pytest.raises(InputError, match="are the same, Branch") as caught:
+        api.make_surface_feature(doc, branch, ["Face1"], branch, layer_height=5)
+    assert caught.value.code == "OWN_SUBSTRATE" and caught.value.where.endswith(".Substrate")
+    other = doc.addObject("Part::Feature", "Other")
+    other.Shape = branch.Shape
+    scan = doc.addObject("Mesh::Feature", "Scan")
+    scan.Mesh = Mesh.Mesh(branch.Shape.tessellate(0.05))
+    further = doc.addObject("Mesh::Feature", "Further")
+    further.Mesh = scan.Mesh
+    for wall, faces, ground in ((branch, ["Face1"], other), (scan, [], further)):
+        with pytest.raises(InputError, match=f"on the surface of {ground.Label}, as if it were a part of it") as caught:
+            api.make_surface_feature(doc, wall, faces, ground, layer_height=5)
+        assert caught.value.code == "OWN_SUBSTRATE"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 from freecad_am.core.geometry.curves.bead_curves import POINT_FILES
@@ -68,10 +69,23 @@ def substrate_of(section: Any, strategy: Any, part: PartSource) -> PartSource | 
             raise InputError(
                 "NOT_YET", "substrate.faces", "{!r} is not supported yet; use the whole solid", ", ".join(found.faces)
             )
+        if not part.start_edges and _alike(part, found):
+            raise InputError(
+                "OWN_SUBSTRATE", "substrate", "the wall and what it grows on are the same, {}; give the part that is there "
+                "before it, or leave the substrate out where the wall starts on the platform or from part.start_edges",
+                os.path.basename(found.file),
+            )
         return found
     if section is not None and family.substrate == NONE:
         raise InputError("NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out")
     return None if section is None else part_of(fields.mapping(section, "substrate"), "substrate")
+
+
+def _alike(part: PartSource, other: PartSource) -> bool:
+    """Whether two sources are the same, whichever faces are meant."""
+    return os.path.realpath(part.file) == os.path.realpath(other.file) and (
+        (part.object, part.solids, part.settings, part.scale) == (other.object, other.solids, other.settings, other.scale)
+    )
 
 
 def strategy_of(section: Any) -> LayerParameters:

@@ -136,9 +136,14 @@ def from_substrate(
     wall: PatchWall, substrate: Substrate, rims: Any, label: str
 ) -> tuple[list[FirstCurve], Mask, list[Issue]]:
     """Where a wall leaves its substrate, which of its vertices (n,) lie behind that, and notes. InputError NO_CONTACT,
-    INSIDE."""
+    INSIDE, OWN_SUBSTRATE."""
     ground = substrate.ground(wall.mesh.typical_edge)
     value = contact.levels(wall, ground)
+    if np.abs(value).max() < contact.TOUCH + getattr(wall, "smoothing", 0.0):  # a mesh's smooth surface is off it
+        raise InputError(
+            "OWN_SUBSTRATE", label, "all of the wall lies on the surface of {}, as if it were a part of it; give the part "
+            "that is there before the wall, or none where the wall starts on the platform or from edges", substrate.label,
+        )
     outside = value >= 0.0
     if outside.all():
         at, gap = nearest(wall.vertices, ground, value)

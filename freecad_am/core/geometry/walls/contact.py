@@ -109,14 +109,12 @@ def _refined(wall: PatchWall, ground: Ground, first: FirstCurve) -> tuple[FirstC
 
 def _above(ground: Ground, points: Array, piece: Index) -> Array:
     """How far (n,) points are above their pieces of the ground, mm."""
-    foot, up = ground.on(piece, points)
-    return dot(points - foot, up)
+    return dot(points - (at := ground.on(piece, points))[0], at[1])
 
 
 def _off(ground: Ground, points: Array) -> Array:
     """Distances (n,) mm from the exact pieces of the ground."""
-    off: Array = np.linalg.norm(points - ground.located(points)[0], axis=1)
-    return off
+    return np.asarray(np.linalg.norm(points - ground.located(points)[0], axis=1))
 
 
 def _converged(wall: PatchWall, ground: Ground, points: Array, level: Array | float = 0.0) -> tuple[Array, Index]:
