@@ -4,7 +4,8 @@ plane layers.
 
 Peer: a bare FreeCAD process that starts, imports the same file and saves it. Both as processes of their own, in turns, and
 by how long one waits for them: ours does part of its work in a second process, so that it takes a second core. The time of
-the processor that both take is named beside. The bracket is held to that, on which what else runs has little bearing.
+the processor that both take is named beside. The bracket is judged by its time of the processor, on which what else runs has
+little bearing.
 Ours leaves report.html out. Both find their modules compiled, as they are after a first run, also where the environment asks
 for none to be kept (PYTHONDONTWRITEBYTECODE): compiling them takes as long as all the rest.
 """

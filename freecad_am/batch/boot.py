@@ -84,9 +84,19 @@ def run(words):
     return status
 
 
+def open_streams():
+    """Where a shell has closed a stream (`>&-`) nothing is read from it and nothing written; the next file that is opened
+    would take its place."""
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        if getattr(sys, name) is None:
+            os.open(os.devnull, os.O_RDWR)  # the lowest number that is free
+            setattr(sys, name, open(number, mode, closefd=False))  # noqa: SIM115 - for as long as we run
+
+
 def main():
     """Run and end the process with the status; FreeCAD's own clean-up at exit is not waited for."""
     status = 1
+    open_streams()
     gc.set_threshold(300_000, 50, 50)
     try:
         status = run(arguments())

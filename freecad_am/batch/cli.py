@@ -13,7 +13,7 @@ from typing import Any
 
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
 COMMANDS = ("plan", "export", "batch", "inspect", "check", "place", "machines")
-SHAPES = ("plan", "export", "inspect", "place")  # read shapes, for which all of FreeCAD is loaded
+SHAPES = {"plan": "job", "export": "document", "inspect": "source", "place": "job"}  # read shapes, in what is named so
 USAGE = """usage: freecad-am COMMAND
 
   plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
@@ -87,7 +87,7 @@ def _run(argv: list[str], session: Any) -> int:
         session.out(parser.format_help())
         return DONE
     options = parser.parse_args(words)
-    if command in SHAPES:
+    if command in SHAPES and os.path.isfile(getattr(options, SHAPES[command])):
         from freecad_am.batch import paths
 
         paths.load_meanwhile()

@@ -38,7 +38,9 @@ def load_meanwhile() -> None:
 
     load = ctypes.CDLL(None).dlopen  # this call lets other threads have Python, which an import does not
     load.restype, load.argtypes = ctypes.c_void_p, (ctypes.c_char_p, ctypes.c_int)
-    threading.Thread(target=load, args=(os.fsencode(spec.origin), os.RTLD_NOW), daemon=True).start()
+    thread = threading.Thread(target=load, args=(os.fsencode(spec.origin), os.RTLD_NOW), daemon=True)
+    thread.start()
+    os.register_at_fork(before=thread.join)  # a copy of a process whose libraries are half loaded does not live
     from freecad_am import verify  # noqa: F401 - like the others it needs no FreeCAD
     from freecad_am.core.planning import plan  # noqa: F401
     from freecad_am.report import made  # noqa: F401

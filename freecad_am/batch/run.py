@@ -42,7 +42,7 @@ class Stages:
     toolpath: Any = None
     joint_path: Any = None
     program: Any = None
-    look: Any = None  # what takes long of the preflight, looked for meanwhile
+    survey: Any = None  # what takes long of the preflight, made meanwhile
     issues: list[Issue] = field(default_factory=list)
     timing: dict[str, float] = field(default_factory=dict)
 
@@ -160,6 +160,8 @@ def _in_a_document(job: Job, session: Any, fails: str) -> Stages:
 def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`. fails: code
     of the error that what was chosen ends with, where the job leaves it open."""
+    import FreeCAD
+
     from freecad_am import api
     from freecad_am.core.copies import meanwhile
     from freecad_am.core.process.model.predicted import HEIGHTS
@@ -175,15 +177,21 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
         controllers.check_beads(api.result(stages.toolpath), job.program.post, job.program.max_points)
     with stages.timed("joint_path", session):
         stages.joint_path = api.make_joint_path(document, stages.toolpath, stages.cell, joints=job.joints)
-    stages.look = meanwhile(preflight.look_at(stages.toolpath, stages.joint_path, job.program))
     found = api.issues(stages.joint_path)
     if any(issue.code == HEIGHTS for issue in found):  # at the speeds as run, not only as asked for
         stages.issues = [issue for issue in stages.issues if issue.code != HEIGHTS]
     stages.issues += found
-    if job.program is None or has_errors(stages.issues):
+    if has_errors(stages.issues):
         return stages
-    with stages.timed("program", session):
-        _make_program(stages)
+    survey = preflight.survey_of(stages.toolpath, stages.joint_path, job.program, at_once=True)
+    stages.survey = survey if FreeCAD.GuiUp else meanwhile(survey)
+    if job.program is not None:
+        try:
+            with stages.timed("program", session):
+                _make_program(stages)
+        except BaseException:
+            stages.survey = None  # which ends its copy
+            raise
     return stages
 
 

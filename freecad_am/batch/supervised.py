@@ -31,7 +31,7 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
         return work()
     ours, theirs = os.pipe()
     passed: list[int] = []
-    child = [0]
+    child, parent = [0], os.getpid()
 
     def pass_on(number: int, _: Any) -> None:
         passed.append(number)
@@ -45,7 +45,7 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
     child[0] = os.fork()
     if not child[0]:
         os.close(ours)
-        _carry_out(work, theirs, passed)
+        _carry_out(work, theirs, passed, parent)
     os.close(theirs)
     try:
         for number in passed[:]:  # that came before there was a copy
@@ -87,7 +87,7 @@ def crash(where: str, status: int) -> AmError:
     )
 
 
-def _carry_out(work: Callable[[], int], channel: int, passed: list[int]) -> None:
+def _carry_out(work: Callable[[], int], channel: int, passed: list[int], parent: int) -> None:
     """In the copy: do the work and end."""
     global _channel
     _channel = channel
@@ -96,7 +96,7 @@ def _carry_out(work: Callable[[], int], channel: int, passed: list[int]) -> None
     try:
         for number in SIGNALS:
             signal.signal(number, _interrupted)
-        copies.end_with_parent()
+        copies.end_with(parent)
         status = INTERRUPTED if passed else work()
     except KeyboardInterrupt:
         status = INTERRUPTED

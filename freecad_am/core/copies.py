@@ -14,6 +14,8 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 
+FAILED = 1  # exit status of a copy whose work raised
+
 
 def meanwhile(work: Callable[[], T]) -> Callable[[], T]:
     """What returns what `work` does, and raises what it raises: done by a copy of this process while this one goes on.
@@ -23,42 +25,38 @@ def meanwhile(work: Callable[[], T]) -> Callable[[], T]:
     """
     if not sys.platform.startswith("linux") or len(os.sched_getaffinity(0)) < 2:
         return work
-    return _Copy(work)
+    try:
+        return _Meanwhile(work)
+    except OSError:  # the system has no process or no pipe left
+        return work
 
 
-class _Copy(Generic[T]):
+class _Meanwhile(Generic[T]):
     """The work that a copy does, and its result."""
 
     def __init__(self, work: Callable[[], T]) -> None:
         self._work = work
         self._ours, theirs = os.pipe()
-        sys.stdout.flush()
-        sys.stderr.flush()
-        pid = os.fork()
-        if not pid:
-            _carry_out(work, theirs)
-        os.close(theirs)
+        try:
+            pid = begun(lambda: _tell(work, theirs))
+        except OSError:
+            os.close(self._ours)
+            raise
+        finally:
+            os.close(theirs)
         self._end = weakref.finalize(self, _ended, pid, self._ours)
 
     def __call__(self) -> T:
         with contextlib.suppress(EOFError, pickle.UnpicklingError):  # it has ended without, or was asked before
-            with open(self._ours, "rb", closefd=False) as stream:
+            with os.fdopen(self._ours, "rb", closefd=False) as stream:
                 found: T = pickle.load(stream)
             return found
         return self._work()
 
 
-def _carry_out(work: Callable[[], object], channel: int) -> None:
-    """In the copy: do the work, and end. Errors are found again, and raised, by whoever asks for the result."""
-    try:
-        take_no_signals()
-        end_with_parent()
-        with open(channel, "wb") as stream:
-            stream.write(pickle.dumps(work(), pickle.HIGHEST_PROTOCOL))
-    except BaseException:
-        os._exit(1)
-    finally:
-        os._exit(0)
+def _tell(work: Callable[[], object], channel: int) -> None:
+    with os.fdopen(channel, "wb") as stream:
+        stream.write(pickle.dumps(work(), pickle.HIGHEST_PROTOCOL))
 
 
 def _ended(pid: int, channel: int) -> None:
@@ -69,18 +67,52 @@ def _ended(pid: int, channel: int) -> None:
         os.waitpid(pid, 0)
 
 
+def begun(work: Callable[[], object]) -> int:
+    """The number of a copy of this process that has begun with some work. It ends with 0, or FAILED where the work raises,
+    of which it says nothing unless FREECAD_AM_DEBUG is set; at any signal; and with this process."""
+    parent = os.getpid()
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+    asked = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))  # that no handler of ours runs there
+    try:
+        pid = os.fork()
+        if not pid:
+            _carry_out(work, parent, asked)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, asked)
+    return pid
+
+
+def _carry_out(work: Callable[[], object], parent: int, asked: set[signal.Signals | int]) -> None:
+    """In the copy: do the work, and end."""
+    status = FAILED
+    try:
+        take_no_signals()
+        signal.pthread_sigmask(signal.SIG_SETMASK, asked)
+        end_with(parent)
+        work()
+        status = 0
+    except BaseException:
+        if os.environ.get("FREECAD_AM_DEBUG"):
+            import traceback
+
+            traceback.print_exc()
+    finally:
+        os._exit(status)
+
+
 def take_no_signals() -> None:
     """Every signal ends this process, a fault of memory too: FreeCAD and its kernel would go on with what is broken."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGXCPU):
         signal.signal(number, signal.SIG_DFL)
 
 
-def end_with_parent() -> None:
-    """Have the system end this process when the one that has made it ends, however that does."""
+def end_with(parent: int) -> None:
+    """Have the system end this process when its parent, the process of that number, ends, however that does."""
     import ctypes
 
-    parent = os.getppid()
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
     if os.getppid() != parent:
-        os._exit(1)
+        os._exit(FAILED)

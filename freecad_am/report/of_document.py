@@ -49,13 +49,13 @@ def reported(obj: Any) -> Callable[[], str]:
             raise InputError("NO_RESULT", one.Label, "no result fits its inputs ({}); recompute it first", why)
     settings = None if program is None else program.Proxy.parameters(program, ProgramParameters)
     read = None if program is None else preflight.read_back_of(program)
-    look = functools.cache(preflight.look_at(toolpath, path, settings))
-    promised = preflight.prepared(toolpath, path, settings, read, () if program is None else issues_of(program), look)
+    survey = functools.cache(preflight.survey_of(toolpath, path, settings))
+    promised = preflight.prepared(toolpath, path, settings, read, () if program is None else issues_of(program), survey)
     job, folders = _job(toolpath, path), tuple(user_machines.folders())
     results = Results(
         toolpath.Proxy.value(toolpath), None if path is None else planned_of(path, path.Label)[0],
         0.0 if path is None else path.Seconds, _issues(features, toolpath, path, program), _files(program),
-        lambda: look().distances, promised,
+        lambda: survey().distances, promised,
     )
     spent = {one.Proxy.kind.replace(" ", "_"): one.Seconds for one in stages}
 

@@ -3,13 +3,21 @@
 
 import json
 import os
+import pickle
 import platform
 import subprocess
 import sys
+import types
 from pathlib import Path
 
+import FreeCAD
 import pytest
 
+from freecad_am.batch import run
+from freecad_am.batch.job.job import read_job
+from freecad_am.objects.checks import preflight
+
+QUIET = types.SimpleNamespace(check=lambda: None, issues=lambda *_: None, progress=lambda *_: None)
 ROOT = Path(__file__).resolve().parent.parent.parent
 
 FAULTS = """
@@ -115,3 +123,29 @@ def test_the_outputs_are_the_same_on_one_processor(tmp_path):
     assert outputs[0] == outputs[1]
     preflight = {entry["promise"]: entry for entry in outputs[0][0]["preflight"]}
     assert len(preflight) > 10 and all(entry["how"] for entry in preflight.values())
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="elsewhere no process is copied")
+def test_what_takes_long_of_the_preflight_comes_from_a_copy(doc, tmp_path, monkeypatch):
+    """It gives what the same survey gives here, array for array."""
+    if FreeCAD.GuiUp:
+        pytest.skip("beside a window nothing is copied")
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
+    job = tmp_path / "job.yaml"
+    job.write_text(JOB.format(part=ROOT / "resources" / "examples" / "hemisphere.step"))
+    stages = run.plan(read_job(str(job)), doc, QUIET)
+    here = preflight.survey_of(stages.toolpath, stages.joint_path, stages.job.program)()
+    monkeypatch.setattr(stages.survey, "_work", lambda: pytest.fail("it is done here"))
+    there = stages.survey()
+    assert pickle.dumps(there) == pickle.dumps(pickle.loads(pickle.dumps(here)))  # what is one there is one here
+    assert there.rapids.places > 100 and len(there.distances) > 3 and there.arm.link.size and there.looked.count > 100
+
+
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&-", "<&- >&- 2>&-"])
+def test_streams_that_a_shell_has_closed_are_missed_by_nobody(tmp_path, closed):
+    job, out = tmp_path / "job.yaml", tmp_path / "out"
+    job.write_text(JOB.format(part=ROOT / "resources" / "examples" / "hemisphere.step"))
+    command = f'"{ROOT}/freecad-am" plan "{job}" -o "{out}" --no-page {closed}'
+    ended = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0 and (out / "report.json").exists(), ended.stderr
+    assert "rror" not in ended.stderr

@@ -3,11 +3,13 @@
 
 import os
 import sys
+import time
 
 import FreeCAD
 import Part
 import pytest
 
+from freecad_am.brep.files import apart
 from freecad_am.brep.files.read import read_shape, reading_shape
 from freecad_am.core.issues import InputError
 
@@ -68,6 +70,34 @@ def test_what_nobody_asks_for_leaves_nothing(cone, copied):
     assert read_shape(cone).Volume == pytest.approx(6000.0)
 
 
+def test_a_file_that_is_another_one_by_then_is_read_again(cone, tmp_path):
+    with reading_shape(cone):
+        Part.makeBox(10, 20, 30).exportStep(str(tmp_path / "box.step"))
+        (tmp_path / "box.step").replace(cone)
+        assert read_shape(cone).Volume == pytest.approx(6000.0)
+
+
+def test_what_was_read_long_ago_is_there(cone, monkeypatch):
+    """The limit of time is one for reading, not for what is done before the shape is asked for."""
+    monkeypatch.setattr(apart, "LONGER", 0.02)
+    with reading_shape(cone):
+        time.sleep(0.5)
+        assert len(read_shape(cone).Faces) == 3
+
+
+def test_without_a_process_to_be_had_nothing_is_read_ahead(cone, monkeypatch):
+    def refused():
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    descriptors = os.listdir("/proc/self/fd")
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fork", refused)
+        with reading_shape(cone):
+            patch.undo()
+            assert len(read_shape(cone).Faces) == 3
+    assert os.listdir("/proc/self/fd") == descriptors
+
+
 @pytest.mark.parametrize("content", ["", "no STEP at all", "ISO-10303-21;\nHEADER;\n"])
 def test_what_cannot_be_read_is_refused_with_the_same_words(cone, content):
     cone.write_text(content)
@@ -78,9 +108,11 @@ def test_what_cannot_be_read_is_refused_with_the_same_words(cone, content):
     assert (ahead.value.code, ahead.value.where, str(ahead.value)) == (alone.value.code, alone.value.where, str(alone.value))
 
 
-@pytest.mark.parametrize("name", ["there is none.step", "part.FCStd", "mesh.stl", ""])
+@pytest.mark.parametrize("name", ["there is none.step", "a folder.step", "part.FCStd", "mesh.stl", ""])
 def test_nothing_is_begun_for_files_that_are_not_read_like_this(tmp_path, copied, name):
-    if name and not name.startswith("there"):
+    if name.startswith("a folder"):
+        (tmp_path / name).mkdir()
+    elif name and not name.startswith("there"):
         (tmp_path / name).write_text("anything")
     with reading_shape(str(tmp_path / name)):
         assert not copied

@@ -33,6 +33,8 @@ def test_the_work_is_done_by_another_process_while_this_one_goes_on(tmp_path):
     os.mkfifo(gate)
 
     def work():
+        if os.getpid() == HERE:
+            pytest.fail("nothing would write")
         with open(gate, encoding="utf-8") as stream:  # until this process, which has gone on, writes
             return os.getpid(), stream.read()
 
@@ -45,9 +47,7 @@ def test_the_work_is_done_by_another_process_while_this_one_goes_on(tmp_path):
 
 @pytest.mark.parametrize("numbers", [1, 100, 3_000_000])  # one that a pipe cannot hold too
 def test_results_come_back_whole(numbers):
-    made = copies.meanwhile(lambda: {"seed 7": np.random.default_rng(7).normal(size=numbers), "pid": os.getpid()})
-    time.sleep(0.05)
-    found = made()
+    found = copies.meanwhile(lambda: {"seed 7": np.random.default_rng(7).normal(size=numbers), "pid": os.getpid()})()
     assert found["pid"] != HERE
     assert np.array_equal(found["seed 7"], np.random.default_rng(7).normal(size=numbers))
 
@@ -67,13 +67,13 @@ def test_what_does_not_pickle_is_made_here():
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSEGV, signal.SIGTERM])
-def test_work_of_a_copy_that_falls_is_done_here(number):
-    def falls():
+def test_work_of_a_copy_that_is_killed_is_done_here(number):
+    def killed():
         if os.getpid() != HERE:
             os.kill(os.getpid(), number)
         return os.getpid()
 
-    assert copies.meanwhile(falls)() == HERE
+    assert copies.meanwhile(killed)() == HERE
 
 
 def test_nothing_is_left_of_a_copy(tmp_path):
@@ -110,10 +110,13 @@ def test_a_copy_ends_with_the_process_that_has_made_it(tmp_path):
 
     pid = os.fork()
     if not pid:
-        made = copies.meanwhile(sleeps)
-        while not note.exists() or not note.read_text():
-            time.sleep(0.01)
-        os._exit(0 if made else 1)
+        try:
+            made = copies.meanwhile(sleeps)
+            while not note.exists() or not note.read_text():
+                time.sleep(0.01)
+            os._exit(0 if made else 1)
+        finally:
+            os._exit(2)
     assert os.waitpid(pid, 0)[1] == 0
     last, until = int(note.read_text()), time.monotonic() + 10.0
     while is_there(last) and "\nState:\tZ" not in _status(last) and time.monotonic() < until:
@@ -127,6 +130,29 @@ def _status(pid):
             return stream.read()
     except OSError:
         return ""
+
+
+@pytest.mark.parametrize("lacking", ["fork", "pipe"])
+def test_without_a_process_or_a_pipe_to_be_had_the_work_is_done_here(monkeypatch, lacking):
+    def refused():
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    before = os.listdir("/proc/self/fd")
+    monkeypatch.setattr(os, lacking, refused)
+    assert copies.meanwhile(os.getpid)() == HERE
+    monkeypatch.undo()
+    assert os.listdir("/proc/self/fd") == before
+
+
+def test_asked_again_it_gives_the_same():
+    made = copies.meanwhile(lambda: "as before")
+    assert made() == made() == "as before"
+
+
+def test_signals_are_for_this_process_as_before():
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    copies.meanwhile(os.getpid)()
+    assert signal.pthread_sigmask(signal.SIG_BLOCK, ()) == before
 
 
 def test_with_one_processor_nothing_is_copied(monkeypatch):

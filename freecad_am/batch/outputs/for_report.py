@@ -17,11 +17,11 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
     from freecad_am.report.asked import Results
 
     path = stages.joint_path
-    look = functools.cache(stages.look or preflight.look_at(stages.toolpath, path, stages.job.program))
+    survey = functools.cache(stages.survey or preflight.survey_of(stages.toolpath, path, stages.job.program))
     return Results(
         api.result(stages.toolpath), None if path is None else api.result(path), 0.0 if path is None else path.Seconds,
         stages.issues, programs,
-        lambda: look().distances, lambda: preflight.of_stages(stages.toolpath, path, stages.program, look),
+        lambda: survey().distances, lambda: preflight.of_stages(stages.toolpath, path, stages.program, survey),
     )
 
 

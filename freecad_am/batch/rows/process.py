@@ -80,7 +80,9 @@ def stop(process: Any) -> None:
 
 def _carry_out(order: Order, sender: Any) -> None:
     """The work of the process."""
-    copies.end_with_parent()
+    made_by = multiprocessing.parent_process()
+    assert made_by is not None and made_by.pid is not None
+    copies.end_with(made_by.pid)
     quiet = _Quiet()
     status, message, result = 1, "", {}
     try:

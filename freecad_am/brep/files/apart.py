@@ -4,7 +4,7 @@
 FreeCAD and the geometry kernel crash on some damaged files, and on others read without end. Without a window the process is
 a copy of this one, made by fork in milliseconds. Beside a window, whose threads a fork would not copy, it is one of
 `kernel_process`, which is started once, and ended as soon as whoever waits for it is cancelled. What was read comes back as
-`answers` has it. Where there is neither, files are read here.
+`answers` has it. Where there is neither, files are read here. A copy may begin before the file is asked for (`ahead`).
 """
 
 from __future__ import annotations
@@ -37,10 +37,9 @@ LARGEST = 2000  # MB of a file
 LONGER = 10.0  # times as long on the clock: the processor may have others to serve, but a file that keeps us waiting ends
 MB = 1e6
 NO_MEMORY = 77  # exit status of a copy that has come to its limit
-CRASHED = 1  # or any other
 
 _is_apart = False  # whether this is such a process
-_begun: dict[tuple[Any, ...], _Copy] = {}  # by what is read
+_begun: dict[tuple[Any, ...], _Reading] = {}  # by `_name`
 
 
 def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, patience: float = 1.0) -> T:
@@ -59,15 +58,15 @@ def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, pati
         return read(path, *rest)
     limits = _limits(size, patience)
     if not FreeCAD.GuiUp:
-        with _begun.pop((read, path, rest), None) or _Copy(read, path, rest, *limits) as copy:
+        with _begun.pop(_name(read, path, rest), None) or _Reading(read, path, rest, *limits) as copy:
             ended, used = copy.wait()
             if ended:
                 raise _refused(where, ended, used, *limits)
             found = answers.hear(*copy.files)
     else:
         with _with_window() as files:
-            how = kernel_process.limited(
-                answer, (*files, read.__module__, read.__qualname__, path, rest, *limits), LONGER * limits[0])
+            question = (*files, read.__module__, read.__qualname__, path, rest, *limits)
+            how = kernel_process.limited(answer, question, LONGER * limits[0])
             if how is None:  # there is no other process
                 return read(path, *rest)
             if how[0]:
@@ -78,18 +77,27 @@ def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, pati
 
 @contextlib.contextmanager
 def ahead(read: Callable[..., object], path: str | os.PathLike[str], *rest: Any) -> Iterator[None]:
-    """Within it a copy of this process has begun with what `apart` is asked for first with these words. Beside a window, or
-    with one processor, nothing is begun."""
+    """Within it a copy of this process is already reading what `apart` is asked for first with these arguments, unless the
+    file is another one by then. Beside a window, with one processor, or where no copy can be made, nothing happens."""
     size, linux = _size(path) / MB, sys.platform.startswith("linux")
-    if FreeCAD.GuiUp or not linux or not 0.0 < size <= LARGEST or len(os.sched_getaffinity(0)) < 2:
-        yield
-        return
-    _begun[read, path, rest] = copy = _Copy(read, path, rest, *_limits(size, 1.0))
+    copy = None
+    if linux and os.path.isfile(path) and size <= LARGEST and not FreeCAD.GuiUp and len(os.sched_getaffinity(0)) > 1:
+        with contextlib.suppress(OSError):
+            copy = _begun[_name(read, path, rest)] = _Reading(read, path, rest, *_limits(size, 1.0))
     try:
         yield
     finally:
-        _begun.pop((read, path, rest), None)
-        copy.close()
+        if copy is not None:
+            _begun.clear()
+            copy.close()
+
+
+def _name(read: Callable[..., object], path: str | os.PathLike[str], rest: tuple[Any, ...]) -> tuple[Any, ...]:
+    """What is read: the file as it is now, which may be replaced by another one while it is read."""
+    with contextlib.suppress(OSError, ValueError):
+        state = os.stat(path)
+        return read, path, rest, state.st_ino, state.st_size, state.st_mtime_ns
+    return read, path, rest
 
 
 def _limits(size: float, patience: float) -> tuple[float, float]:
@@ -137,23 +145,24 @@ def _size(path: str | os.PathLike[str]) -> float:
         return 0.0
 
 
-class _Copy:
-    """A copy of this process that reads a file within limits; nothing is left of it once it is closed."""
+class _Reading:
+    """A copy of this process that reads a file within limits; nothing is left of it once this is closed."""
 
     def __init__(self, read: Callable[..., object], path: Any, rest: tuple[Any, ...], seconds: float, memory: float) -> None:
-        self._descriptors = [os.memfd_create("told"), os.memfd_create("geometry")]
-        text, geometry = self._descriptors
+        self._before, self._longest, self._pid = _pages(1), LONGER * seconds, 0
+        self._over, theirs = os.pipe()
+        self._descriptors = [self._over, os.memfd_create("told"), os.memfd_create("geometry")]
+        text, geometry = self._descriptors[1:]
         self.files = f"/proc/self/fd/{text}", f"/proc/self/fd/{geometry}"  # that this process and its copies have
-        self._ours, theirs = os.pipe()
-        self._before, self._until = _pages(1), time.monotonic() + LONGER * seconds
-        sys.stdout.flush()
-        sys.stderr.flush()
-        self._pid = os.fork()
-        if not self._pid:
-            _work(lambda: answers.tell(*self.files, read, path, rest), seconds, memory)
-        os.close(theirs)
+        try:
+            self._pid = copies.begun(lambda: _limited(seconds, memory, *self.files, read, path, rest))
+        except BaseException:
+            self.close()
+            raise
+        finally:
+            os.close(theirs)
 
-    def __enter__(self) -> _Copy:
+    def __enter__(self) -> _Reading:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -161,49 +170,37 @@ class _Copy:
 
     def wait(self) -> tuple[int, float]:
         """How it ended, as Popen tells it, and the memory, MB, that it used beside what this process has."""
-        ended = False
-        while not ended and time.monotonic() < self._until:
-            ended = bool(select.select([self._ours], [], [], 0.5)[0])  # the end of the copy closes it
-        status, usage = self._end(kill=not ended)
+        until = time.monotonic() + self._longest
+        while not (over := bool(select.select([self._over], [], [], 0.5)[0])) and time.monotonic() < until:
+            pass  # its end closes the pipe
+        if not over:
+            os.kill(self._pid, signal.SIGKILL)
+        _, status, usage = os.wait4(self._pid, 0)
+        self._pid = 0
         code = os.waitstatus_to_exitcode(status)
-        return (code if ended else -signal.SIGXCPU), max(0.0, (1024.0 * usage.ru_maxrss - self._before) / MB)
+        return (code if over else -signal.SIGXCPU), max(0.0, (1024.0 * usage.ru_maxrss - self._before) / MB)
 
     def close(self) -> None:
         if self._pid:
-            self._end(kill=True)
+            with contextlib.suppress(OSError):
+                os.kill(self._pid, signal.SIGKILL)
+                os.waitpid(self._pid, 0)
+            self._pid = 0
         while self._descriptors:
             os.close(self._descriptors.pop())
 
-    def _end(self, kill: bool) -> tuple[int, resource.struct_rusage]:
-        os.close(self._ours)
-        if kill:
-            with contextlib.suppress(OSError):
-                os.kill(self._pid, signal.SIGKILL)
-        _, status, usage = os.wait4(self._pid, 0)
-        self._pid = 0
-        return status, usage
 
-
-def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
-    """In the copy: do the work and end."""
+def _limited(seconds: float, memory: float, *what: Any) -> None:
+    """In the copy: read, and tell."""
     global _is_apart
     _is_apart = True
-    status = CRASHED
+    _limit(resource.RLIMIT_CORE, 0)
+    _limit(resource.RLIMIT_CPU, round(seconds))
+    _limit(resource.RLIMIT_AS, _pages(0) + round(memory * MB))
     try:
-        copies.take_no_signals()
-        copies.end_with_parent()
-        now = _pages(0)
-        _limit(resource.RLIMIT_CORE, 0)
-        _limit(resource.RLIMIT_CPU, round(seconds))
-        _limit(resource.RLIMIT_AS, now + round(memory * MB))
-        work()
-        status = 0
+        answers.tell(*what)
     except MemoryError:
-        status = NO_MEMORY
-    except BaseException:
-        status = CRASHED
-    finally:
-        os._exit(status)
+        os._exit(NO_MEMORY)
 
 
 def _pages(column: int) -> int:

@@ -12,6 +12,7 @@ from freecad_am.core.types import Array
 
 from ...core.issues import Issue, has_errors
 from ...core.kinematics.cell import Cell
+from ...core.kinematics.links.cylinders import Mesh
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters, NozzleParameters
 from ...core.parameters.process import ProcessParameters
@@ -48,7 +49,7 @@ Work = Callable[[], tuple[Promise, ...]]
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class Surveyed:
     """What takes long to find, as `Evidence` has it: of a toolpath and, where there is one, of its joint path."""
 
     distances: tuple[Array, ...]
@@ -58,18 +59,17 @@ class Found:
     arm: ArmTouches | None = None
 
 
-Look = Callable[[], Found]
-Running = tuple[Toolpath, Planned, Cell, AsRun]  # what runs: of what, of which path, where and how
-Run = Callable[[tuple[Issue, ...]], Running]
+Survey = Callable[[], Surveyed]
+What = tuple[Toolpath, Planned, Cell, tuple[Mesh | None, ...]]
 
 
-def of_stages(toolpath: Any, path: Any = None, program: Any = None, look: Look | None = None) -> tuple[Promise, ...]:
-    """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). look: as
-    `look_at` makes it, where it was made already. Raises InputError 'NO_RESULT' where one has no result."""
+def of_stages(toolpath: Any, path: Any = None, program: Any = None, surveyed: Survey | None = None) -> tuple[Promise, ...]:
+    """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). surveyed:
+    as `survey_of` gives it, where it was begun already. Raises InputError 'NO_RESULT' where one has no result."""
     if program is None:
-        return prepared(toolpath, path, look=look)()
+        return prepared(toolpath, path, surveyed=surveyed)()
     settings = program.Proxy.parameters(program, ProgramParameters)
-    return prepared(toolpath, path, settings, read_back_of(program), tuple(issues_of(program)), look)()
+    return prepared(toolpath, path, settings, read_back_of(program), tuple(issues_of(program)), surveyed)()
 
 
 def read_back_of(program: Any) -> Verification | None:
@@ -80,39 +80,44 @@ def read_back_of(program: Any) -> Verification | None:
 
 def prepared(
     toolpath: Any, path: Any = None, settings: ProgramParameters | None = None, read: Verification | None = None,
-    more: tuple[Issue, ...] = (), look: Look | None = None,
+    more: tuple[Issue, ...] = (), surveyed: Survey | None = None,
 ) -> Work:
     """What makes the preflight of a toolpath and of its joint path (document objects), without the document, from which all
-    is read now. settings: of the program that is written of it; read: how that was read back; more: its findings; look: as
-    `look_at` makes it. Raises InputError 'NO_RESULT' where one has no result."""
+    is read now. settings: of the program that is written of it; read: how that was read back; more: its findings;
+    surveyed: as `survey_of` gives it. Raises InputError 'NO_RESULT' where one has no result."""
     stages = [stage for stage in (*features_of(toolpath), toolpath, path) if stage is not None]
     issues = tuple(dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more)))
     planned, process = toolpath.Proxy.reader(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
-    looks, run = look or look_at(toolpath, path, settings), None if path is None else _run(path, settings)
+    run = None if path is None else _Run(path, settings)
+    survey = surveyed or _survey(toolpath, run)
 
     def preflight() -> tuple[Promise, ...]:
-        running = None if run is None else run(issues)
-        seen = looks()  # last: it may be waited for
+        as_it_runs = None if run is None else run.how(issues)
+        seen = survey()  # last: it may be waited for
         known = Evidence(
             planned(), process, issues, distances=seen.distances, balance=seen.balance, looked=seen.looked,
             rapids=seen.rapids, arm=seen.arm,
         )
-        return promises(known if running is None else _with_motion(known, running, settings, read))
+        return promises(known if run is None or as_it_runs is None else _with_motion(known, run, as_it_runs, read))
 
     return preflight
 
 
-def look_at(toolpath: Any, path: Any, settings: ProgramParameters | None) -> Look:
+def survey_of(toolpath: Any, path: Any, settings: ProgramParameters | None, at_once: bool = False) -> Survey:
     """What finds of a toolpath and its joint path (document objects), run as a program with `settings`, what takes long,
-    without the document, from which all is read now. Raises InputError 'NO_RESULT' where one has no result."""
+    without the document, from which all is read now. at_once: so are the files that the cell names, and FreeCAD is not
+    asked for anything later. Raises InputError 'NO_RESULT' where one has no result."""
+    return _survey(toolpath, None if path is None else _Run(path, settings, at_once))
+
+
+def _survey(toolpath: Any, run: _Run | None) -> Survey:
     features, process = features_of(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
     builds = [feature.Proxy.parameters(feature, BuildDirectionParameters) for feature in features]
     planned, shapes = toolpath.Proxy.reader(toolpath), [feature.Proxy.reader(feature) for feature in features]
     widths = [one.bead_width for one in toolpath.Proxy.processes(toolpath)]
     cell = None if toolpath.Cell is None else toolpath.Cell.Proxy.value(toolpath.Cell)
-    run = None if path is None else _run(path, settings)
 
-    def look() -> Found:
+    def survey() -> Surveyed:
         made = planned()
         balance = deposit_balance.together([
             deposit_balance.of_toolpath(shape(), part, width)
@@ -120,10 +125,10 @@ def look_at(toolpath: Any, path: Any, settings: ProgramParameters | None) -> Loo
         ])
         looked = _nozzle_looked(made, cell, [build.clearance != "none" for build in builds])
         if run is None:
-            return Found(tuple(spacing.between_layers(made)), balance, looked)
-        return _of_motion(Found((), balance, looked), process, *run(()))
+            return Surveyed(tuple(spacing.between_layers(made)), balance, looked)
+        return _of_motion(Surveyed((), balance, looked), process, *run.what, run.how(()))
 
-    return look
+    return survey
 
 
 def _nozzle_looked(toolpath: Toolpath, cell: CellParameters | None, asked: list[bool]) -> Looked | None:
@@ -137,52 +142,56 @@ def _nozzle_looked(toolpath: Toolpath, cell: CellParameters | None, asked: list[
 
 
 def _of_motion(
-    of_deposit: Found, process: ProcessParameters, toolpath: Toolpath, planned: Planned, cell: Cell, as_it_runs: AsRun
-) -> Found:
+    of_deposit: Surveyed, process: ProcessParameters, toolpath: Toolpath, planned: Planned, cell: Cell,
+    shapes: tuple[Mesh | None, ...], as_it_runs: AsRun,
+) -> Surveyed:
     """What was found of the deposit, at the distances that it is run at, with what is found of the motion."""
     path = planned.joint_path
     rapids = rapid_look.looked_at(
         planned.motion, [one.bead for one in path.beads], cell, toolpath.surroundings,
         toolpath.bead_width or process.bead_width, toolpath.layer_height, RAPID_PLACES,
     )
-    shapes, clearance = meshes_of(cell.machine), cell.arm_clearance or 0.0
-    arm = arm_of(as_it_runs.motion, cell, toolpath, process, shapes, ARM_PLACES, clearance)
+    arm = arm_of(as_it_runs.motion, cell, toolpath, process, shapes, ARM_PLACES, cell.arm_clearance or 0.0)
     return replace(of_deposit, distances=tuple(spacing.between_layers(path.toolpath(toolpath))), rapids=rapids, arm=arm)
 
 
-def _run(path: Any, settings: ProgramParameters | None) -> Run:
-    """What makes of findings about a joint path (document object): its toolpath, what was planned, its cell, and how it is
-    run, without the document."""
-    toolpath, planned = path.Toolpath.Proxy.reader(path.Toolpath), path.Proxy.reader(path)
-    looks, folders = path.Cell.Proxy.value(path.Cell), tuple(user_machines.folders())
-    settings = _if_written(settings)
+class _Run:
+    """How a joint path (document object) is run, by a program with `settings` where there are any, without the document."""
 
-    def run(issues: tuple[Issue, ...]) -> Running:
-        made, of_path = toolpath(), planned()
-        cell = resolved(looks, made, folders)
-        return made, of_path, cell, as_run(of_path, cell, made.chord_error, settings, issues)
+    def __init__(self, path: Any, settings: ProgramParameters | None, at_once: bool = False) -> None:
+        self._toolpath, self._planned = path.Toolpath.Proxy.reader(path.Toolpath), path.Proxy.reader(path)
+        self._looks, self._folders = path.Cell.Proxy.value(path.Cell), tuple(user_machines.folders())
+        self.settings = None if settings is None or settings.post == "none" else settings
+        self._kept = self._read() if at_once else None
 
-    return run
+    @property
+    def what(self) -> What:
+        """The toolpath, what was planned, its cell, and the shapes of the machine's links."""
+        if self._kept is None:
+            self._kept = self._read()
+        return self._kept
+
+    def _read(self) -> What:
+        toolpath = self._toolpath()
+        cell = resolved(self._looks, toolpath, self._folders)
+        return toolpath, self._planned(), cell, meshes_of(cell.machine)
+
+    def how(self, issues: tuple[Issue, ...]) -> AsRun:
+        """The motion, and the findings by its points."""
+        toolpath, planned, cell, _ = self.what
+        return as_run(planned, cell, toolpath.chord_error, self.settings, issues)
 
 
-def _with_motion(
-    known: Evidence, running: Running, settings: ProgramParameters | None, read: Verification | None
-) -> Evidence:
-    """What is known of a joint path, or of the program that is written of it with `settings`; known: of its toolpath, and
-    what was looked for. read: None where that was not read back."""
-    toolpath, planned, cell, as_it_runs = running
-    shapes, settings = meshes_of(cell.machine), _if_written(settings)
+def _with_motion(known: Evidence, run: _Run, as_it_runs: AsRun, read: Verification | None) -> Evidence:
+    """What is known of a joint path, or of the program that is written of it; known: of its toolpath, and what was surveyed.
+    read: None where that was not read back."""
+    toolpath, planned, cell, shapes = run.what
     return replace(
         known, toolpath=planned.joint_path.toolpath(toolpath), issues=as_it_runs.issues, cell=cell, motion=as_it_runs.motion,
         condition=as_it_runs.condition, threshold=as_it_runs.threshold, true_shapes=bool(shapes) and None not in shapes,
         read=None if read is None else _read_back(read, toolpath.chord_error),
-        on_controller=() if settings is None else catalogue.load(settings.post).ON_CONTROLLER,
+        on_controller=() if run.settings is None else catalogue.load(run.settings.post).ON_CONTROLLER,
     )
-
-
-def _if_written(settings: ProgramParameters | None) -> ProgramParameters | None:
-    """The settings of a program that is written; None where none is."""
-    return None if settings is None or settings.post == "none" else settings
 
 
 def _read_back(read: Verification, chord_error: float) -> ReadBack:
