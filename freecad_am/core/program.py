@@ -206,7 +206,8 @@ class Program:
     part is on the last mechanism, and station is the program's origin on its face; a linear one is a track that carries the
     robot. unit: what the controller calls the mechanism of the part, or a track alone; first_external: the number there of
     the first of these axes, from 1. schedule_output: what the numbers of schedules are set on.
-    axis_machines: title of the machine or mechanism that each axis belongs to, whose file tells about it.
+    axis_machines: title of the machine or mechanism that each axis belongs to, whose file tells about it; of_urdf: whether
+    that is a URDF.
     """
 
     name: str
@@ -235,6 +236,7 @@ class Program:
     first_external: int = 1
     schedule_output: int = 2
     axis_machines: tuple[str, ...] = ()
+    of_urdf: tuple[bool, ...] = ()
 
     @property
     def holds_part(self) -> bool:

@@ -231,11 +231,12 @@ def refuse_without_speeds(program: Program, axes: int) -> None:
     if len(known) == axes and known.all():
         return
     first = int(known.argmin()) if len(known) == axes else 0
+    in_urdf = Text("`velocity` to the `<limit>` of each of its joints")
     raise InputError(
         "NO_JOINT_SPEED", "cell.machine" if first < program.own_axes else "cell.external",
         "on this controller the speed of joint moves is programmed in percent of the axes' largest speeds, and the "
-        "machine file of {} does not give them; add max_speed to its "
-        "joints, of a URDF velocity to the <limit> of each", (program.axis_machines or (program.machine,) * axes)[first],
+        "machine file of {} does not give them; add {}", (program.axis_machines or (program.machine,) * axes)[first],
+        in_urdf if program.of_urdf and program.of_urdf[first] else Text("`max_speed` to its joints"),
     )
 
 

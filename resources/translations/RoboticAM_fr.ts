@@ -6757,6 +6757,16 @@
         <translation>Réduire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>`max_speed` to its joints</source>
+        <translation>`max_speed` à ses articulations</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>`velocity` to the `&lt;limit&gt;` of each of its joints</source>
+        <translation>`velocity` au `&lt;limit&gt;` de chacune de ses articulations</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
@@ -10628,8 +10638,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>on this controller the speed of joint moves is programmed in percent of the axes&apos; largest speeds, and the machine file of {0} does not give them; add max_speed to its joints, of a URDF velocity to the &lt;limit&gt; of each</source>
-        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine de {0} ne les donne pas ; ajoutez max_speed à ses articulations, dans un URDF velocity au &lt;limit&gt; de chacune</translation>
+        <source>on this controller the speed of joint moves is programmed in percent of the axes&apos; largest speeds, and the machine file of {0} does not give them; add {1}</source>
+        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine de {0} ne les donne pas ; ajoutez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>

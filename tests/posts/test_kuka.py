@@ -364,12 +364,15 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     slow, told = (*NOMINAL[:5], math.inf), json.loads((MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8"))
     message = refusal(
         dataclasses.replace(JOB, machine="a robot", max_speed=slow), code="NO_JOINT_SPEED", where="cell.machine")
-    assert "file of a robot does not" in message and "of a URDF velocity to the <limit>" in message
+    assert message.endswith("file of a robot does not give them; add `max_speed` to its joints")
     for lacking, where in ((0, "cell.machine"), (1, "cell.external")):
         speeds = (*slow, 1.0, 1.0) if lacking == 0 else (*NOMINAL, 1.0, math.inf)
         message = refusal(beside(JOB, max_speed=speeds, axis_machines=("a robot",) * 6 + ("a table",) * 2),
                           code="NO_JOINT_SPEED", where=where)
         assert f"file of {('a robot', 'a table')[lacking]} does not" in message
+        message = refusal(beside(JOB, max_speed=speeds, of_urdf=(lacking == 0,) * 6 + (lacking == 1,) * 2),
+                          code="NO_JOINT_SPEED", where=where)
+        assert message.endswith("; add `velocity` to the `<limit>` of each of its joints")
     del told["joints"][1]["max_speed"]
     (tmp_path / "mine.json").write_text(json.dumps({**told, "id": "mine"}), encoding="utf-8")
     cell = cells.resolve(CellParameters(
@@ -378,7 +381,20 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     ), np.eye(4))
     made = without_moves(cell, ProgramParameters(post="kuka", motion="cartesian"), catalogue.controller("kuka"), "dome")
     message = refusal(dataclasses.replace(made, blocks=beside(JOB).blocks), code="NO_JOINT_SPEED", where="cell.external")
-    assert f"the machine file of {told['title']} does not give them" in message
+    assert f"the machine file of {told['title']} does not give them; add `max_speed`" in message
+    (tmp_path / "turn.urdf").write_text(
+        '<robot name="turn"><link name="foot"/><link name="arm"/><link name="plate"/>'
+        '<joint name="tilt" type="revolute"><parent link="foot"/><child link="arm"/><axis xyz="0 1 0"/>'
+        '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+        '<joint name="turn" type="revolute"><parent link="arm"/><child link="plate"/><axis xyz="0 0 1"/>'
+        '<limit lower="-3" upper="3" effort="1"/></joint></robot>', encoding="utf-8")
+    cell = cells.resolve(CellParameters(
+        machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto",
+        external=f"{tmp_path / 'turn.urdf'} at 1400 0 0 0 0 0 carries part",
+    ), np.eye(4))
+    made = without_moves(cell, ProgramParameters(post="kuka", motion="cartesian"), catalogue.controller("kuka"), "dome")
+    message = refusal(dataclasses.replace(made, blocks=beside(JOB).blocks), code="NO_JOINT_SPEED", where="cell.external")
+    assert message.endswith("of turn tilt - turn does not give them; add `velocity` to the `<limit>` of each of its joints")
 
 
 def test_the_deposit_is_switched_on_the_moves_themselves():

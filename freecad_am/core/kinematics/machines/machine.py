@@ -58,7 +58,8 @@ class Machine:
     the file does not say; `pulses_per_degree` (axes,) and the `speed_unit` of its path speeds, empty where it does not say.
     `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
     `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first. `external`: how many of the axes,
-    the last ones, are not the robot's own (`external.coupled`). `bodies` (axes + 1): what its links are made of.
+    the last ones, are not the robot's own (`external.coupled`). `bodies` (axes + 1): what its links are made of. `of_urdf`:
+    whether that is the file that tells of it.
     """
 
     id: str
@@ -84,6 +85,7 @@ class Machine:
     external: int = 0
     payload: Payload = Payload()
     bodies: tuple[Pieces, ...] = ()
+    of_urdf: bool = False
 
     @property
     def opw(self) -> OpwArm | None:
@@ -290,5 +292,5 @@ def of_description(source: str, found: Description, arm: SerialArm | None) -> Ma
         base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
         controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=UNKNOWN_REMARK, posts=(),
         pulses_per_degree=(), speed_unit="", sources=(source,), remarks=found.notes,
-        max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes, bodies=found.bodies,
+        max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes, bodies=found.bodies, of_urdf=True,
     )

@@ -14,6 +14,7 @@ from ...geometry import frames
 from ...issues import InputError
 from ...kinematics.cell import Cell
 from ...kinematics.inverse import opw
+from ...kinematics.machines.machine import Machine
 from ...motion import Motion
 from ...parameters.bead_classes import CLASSES
 from ...parameters.process import BetweenLayersParameters, ProcessParameters
@@ -99,14 +100,14 @@ def without_moves(cell: Cell, parameters: ProgramParameters, controller: Control
         unit=_unit(cell, parameters, controller),
         first_external=parameters.axes.first,
         schedule_output=parameters.schedule.output,
-        axis_machines=_axis_machines(cell),
+        axis_machines=tuple(owner.title for owner in _owners(cell)), of_urdf=tuple(owner.of_urdf for owner in _owners(cell)),
     )
 
 
-def _axis_machines(cell: Cell) -> tuple[str, ...]:
+def _owners(cell: Cell) -> list[Machine]:
     """What each axis belongs to: the robot, or a mechanism beside it."""
     owners = [cell.robot, *(one.machine for one in cell.external.mechanisms)] if cell.external else [cell.robot]
-    return tuple(owner.title for owner in owners for _ in range(owner.chain.axes))
+    return [owner for owner in owners for _ in range(owner.chain.axes)]
 
 
 def external_kinds(cell: Cell) -> tuple[str, ...]:
