@@ -202,6 +202,17 @@ def test_parameters_of_another_family_are_not_passed_over(world):
     assert error.code == "BAD_INPUT" and "RevolutionParameters" in error.message
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize(("key", "most"), [
+    ("bead_width", "1e+09 mm"), ("travel_speed", "10000 mm/s"), ("overlap", "1e+09 mm"),
+])  # fmt: skip
+@pytest.mark.parametrize("number", [1e300, 2e9])
+def test_an_absurd_number_is_refused_before_anything_is_computed_with_it(world, key, most, number):
+    """The squares of a width of 1e300 mm overflowed in the search for collisions, and numpy warned."""
+    error = call(world, "make_toolpath", {**RIGHT["make_toolpath"](world), key: number})
+    assert (error.code, error.where) == ("BAD_VALUE", f"process.{key}") and error.message.endswith(f"at most {most}")
+
+
 @pytest.mark.parametrize("function", sorted(RIGHT))
 def test_wrong_arguments_are_refused_by_an_error_of_ours(world, function, pytestconfig):
     chosen, bad = random.Random(f"{SEED} {function}"), []

@@ -21,6 +21,9 @@ GROUP = "group"
 
 # the unit a bare number has outside, and how many of ours one of it makes
 OUTER_UNIT = {LENGTH: "mm", ANGLE: "deg", SPEED: "mm/s", TIME: "s", RATIO: "%", RATIO_RANGE: "%", TURN_RATE: "deg/mm"}
+# mm, and mm/s: what is more is refused wherever it stands. Squares and cubes of it would be no numbers, and at such speeds
+# moves would be over before a controller has begun the next
+UPPER_BOUNDS = {LENGTH: 1e9, SPEED: 1e4}
 END_OF = {ANGLE_RANGE: ANGLE, RATIO_RANGE: RATIO}  # what either end of a range is
 TO_INNER = {ANGLE: math.pi / 180.0, ANGLE_RANGE: math.pi / 180.0, TURN_RATE: math.pi / 180.0, RATIO: 0.01, RATIO_RANGE: 0.01}
 
@@ -134,6 +137,9 @@ def _check_number(spec: Spec, value: Any, key: str) -> None:
         raise InputError("BAD_VALUE", key, "{!r} is not a number; give one such as 2{}", value, Word(also))
     if spec.kind == COUNT and (math.isinf(value) or value != int(value)):
         raise InputError("BAD_VALUE", key, "{!r} is not a whole number; give one such as 3", value)
+    if spec.high is None and abs(value) > UPPER_BOUNDS.get(spec.kind, math.inf):
+        most = UPPER_BOUNDS[spec.kind]  # which nobody needs to be told of otherwise
+        spec = dataclasses.replace(spec, high=most, low=-most if spec.low is None else spec.low)
     too_low = spec.low is not None and (value <= spec.low if spec.open_low else value < spec.low)
     if too_low or (spec.high is not None and value > spec.high):
         raise InputError("BAD_VALUE", key, "{} is out of range; give {}", outer_text(spec, value), range_text(spec))
