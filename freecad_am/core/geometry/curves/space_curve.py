@@ -139,8 +139,13 @@ class SpaceCurve:
         _, slope, _ = self.on_arcs(arc, np.broadcast_to(0.5 * (x + 1.0), (len(self.span), 4)))
         return float((np.linalg.norm(slope, axis=-1) * 0.5 * weight * self.span[:, None]).sum())
 
+    def beyond_box(self, points: Array) -> Array:
+        """mm that points (n, 3) are beyond a box about it, by a hair less than they are, which its places are not nearer."""
+        low, high = self._box
+        return (1.0 - 1e-9) * lengths(np.maximum(np.maximum(low - points, points - high), 0.0)) - 1e-9
+
     @cached_property
-    def box(self) -> tuple[Array, Array]:
+    def _box(self) -> tuple[Array, Array]:
         """The lowest and highest coordinates (3,), mm, of what holds it: its nodes and the handles of its arcs."""
         nodes, third = self.points, self.span[:, None] / 3.0
         every = np.vstack([nodes, nodes[:-1] + third * self.out[:-1], nodes[1:] - third * self.into[1:]])

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...geometry.columns import lengths
 from ...geometry.curves.space_curve import SpaceCurve
 from ...types import Array, Index, Mask
 
@@ -42,31 +41,23 @@ def feet(fronts: list[SpaceCurve], points: Array) -> Feet:
     A front is looked at for those points alone to which its box is nearer than any place found: where a layer is in many
     pieces, few of these come into question for a point.
     """
-    if len(fronts) == 1:
-        distance, foot, w = fronts[0].nearest(points)
-        return Feet.between(points, foot, np.zeros(len(points), dtype=np.intp), w)
-    least = np.stack([_to_box(points, *front.box) for front in fronts])
-    front = np.argmin(least, axis=0)  # those that are likely
+    low = np.stack([front.beyond_box(points) for front in fronts])
+    front = np.argmin(low, axis=0)  # those that are likely
     distance, foot, w = np.empty(len(points)), np.empty((len(points), 3)), np.empty(len(points))
-    for k in np.unique(front):
-        own = np.flatnonzero(front == k)
-        distance[own], foot[own], w[own] = fronts[k].nearest(points[own])
-    asked = least <= distance
+    for piece in np.unique(front):
+        own = np.flatnonzero(front == piece)
+        distance[own], foot[own], w[own] = fronts[piece].nearest(points[own])
+    asked = low <= distance
     asked[front, np.arange(len(points))] = False
-    for k in np.flatnonzero(asked.any(axis=1)):
-        some = np.flatnonzero(asked[k] & (least[k] <= distance))
-        found, place, at = fronts[k].nearest(points[some])
+    for piece in np.flatnonzero(asked.any(axis=1)):
+        some = np.flatnonzero(asked[piece] & (low[piece] <= distance))
+        found = fronts[piece].nearest(points[some])
         # of places at the same distance that on the first front
-        nearer = (found < distance[some]) | ((found == distance[some]) & (k < front[some]))
+        nearer = (found[0] < distance[some]) | ((found[0] == distance[some]) & (piece < front[some]))
         own = some[nearer]
-        distance[own], foot[own], w[own], front[own] = found[nearer], place[nearer], at[nearer], k
+        distance[own], foot[own], w[own] = (each[nearer] for each in found)
+        front[own] = piece
     return Feet.between(points, foot, front, w)
-
-
-def _to_box(points: Array, low: Array, high: Array) -> Array:
-    """Distances (n,) of points (n, 3) to a box, by a hair less than they are."""
-    out = np.maximum(np.maximum(low - points, points - high), 0.0)
-    return (1.0 - 1e-9) * lengths(out) - 1e-9
 
 
 def local_distances(front: SpaceCurve, below: list[SpaceCurve], finer: int = 1) -> Array:

@@ -37,7 +37,8 @@ from .front_tree import Piece, events, shorn, tree, whole
 FINER = 4  # places per arc of a front at which its distance from the layer below is measured
 FINDING = 0.7  # of the time goes into finding the layers
 
-_SLICED: WeakKeyDictionary[PatchWall, tuple[float, Smoothing | None, slicing.Sliced]] = WeakKeyDictionary()
+# of walls their layers as last asked for, which take most of the time, and which directions do not change
+_SLICED: WeakKeyDictionary[PatchWall, tuple[tuple[float, Smoothing | None], slicing.Sliced]] = WeakKeyDictionary()
 
 
 def plan(
@@ -76,13 +77,11 @@ def plan(
 
 
 def _sliced(wall: PatchWall, height: float, smoothing: Smoothing | None, progress: Progress) -> slicing.Sliced:
-    """The layers of a wall. They are kept with it, for they take most of the time, and directions change none."""
-    kept = _SLICED.get(wall)
-    if kept is not None and kept[:2] == (height, smoothing):
-        return kept[2]
-    found = slicing.layers(wall, height, smoothing, lambda done, text: progress(FINDING * done, text))
-    _SLICED[wall] = (height, smoothing, found)
-    return found
+    """The layers of a wall, as they were found before where they were."""
+    if wall not in _SLICED or _SLICED[wall][0] != (height, smoothing):
+        layers = slicing.layers(wall, height, smoothing, lambda done, text: progress(FINDING * done, text))
+        _SLICED[wall] = (height, smoothing), layers
+    return _SLICED[wall][1]
 
 
 def _refuse(strategy: SurfaceParameters) -> None:
