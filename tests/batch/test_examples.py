@@ -99,12 +99,16 @@ def test_layers_of_the_bend_are_evenly_spaced(workshop, root):
 
 
 def test_a_bend_cannot_grow_on_a_surface(workshop, root):
+    import Part
+
     folder = root / "resources" / "examples"
     shutil.copy(folder / "tube-on-pipe.step", workshop.folder)
+    Part.read(str(folder / "pipe.step")).Faces[0].exportStep(str(workshop.folder / "surface.step"))
     text = (folder / "tube-on-pipe.yaml").read_text(encoding="utf-8")
-    (workshop.folder / "bend.yaml").write_text(text.replace(" pipe.step", " tube-on-pipe.step"), encoding="utf-8")
-    done = workshop.run("plan", "bend.yaml")
-    assert (done.status, done.err.count("error[NO_SOLID]")) == (2, 1), done.err
+    for substrate, code in (("surface", "NO_SOLID"), ("tube-on-pipe", "OWN_SUBSTRATE")):
+        (workshop.folder / "bend.yaml").write_text(text.replace(" pipe.step", f" {substrate}.step"), encoding="utf-8")
+        done = workshop.run("plan", "bend.yaml")
+        assert (done.status, done.err.count(f"error[{code}]")) == (2, 1), done.err
 
 
 @pytest.mark.parametrize("path", ON_SUBSTRATES, ids=lambda path: path.stem)
