@@ -268,17 +268,19 @@ def test_a_panel_whose_object_is_gone_says_so(person, hemisphere):
     person.panel_closed()
 
 
-def test_a_field_in_the_place_of_a_deleted_one_is_made_anew(person, window, monkeypatch):
-    """PySide finds what FreeCAD made by its place in memory, and a deleted field there, if something still has that."""
+@pytest.mark.parametrize("deleted", [True, False])
+def test_a_field_in_the_place_of_another_one_is_made_anew(person, window, monkeypatch, deleted):
+    """PySide finds what FreeCAD made by its place in memory, and a deleted field there, or a widget of another kind, if
+    something still has that."""
     loader = person.gui.UiLoader()
-    made, deleted = [], [loader.createWidget("Gui::QuantitySpinBox") for _ in range(3)]
-    for one in deleted:
+    made, wrong = [], [loader.createWidget("Gui::QuantitySpinBox" if deleted else "QLabel") for _ in range(3)]
+    for one in wrong if deleted else ():
         person.qt.delete(one)
 
     class Loader:
         def createWidget(self, name):
             made.append(name)
-            return deleted.pop() if deleted else loader.createWidget(name)
+            return wrong.pop() if wrong else loader.createWidget(name)
 
     monkeypatch.setattr(person.gui, "UiLoader", Loader)
     field = QuantityField(2.5, "mm", "Width")

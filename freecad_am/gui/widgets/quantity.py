@@ -35,14 +35,17 @@ _SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.s
 
 
 def _made() -> tuple[Any, Any]:
-    """FreeCAD's field, and the line that is typed into; another one where PySide takes either for one that was deleted,
-    which was at its place in memory (docs/versions.md)."""
+    """FreeCAD's field, and the line that is typed into; another one where PySide takes either for one that was deleted, or
+    the line for one of another kind, which was at its place in memory (docs/versions.md)."""
+    unusable = []  # which keep their places
     for _ in range(_TRIES):
         box = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
         with contextlib.suppress(RuntimeError):
             line = box.findChild(QtGui.QLineEdit)
-            line.objectName()
-            return box, line
+            if line is not None:
+                line.objectName()
+                return box, line
+        unusable.append(box)
     raise RuntimeError("no field can be made")
 
 
