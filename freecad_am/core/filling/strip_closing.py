@@ -39,9 +39,9 @@ def open_windows(
 
 def near_windows(strip: Strip, curves: Sequence[PlaneCurve], reach: float) -> Iterator[tuple[Window, list[PlaneCurve]]]:
     """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle."""
-    uvs = [strip.period.followed(curve.points, curve.sheet, curve.turns) for curve in curves]
+    curves = [replace(curve, points=strip.period.followed(curve.points, curve.sheet, curve.turns)) for curve in curves]
     for window in strip.windows(reach):
         yield window, [
-            PlaneCurve(points, closed, curve.kind, curve.ring) for curve, uv in zip(curves, uvs)
-            for points, closed in strip.near(window, uv, curve.closed and not curve.turns)
+            PlaneCurve(points, closed, curve.kind, curve.ring) for curve in curves
+            for points, closed in strip.near(window, curve.points, curve.closed and not curve.turns)
         ]
