@@ -359,6 +359,16 @@ def test_axes_beside_the_robot():
     refusal(dataclasses.replace(beside(JOB), external_kinds=()), code="UNSUPPORTED_AXES", where="program.post")
 
 
+def _refused_beside(mechanism):
+    """What a program is refused with for the joint speeds of a mechanism's file, which carries the part."""
+    cell = cells.resolve(CellParameters(
+        machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto",
+        external=f"{mechanism} at 1400 0 0 0 0 0 carries part",
+    ), np.eye(4))
+    made = without_moves(cell, ProgramParameters(post="kuka", motion="cartesian"), catalogue.controller("kuka"), "dome")
+    return refusal(dataclasses.replace(made, blocks=beside(JOB).blocks), code="NO_JOINT_SPEED", where="cell.external")
+
+
 def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     """That of the robot, or of the positioner or track beside it."""
     slow, told = (*NOMINAL[:5], math.inf), json.loads((MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8"))
@@ -375,12 +385,7 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
         assert message.endswith("; add `velocity` to the `<limit>` of each of its joints")
     del told["joints"][1]["max_speed"]
     (tmp_path / "mine.json").write_text(json.dumps({**told, "id": "mine"}), encoding="utf-8")
-    cell = cells.resolve(CellParameters(
-        machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto",
-        external=f"{tmp_path / 'mine.json'} at 1400 0 0 0 0 0 carries part",
-    ), np.eye(4))
-    made = without_moves(cell, ProgramParameters(post="kuka", motion="cartesian"), catalogue.controller("kuka"), "dome")
-    message = refusal(dataclasses.replace(made, blocks=beside(JOB).blocks), code="NO_JOINT_SPEED", where="cell.external")
+    message = _refused_beside(tmp_path / "mine.json")
     assert f"the machine file of {told['title']} does not give them; add `max_speed`" in message
     (tmp_path / "turn.urdf").write_text(
         '<robot name="turn"><link name="foot"/><link name="arm"/><link name="plate"/>'
@@ -388,12 +393,7 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
         '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
         '<joint name="turn" type="revolute"><parent link="arm"/><child link="plate"/><axis xyz="0 0 1"/>'
         '<limit lower="-3" upper="3" effort="1"/></joint></robot>', encoding="utf-8")
-    cell = cells.resolve(CellParameters(
-        machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto",
-        external=f"{tmp_path / 'turn.urdf'} at 1400 0 0 0 0 0 carries part",
-    ), np.eye(4))
-    made = without_moves(cell, ProgramParameters(post="kuka", motion="cartesian"), catalogue.controller("kuka"), "dome")
-    message = refusal(dataclasses.replace(made, blocks=beside(JOB).blocks), code="NO_JOINT_SPEED", where="cell.external")
+    message = _refused_beside(tmp_path / "turn.urdf")
     assert message.endswith("of turn tilt - turn does not give them; add `velocity` to the `<limit>` of each of its joints")
 
 
