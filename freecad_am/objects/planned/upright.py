@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 
 from ...core.issues import ERROR, NOTE, AmError, Issue, Text, has_errors
 from ...core.parameters.filled import GEODESIC, OFFSET, PLANES
+from ...core.strategies.clearance.notes import CLEARANCE
 from ...core.toolpath import Toolpath
 from ..work import progress
 from .toolpaths import Given, planned
 
 if TYPE_CHECKING:
     from ...core.planning.tried import Fixed
-
-CLEARANCE = "CLEARANCE"
 
 
 def in_planes(given: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed | None:

@@ -13,7 +13,7 @@ from ...geometry.obstacles import Body
 from ...issues import ERROR, Issue, Text
 from ...parameters.cell import NozzleParameters
 from ...toolpath import Toolpath
-from .notes import place
+from .notes import CLEARANCE, place
 from .places import beads_of, halfway, nozzle_of, space_of
 
 
@@ -69,6 +69,6 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
     at, point = place(places, begin, int(np.argmax(hit)))
     names = Text.joined(" or ", (body.name for body in bodies))
     return [Issue(
-        ERROR, "CLEARANCE", Text("the nozzle touches {} at {} of {} points; on parts of revolution it is not tilted away "
+        ERROR, CLEARANCE, Text("the nozzle touches {} at {} of {} points; on parts of revolution it is not tilted away "
             "from fixtures: move them, or use a slimmer nozzle", names, int(hit.sum()), len(points)), *at, point,
     )]

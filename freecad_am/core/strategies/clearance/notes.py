@@ -8,6 +8,8 @@ import numpy as np
 from ...issues import ERROR, NOTE, WARNING, Issue, Text, Word
 from ...types import Array, Index, Mask
 
+CLEARANCE = "CLEARANCE"  # the nozzle touches something while it deposits
+
 
 def place(places: list[tuple[int, int]], begin: Index, row: int) -> tuple[tuple[int, int], int]:
     """Layer and bead of a row of all points, and the point's number in its bead. places: (layer, bead);
@@ -24,7 +26,7 @@ def tilt_issues(places: list[tuple[int, int]], begin: Index, tilt: Array, lost: 
     if lost.any():
         at, point = place(places, begin, int(np.argmax(lost)))
         issues.append(Issue(
-            ERROR, "CLEARANCE", Text("however the tool is tilted, the nozzle touches substrate, fixture, platform or "
+            ERROR, CLEARANCE, Text("however the tool is tilted, the nozzle touches substrate, fixture, platform or "
                 "deposit at {} point(s) of layers {} to {}", int(lost.sum()), layer[lost].min(), layer[lost].max()), *at,
             point,
         ))

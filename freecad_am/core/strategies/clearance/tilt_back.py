@@ -30,11 +30,10 @@ from ...types import Array, Index, Mask
 from ..progress import Watch
 from . import knots as clearance_knots
 from .helpful import Change, Touching, what_helps
-from .notes import tilt_issues, turn_issues
+from .notes import CLEARANCE, tilt_issues, turn_issues
 from .places import Space, beads_of, halved, space_of, touched_between
 from .tilt_search import SPREAD, TiltSearch
 
-TOUCHES = "CLEARANCE"
 SLOWER = 6  # times that a bead is tilted anew where it turns too fast
 SEARCHED = 0.7  # of the search when that begins
 ROUNDING = 1e-9
@@ -75,13 +74,13 @@ def kept_clear(
     words = what_helps(touching, Change(bodies, nozzle, build, Text("")), clears)
     return dataclasses.replace(found, issues=tuple(
         dataclasses.replace(issue, message=Text("{}; {}", issue.message, words))
-        if issue.code == TOUCHES and issue not in toolpath.issues else issue for issue in found.issues
+        if issue.code == CLEARANCE and issue not in toolpath.issues else issue for issue in found.issues
     ))
 
 
 def _touches(made: Toolpath, before: Toolpath) -> bool:
     """Whether a toolpath made of another is told to touch."""
-    return any(issue.code == TOUCHES for issue in made.issues[len(before.issues) :])
+    return any(issue.code == CLEARANCE for issue in made.issues[len(before.issues) :])
 
 
 class _Way(NamedTuple):
