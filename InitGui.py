@@ -20,7 +20,9 @@ class RoboticAMWorkbench(Gui.Workbench):
         from freecad_am.gui import icons
         from freecad_am.gui.texts.translation import tr
 
-        self.__class__.ToolTip = tr("Layers, joint paths and checked programs for robots that deposit material")
+        self.__class__.ToolTip = tr(
+            "Layers, joint paths and checked programs for robots that deposit material"
+        )
         self.__class__.Icon = icons.path("workbench")
 
     def Initialize(self):

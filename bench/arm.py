@@ -57,11 +57,25 @@ class Standing:
         """The text of a job beside it."""
         x, y, z = STATION
         middle = np.add(self.low, 0.5 * np.array(self.size)) + STATION
-        stands = "[]" if self.fixture else (
-            f"[{{name: {self.name}, box: {list(self.size)}, pose: [{', '.join(map(repr, middle.tolist()))}, 0, 0, 0]}}]")
+        stands = (
+            "[]"
+            if self.fixture
+            else (
+                f"[{{name: {self.name}, box: {list(self.size)}, pose: [{', '.join(map(repr, middle.tolist()))}, 0, 0, 0]}}]"
+            )
+        )
         return JOB.format(
-            step=EXAMPLE, robot=ROBOT, x=x, y=y, z=z, lean=LEAN, key=key, branch=self.branch, obstacles=stands,
-            fixtures="fixtures: [{file: post.stl}]" if self.fixture else "")
+            step=EXAMPLE,
+            robot=ROBOT,
+            x=x,
+            y=y,
+            z=z,
+            lean=LEAN,
+            key=key,
+            branch=self.branch,
+            obstacles=stands,
+            fixtures="fixtures: [{file: post.stl}]" if self.fixture else "",
+        )
 
 
 CLEARED = (
@@ -80,16 +94,30 @@ def run() -> list[Row]:
             folder = Path(name)
             (folder / "post.stl").write_text(box_text(body.low, body.size), encoding="utf-8")
             done = [
-                [_planned(folder, body, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm")] for _ in range(ROUNDS)
+                [_planned(folder, body, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm")]
+                for _ in range(ROUNDS)
             ]
         plain, took = (median(seconds for _, seconds in some) for some in zip(*done))
         (near, _), (kept, _) = done[0]
-        assert near is None or near < CLEARANCE, f"nothing to keep clear of: {near:.1f} mm from the {body.name}"
+        assert near is None or near < CLEARANCE, (
+            f"nothing to keep clear of: {near:.1f} mm from the {body.name}"
+        )
         found += [
-            Row(f"least distance of links from a {body.name} by python-fcl, {0.0 if near is None else near:.1f} mm without "
-                "cell.arm_clearance; what is kept", CLEARANCE, kept, "mm", 1.0),
-            Row(f"joint path beside a {body.name} with cell.arm_clearance, against {TIMES:g} times that without", took,
-                TIMES * plain, "s", 1.0),
+            Row(
+                f"least distance of links from a {body.name} by python-fcl, {0.0 if near is None else near:.1f} mm without "
+                "cell.arm_clearance; what is kept",
+                CLEARANCE,
+                kept,
+                "mm",
+                1.0,
+            ),
+            Row(
+                f"joint path beside a {body.name} with cell.arm_clearance, against {TIMES:g} times that without",
+                took,
+                TIMES * plain,
+                "s",
+                1.0,
+            ),
         ]
     _refused()
     return found + arm_apart.run()
@@ -120,14 +148,22 @@ def _nearest(folder: Path, body: Standing) -> float | None:
     robot = machine.load(ROBOT)
     arm, least = KdlLinks(robot), np.inf
     # the part stands at the deposition point, its frame as that of the base
-    middle = robot.base[:3, :3] @ (np.add(body.low, 0.5 * np.array(body.size)) + STATION) + robot.base[:3, 3]
+    middle = (
+        robot.base[:3, :3] @ (np.add(body.low, 0.5 * np.array(body.size)) + STATION)
+        + robot.base[:3, 3]
+    )
     box = fcl.CollisionObject(fcl.Box(*body.size), fcl.Transform(middle))
-    links = [(number, [cylinder(fcl, rod) for rod in rods]) for number, rods in enumerate(link_rods.of_robot(robot.chain))]
+    links = [
+        (number, [cylinder(fcl, rod) for rod in rods])
+        for number, rods in enumerate(link_rods.of_robot(robot.chain))
+    ]
     for q in places(folder):
         for number, rods in links[1:]:
             pose = arm.frame(q, number)
             turn, place = pose[:3, :3], pose[:3, 3]
             for solid, turned, at in rods:
                 moving = fcl.CollisionObject(solid, fcl.Transform(turn @ turned, place + turn @ at))
-                least = min(least, fcl.distance(moving, box, fcl.DistanceRequest(), fcl.DistanceResult()))
+                least = min(
+                    least, fcl.distance(moving, box, fcl.DistanceRequest(), fcl.DistanceResult())
+                )
     return max(float(least), 0.0)

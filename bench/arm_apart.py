@@ -60,25 +60,57 @@ class Moving:
     def job(self, key: str) -> str:
         """The text of the job, with words that follow in `cell`."""
         shape = ", shape: {file: torch.stl}" if self.torch else ""
-        beside = "" if self.positioner is None else (
-            f", external: [{{machine: {self.positioner[0]}, pose: {list(self.positioner[1])}, carries: part}}]")
-        return JOB.format(step=EXAMPLE, robot=self.robot, direction=self.direction, cell=self.cell + beside, key=key,
-                          nozzle=f"{{{self.nozzle}, tool: {list(self.tool)}{shape}}}")
+        beside = (
+            ""
+            if self.positioner is None
+            else (
+                f", external: [{{machine: {self.positioner[0]}, pose: {list(self.positioner[1])}, carries: part}}]"
+            )
+        )
+        return JOB.format(
+            step=EXAMPLE,
+            robot=self.robot,
+            direction=self.direction,
+            cell=self.cell + beside,
+            key=key,
+            nozzle=f"{{{self.nozzle}, tool: {list(self.tool)}{shape}}}",
+        )
 
 
 ACROSS = (0.0, 0.0, 200.0, 0.0, 90.0, 0.0)
 JOBS = (
-    Moving("forearm and wrist of a UR5e", "ur-ur5e", "platform_diameter: 0 mm, deposition_point: [470, 20, -80, 0, 0, 0]",
-           ACROSS),
-    Moving("forearm and wrist of a UR10e", "ur-ur10e",
-           "platform_diameter: 0 mm, deposition_point: [590, -260, -180, 0, 0, 0]", ACROSS),
-    Moving("torch and links", "ur-ur10e", "platform_diameter: 0 mm, deposition_point: [550, 0, -100, 0, 0, 0]",
-           ACROSS, torch=(
-               ((-3.0, -3.0, -250.0), (6.0, 6.0, 250.0)), ((-130.0, -60.0, -420.0), (80.0, 120.0, 300.0))),
-           nozzle="length: 60 mm, diameter: 10 mm"),
-    Moving("links and positioner", "kuka-kr8-r2100-2-arc-hw", "branch: auto, platform: 5 mm",
-           (0.0, 0.0, 90.0, 0.0, 34.4, 0.0), "{max_from_vertical: 10 deg}",
-           positioner=("motoman-motopos-d500", (1400.0, 120.0, -50.0, 0.0, 0.0, 30.0)), nozzle="length: 80 mm"),
+    Moving(
+        "forearm and wrist of a UR5e",
+        "ur-ur5e",
+        "platform_diameter: 0 mm, deposition_point: [470, 20, -80, 0, 0, 0]",
+        ACROSS,
+    ),
+    Moving(
+        "forearm and wrist of a UR10e",
+        "ur-ur10e",
+        "platform_diameter: 0 mm, deposition_point: [590, -260, -180, 0, 0, 0]",
+        ACROSS,
+    ),
+    Moving(
+        "torch and links",
+        "ur-ur10e",
+        "platform_diameter: 0 mm, deposition_point: [550, 0, -100, 0, 0, 0]",
+        ACROSS,
+        torch=(
+            ((-3.0, -3.0, -250.0), (6.0, 6.0, 250.0)),
+            ((-130.0, -60.0, -420.0), (80.0, 120.0, 300.0)),
+        ),
+        nozzle="length: 60 mm, diameter: 10 mm",
+    ),
+    Moving(
+        "links and positioner",
+        "kuka-kr8-r2100-2-arc-hw",
+        "branch: auto, platform: 5 mm",
+        (0.0, 0.0, 90.0, 0.0, 34.4, 0.0),
+        "{max_from_vertical: 10 deg}",
+        positioner=("motoman-motopos-d500", (1400.0, 120.0, -50.0, 0.0, 0.0, 30.0)),
+        nozzle="length: 80 mm",
+    ),
 )
 
 
@@ -87,10 +119,19 @@ def run() -> list[Row]:
     found = []
     for job in JOBS:
         near, kept = (_judged(job, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm"))
-        assert near is None or near < CLEARANCE, f"nothing to keep apart: {near:.1f} mm between {job.name}"
-        found.append(Row(
-            f"least distance between {job.name} by python-fcl, {0.0 if near is None else near:.1f} mm without "
-            "cell.arm_clearance; what is kept", CLEARANCE, kept, "mm", 1.0))
+        assert near is None or near < CLEARANCE, (
+            f"nothing to keep apart: {near:.1f} mm between {job.name}"
+        )
+        found.append(
+            Row(
+                f"least distance between {job.name} by python-fcl, {0.0 if near is None else near:.1f} mm without "
+                "cell.arm_clearance; what is kept",
+                CLEARANCE,
+                kept,
+                "mm",
+                1.0,
+            )
+        )
     return found
 
 
@@ -129,16 +170,23 @@ def _least(fcl: Any, job: Moving, joints: Array) -> float:
         return [frames.inverse(robot.base) @ arm.frame(q, number) for number in range(last + 1)]
 
     # of a robot those that no joint connects and no stop of one axis keeps apart
-    free = [(one, other) for one, other in combinations(range(last + 1), 2)
-            if other - one > 1 and (one, other) not in ((0, 2), (last - 2, last))]
+    free = [
+        (one, other)
+        for one, other in combinations(range(last + 1), 2)
+        if other - one > 1 and (one, other) not in ((0, 2), (last - 2, last))
+    ]
     pairs = _not_mostly_near(fcl, robot, links, of_links, free)
     things = list(links)
     if job.torch:
         pairs += [(one, len(things)) for one in range(last - 1)]
-        things.append([_box(fcl, size, np.add(low, 0.5 * np.array(size))) for low, size in job.torch])
+        things.append(
+            [_box(fcl, size, np.add(low, 0.5 * np.array(size))) for low, size in job.torch]
+        )
     if job.positioner is not None:
         bodies = _bodies(fcl, job.positioner[0])
-        pairs += [(link, len(things) + body) for link in range(1, last + 1) for body in range(len(bodies))]
+        pairs += [
+            (link, len(things) + body) for link in range(1, last + 1) for body in range(len(bodies))
+        ]
         things += bodies
     tool = frames.bryant([*job.tool[:3], *np.radians(job.tool[3:])])
 
@@ -156,18 +204,24 @@ def _least(fcl: Any, job: Moving, joints: Array) -> float:
 
 
 def _not_mostly_near(
-    fcl: Any, robot: machine.Machine, links: Sequence[Sequence[Piece]], of_links: Callable[[Array], list[Array]],
+    fcl: Any,
+    robot: machine.Machine,
+    links: Sequence[Sequence[Piece]],
+    of_links: Callable[[Array], list[Array]],
     pairs: Sequence[tuple[int, int]],
 ) -> list[tuple[int, int]]:
     """Of pairs of links those that are nearer than the clearance in no more than half of all positions."""
     limits, axes = robot.limits(machine.MAKER), len(robot.axes)
     joints = np.random.default_rng(15).uniform(
-        np.maximum(limits.lower, -np.pi), np.minimum(limits.upper, np.pi), (POSITIONS, axes))
+        np.maximum(limits.lower, -np.pi), np.minimum(limits.upper, np.pi), (POSITIONS, axes)
+    )
     near = np.zeros(len(pairs))
     for q in joints:
         at = of_links(q)
-        near += [_apart(fcl, (links[one], at[one]), (links[other], at[other]), CLEARANCE) < CLEARANCE
-                 for one, other in pairs]
+        near += [
+            _apart(fcl, (links[one], at[one]), (links[other], at[other]), CLEARANCE) < CLEARANCE
+            for one, other in pairs
+        ]
     return [pair for pair, share in zip(pairs, near / POSITIONS) if share <= 0.5]
 
 
@@ -179,9 +233,13 @@ def _apart(
         for second in other[0]:
             here, there = one[1] @ first.pose, other[1] @ second.pose
             if np.linalg.norm(here[:3, 3] - there[:3, 3]) - first.radius - second.radius < least:
-                solids = [fcl.CollisionObject(piece.solid, fcl.Transform(at[:3, :3], at[:3, 3]))
-                          for piece, at in ((first, here), (second, there))]
-                least = min(least, fcl.distance(*solids, fcl.DistanceRequest(), fcl.DistanceResult()))
+                solids = [
+                    fcl.CollisionObject(piece.solid, fcl.Transform(at[:3, :3], at[:3, 3]))
+                    for piece, at in ((first, here), (second, there))
+                ]
+                least = min(
+                    least, fcl.distance(*solids, fcl.DistanceRequest(), fcl.DistanceResult())
+                )
     return least
 
 
@@ -197,13 +255,19 @@ def _box(fcl: Any, size: Sequence[float], middle: Array) -> Piece:
 def _bodies(fcl: Any, name: str) -> list[list[Piece]]:
     """Of each link of a mechanism, the base first, the boxes and cylinders of its file."""
     told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))["bodies"]
-    return [[_of_file(fcl, piece) for piece in told.get(link, ())]
-            for link in ("base", *(link for link in told if link not in ("base", "source")))]
+    return [
+        [_of_file(fcl, piece) for piece in told.get(link, ())]
+        for link in ("base", *(link for link in told if link not in ("base", "source")))
+    ]
 
 
 def _of_file(fcl: Any, piece: dict[str, Sequence[float]]) -> Piece:
-    pose = frames.from_rpy(piece.get("origin", (0.0,) * 3), np.radians(piece.get("rpy", (0.0,) * 3)))
+    pose = frames.from_rpy(
+        piece.get("origin", (0.0,) * 3), np.radians(piece.get("rpy", (0.0,) * 3))
+    )
     if "box" in piece:
         return Piece(fcl.Box(*piece["box"]), pose, 0.5 * float(np.linalg.norm(piece["box"])))
     diameter, length = piece["cylinder"]
-    return Piece(fcl.Cylinder(0.5 * diameter, length), pose, 0.5 * float(np.hypot(diameter, length)))
+    return Piece(
+        fcl.Cylinder(0.5 * diameter, length), pose, 0.5 * float(np.hypot(diameter, length))
+    )

@@ -24,16 +24,33 @@ BETWEEN = 10  # places looked at from one row to the next, the row's own among t
 def carried_out(folder: Path, job: str) -> subprocess.CompletedProcess[str]:
     """What `plan` says of a job, which writes into the folder's `out`."""
     (folder / "arm.yaml").write_text(job, encoding="utf-8")
-    command = [str(ROOT / "freecad-am"), "plan", str(folder / "arm.yaml"), "-o", str(folder / "out"), "--no-page"]
-    environment = {name: value for name, value in os.environ.items() if name not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
+    command = [
+        str(ROOT / "freecad-am"),
+        "plan",
+        str(folder / "arm.yaml"),
+        "-o",
+        str(folder / "out"),
+        "--no-page",
+    ]
+    environment = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ("BENCH_INSIDE", "VIRTUAL_ENV")
+    }
     return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
 
 
 def places(folder: Path) -> Array:
     """(k, axes) rad along a saved path, external axes after those of the robot: every row, and between it and the next."""
     with open(folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
-        rows = [[float(value) for name, value in row.items() if name[0] in "qe" and name.endswith("_deg")]
-                for row in csv.DictReader(file)]
+        rows = [
+            [
+                float(value)
+                for name, value in row.items()
+                if name[0] in "qe" and name.endswith("_deg")
+            ]
+            for row in csv.DictReader(file)
+        ]
     joints = np.radians(rows)
     shares = np.linspace(0.0, 1.0, BETWEEN, endpoint=False)[:, None, None]
     return np.asarray((joints[:-1] + shares * np.diff(joints, axis=0)).reshape(-1, joints.shape[1]))

@@ -48,7 +48,9 @@ def run() -> list[Row]:
 def _wall() -> tuple[Scene, Array]:
     """A finished wall along y, and the points of its beads (n, 3)."""
     y = np.linspace(-60.0, 60.0, 61)
-    points = np.concatenate([np.stack([np.zeros(61), y, np.full(61, float(z))], axis=1) for z in range(LAYERS)])
+    points = np.concatenate(
+        [np.stack([np.zeros(61), y, np.full(61, float(z))], axis=1) for z in range(LAYERS)]
+    )
     build = np.tile([0.0, 0.0, 1.0], (len(points), 1))
     laid = deposit.of_beads(points, build, 8.0, 1.0, np.arange(0, len(points), 61))
     return scene([], points, 100.0, laid), points
@@ -57,17 +59,37 @@ def _wall() -> tuple[Scene, Array]:
 def _queries() -> list[Row]:
     there, _ = _wall()
     rng = np.random.default_rng(11)
-    tip = np.stack([rng.uniform(8.0, 45.0, LOOKS), rng.uniform(-55.0, 55.0, LOOKS), rng.uniform(0.0, 20.0, LOOKS)], axis=1)
+    tip = np.stack(
+        [
+            rng.uniform(8.0, 45.0, LOOKS),
+            rng.uniform(-55.0, 55.0, LOOKS),
+            rng.uniform(0.0, 20.0, LOOKS),
+        ],
+        axis=1,
+    )
     lean, turn = rng.uniform(0.0, np.pi / 4, LOOKS), rng.uniform(0.0, 2.0 * np.pi, LOOKS)
-    axis = np.stack([np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)], axis=1)
+    axis = np.stack(
+        [np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)], axis=1
+    )
     try:
         from fcl_obstacles import FclObstacles
     except ImportError:
-        return [Row(f"touched and distance at {LOOKS} looks, against python-fcl", 0.0, None, "s", 1.0)]
+        return [
+            Row(f"touched and distance at {LOOKS} looks, against python-fcl", 0.0, None, "s", 1.0)
+        ]
     wall, pipe = _always(there), _pipe()
     return [
-        _compared("touched", pipe, FclObstacles(pipe), tip, axis, f"a pipe of {len(pipe.corners):,} triangles"),
-        _compared("distance", wall, FclObstacles(wall), tip, axis, f"a wall of {LAYERS} layers of beads"),
+        _compared(
+            "touched",
+            pipe,
+            FclObstacles(pipe),
+            tip,
+            axis,
+            f"a pipe of {len(pipe.corners):,} triangles",
+        ),
+        _compared(
+            "distance", wall, FclObstacles(wall), tip, axis, f"a wall of {LAYERS} layers of beads"
+        ),
     ]
 
 
@@ -85,19 +107,32 @@ def _compared(name: str, own: Obstacles, peer: Any, tip: Array, axis: Array, wha
         assert np.abs(found - other).max() < off + 1e-3, "they say other distances"
     else:
         away = own.distance(NOZZLE, tip, axis)
-        smaller = own.touched(replace(NOZZLE, radius=NOZZLE.radius - off * np.hypot(1.0, NOZZLE.slope)), tip, axis)
+        smaller = own.touched(
+            replace(NOZZLE, radius=NOZZLE.radius - off * np.hypot(1.0, NOZZLE.slope)), tip, axis
+        )
         assert 0.1 < found.mean() < 0.9, f"looks that say nothing: {found.mean()}"
         assert (other == found)[(away > 1e-3) | smaller].all(), "they do not touch the same"
-    return Row(f"{name} at {LOOKS} looks at {what}, against python-fcl", min(ours), min(theirs), "s", 1.0)
+    return Row(
+        f"{name} at {LOOKS} looks at {what}, against python-fcl", min(ours), min(theirs), "s", 1.0
+    )
 
 
 def _pipe(sides: int = 400, rings: int = 25) -> Obstacles:
     """The triangles of a pipe about y."""
     turn = 2.0 * np.pi * np.arange(sides) / sides
     x, z = 16.0 * np.cos(turn), 16.0 * np.sin(turn) + 22.0
-    points = np.stack([np.stack([x, np.full(sides, y), z], axis=1) for y in np.linspace(-60, 60, rings)])
-    a, b, c, d = points[:-1], np.roll(points, -1, axis=1)[:-1], points[1:], np.roll(points, -1, axis=1)[1:]
-    return Obstacles(np.concatenate([np.stack([a, b, c], axis=2), np.stack([b, d, c], axis=2)]).reshape(-1, 3, 3))
+    points = np.stack(
+        [np.stack([x, np.full(sides, y), z], axis=1) for y in np.linspace(-60, 60, rings)]
+    )
+    a, b, c, d = (
+        points[:-1],
+        np.roll(points, -1, axis=1)[:-1],
+        points[1:],
+        np.roll(points, -1, axis=1)[1:],
+    )
+    return Obstacles(
+        np.concatenate([np.stack([a, b, c], axis=2), np.stack([b, d, c], axis=2)]).reshape(-1, 3, 3)
+    )
 
 
 def _always(there: Scene) -> Obstacles:
@@ -112,24 +147,53 @@ def _long_bead() -> list[Row]:
     found = {}
     for count in (FEW, MANY):
         asked = [sys.executable, __file__, str(count)]
-        told = subprocess.run(asked, check=True, capture_output=True, text=True, cwd=Path(__file__).resolve().parent.parent)
+        told = subprocess.run(
+            asked,
+            check=True,
+            capture_output=True,
+            text=True,
+            cwd=Path(__file__).resolve().parent.parent,
+        )
         found[count] = [float(each) for each in told.stdout.split()]
     return [
-        Row(f"nozzle kept clear along {MANY:,} points, {found[MANY][2]:.0f} of them tilted: peak memory, against what is "
-            "allowed", found[MANY][1], MEMORY, "MB", 1.0),
-        Row(f"nozzle kept clear along {MANY:,} points, against {LINEAR:g} times what {FEW:,} take", found[MANY][0],
-            LINEAR * found[FEW][0], "s", 1.0),
+        Row(
+            f"nozzle kept clear along {MANY:,} points, {found[MANY][2]:.0f} of them tilted: peak memory, against what is "
+            "allowed",
+            found[MANY][1],
+            MEMORY,
+            "MB",
+            1.0,
+        ),
+        Row(
+            f"nozzle kept clear along {MANY:,} points, against {LINEAR:g} times what {FEW:,} take",
+            found[MANY][0],
+            LINEAR * found[FEW][0],
+            "s",
+            1.0,
+        ),
     ]
 
 
 def _kept_clear(count: int) -> tuple[float, float, int]:
     """Processor's seconds, peak MB and tilted points of a bead that meanders past a wall at one of its ends."""
     s = np.linspace(0.0, BESIDE, count)
-    points = np.stack([16.0 + 60.0 * (1.0 - np.cos(2.0 * np.pi * s / BESIDE)), 120.0 * s / BESIDE - 60.0, 0.0 * s], axis=1)
+    points = np.stack(
+        [
+            16.0 + 60.0 * (1.0 - np.cos(2.0 * np.pi * s / BESIDE)),
+            120.0 * s / BESIDE - 60.0,
+            0.0 * s,
+        ],
+        axis=1,
+    )
     y = np.linspace(-60.0, 60.0, 31)
     wall = [np.stack([np.zeros(31), y, np.full(31, float(z))], axis=1) for z in range(LAYERS)]
     path = Toolpath(
-        tuple(Layer((_bead(each),)) for each in (*wall, points)), np.eye(4), 1.0, 0.01, family="surface", bead_width=8.0
+        tuple(Layer((_bead(each),)) for each in (*wall, points)),
+        np.eye(4),
+        1.0,
+        0.01,
+        family="surface",
+        bead_width=8.0,
     )
     start = process_time()
     found = kept_clear(path, [], NozzleParameters(), BuildDirectionParameters())

@@ -32,7 +32,9 @@ class FclObstacles:
         self._rounding = np.zeros(count) if obstacles.radius is None else obstacles.radius
         self._since = obstacles.since
         self._all_round = float(self._rounding.max(initial=0.0))
-        self._plain = bool(np.ptp(self._rounding) == 0.0 if count else True) and bool((self._since == ALWAYS).all())
+        self._plain = bool(np.ptp(self._rounding) == 0.0 if count else True) and bool(
+            (self._since == ALWAYS).all()
+        )
         # the library gives its objects back as others: what tells them apart is where each has its origin
         places = obstacles.corners.mean(axis=1) + 1e-9 * np.arange(count)[:, None]
         self._numbers = {place.tobytes(): k for k, place in enumerate(places)}
@@ -50,7 +52,12 @@ class FclObstacles:
         return float((solid.radius + solid.slope * solid.high) * (1.0 - np.cos(np.pi / SIDES)))
 
     def touched(
-        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
+        self,
+        solid: Frustum,
+        tip: Array,
+        axis: Array,
+        moment: Index | None = None,
+        own: Index | None = None,
     ) -> Mask:
         """(k,) whether solids with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,)."""
         if not self._plain or self._all_round > 0.0:
@@ -64,7 +71,12 @@ class FclObstacles:
         return found
 
     def distance(
-        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, reach: float = np.inf
+        self,
+        solid: Frustum,
+        tip: Array,
+        axis: Array,
+        moment: Index | None = None,
+        reach: float = np.inf,
     ) -> Array:
         """(k,) mm from solids to the nearest obstacle there before the moment (k,), 0 where they meet, at most `reach`."""
         found = np.full(len(tip), reach)
@@ -100,15 +112,23 @@ class FclObstacles:
     def _number(self, one: Any, other: Any) -> int:
         """Which of the obstacles is one of two objects."""
         number = self._numbers.get(np.asarray(one.getTranslation()).tobytes())
-        return self._numbers[np.asarray(other.getTranslation()).tobytes()] if number is None else number
+        return (
+            self._numbers[np.asarray(other.getTranslation()).tobytes()]
+            if number is None
+            else number
+        )
 
 
 def _geometry(corners: Array) -> Any:
     if len(corners) == 3:
-        return fcl.Convex(corners, 2, np.array([3, 0, 1, 2, 3, 0, 2, 1]))  # its triangles meet no convex solids
+        return fcl.Convex(
+            corners, 2, np.array([3, 0, 1, 2, 3, 0, 2, 1])
+        )  # its triangles meet no convex solids
     if len(corners) == 4:
         return fcl.Convex(corners, 4, np.array([3, 0, 1, 3, 3, 0, 3, 2, 3, 0, 2, 1, 3, 1, 2, 3]))
-    raise ValueError(f"obstacles of {len(corners)} points are not for fcl; use triangles or pieces of beads")
+    raise ValueError(
+        f"obstacles of {len(corners)} points are not for fcl; use triangles or pieces of beads"
+    )
 
 
 def _pyramid(solid: Frustum) -> Any:
@@ -118,7 +138,8 @@ def _pyramid(solid: Frustum) -> Any:
     turn = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
     rings = [
         np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.full(SIDES, height)])
-        for height in (float(solid.low), solid.high) for radius in (solid.radius + solid.slope * height,)
+        for height in (float(solid.low), solid.high)
+        for radius in (solid.radius + solid.slope * height,)
     ]
     here = np.arange(SIDES)
     on = np.roll(here, -1)

@@ -44,10 +44,13 @@ def _offsets() -> list[Row]:
     loop = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
     distances = -DEEPEST * np.arange(1, OFFSETS + 1) / OFFSETS
     library = shapely()
-    ours, bare = [], []  # CPU time of either in turn, so that what else the machine does counts for neither
+    ours, bare = (
+        [],
+        [],
+    )  # CPU time of either in turn, so that what else the machine does counts for neither
     for _ in range(ROUNDS):
         start = process_time()
-        region, = regions([loop])
+        (region,) = regions([loop])
         for distance in distances:
             for part in region.grown(float(distance), CHORD_ERROR):
                 part.borders()
@@ -56,7 +59,11 @@ def _offsets() -> list[Row]:
         polygon = library.geometry.Polygon(loop)
         for distance in distances:
             # segments of a quarter turn as the chord error asks for
-            quarter = int(np.ceil(np.pi / 4.0 / np.arccos(1.0 - CHORD_ERROR / -distance))) if -distance > CHORD_ERROR else 2
+            quarter = (
+                int(np.ceil(np.pi / 4.0 / np.arccos(1.0 - CHORD_ERROR / -distance)))
+                if -distance > CHORD_ERROR
+                else 2
+            )
             np.asarray(polygon.buffer(distance, **{library.arcs: max(quarter, 2)}).exterior.coords)
         bare.append(process_time() - start)
     name = f"{OFFSETS} offsets of a region of {POINTS} points, against shapely alone"
@@ -65,10 +72,13 @@ def _offsets() -> list[Row]:
 
 def _filled() -> Row:
     """Contours with the beads between them that close gaps, against the parallel curves alone, which leave these open."""
-    body, = bodies_of(read_shape(BRACKET), "bracket", 0.05, 0.0).bodies
+    (body,) = bodies_of(read_shape(BRACKET), "bracket", 0.05, 0.0).bodies
     cuts = PlaneCuts(body.vertices, body.triangles.astype(np.intp))
     low, high = body.vertices[:, 2].min(), body.vertices[:, 2].max()
-    layers = [regions(loops) for loops in cuts.loops(low + (high - low) * (np.arange(SECTIONS) + 0.5) / SECTIONS)]
+    layers = [
+        regions(loops)
+        for loops in cuts.loops(low + (high - low) * (np.arange(SECTIONS) + 0.5) / SECTIONS)
+    ]
     beads = Beads(SPACING, 0.2 * SPACING, 2.0, chord_error=CHORD_ERROR)
     library = shapely()
     start = process_time()
@@ -83,7 +93,9 @@ def _filled() -> Row:
             left = whole.buffer(-depth, **{library.arcs: 8})
             depth += SPACING
     bare = process_time() - start
-    name = f"{SECTIONS} sections of a bracket filled with contours, against their bare parallel curves"
+    name = (
+        f"{SECTIONS} sections of a bracket filled with contours, against their bare parallel curves"
+    )
     return Row(name, ours, bare, "s", 1.0 / SEVERAL)
 
 
@@ -92,19 +104,29 @@ def _lines() -> Row:
     angle = np.linspace(0.0, 2.0 * np.pi, 120, endpoint=False)
     circle = 12.0 * np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     places = [(50.0 + 75.0 * (k % 5), 40.0 + 73.0 * (k // 5)) for k in range(HOLES)]
-    loops = [np.array([(0.0, 0.0), (PLATE[0], 0.0), PLATE, (0.0, PLATE[1])]), *(circle + place for place in places)]
-    region, = regions(loops)
+    loops = [
+        np.array([(0.0, 0.0), (PLATE[0], 0.0), PLATE, (0.0, PLATE[1])]),
+        *(circle + place for place in places),
+    ]
+    (region,) = regions(loops)
     beads = Beads(SPACING, 0.2 * SPACING, 2.0, chord_error=CHORD_ERROR)
     library = shapely()
     ours, bare = [], []
     for _ in range(FEWER):
         start = process_time()
-        assert sum(curve.kind == "line" for curve in fill(region, beads, "lines")) > PLATE[1] / SPACING - 5.0
+        assert (
+            sum(curve.kind == "line" for curve in fill(region, beads, "lines"))
+            > PLATE[1] / SPACING - 5.0
+        )
         ours.append(process_time() - start)
         start = process_time()
-        inner = library.geometry.Polygon(loops[0], loops[1:]).buffer(-1.5 * SPACING, **{library.arcs: 8})
+        inner = library.geometry.Polygon(loops[0], loops[1:]).buffer(
+            -1.5 * SPACING, **{library.arcs: 8}
+        )
         rows = np.arange(2.0 * SPACING, PLATE[1] - 1.5 * SPACING, SPACING)
-        cut = library.geometry.MultiLineString([((0.0, y), (PLATE[0], y)) for y in rows]).intersection(inner)
+        cut = library.geometry.MultiLineString(
+            [((0.0, y), (PLATE[0], y)) for y in rows]
+        ).intersection(inner)
         assert not cut.is_empty
         bare.append(process_time() - start)
     name = f"lines in a section of {PLATE[0]:g} by {PLATE[1]:g} mm with {HOLES} holes, against its bare border and lines"
@@ -112,7 +134,10 @@ def _lines() -> Row:
 
 
 def _fields() -> list[Row]:
-    corners = np.array([(x, y, z) for x in (0, BLOCK[0]) for y in (0, BLOCK[1]) for z in (0, BLOCK[2])], dtype=float)
+    corners = np.array(
+        [(x, y, z) for x in (0, BLOCK[0]) for y in (0, BLOCK[1]) for z in (0, BLOCK[2])],
+        dtype=float,
+    )
     sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     faces = np.array([three for a, b, c, d in sides for three in ((a, c, b), (a, d, c))])
     times, sizes = [], []
@@ -131,7 +156,18 @@ def _fields() -> list[Row]:
         sizes.append(len(linked.nodes))
     few, many = sizes
     return [
-        Row(f"distance through a solid at {few:,} nodes, against {FIELD:g} s", times[0], FIELD, "s", 1.0),
-        Row(f"distance through a solid at {many:,} nodes, against {many / few:.2f} times the time of {few:,}", times[1],
-            times[0] * many / few, "s", 0.5),
+        Row(
+            f"distance through a solid at {few:,} nodes, against {FIELD:g} s",
+            times[0],
+            FIELD,
+            "s",
+            1.0,
+        ),
+        Row(
+            f"distance through a solid at {many:,} nodes, against {many / few:.2f} times the time of {few:,}",
+            times[1],
+            times[0] * many / few,
+            "s",
+            0.5,
+        ),
     ]

@@ -37,16 +37,30 @@ def measured(program: str, script: Path, folder: Path, longest: int, **more: str
 
     told = folder / "told.json"
     path = os.pathsep.join([str(script.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
-    env = {**private_home(folder), "FRAMES_TO": str(told), "FRAMES_OF": str(ROOT), "PYTHONPATH": path, **more}
+    env = {
+        **private_home(folder),
+        "FRAMES_TO": str(told),
+        "FRAMES_OF": str(ROOT),
+        "PYTHONPATH": path,
+        **more,
+    }
     # drawn as users have it: with the cube of views, and with as many threads as the processor has
     for name in ("VIRTUAL_ENV", "BENCH_INSIDE", "LP_NUM_THREADS"):
         env.pop(name, None)
     preferences = folder / "user.cfg"
     without = '<FCBool Name="ShowNaviCube" Value="0"/>'
-    preferences.write_text(preferences.read_text(encoding="utf-8").replace(without, ""), encoding="utf-8")
+    preferences.write_text(
+        preferences.read_text(encoding="utf-8").replace(without, ""), encoding="utf-8"
+    )
     window = ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", str(longest)]
-    done = subprocess.run([*window, program, str(script)], env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          check=False)
+    done = subprocess.run(
+        [*window, program, str(script)],
+        env=env,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if not told.is_file():
         print(done.stderr[-2000:], file=sys.stderr)
         raise AssertionError("no frames were measured")
@@ -87,7 +101,9 @@ class Drawn:
         view.getSceneGraph().addChild(self.node)
 
     def _seen(self, _: object, action) -> None:
-        self.count += action.isOfType(self.drawing) and self.there()  # FreeCAD's own is derived from it
+        self.count += (
+            action.isOfType(self.drawing) and self.there()
+        )  # FreeCAD's own is derived from it
 
     def after(self, act) -> float:
         """ms from before the act until it is drawn."""

@@ -28,13 +28,19 @@ METRES = np.ones((4, 4))
 METRES[:3, 3] = 1e-3
 # who judges which class of wrist, and how many poses
 JUDGED = (
-    ("eaik", "fanuc-arcmate120ic", 10_000), ("eaik", "ur-ur10e", 10_000), ("ssik", "fanuc-crx10ia", 10_000),
+    ("eaik", "fanuc-arcmate120ic", 10_000),
+    ("eaik", "ur-ur10e", 10_000),
+    ("ssik", "fanuc-crx10ia", 10_000),
     ("ssik", "motoman-hc10", 10_000),
 )
 OF_SSIK = {"fanuc-crx10ia": "fanuc_crx10ia", "motoman-hc10": "hc10"}
 # machines, and us a pose
 OTHER_WRISTS = {
-    "ur-ur10e": 2.0, "fanuc-crx10ia": 60.0, "motoman-hc10": 60.0, "abb-crb15000-5-95": 60.0, "fanuc-m710ic-50e": 60.0,
+    "ur-ur10e": 2.0,
+    "fanuc-crx10ia": 60.0,
+    "motoman-hc10": 60.0,
+    "abb-crb15000-5-95": 60.0,
+    "fanuc-m710ic-50e": 60.0,
 }
 
 
@@ -71,7 +77,9 @@ def _all_branches(arm: machine.Machine, poses: np.ndarray) -> Row:
     try:
         from eaik.IK_Homogeneous import HomogeneousRobot
     except ImportError:
-        return Row(f"{name}: peer not installed", 1e6 * _time(ours) / POSES, None, "us/pose", required)
+        return Row(
+            f"{name}: peer not installed", 1e6 * _time(ours) / POSES, None, "us/pose", required
+        )
     robot, given = _of_eaik(HomogeneousRobot, arm), list(poses * METRES)
     closed = arm.opw.inverse(poses[:50])
     for index, answer in enumerate(robot.IK_batched(given[:50], 1)):
@@ -100,15 +108,28 @@ def _found_by_peers() -> list[Row]:
         ours, took = _timed(partial(arm.arm.inverse, poses))
         solve = {"eaik": _eaik_solver, "ssik": _ssik_solver}[peer](arm)
         if solve is None:
-            rows.append(Row(f"{title}: peer not installed", 1e6 * took / count, None, "us/pose", 1.0))
+            rows.append(
+                Row(f"{title}: peer not installed", 1e6 * took / count, None, "us/pose", 1.0)
+            )
             continue
         theirs, of_peer = _timed(partial(solve, poses))
         for index, found in enumerate(theirs):
-            off = np.abs(arm.chain.forward(found) - poses[index]).max(axis=(1, 2)) if len(found) else np.zeros(0)
+            off = (
+                np.abs(arm.chain.forward(found) - poses[index]).max(axis=(1, 2))
+                if len(found)
+                else np.zeros(0)
+            )
             mine = ours[:, index][np.isfinite(ours[:, index]).all(axis=1)]
             for angles in found[off < 1e-3]:
-                if not np.abs(np.exp(1j * angles) - np.exp(1j * mine)).max(axis=1, initial=0.0).min(initial=9.0) < 1e-3:
-                    raise AssertionError(f"{name}: {peer} finds {np.degrees(angles)} at pose {index}, and we do not")
+                if (
+                    not np.abs(np.exp(1j * angles) - np.exp(1j * mine))
+                    .max(axis=1, initial=0.0)
+                    .min(initial=9.0)
+                    < 1e-3
+                ):
+                    raise AssertionError(
+                        f"{name}: {peer} finds {np.degrees(angles)} at pose {index}, and we do not"
+                    )
         rows.append(Row(title, 1e6 * took / count, 1e6 * of_peer / count, "us/pose", 1.0))
     return rows
 
@@ -122,7 +143,10 @@ def _eaik_solver(arm: machine.Machine) -> Callable[[np.ndarray], list[np.ndarray
 
     def solve(poses: np.ndarray) -> list[np.ndarray]:
         answers = robot.IK_batched(list(poses * METRES), 1)
-        return [np.asarray(answer.Q).reshape(-1, 6)[~np.asarray(answer.is_LS, bool)] for answer in answers]
+        return [
+            np.asarray(answer.Q).reshape(-1, 6)[~np.asarray(answer.is_LS, bool)]
+            for answer in answers
+        ]
 
     return solve
 
@@ -139,11 +163,17 @@ def _ssik_solver(arm: machine.Machine) -> Callable[[np.ndarray], list[np.ndarray
         return np.array(robot.fk(q)) / unit
 
     to_peer = np.linalg.inv(arm.chain.forward(np.zeros((1, 6)))[0]) @ at(np.zeros(6))
-    if not np.abs(arm.chain.forward(np.full((1, 6), 0.7))[0] @ to_peer - at(np.full(6, 0.7))).max() < 1e-6:
+    if (
+        not np.abs(arm.chain.forward(np.full((1, 6), 0.7))[0] @ to_peer - at(np.full(6, 0.7))).max()
+        < 1e-6
+    ):
         raise AssertionError(f"{arm.id} is another arm in ssik")
 
     def solve(poses: np.ndarray) -> list[np.ndarray]:
-        return [np.array([one.q for one in robot.solve(pose @ to_peer * unit)]).reshape(-1, 6) for pose in poses]
+        return [
+            np.array([one.q for one in robot.solve(pose @ to_peer * unit)]).reshape(-1, 6)
+            for pose in poses
+        ]
 
     return solve
 
@@ -162,7 +192,10 @@ def _other_wrists() -> list[Row]:
         q = np.random.default_rng(3).uniform(-np.pi, np.pi, (POSES, 6))
         poses = arm.chain.forward(q)
         found = arm.arm.inverse(poses)
-        if not np.nanmin(np.abs(np.exp(1j * found) - np.exp(1j * q)).max(axis=2), axis=0).max() < 1e-4:
+        if (
+            not np.nanmin(np.abs(np.exp(1j * found) - np.exp(1j * q)).max(axis=2), axis=0).max()
+            < 1e-4
+        ):
             raise AssertionError(f"{name}: the joint angles of a pose are not among its solutions")
         took = 1e6 * median(_time(partial(arm.arm.inverse, poses)) for _ in range(ROUNDS)) / POSES
         title = f"inverse, all solutions of {name}, batch of {POSES}, against {wanted:g} us"
@@ -178,7 +211,15 @@ def _one_branch(arm: machine.Machine, q: np.ndarray, poses: np.ndarray) -> list[
         return arm.opw.inverse_branch(poses, branch)
 
     if not kdl.available():
-        return [Row(f"{name} solvers: peer not installed", 1e6 * _time(ours) / POSES, None, "us/pose", 100.0)]
+        return [
+            Row(
+                f"{name} solvers: peer not installed",
+                1e6 * _time(ours) / POSES,
+                None,
+                "us/pose",
+                100.0,
+            )
+        ]
     second = kdl.KdlArm(arm)
     seeds = q[:FEW] + np.random.default_rng(2).uniform(-1, 1, (FEW, 6)) * np.radians(2.0)
     rows = []
@@ -189,14 +230,20 @@ def _one_branch(arm: machine.Machine, q: np.ndarray, poses: np.ndarray) -> list[
         if not np.mean(off < 1e-2) > 0.95:
             raise AssertionError(f"PyKDL's {solver} does not find the poses")
         peer = _kdl_calls(second, solver, poses[:FEW], seeds)
-        rows.append(_row(f"{name} {solver.upper()} seeded within 2 deg", ours, peer, POSES, FEW, 100.0))
+        rows.append(
+            _row(f"{name} {solver.upper()} seeded within 2 deg", ours, peer, POSES, FEW, 100.0)
+        )
     return rows
 
 
-def _kdl_calls(second: kdl.KdlArm, solver: str, poses: np.ndarray, seeds: np.ndarray) -> Callable[[], object]:
+def _kdl_calls(
+    second: kdl.KdlArm, solver: str, poses: np.ndarray, seeds: np.ndarray
+) -> Callable[[], object]:
     """The bare calls: what goes into PyKDL is made beforehand."""
     solve = second.solver(solver, 1e-5)
-    arguments = [(second.angles(seed), second.frame(pose)) for seed, pose in zip(seeds, poses, strict=True)]
+    arguments = [
+        (second.angles(seed), second.frame(pose)) for seed, pose in zip(seeds, poses, strict=True)
+    ]
     found = second.kdl.JntArray(6)
 
     def call() -> None:
@@ -219,7 +266,12 @@ def _condition(arm: machine.Machine, q: np.ndarray, poses: np.ndarray) -> Row:
 
 
 def _row(
-    name: str, ours: Callable[[], object], peer: Callable[[], object], count: int, peer_count: int, required: float
+    name: str,
+    ours: Callable[[], object],
+    peer: Callable[[], object],
+    count: int,
+    peer_count: int,
+    required: float,
 ) -> Row:
     """Both timed in turns."""
     for function in (ours, peer):

@@ -52,7 +52,10 @@ WALL_LOW, WALL = (-130.0, 104.0, 0.0), (260.0, 12.0, 420.0)
 def run() -> list[Row]:
     """Both in turns on the same job, then the certificate."""
     dome, cell = hemisphere(15.0, 0.2, "fixed"), _beside_a_wall()
-    rods, task = link_rods.of_robot(cell.robot.chain), Task(cell, cell.branch or 0, JointParameters())
+    rods, task = (
+        link_rods.of_robot(cell.robot.chain),
+        Task(cell, cell.branch or 0, JointParameters()),
+    )
     found = []
     times: list[tuple[float, float]] = []
     for _ in range(ROUNDS):
@@ -65,31 +68,70 @@ def run() -> list[Row]:
         times.append((ours, time.perf_counter() - began if cost is not None else np.nan))
     took, peer = (median(column) for column in zip(*times))
     known = np.isfinite(peer)
-    found.append(Row("joint path beside a wall with cell.arm_clearance, against a ladder graph of "
-                     f"{TURNS} rotations at the same {dome.point_count} points", took, peer if known else None, "s", 10.0))
+    found.append(
+        Row(
+            "joint path beside a wall with cell.arm_clearance, against a ladder graph of "
+            f"{TURNS} rotations at the same {dome.point_count} points",
+            took,
+            peer if known else None,
+            "s",
+            10.0,
+        )
+    )
     if cost is not None:
-        found.append(Row(
-            "what that path costs (displacement), against the cheapest way up the ladder", _cost(path), cost, "rad", 0.98))
-    found.append(Row("joint path of the hemisphere of 71 layers with its certificate", _certified(), CERTIFIED, "s", 1.0))
+        found.append(
+            Row(
+                "what that path costs (displacement), against the cheapest way up the ladder",
+                _cost(path),
+                cost,
+                "rad",
+                0.98,
+            )
+        )
+    found.append(
+        Row(
+            "joint path of the hemisphere of 71 layers with its certificate",
+            _certified(),
+            CERTIFIED,
+            "s",
+            1.0,
+        )
+    )
     return found
 
 
 def hemisphere(layer_height: float, chord_error: float, mode: str) -> Toolpath:
     """The paper's hemisphere (Chalvin 2020, eq. 20)."""
-    meridian = sampled(lambda t: (
-        np.c_[RADIUS * np.cos(t), RADIUS * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]), [0, np.pi / 2])
+    meridian = sampled(
+        lambda t: (np.c_[RADIUS * np.cos(t), RADIUS * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
+        [0, np.pi / 2],
+    )
     return revolution.plan(
         RevolvedWall(Meridian.chained([meridian]), np.eye(4)),
-        RevolutionParameters(layer_height=layer_height, chord_error=chord_error), BuildDirectionParameters(mode=mode),
-        ProcessParameters(), NozzleParameters(), 113.0,
+        RevolutionParameters(layer_height=layer_height, chord_error=chord_error),
+        BuildDirectionParameters(mode=mode),
+        ProcessParameters(),
+        NozzleParameters(),
+        113.0,
     )
 
 
 def _beside_a_wall() -> Cell:
-    nozzle = NozzleParameters(length=60.0, tool=(120.0, 0.0, 200.0, 0.0, float(np.radians(LEAN)), 0.0))
-    cell = cells.resolve(CellParameters(
-        machine=ROBOT, limits="paper", setup="tool-on-robot", deposition_point=(*STATION, 0.0, 0.0, 0.0), nozzle=nozzle,
-        branch=("front", "down", "noflip"), arm_clearance=CLEARANCE), np.eye(4))
+    nozzle = NozzleParameters(
+        length=60.0, tool=(120.0, 0.0, 200.0, 0.0, float(np.radians(LEAN)), 0.0)
+    )
+    cell = cells.resolve(
+        CellParameters(
+            machine=ROBOT,
+            limits="paper",
+            setup="tool-on-robot",
+            deposition_point=(*STATION, 0.0, 0.0, 0.0),
+            nozzle=nozzle,
+            branch=("front", "down", "noflip"),
+            arm_clearance=CLEARANCE,
+        ),
+        np.eye(4),
+    )
     middle = np.add(WALL_LOW, 0.5 * np.array(WALL)) + STATION
     return dataclasses.replace(cell, obstacles=(box(WALL, frames.pose(np.eye(3), middle), "wall"),))
 
@@ -100,7 +142,10 @@ def _cost(path: JointPath) -> float:
 
 def _certified() -> float:
     """Seconds of a joint path with its certificate."""
-    dome, cell = hemisphere(1.0, 0.02, "local"), cells.resolve(CellParameters(limits="paper"), np.eye(4))
+    dome, cell = (
+        hemisphere(1.0, 0.02, "local"),
+        cells.resolve(CellParameters(limits="paper"), np.eye(4)),
+    )
     began = time.perf_counter()
     path = plan_joints(dome, cell, JointParameters(certificate=True))
     took = time.perf_counter() - began
@@ -127,7 +172,9 @@ def _ladder(toolpath: Toolpath, task: Task, rods: Any) -> float | None:
         best = np.where(stands[:, 0], 0.0, np.inf)
         for point in range(1, len(points)):
             step = shortest(joints[None, :, point] - joints[:, None, point - 1])
-            best = (best[:, None] + np.nan_to_num(step * step @ task.weights, nan=np.inf)).min(axis=0)
+            best = (best[:, None] + np.nan_to_num(step * step @ task.weights, nan=np.inf)).min(
+                axis=0
+            )
             best[~stands[:, point]] = np.inf
         total += float(best.min())
     return total
@@ -138,7 +185,10 @@ class _Looks:
 
     def __init__(self, fcl: Any, cell: Cell, rods: Any) -> None:
         self.fcl, self.cell = fcl, cell
-        middle = (cell.machine.base @ frames.pose(np.eye(3), np.add(WALL_LOW, 0.5 * np.array(WALL)) + STATION))[:3, 3]
+        middle = (
+            cell.machine.base
+            @ frames.pose(np.eye(3), np.add(WALL_LOW, 0.5 * np.array(WALL)) + STATION)
+        )[:3, 3]
         self.wall = fcl.CollisionObject(fcl.Box(*np.add(WALL, CLEARANCE)), fcl.Transform(middle))
         self.cylinders = [[_cylinder(fcl, rod) for rod in link] for link in rods]
         self.pairs = ArmContact(cell, rods, (), None, CLEARANCE).own.pairs
@@ -150,12 +200,16 @@ class _Looks:
         for number, link in enumerate(self.cylinders):
             for one, turned, at in link:
                 pose = poses[number]
-                one.setTransform(self.fcl.Transform(pose[:3, :3] @ turned, pose[:3, :3] @ at + pose[:3, 3]))
+                one.setTransform(
+                    self.fcl.Transform(pose[:3, :3] @ turned, pose[:3, :3] @ at + pose[:3, 3])
+                )
                 if number and self.fcl.collide(one, self.wall, self.request, self.result()):
                     return True
         return any(
             self.fcl.collide(one, other, self.request, self.result())
-            for outer, inner in self.pairs for one, _, _ in self.cylinders[outer] for other, _, _ in self.cylinders[inner]
+            for outer, inner in self.pairs
+            for one, _, _ in self.cylinders[outer]
+            for other, _, _ in self.cylinders[inner]
         )
 
 
@@ -165,5 +219,7 @@ def _cylinder(fcl: Any, rod: Any) -> tuple[Any, np.ndarray, np.ndarray]:
     one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
     one /= np.linalg.norm(one)
     more = 0.5 * CLEARANCE
-    cylinder = fcl.CollisionObject(fcl.Cylinder(rod.radius + more, rod.length + 2.0 * more), fcl.Transform())
+    cylinder = fcl.CollisionObject(
+        fcl.Cylinder(rod.radius + more, rod.length + 2.0 * more), fcl.Transform()
+    )
     return cylinder, np.column_stack([one, np.cross(axis, one), axis]), 0.5 * (rod.start + rod.end)

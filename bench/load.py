@@ -39,10 +39,16 @@ def run() -> list[Row]:
     """Two comparisons, of the larger of two jobs."""
     wanted = float(os.environ.get("LOAD_POINTS", "1e5"))
     with tempfile.TemporaryDirectory() as folder, Watch() as watch:
-        done = [[_planned(Path(folder), *size) for size in (SMALL, SIZES[wanted])] for _ in range(ROUNDS)]
+        done = [
+            [_planned(Path(folder), *size) for size in (SMALL, SIZES[wanted])]
+            for _ in range(ROUNDS)
+        ]
     small, large = ([median(one[k] for one in some) for k in range(3)] for some in zip(*done))
     points, seconds, memory = (after - before for before, after in zip(small, large))
-    each, name = 1e6 * seconds / points, f"a point of {large[0]:.0f}, STEP to program, report and FCStd; what it may take"
+    each, name = (
+        1e6 * seconds / points,
+        f"a point of {large[0]:.0f}, STEP to program, report and FCStd; what it may take",
+    )
     told = f"processor time of {name} ({each:.1f} us used, the fixed piece of work in {watch.pace:.2f} ms)"
     return [
         Row(told, watch.quiet(each), ALLOWED_US, "us", 1.0),
@@ -52,10 +58,25 @@ def run() -> list[Row]:
 
 def _planned(folder: Path, height: float, chord: float) -> tuple[float, float, float]:
     """Points of a job, processor time in s, memory at the peak in bytes."""
-    (folder / "load.yaml").write_text(JOB.format(step=EXAMPLE, height=height, chord=chord), encoding="utf-8")
-    command = [str(ROOT / "freecad-am"), "plan", str(folder / "load.yaml"), "-o", str(folder / "out"), "--no-page"]
-    environment = {key: value for key, value in os.environ.items() if key not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment)
+    (folder / "load.yaml").write_text(
+        JOB.format(step=EXAMPLE, height=height, chord=chord), encoding="utf-8"
+    )
+    command = [
+        str(ROOT / "freecad-am"),
+        "plan",
+        str(folder / "load.yaml"),
+        "-o",
+        str(folder / "out"),
+        "--no-page",
+    ]
+    environment = {
+        key: value
+        for key, value in os.environ.items()
+        if key not in ("BENCH_INSIDE", "VIRTUAL_ENV")
+    }
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment
+    )
     _, status, used = os.wait4(process.pid, 0)
     if os.waitstatus_to_exitcode(status):
         assert process.stderr is not None

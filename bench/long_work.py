@@ -15,7 +15,8 @@ from rows import Row
 SCRIPT = Path(__file__).resolve().parent / "long_work_window.py"
 LONGEST = 600  # s
 ALLOWED = (  # key, what it is, s
-    ("cancel", "until Cancel has ended it", 0.5), ("pause", "longest pause beside work", 0.5),
+    ("cancel", "until Cancel has ended it", 0.5),
+    ("pause", "longest pause beside work", 0.5),
     ("preview", "longest pause beside a preview", 0.2),
 )
 

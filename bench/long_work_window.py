@@ -44,7 +44,11 @@ def cancelled(job) -> dict[str, float]:
     pressed: list[float] = []
 
     def shown():
-        return [dialog for dialog in Gui.getMainWindow().findChildren(QtGui.QDialog, busy.NAME) if dialog.isVisible()]
+        return [
+            dialog
+            for dialog in Gui.getMainWindow().findChildren(QtGui.QDialog, busy.NAME)
+            if dialog.isVisible()
+        ]
 
     def press() -> None:
         pressed.append(time.perf_counter())
@@ -100,11 +104,21 @@ def enter_another() -> None:
     import FreeCADGui as Gui
     from PySide import QtGui
 
-    for name, text in (("LayerHeight", "0.7 mm"), ("PlatformDiameter", "90 mm"), ("MinCondition", "0.03"),
-                       ("ProgramName", "OTHER")):
-        fields = [one for one in Gui.getMainWindow().findChildren(QtGui.QWidget, name) if one.isVisible()]
+    for name, text in (
+        ("LayerHeight", "0.7 mm"),
+        ("PlatformDiameter", "90 mm"),
+        ("MinCondition", "0.03"),
+        ("ProgramName", "OTHER"),
+    ):
+        fields = [
+            one for one in Gui.getMainWindow().findChildren(QtGui.QWidget, name) if one.isVisible()
+        ]
         if fields:
-            line = fields[0] if isinstance(fields[0], QtGui.QLineEdit) else fields[0].findChild(QtGui.QLineEdit)
+            line = (
+                fields[0]
+                if isinstance(fields[0], QtGui.QLineEdit)
+                else fields[0].findChild(QtGui.QLineEdit)
+            )
             line.setText(text)
             return
     raise AssertionError("no field is known")
@@ -124,19 +138,26 @@ def of_panels() -> list[dict[str, object]]:
     job = joints(Path(os.environ["FRAMES_OF"]))
     settle(1.0)
     found = [
-        {"job": "cell", "preview": previewed(
-            lambda: show(CellPanel(job.inputs["cell"])), "nozzle upright")},
-        {"job": "joint path", "preview": previewed(
-            lambda: show(JointPathPanel()), "rapid moves too")},
+        {
+            "job": "cell",
+            "preview": previewed(lambda: show(CellPanel(job.inputs["cell"])), "nozzle upright"),
+        },
+        {
+            "job": "joint path",
+            "preview": previewed(lambda: show(JointPathPanel()), "rapid moves too"),
+        },
     ]
     App.closeDocument(job.document.Name)
     document = App.newDocument("Program")
     cell = api.make_cell(document, limits="paper")
-    toolpath = api.make_toolpath(document, api.make_feature(document, sphere(document), layer_height=0.4), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, sphere(document), layer_height=0.4), cell
+    )
     api.make_joint_path(document, toolpath, cell)
     settle(1.0)
-    found.append({"job": "program", "preview": previewed(
-        lambda: show(ProgramPanel()), "Begins with")})
+    found.append(
+        {"job": "program", "preview": previewed(lambda: show(ProgramPanel()), "Begins with")}
+    )
     App.closeDocument(document.Name)
     return found
 
@@ -154,7 +175,9 @@ def all_of_them() -> list[dict[str, object]]:
         settle(1.0)
         one: dict[str, object] = {"job": make.__name__, **(cancelled(job) if make in JOBS else {})}
         if make in PREVIEWED:
-            one["preview"] = previewed(lambda feature=job.inputs["feature"]: registry.edit(feature), "irst layer")
+            one["preview"] = previewed(
+                lambda feature=job.inputs["feature"]: registry.edit(feature), "irst layer"
+            )
         found.append(one)
         App.closeDocument(job.document.Name)
     return found + of_panels()

@@ -28,7 +28,9 @@ def vase(like, count: int):
     up, made = np.tile([0.0, 0.0, 1.0], (OF_LAYER, 1)), []
     for height in np.linspace(0.0, 100.0, layers):
         radius = 60.0 + 20.0 * np.sin(height / 20.0)
-        points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(OF_LAYER, height)])
+        points = np.column_stack(
+            [radius * np.cos(angle), radius * np.sin(angle), np.full(OF_LAYER, height)]
+        )
         points[-1] = points[0]
         made.append(Layer((Bead(points, up, up, angle, np.full(OF_LAYER, 8.0), True),)))
     return dataclasses.replace(like, layers=tuple(made), layer_height=100.0 / layers)
@@ -90,8 +92,13 @@ def frames(saved: str) -> list[dict[str, object]]:
                 last = slider.maximum() - 1 - frame % max(1, slider.maximum() // 4)
                 moved.append(drawn.after(lambda last=last: slider.setValue(last)))
             dock._dock._show_all()
-            for what, took in ((look, ours), ("slider" if look == "lines" else "slider, tubes", moved)):
-                found.append({"points": count, "what": what, "ours": median(took), "peer": median(peer)})
+            for what, took in (
+                (look, ours),
+                ("slider" if look == "lines" else "slider, tubes", moved),
+            ):
+                found.append(
+                    {"points": count, "what": what, "ours": median(took), "peer": median(peer)}
+                )
     App.closeDocument(document.Name)
     return found
 
@@ -138,7 +145,10 @@ def _opened(path: str, drawn: bool) -> float:
 def both() -> dict[str, object]:
     """Frames, then openings."""
     jobs = json.loads(os.environ["FRAMES_JOBS"])
-    return {"frames": frames(jobs["cylinder"]), "openings": {name: opening(saved) for name, saved in jobs.items()}}
+    return {
+        "frames": frames(jobs["cylinder"]),
+        "openings": {name: opening(saved) for name, saved in jobs.items()},
+    }
 
 
 begin(both)

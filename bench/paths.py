@@ -42,7 +42,10 @@ if joint_path.Status == "up to date":
 document.saveAs({saved!r})
 """
 # the dome is past a limit at some points, and has a joint path all the same
-SHAPES = {"cylinder": "Part.makeCylinder(45, 70)", "dome": "Part.makeSphere(45, App.Vector(), App.Vector(0, 0, 1), 0, 90)"}
+SHAPES = {
+    "cylinder": "Part.makeCylinder(45, 70)",
+    "dome": "Part.makeSphere(45, App.Vector(), App.Vector(0, 0, 1), 0, 90)",
+}
 
 
 def run() -> list[Row]:
@@ -51,15 +54,30 @@ def run() -> list[Row]:
     if freecad is None:
         return []
     with tempfile.TemporaryDirectory() as folder:
-        plain = {key: value for key, value in os.environ.items() if key not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
+        plain = {
+            key: value
+            for key, value in os.environ.items()
+            if key not in ("BENCH_INSIDE", "VIRTUAL_ENV")
+        }
         jobs = {name: str(Path(folder) / f"{name}.FCStd") for name in SHAPES}
         for name, saved in jobs.items():
-            subprocess.run([sys.executable, "-c", JOB.format(root=str(ROOT), saved=saved, shape=SHAPES[name])], check=True,
-                           env=plain, stdin=subprocess.DEVNULL)
-        found = in_window.measured(freecad, SCRIPT, Path(folder), LONGEST, FRAMES_JOBS=json.dumps(jobs))
+            subprocess.run(
+                [sys.executable, "-c", JOB.format(root=str(ROOT), saved=saved, shape=SHAPES[name])],
+                check=True,
+                env=plain,
+                stdin=subprocess.DEVNULL,
+            )
+        found = in_window.measured(
+            freecad, SCRIPT, Path(folder), LONGEST, FRAMES_JOBS=json.dumps(jobs)
+        )
     rows = [
-        Row(f"frame of {one['points']:,} points, {one['what']}; one SoLineSet", one["ours"], one["peer"], "ms",
-            REQUIRED[one["what"]])
+        Row(
+            f"frame of {one['points']:,} points, {one['what']}; one SoLineSet",
+            one["ours"],
+            one["peer"],
+            "ms",
+            REQUIRED[one["what"]],
+        )
         for one in found["frames"]
     ]
     for name, took in found["openings"].items():

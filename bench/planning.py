@@ -43,8 +43,12 @@ def run() -> list[Row]:
     wall = revolution.find_wall(read.read_shape(str(EXAMPLE)))
     cell_parameters = CellParameters(limits="paper")
     toolpath = strategy.plan(
-        wall, RevolutionParameters(layer_height=5.0), BuildDirectionParameters(), ProcessParameters(),
-        cell_parameters.nozzle, cell_parameters.platform_diameter,
+        wall,
+        RevolutionParameters(layer_height=5.0),
+        BuildDirectionParameters(),
+        ProcessParameters(),
+        cell_parameters.nozzle,
+        cell_parameters.platform_diameter,
     )
     cell = cells.resolve(cell_parameters, toolpath.frame)
     task = Task(cell, opw.branch_index(("front", "up", "flip")), PARAMETERS)
@@ -55,7 +59,10 @@ def run() -> list[Row]:
             raise AssertionError("a layer of the sphere is not feasible")
 
     single = _single_start(task, beads)
-    peers = {"SLSQP": single, **({"PyKDL": pose_by_pose(task, beads, SAMPLED)} if kdl.available() else {})}
+    peers = {
+        "SLSQP": single,
+        **({"PyKDL": pose_by_pose(task, beads, SAMPLED)} if kdl.available() else {}),
+    }
     ours()
     times: dict[str, list[float]] = {"ours": [], **{name: [] for name in peers}}
     for number in range(ROUNDS):
@@ -66,10 +73,20 @@ def run() -> list[Row]:
     middle = {name: median(values) for name, values in times.items()}
     lost = single()
     return [
-        Row("optimised sphere, 15 layers, all feasible; the same search pose by pose with PyKDL's NR", middle["ours"],
-            middle.get("PyKDL"), "s", 20.0),
-        Row(f"the same; SLSQP from one start per layer, finite differences ({lost} of {len(beads)} layers lost)",
-            middle["ours"], middle["SLSQP"], "s", 0.5),
+        Row(
+            "optimised sphere, 15 layers, all feasible; the same search pose by pose with PyKDL's NR",
+            middle["ours"],
+            middle.get("PyKDL"),
+            "s",
+            20.0,
+        ),
+        Row(
+            f"the same; SLSQP from one start per layer, finite differences ({lost} of {len(beads)} layers lost)",
+            middle["ours"],
+            middle["SLSQP"],
+            "s",
+            0.5,
+        ),
     ]
 
 
@@ -83,17 +100,23 @@ def _single_start(task: Task, beads: list):
         if np.isnan(joints).any():
             return np.full(len(task.rows.labels) + 1, -1.0)
         offset = task.rows.offset(joints)
-        return np.append(1.0 - np.abs(offset).max(axis=0), (task.condition(points, phi, joints) - 0.15).min())
+        return np.append(
+            1.0 - np.abs(offset).max(axis=0), (task.condition(points, phi, joints) - 0.15).min()
+        )
 
     def objective(points, x):
         joints = task.joints(points, points.polynomial(x[None]))
-        return 1e6 if np.isnan(joints).any() else float(criteria.displacement(task, points, joints)[0])
+        return (
+            1e6 if np.isnan(joints).any() else float(criteria.displacement(task, points, joints)[0])
+        )
 
     def call() -> int:
         lost = 0
         for points in layers:
             found = minimize(
-                lambda x, p=points: objective(p, x), np.zeros(2), method="SLSQP",
+                lambda x, p=points: objective(p, x),
+                np.zeros(2),
+                method="SLSQP",
                 constraints=[{"type": "ineq", "fun": lambda x, p=points: constraints(p, x)}],
                 options={"ftol": PARAMETERS.tolerance, "maxiter": PARAMETERS.max_iterations},
             )

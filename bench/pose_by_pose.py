@@ -28,7 +28,8 @@ def pose_by_pose(task: Task, beads: Sequence[Bead], sampled: int) -> Callable[[]
     points = gather(beads, task.cell, search.POINTS_PER_BEAD)
     grid = [
         (offset, slope)
-        for offset in np.arange(search.OFFSETS) * (2 * np.pi / search.OFFSETS) - np.pi for slope in search.SLOPES
+        for offset in np.arange(search.OFFSETS) * (2 * np.pi / search.OFFSETS) - np.pi
+        for slope in search.SLOPES
     ][::sampled]
     phi = np.array([offset + slope * points.parameter for offset, slope in grid])
     flange = points.frames.at(phi).reshape(-1, 4, 4)

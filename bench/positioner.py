@@ -37,7 +37,10 @@ ROUNDS = 3
 LEVEL = 10.0  # deg from the vertical at most
 SPEED = 4.0  # mm/s, as fast as the table can turn where the wall closes
 POSITIONER = CellParameters(
-    machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch=("back", "up", "flip"), platform=20.0,
+    machine="kuka-kr8-r2100-2-arc-hw",
+    setup="tool-on-robot",
+    branch=("back", "up", "flip"),
+    platform=20.0,
     nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0)),
     external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part",
 )
@@ -49,8 +52,12 @@ def run() -> list[Row]:
     """Both comparisons; a layer of 6+2 axes that is not feasible is an error."""
     wall = revolution.find_wall(read.read_shape(str(EXAMPLE)))
     toolpath = strategy.plan(
-        wall, RevolutionParameters(layer_height=1.0), BuildDirectionParameters(), ProcessParameters(travel_speed=SPEED),
-        SIX.nozzle, SIX.platform_diameter,
+        wall,
+        RevolutionParameters(layer_height=1.0),
+        BuildDirectionParameters(),
+        ProcessParameters(travel_speed=SPEED),
+        SIX.nozzle,
+        SIX.platform_diameter,
     )
     upright = dataclasses.replace(toolpath, max_from_vertical=math.radians(LEVEL))
     six, eight = (cells.resolve(one, toolpath.frame) for one in (SIX, POSITIONER))
@@ -65,7 +72,10 @@ def run() -> list[Row]:
         if not plan_joints(toolpath, six, parameters).feasible:
             raise AssertionError("a layer of the sphere is not feasible with six axes")
 
-    peers = {"six": alone, **({"PyKDL": _pose_by_pose(eight, upright, parameters)} if kdl.available() else {})}
+    peers = {
+        "six": alone,
+        **({"PyKDL": _pose_by_pose(eight, upright, parameters)} if kdl.available() else {}),
+    }
     ours()
     alone()
     times: dict[str, list[float]] = {"ours": [], **{name: [] for name in peers}}
@@ -76,13 +86,26 @@ def run() -> list[Row]:
                 times[name].append(took(peer) * (SAMPLED if name == "PyKDL" else 1))
     middle = {name: median(values) for name, values in times.items()}
     return [
-        Row(f"{len(toolpath.layers)} layers with 6+2 axes, all feasible; with six, in the paper's cell", middle["ours"],
-            middle["six"], "s", 0.2),
-        Row("the same; the same search pose by pose with PyKDL's NR", middle["ours"], middle.get("PyKDL"), "s", 20.0),
+        Row(
+            f"{len(toolpath.layers)} layers with 6+2 axes, all feasible; with six, in the paper's cell",
+            middle["ours"],
+            middle["six"],
+            "s",
+            0.2,
+        ),
+        Row(
+            "the same; the same search pose by pose with PyKDL's NR",
+            middle["ours"],
+            middle.get("PyKDL"),
+            "s",
+            20.0,
+        ),
     ]
 
 
-def _pose_by_pose(cell: cells.Cell, toolpath: Toolpath, parameters: JointParameters) -> Callable[[], None]:
+def _pose_by_pose(
+    cell: cells.Cell, toolpath: Toolpath, parameters: JointParameters
+) -> Callable[[], None]:
     """The search of the robot alone, for the branch that the plan ends with, at the axes that the rule gives it."""
     task = Task(cell, opw.branch_index(plan_joints(toolpath, cell, parameters).branch), parameters)
     return pose_by_pose(task, levelled(cell, toolpath)[0], SAMPLED)

@@ -15,15 +15,46 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".bench-env"
-PEERS = ("eaik", "trimesh", "python-fcl", "ssik", "sympy", "mpmath", "cython")  # the last three are what ssik asks for
+PEERS = (
+    "eaik",
+    "trimesh",
+    "python-fcl",
+    "ssik",
+    "sympy",
+    "mpmath",
+    "cython",
+)  # the last three are what ssik asks for
 # compas_slicer, and what it imports: it asks for an older numpy, and works with the distribution's
 SLICER = (
-    "compas_slicer", "compas<2", "libigl<2.5", "networkx<3.2", "progressbar2<4.4", "python-utils", "pyclipper", "rdp",
-    "imageio", "jsonschema", "schema", "typing_extensions",
+    "compas_slicer",
+    "compas<2",
+    "libigl<2.5",
+    "networkx<3.2",
+    "progressbar2<4.4",
+    "python-utils",
+    "pyclipper",
+    "rdp",
+    "imageio",
+    "jsonschema",
+    "schema",
+    "typing_extensions",
 )
 BENCHMARKS = (
-    "arm", "collision", "filling", "kinematics", "ladder", "load", "long_work", "paths", "planning", "positioner",
-    "simulation", "slicing", "surface", "threads", "whole",
+    "arm",
+    "collision",
+    "filling",
+    "kinematics",
+    "ladder",
+    "load",
+    "long_work",
+    "paths",
+    "planning",
+    "positioner",
+    "simulation",
+    "slicing",
+    "surface",
+    "threads",
+    "whole",
 )
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
@@ -32,16 +63,29 @@ def environment_python() -> Path | None:
     """The Python of the benchmark's environment, made and filled when it is not there; None when that fails."""
     python = ENVIRONMENT / "bin" / "python"
     told = ENVIRONMENT / "peers.txt"
-    if python.exists() and told.exists() and told.read_text(encoding="utf-8").split() == [*PEERS, *SLICER]:
+    if (
+        python.exists()
+        and told.exists()
+        and told.read_text(encoding="utf-8").split() == [*PEERS, *SLICER]
+    ):
         return python
     print(f"bench: making {ENVIRONMENT.name} with {', '.join(PEERS)}", file=sys.stderr)
-    made = subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", str(ENVIRONMENT)], check=False)
+    made = subprocess.run(
+        [sys.executable, "-m", "venv", "--system-site-packages", str(ENVIRONMENT)], check=False
+    )
     if made.returncode == 0:
         # the distribution's numpy and scipy stay as they are: FreeCAD is built against them
-        filled = subprocess.run([str(python), "-m", "pip", "install", "-q", "--no-deps", *PEERS], check=False)
+        filled = subprocess.run(
+            [str(python), "-m", "pip", "install", "-q", "--no-deps", *PEERS], check=False
+        )
         if filled.returncode == 0:
-            if subprocess.run([str(python), "-m", "pip", "install", "-q", "--no-deps", *SLICER], check=False).returncode:
-                print("bench: compas_slicer could not be installed; its row goes without", file=sys.stderr)
+            if subprocess.run(
+                [str(python), "-m", "pip", "install", "-q", "--no-deps", *SLICER], check=False
+            ).returncode:
+                print(
+                    "bench: compas_slicer could not be installed; its row goes without",
+                    file=sys.stderr,
+                )
             told.write_text("\n".join((*PEERS, *SLICER)) + "\n", encoding="utf-8")
             return python
     print("bench: the peers could not be installed; their rows go without", file=sys.stderr)
@@ -52,11 +96,17 @@ def main(names: list[str]) -> int:
     """Run benchmarks, each in a process of its own: what one leaves in memory would count as the peak of the next."""
     for name in names:
         if name not in BENCHMARKS:
-            print(f"error[USAGE] bench: there is no benchmark {name!r}; use {', '.join(BENCHMARKS)}", file=sys.stderr)
+            print(
+                f"error[USAGE] bench: there is no benchmark {name!r}; use {', '.join(BENCHMARKS)}",
+                file=sys.stderr,
+            )
             return 2
     if len(names) == 1:
         return _run(names[0])
-    return max(subprocess.run([sys.executable, __file__, name], check=False).returncode for name in names or BENCHMARKS)
+    return max(
+        subprocess.run([sys.executable, __file__, name], check=False).returncode
+        for name in names or BENCHMARKS
+    )
 
 
 def _run(name: str) -> int:
@@ -81,5 +131,9 @@ if __name__ == "__main__":
     if "BENCH_INSIDE" not in os.environ:
         python = environment_python()
         inside = {**os.environ, **ONE_THREAD, "BENCH_INSIDE": "1"}
-        os.execve(python or sys.executable, [str(python or sys.executable), __file__, *sys.argv[1:]], inside)
+        os.execve(
+            python or sys.executable,
+            [str(python or sys.executable), __file__, *sys.argv[1:]],
+            inside,
+        )
     sys.exit(main(sys.argv[1:]))

@@ -21,7 +21,13 @@ REQUIRED = 0.7  # of a frame is the picture
 def run() -> list[Row]:
     """A comparison for every number of points."""
     return [
-        Row(f"frame of a simulation, {one['points']:,} points (longest {one['longest']:.0f} ms by the clock); the same "
-            "scene drawn again, the camera turned", one["ours"], one["peer"], "ms", REQUIRED)
+        Row(
+            f"frame of a simulation, {one['points']:,} points (longest {one['longest']:.0f} ms by the clock); the same "
+            "scene drawn again, the camera turned",
+            one["ours"],
+            one["peer"],
+            "ms",
+            REQUIRED,
+        )
         for one in in_window.found_by(SCRIPT, LONGEST)
     ]

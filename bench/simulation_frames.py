@@ -9,7 +9,11 @@ from statistics import median
 from in_window import Drawn, begin, settle
 
 FRAMES = 40
-SIZES = ((2.4, 140), (1.0, 1420), (1.0, 4280))  # layer height, points of a turn: some 10,000, 100,000, 300,000 in all
+SIZES = (
+    (2.4, 140),
+    (1.0, 1420),
+    (1.0, 4280),
+)  # layer height, points of a turn: some 10,000, 100,000, 300,000 in all
 
 
 def run_of_points(layer_height: float, points: int, document: str):
@@ -39,16 +43,35 @@ def run_of_points(layer_height: float, points: int, document: str):
     wall = RevolvedWall(Meridian.chained([sampled(dome, [0, np.pi / 2])]), np.eye(4))
     process, looks = ProcessParameters(), CellParameters(limits="paper")
     toolpath = revolution.plan(
-        wall, RevolutionParameters(layer_height=layer_height, min_points=points), BuildDirectionParameters(clearance="none"),
-        process, NozzleParameters(), 113.0, None,
+        wall,
+        RevolutionParameters(layer_height=layer_height, min_points=points),
+        BuildDirectionParameters(clearance="none"),
+        process,
+        NozzleParameters(),
+        113.0,
+        None,
     )
     cell = cells.resolve(looks, toolpath.frame)
-    motion, _ = assemble(plan_joints(toolpath, cell, JointParameters(method="constant", rz=0.0)), cell, process)
-    times, kept = timeline(motion, process), achievable_feed(motion, cell.machine.max_speed, cell.machine.max_acceleration)
+    motion, _ = assemble(
+        plan_joints(toolpath, cell, JointParameters(method="constant", rz=0.0)), cell, process
+    )
+    times, kept = (
+        timeline(motion, process),
+        achievable_feed(motion, cell.machine.max_speed, cell.machine.max_acceleration),
+    )
     unknown = np.full(len(motion), np.nan)
     return Run(
-        document=document, title="frames", objects=(), cell=cell, looks=looks, toolpath=toolpath, width=1.0, motion=motion,
-        times=times, feed=kept, watch=watch(motion, cell, kept, unknown, unknown),
+        document=document,
+        title="frames",
+        objects=(),
+        cell=cell,
+        looks=looks,
+        toolpath=toolpath,
+        width=1.0,
+        motion=motion,
+        times=times,
+        feed=kept,
+        watch=watch(motion, cell, kept, unknown, unknown),
         totals=totals(motion, times, process, toolpath),
     )
 
@@ -83,8 +106,10 @@ def measured(layer_height: float, points: int) -> dict[str, float]:
         ours.append(cost(drawn, lambda frame=frame: play(frame)))
         peer.append(cost(drawn, turn))
     found = {
-        "points": int(run.motion.deposit.sum()), "ours": median(processor for processor, _ in ours[3:]),
-        "peer": median(processor for processor, _ in peer[3:]), "longest": max(clock for _, clock in ours[3:]),
+        "points": int(run.motion.deposit.sum()),
+        "ours": median(processor for processor, _ in ours[3:]),
+        "peer": median(processor for processor, _ in peer[3:]),
+        "longest": max(clock for _, clock in ours[3:]),
     }
     simulation.close()
     App.closeDocument(document.Name)

@@ -28,7 +28,12 @@ def run() -> list[Row]:
     half = wavy_ball(UP // 2)
     # CPU time, in turn and the median, so that what else the machine does counts for neither side
     rounds = [
-        (_ours(vertices, faces, CUTS), _peer(vertices, faces), _ours(*half, CUTS), _ours(vertices, faces, 2 * CUTS))
+        (
+            _ours(vertices, faces, CUTS),
+            _peer(vertices, faces),
+            _ours(*half, CUTS),
+            _ours(vertices, faces, 2 * CUTS),
+        )
         for _ in range(ROUNDS)
     ]
     whole, _, halved, doubled = (median(times[k] or 0.0 for times in rounds) for k in range(4))
@@ -81,14 +86,18 @@ def _slicer() -> Row:
 
 
 def _peer_slicer(vertices: np.ndarray, faces: np.ndarray, height: float) -> float | None:
-    with contextlib.redirect_stderr(io.StringIO()):  # the bar, which keeps the stream that there is when it is imported
+    with contextlib.redirect_stderr(
+        io.StringIO()
+    ):  # the bar, which keeps the stream that there is when it is imported
         try:
             from compas.datastructures import Mesh
             from compas_slicer.slicers import PlanarSlicer
         except ImportError:
             return None
         start = process_time()
-        slicer = PlanarSlicer(Mesh.from_vertices_and_faces(vertices.tolist(), faces.tolist()), layer_height=height)
+        slicer = PlanarSlicer(
+            Mesh.from_vertices_and_faces(vertices.tolist(), faces.tolist()), layer_height=height
+        )
         slicer.slice_model()
         assert len(slicer.layers) >= PLANES - 1
         return process_time() - start
@@ -110,13 +119,21 @@ def wavy_ball(up: int = UP) -> tuple[np.ndarray, np.ndarray]:
     height = np.pi * (np.arange(up) + 0.5) / up
     height, turn = (grid.ravel() for grid in np.meshgrid(height, turn, indexing="ij"))
     radius = 60.0 + 4.0 * np.sin(7.0 * turn) * np.sin(9.0 * height)
-    ball = np.stack([np.sin(height) * np.cos(turn), np.sin(height) * np.sin(turn), np.cos(height)], axis=1)
-    vertices = np.vstack([radius[:, None] * ball, [[0.0, 0.0, 62.0], [0.0, 0.0, -62.0]]]) + [140.0, 0.0, 60.0]
+    ball = np.stack(
+        [np.sin(height) * np.cos(turn), np.sin(height) * np.sin(turn), np.cos(height)], axis=1
+    )
+    vertices = np.vstack([radius[:, None] * ball, [[0.0, 0.0, 62.0], [0.0, 0.0, -62.0]]]) + [
+        140.0,
+        0.0,
+        60.0,
+    ]
     number = np.arange(up * AROUND).reshape(up, AROUND)
     a, b = number[:-1].ravel(), number[1:].ravel()
     c, d = np.roll(number, -1, axis=1)[1:].ravel(), np.roll(number, -1, axis=1)[:-1].ravel()
     top = np.stack([np.full(AROUND, up * AROUND), number[0], np.roll(number[0], -1)], axis=1)
-    bottom = np.stack([np.full(AROUND, up * AROUND + 1), np.roll(number[-1], -1), number[-1]], axis=1)
+    bottom = np.stack(
+        [np.full(AROUND, up * AROUND + 1), np.roll(number[-1], -1), number[-1]], axis=1
+    )
     faces = np.vstack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1), top, bottom])
     return vertices, faces.astype(np.intp)
 

@@ -34,22 +34,33 @@ REFINED = 4
 def run() -> list[Row]:
     """All comparisons of this file."""
     torus = Torus(60.0, 15.0)
-    first = on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, POINTS))
+    first = on_implicit(
+        torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, POINTS)
+    )
     times, peers = [], []
     for _ in range(ROUNDS):
         start = process_time()
         layers = constant_distance.layers(torus, first, HEIGHT, 0.5 * np.pi, POINTS)
         times.append(process_time() - start)
-        peers.append(np.mean([_bisected(torus, layers[i - 1], layers[i]) for i in SAMPLED]) * (len(layers) - 1))
+        peers.append(
+            np.mean([_bisected(torus, layers[i - 1], layers[i]) for i in SAMPLED])
+            * (len(layers) - 1)
+        )
     name = f"constant distance, {len(layers)} layers of {POINTS} points, {TOLERANCE:g} mm, against bisection"
-    return [Row(name, float(np.median(times)), float(np.median(peers)), "s", 50.0), *_doublings(torus), _fronts()]
+    return [
+        Row(name, float(np.median(times)), float(np.median(peers)), "s", 50.0),
+        *_doublings(torus),
+        _fronts(),
+    ]
 
 
 def _doublings(torus: Torus) -> list[Row]:
     """Time per point of layers 5 mm apart with twice as many points each time; the peer is the row before."""
     grids = (POINTS, *DOUBLED)
     firsts = [
-        on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, points))
+        on_implicit(
+            torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, points)
+        )
         for points in grids
     ]
     times: list[list[float]] = [[] for _ in grids]
@@ -60,8 +71,13 @@ def _doublings(torus: Torus) -> list[Row]:
             times[i].append((process_time() - start) / sum(len(layer.v) for layer in layers))
     middle = [float(np.median(some)) for some in times]
     return [
-        Row(f"constant distance, time per point of {points} points around against {grids[i]}", 1e6 * middle[i + 1],
-            1e6 * middle[i], "us", LINEAR)
+        Row(
+            f"constant distance, time per point of {points} points around against {grids[i]}",
+            1e6 * middle[i + 1],
+            1e6 * middle[i],
+            "us",
+            LINEAR,
+        )
         for i, points in enumerate(DOUBLED)
     ]
 
@@ -75,7 +91,9 @@ def _fronts() -> Row:
         for some, wall, height in zip(times, walls, FRONTS):
             start = process_time()
             layers = fronts.layers(wall, height).fronts
-            some.append((process_time() - start) / sum(len(front.w) for layer in layers for front in layer))
+            some.append(
+                (process_time() - start) / sum(len(front.w) for layer in layers for front in layer)
+            )
     coarse, fine = (float(np.median(some)) for some in times)
     name = f"fronts, time per point of layers {FRONTS[1]:g} mm apart against {FRONTS[0]:g} mm (4 times the points)"
     return Row(name, 1e6 * fine, 1e6 * coarse, "us", LINEAR)

@@ -47,8 +47,14 @@ def run() -> list[Row]:
 
 def _took(more: dict[str, str]) -> float:
     """Processor time of the joint path, s, with no number of threads asked for but in `more`."""
-    environment = {key: value for key, value in os.environ.items() if not key.endswith("_NUM_THREADS")}
+    environment = {
+        key: value for key, value in os.environ.items() if not key.endswith("_NUM_THREADS")
+    }
     done = subprocess.run(
-        [sys.executable, "-c", MACRO], capture_output=True, text=True, check=True, env={**environment, **more}
+        [sys.executable, "-c", MACRO],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**environment, **more},
     )
     return float(done.stdout.split()[-1])

@@ -48,9 +48,18 @@ def run() -> list[Row]:
 
 def _bracket() -> Row:
     with tempfile.TemporaryDirectory() as folder:
-        plan = [str(ROOT / "freecad-am"), "plan", str(BRACKET), "-o", str(Path(folder) / "out"), "--no-page"]
+        plan = [
+            str(ROOT / "freecad-am"),
+            "plan",
+            str(BRACKET),
+            "-o",
+            str(Path(folder) / "out"),
+            "--no-page",
+        ]
         with Watch() as watch:
-            took = median([_took(plan, folder).used for _ in range(FEWER + 1)][1:])  # the first round fills the caches
+            took = median(
+                [_took(plan, folder).used for _ in range(FEWER + 1)][1:]
+            )  # the first round fills the caches
     used = f"{took:.2f} s used, the fixed piece of work in {watch.pace:.2f} ms"
     name = f"a bracket of 150 mm in layers of 2 mm, STEP to program and FCStd, against {SECONDS:g} s ({used})"
     return Row(name, watch.quiet(took), SECONDS, "s", 1.0)
@@ -60,13 +69,24 @@ def _hemisphere() -> Row:
     host = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
     with tempfile.TemporaryDirectory() as folder:
         job, out = Path(folder) / "hemisphere.yaml", Path(folder) / "out"
-        text = (EXAMPLE.parent / "hemisphere.yaml").read_text(encoding="utf-8").replace("hemisphere.step", str(EXAMPLE))
-        job.write_text("".join(line for line in text.splitlines(True) if "compare:" not in line), encoding="utf-8")
+        text = (
+            (EXAMPLE.parent / "hemisphere.yaml")
+            .read_text(encoding="utf-8")
+            .replace("hemisphere.step", str(EXAMPLE))
+        )
+        job.write_text(
+            "".join(line for line in text.splitlines(True) if "compare:" not in line),
+            encoding="utf-8",
+        )
         script = Path(folder) / "bare.py"
-        script.write_text(BARE.format(step=str(EXAMPLE), saved=str(Path(folder) / "bare.FCStd")), encoding="utf-8")
+        script.write_text(
+            BARE.format(step=str(EXAMPLE), saved=str(Path(folder) / "bare.FCStd")), encoding="utf-8"
+        )
         plan = [str(ROOT / "freecad-am"), "plan", str(job), "-o", str(out), "--no-page"]
         commands = [plan, *([[host, str(script)]] if host else [])]
-        rounds = [[_took(command, folder) for command in commands] for _ in range(ROUNDS + 1)][1:]  # the first fills caches
+        rounds = [[_took(command, folder) for command in commands] for _ in range(ROUNDS + 1)][
+            1:
+        ]  # the first fills caches
         ours, *bare = zip(*rounds)
         used = f"{median(one.used for one in ours):.3f} s of the processor"
         for peer in bare:
@@ -88,9 +108,18 @@ def _took(command: list[str], folder: str) -> Took:
     left = ("BENCH_INSIDE", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
     environment = {key: value for key, value in os.environ.items() if key not in left}
     environment["PYTHONPYCACHEPREFIX"] = folder
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)  # os.times counts in hundredths of a second
+    before = resource.getrusage(
+        resource.RUSAGE_CHILDREN
+    )  # os.times counts in hundredths of a second
     started = time.perf_counter()
-    done = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL, env=environment)
+    done = subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        stdin=subprocess.DEVNULL,
+        env=environment,
+    )
     waited = time.perf_counter() - started
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode:

@@ -16,7 +16,11 @@ from pathlib import Path
 from typing import Any
 
 PAGE = Path(__file__).resolve().parent / "comparison.md"
-METHODS = {"constant": "constant RZ", "point-by-point": "point by point", "layer-by-layer": "layer by layer"}
+METHODS = {
+    "constant": "constant RZ",
+    "point-by-point": "point by point",
+    "layer-by-layer": "layer by layer",
+}
 SMALLEST = 1e-4  # deg and its derivatives
 PER_AXIS = {
     "range_per_layer_max_deg": "range in a layer, deg",
@@ -53,14 +57,22 @@ def tables(report: dict[str, Any]) -> str:
     axes = report["machine"]["axes"]
     count = report["counts"]
     lines = [
-        f"{count['layers']} layers, {count['points']:,} points, limit set `{report['machine']['limits']}`.", "",
-        "| method | feasible | objective | smallest condition | planning time, s |", "| --- | --- | --- | --- | --- |",
+        f"{count['layers']} layers, {count['points']:,} points, limit set `{report['machine']['limits']}`.",
+        "",
+        "| method | feasible | objective | smallest condition | planning time, s |",
+        "| --- | --- | --- | --- | --- |",
     ]
     for method, name in METHODS.items():
         entry = found[method]
         figures = [number(entry[key]) for key in ("objective_value", "condition_min")]
-        lines.append(f"| {name} | {outcome(entry, report)} | {' | '.join(figures)} | {entry['planning_time_s']:.1f} |")
-    lines += ["", f"| largest | method | {' | '.join(axes)} |", f"| --- | --- |{' --- |' * len(axes)}"]
+        lines.append(
+            f"| {name} | {outcome(entry, report)} | {' | '.join(figures)} | {entry['planning_time_s']:.1f} |"
+        )
+    lines += [
+        "",
+        f"| largest | method | {' | '.join(axes)} |",
+        f"| --- | --- |{' --- |' * len(axes)}",
+    ]
     for key, what in PER_AXIS.items():
         for method, name in METHODS.items():
             values = found[method][key] or [None] * len(axes)
@@ -70,12 +82,16 @@ def tables(report: dict[str, Any]) -> str:
 
 def main(folder: Path) -> None:
     """Renew every table of the page."""
+
     def renewed(match: re.Match[str]) -> str:
         report = json.loads((folder / match[1] / "report.json").read_text(encoding="utf-8"))
         return f"<!-- table {match[1]} -->\n{tables(report)}\n<!-- end -->"
 
     text = PAGE.read_text(encoding="utf-8")
-    PAGE.write_text(re.sub(r"<!-- table (\w+) -->.*?<!-- end -->", renewed, text, flags=re.DOTALL), encoding="utf-8")
+    PAGE.write_text(
+        re.sub(r"<!-- table (\w+) -->.*?<!-- end -->", renewed, text, flags=re.DOTALL),
+        encoding="utf-8",
+    )
 
 
 if __name__ == "__main__":

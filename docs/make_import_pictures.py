@@ -29,7 +29,14 @@ def imports(package):
             if not node.level:
                 base = base[1:] if base[0] == package.name else ["?"]
             for alias in node.names:
-                found = next((one for one in ("/".join([*base, alias.name]), "/".join(base)) if one in files), None)
+                found = next(
+                    (
+                        one
+                        for one in ("/".join([*base, alias.name]), "/".join(base))
+                        if one in files
+                    ),
+                    None,
+                )
                 if found is not None and found != name:
                     yield name, found
 
@@ -53,11 +60,17 @@ def rows_of(edges):
         below = {room: {b for a, b in kept if a == room} for pair in edges for room in pair}
         height, waiting = {}, set(below)
         while ready := {room for room in waiting if below[room] <= height.keys()}:
-            height.update({room: 1 + max((height[one] for one in below[room]), default=-1) for room in ready})
+            height.update(
+                {room: 1 + max((height[one] for one in below[room]), default=-1) for room in ready}
+            )
             waiting -= ready
         if not waiting:
             break
-        del kept[min((pair for pair in kept if set(pair) <= waiting), key=lambda pair: (kept[pair], pair))]
+        del kept[
+            min(
+                (pair for pair in kept if set(pair) <= waiting), key=lambda pair: (kept[pair], pair)
+            )
+        ]
     rows = [[] for _ in range(max(height.values(), default=0) + 1)]
     for room in sorted(height):
         rows[-1 - height[room]].append(room)
@@ -70,7 +83,8 @@ def svg(edges):
     width = WIDE * max(map(len, rows)) + 20
     at = {
         room: (width / 2 + WIDE * (column - (len(row) - 1) / 2), 30 + HIGH * number)
-        for number, row in enumerate(rows) for column, room in enumerate(row)
+        for number, row in enumerate(rows)
+        for column, room in enumerate(row)
     }
     up, lines = 0, []
     for (a, b), count in sorted(edges.items()):
@@ -80,16 +94,24 @@ def svg(edges):
         middle, colour = (y + v) / 2, "#c00" if rises else "#789"
         bend = f"M{x:.0f} {y + BOX[1] / 2:.0f} C{x:.0f} {middle:.0f} {u:.0f} {middle:.0f} {u:.0f} {v - BOX[1] / 2:.0f}"
         thick, told = 0.6 + 0.8 * math.log(count), escape(f"{a} - {b}: {count}")
-        lines.append(f'<path d="{bend}" fill="none" stroke="{colour}" stroke-opacity="0.5" stroke-width="{thick:.1f}">'
-                     f"<title>{told}</title></path>")
+        lines.append(
+            f'<path d="{bend}" fill="none" stroke="{colour}" stroke-opacity="0.5" stroke-width="{thick:.1f}">'
+            f"<title>{told}</title></path>"
+        )
     for room, (x, y) in at.items():
-        lines.append(f'<rect x="{x - BOX[0] / 2:.0f}" y="{y - BOX[1] / 2:.0f}" width="{BOX[0]}" height="{BOX[1]}" rx="4" '
-                     'fill="#fff" stroke="#345"/>')
-        lines.append(f'<text x="{x:.0f}" y="{y + 4:.0f}" font-family="sans-serif" font-size="11" text-anchor="middle">'
-                     f'{escape(room)}</text>')
+        lines.append(
+            f'<rect x="{x - BOX[0] / 2:.0f}" y="{y - BOX[1] / 2:.0f}" width="{BOX[0]}" height="{BOX[1]}" rx="4" '
+            'fill="#fff" stroke="#345"/>'
+        )
+        lines.append(
+            f'<text x="{x:.0f}" y="{y + 4:.0f}" font-family="sans-serif" font-size="11" text-anchor="middle">'
+            f"{escape(room)}</text>"
+        )
     high = 60 + HIGH * (len(rows) - 1)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{high}" viewBox="0 0 {width} {high}">'
-    return "\n".join([head, f'<rect width="{width}" height="{high}" fill="#fff"/>', *lines, "</svg>", ""]), up
+    return "\n".join(
+        [head, f'<rect width="{width}" height="{high}" fill="#fff"/>', *lines, "</svg>", ""]
+    ), up
 
 
 def main(package=PACKAGE, folder=DOCS / "images"):
@@ -97,7 +119,9 @@ def main(package=PACKAGE, folder=DOCS / "images"):
         edges = graph(Path(package), top)
         text, up = svg(edges)
         (Path(folder) / f"{name}.svg").write_text(text, encoding="utf-8")
-        print(f"{name}: {len({one for pair in edges for one in pair})} rooms, {len(edges)} arrows, {up} of them up")
+        print(
+            f"{name}: {len({one for pair in edges for one in pair})} rooms, {len(edges)} arrows, {up} of them up"
+        )
 
 
 if __name__ == "__main__":

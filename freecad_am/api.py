@@ -75,17 +75,45 @@ from .objects.toolpath import Toolpath, own_process
 from .objects.work.progress import told_to
 
 __all__ = (
-    "change", "export", "export_cell", "export_report", "export_waypoints", "export_wires", "inspect", "issues", "make_all",
-    "make_cam_path", "make_cell", "make_cladding_feature", "make_curves_feature", "make_developable_feature", "make_feature",
-    "make_feature_of", "make_joint_path", "make_program", "make_scan", "make_solid_feature", "make_surface_feature",
-    "make_toolpath", "make_trajectory", "open_part", "place", "proposed_name", "read_cell",
-    "recompute", "result", "stages_of", "told_to",
+    "change",
+    "export",
+    "export_cell",
+    "export_report",
+    "export_waypoints",
+    "export_wires",
+    "inspect",
+    "issues",
+    "make_all",
+    "make_cam_path",
+    "make_cell",
+    "make_cladding_feature",
+    "make_curves_feature",
+    "make_developable_feature",
+    "make_feature",
+    "make_feature_of",
+    "make_joint_path",
+    "make_program",
+    "make_scan",
+    "make_solid_feature",
+    "make_surface_feature",
+    "make_toolpath",
+    "make_trajectory",
+    "open_part",
+    "place",
+    "proposed_name",
+    "read_cell",
+    "recompute",
+    "result",
+    "stages_of",
+    "told_to",
 )
 
 STAGE_KINDS = ("cell", "feature", "toolpath", "joint path", "program", "inspection")
 
 
-def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | None = None, **values: Any) -> Any:
+def make_cell(
+    doc: Any, label: str = "Cell", *, parameters: CellParameters | None = None, **values: Any
+) -> Any:
     """A cell: machine, set-up, platform and nozzle. `am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)`
 
     external="urdf" takes track and positioner of the URDF that is the machine, and the robot of it.
@@ -96,9 +124,18 @@ def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | Non
 
 
 def make_toolpath(
-    doc: Any, feature: Any, cell: Any = None, label: str = "Toolpath", *, further: Sequence[Any] = (),
-    sequence: str = "feature", processes: Sequence[ProcessParameters] = (), scan: Any = None,
-    process: ProcessParameters | None = None, fitting: ScanParameters | None = None, **values: Any,
+    doc: Any,
+    feature: Any,
+    cell: Any = None,
+    label: str = "Toolpath",
+    *,
+    further: Sequence[Any] = (),
+    sequence: str = "feature",
+    processes: Sequence[ProcessParameters] = (),
+    scan: Any = None,
+    process: ProcessParameters | None = None,
+    fitting: ScanParameters | None = None,
+    **values: Any,
 ) -> Any:
     """Layers and beads of a feature; the cell gives the nozzle to keep clear. `am.make_toolpath(doc, doc.Feature)`
 
@@ -112,24 +149,39 @@ def make_toolpath(
     first, *more = [*(features or [None]), *checked_list(further, "further")]
     links: dict[str, Any] = {"Feature": first, "Cell": cell, "Scan": scan}
     if more:
-        own = [own_process(one, process or ProcessParameters()) for one in checked_list(processes, "processes")]
+        own = [
+            own_process(one, process or ProcessParameters())
+            for one in checked_list(processes, "processes")
+        ]
         links = {**links, "Further": more, "Sequence": sequence, "FeatureProcess": own}
     return make_stage(doc, Toolpath, "Toolpath", label, links, [process, fitting], values)
 
 
 def make_joint_path(
-    doc: Any, toolpath: Any, cell: Any, label: str = "Joint path", *, joints: JointParameters | None = None,
+    doc: Any,
+    toolpath: Any,
+    cell: Any,
+    label: str = "Joint path",
+    *,
+    joints: JointParameters | None = None,
     **values: Any,
 ) -> Any:
     """Joint values of a toolpath in a cell. `am.make_joint_path(doc, doc.Toolpath, doc.Cell, method="constant")`
 
     A sound job that cannot be carried out makes an object with the status 'infeasible' and its issues.
     """
-    return make_stage(doc, JointPath, "JointPath", label, {"Toolpath": toolpath, "Cell": cell}, [joints], values)
+    return make_stage(
+        doc, JointPath, "JointPath", label, {"Toolpath": toolpath, "Cell": cell}, [joints], values
+    )
 
 
 def make_program(
-    doc: Any, joint_path: Any, label: str = "Program", *, name: str = "", program: ProgramParameters | None = None,
+    doc: Any,
+    joint_path: Any,
+    label: str = "Program",
+    *,
+    name: str = "",
+    program: ProgramParameters | None = None,
     **values: Any,
 ) -> Any:
     """The controller's files of a joint path, read back and checked: `am.make_program(doc, joint_path)`"""
@@ -138,7 +190,12 @@ def make_program(
 
 
 def inspect(
-    doc: Any, planned: Any, file: str, label: str = "Inspection", *, inspection: InspectionParameters | None = None,
+    doc: Any,
+    planned: Any,
+    file: str,
+    label: str = "Inspection",
+    *,
+    inspection: InspectionParameters | None = None,
     **values: Any,
 ) -> Any:
     """Measured points (CSV, TXT, XYZ, ASC; vertices of STL, OBJ, PLY) against a feature, a toolpath, or an object with a
@@ -154,10 +211,25 @@ def inspect(
 
 @one_thread()
 def make_all(
-    doc: Any, source: Any, faces: Sequence[str] = (), *, kind: str = "revolution", layers: str = "", substrate: Any = None,
-    further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", cell: str = "",
-    post: str = "", process: Mapping[str, Any] | None = None, then: Sequence[Mapping[str, Any]] = (), mend: float = 0.0,
-    setup: str = "", max_from_vertical: Any = None, layers_otherwise: str = "",
+    doc: Any,
+    source: Any,
+    faces: Sequence[str] = (),
+    *,
+    kind: str = "revolution",
+    layers: str = "",
+    substrate: Any = None,
+    further: Sequence[Any] = (),
+    base_faces: Sequence[str] = (),
+    name: str = "",
+    machine: str = "",
+    cell: str = "",
+    post: str = "",
+    process: Mapping[str, Any] | None = None,
+    then: Sequence[Mapping[str, Any]] = (),
+    mend: float = 0.0,
+    setup: str = "",
+    max_from_vertical: Any = None,
+    layers_otherwise: str = "",
 ) -> tuple[Any, ...]:
     """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
 
@@ -175,18 +247,46 @@ def make_all(
     (`source`, `kind`, `layers`, `faces` ...); they come after the feature in what is returned.
     `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
     """
-    process, then = checked_job(doc, source, process, then, mend, kind=kind, layers=layers, name=name, machine=machine,
-                                post=post, setup=setup, layers_otherwise=layers_otherwise)
-    chosen = read_cell(cell) if cell else cell_of(machine, user_machines.folders(), setup or OF_ROBOTS[0].setup)
+    process, then = checked_job(
+        doc,
+        source,
+        process,
+        then,
+        mend,
+        kind=kind,
+        layers=layers,
+        name=name,
+        machine=machine,
+        post=post,
+        setup=setup,
+        layers_otherwise=layers_otherwise,
+    )
+    chosen = (
+        read_cell(cell)
+        if cell
+        else cell_of(machine, user_machines.folders(), setup or OF_ROBOTS[0].setup)
+    )
     refuse_otherwise(kind, layers_otherwise)
-    first = {"source": source, "kind": kind, "faces": faces, "substrate": substrate, "further": further,
-             "base_faces": base_faces, "mend": mend, "max_from_vertical": max_from_vertical}
+    first = {
+        "source": source,
+        "kind": kind,
+        "faces": faces,
+        "substrate": substrate,
+        "further": further,
+        "base_faces": base_faces,
+        "mend": mend,
+        "max_from_vertical": max_from_vertical,
+    }
 
     def planned(layers: str) -> list[Any]:
         own = make_cell(doc, parameters=chosen)
         features = [_feature_of_job(doc, one) for one in ({**first, "layers": layers}, *then)]
         toolpath = on_platform(own, features, lambda: make_toolpath(doc, features, own, **process))
-        path = [] if toolpath.Status == "infeasible" else [_suited_path(doc, toolpath, own, setup, bool(cell))]
+        path = (
+            []
+            if toolpath.Status == "infeasible"
+            else [_suited_path(doc, toolpath, own, setup, bool(cell))]
+        )
         return [own, *features, toolpath, *path]
 
     with one_step(doc, "New job"):
@@ -195,7 +295,15 @@ def make_all(
             made = planned(layers_otherwise)
         post, motion = post_of(chosen, post, user_machines.folders())
         if post and made[-1].Proxy.kind == "joint path" and made[-1].Status == "up to date":
-            made.append(make_program(doc, made[-1], name=name or taken_name(source.Label, post), post=post, motion=motion))
+            made.append(
+                make_program(
+                    doc,
+                    made[-1],
+                    name=name or taken_name(source.Label, post),
+                    post=post,
+                    motion=motion,
+                )
+            )
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
 
@@ -222,20 +330,37 @@ def read_cell(file: str) -> CellParameters:
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
     """A feature at its defaults by the keys that `make_all` takes. InputError BAD_VALUE for another key."""
-    known = ("source", "kind", "layers", "faces", "substrate", "further", "base_faces", "mend", "max_from_vertical")
+    known = (
+        "source",
+        "kind",
+        "layers",
+        "faces",
+        "substrate",
+        "further",
+        "base_faces",
+        "mend",
+        "max_from_vertical",
+    )
     wrong = [key for key in given_keys if key not in known]
     if wrong or "source" not in given_keys:
         text = ", ".join(wrong) or "no source"
-        raise InputError("BAD_VALUE", "then", "{}: give source, and any of {}", text, ", ".join(known[1:]))
+        raise InputError(
+            "BAD_VALUE", "then", "{}: give source, and any of {}", text, ", ".join(known[1:])
+        )
     links = {
-        "Substrate": given_keys.get("substrate"), "Further": given_keys.get("further", ()),
+        "Substrate": given_keys.get("substrate"),
+        "Further": given_keys.get("further", ()),
         "BaseFaces": given_keys.get("base_faces", ()),
     }
     values = {key: given_keys[key] for key in ("layers", "mend") if given_keys.get(key)}
     if given_keys.get("max_from_vertical") is not None:
         values["max_from_vertical"] = given_keys["max_from_vertical"]
     return make_feature_of(
-        doc, given_keys.get("kind", "revolution"), given_keys["source"], given_keys.get("faces", ()), links=links,
+        doc,
+        given_keys.get("kind", "revolution"),
+        given_keys["source"],
+        given_keys.get("faces", ()),
+        links=links,
         values=values,
     )
 

@@ -27,7 +27,9 @@ from .read_back.planned import Planned
 from .read_back.times import time_issues
 from .read_back.ways import way_issues
 
-STRAYS = "the path between two points leaves the straight line by {:.3g} mm, more than the chord error"
+STRAYS = (
+    "the path between two points leaves the straight line by {:.3g} mm, more than the chord error"
+)
 WANDERS = "the way between two beads leaves the one that was checked by up to {:.3g} mm"
 
 
@@ -47,7 +49,12 @@ class Verification:
 
 
 def verify(
-    cell: Cell, motion: Motion, program: Program, files: dict[str, bytes], post: Post, chord_error: float
+    cell: Cell,
+    motion: Motion,
+    program: Program,
+    files: dict[str, bytes],
+    post: Post,
+    chord_error: float,
 ) -> Verification:
     """Compare the files with the motion they were written for.
 
@@ -69,7 +76,12 @@ def verify(
 
 
 def _verify_joints(
-    cell: Cell, planned: Planned, program: Program, read: ReadMoves, chord_error: float, issues: list[Issue]
+    cell: Cell,
+    planned: Planned,
+    program: Program,
+    read: ReadMoves,
+    chord_error: float,
+    issues: list[Issue],
 ) -> Verification:
     assert read.joints is not None
     shown = read.joints.copy()
@@ -79,7 +91,9 @@ def _verify_joints(
     path, flange = text_path.joint_path(cell, shown, half)
     second = points.second_opinion(cell, planned, shown, flange)
     del flange  # of all that is looked at the largest
-    issues += points.joint_issues(cell, planned, read, continuous) + points.point_issues(planned, path)
+    issues += points.joint_issues(cell, planned, read, continuous) + points.point_issues(
+        planned, path
+    )
     strayed, off = between.beads_between(cell, planned, shown, path, chord_error)
     issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
     text = text_path.text_joints(cell, planned.joints, shown, half, path, None)
@@ -87,7 +101,12 @@ def _verify_joints(
 
 
 def _verify_poses(
-    cell: Cell, planned: Planned, program: Program, read: ReadMoves, chord_error: float, issues: list[Issue]
+    cell: Cell,
+    planned: Planned,
+    program: Program,
+    read: ReadMoves,
+    chord_error: float,
+    issues: list[Issue],
 ) -> Verification:
     """Positions of the text against the planned points, and the flange they ask for against the planned joint values.
 
@@ -99,7 +118,9 @@ def _verify_poses(
     issues += points.point_issues(planned, path)
     poses, asked, tools = text_path.text_path(cell, program, read)
     if read.joints is not None:
-        issues += points.joint_issues(cell, planned, read, text_path.shorter_way(cell, program, read))
+        issues += points.joint_issues(
+            cell, planned, read, text_path.shorter_way(cell, program, read)
+        )
     issues += points.point_issues(planned, poses)
     issues += points.twice_issues(cell, planned, program, read, flange)
     twisted = points.turned_otherwise(asked, flange, poses)
@@ -109,22 +130,30 @@ def _verify_poses(
     if read.tool is not None and not read.held and len(planned.ends):
         strayed, off = between.tools_between(cell, planned, asked, tools, poses, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
-    text = text_path.text_joints(cell, planned.joints, read.joints, text_path.digits(cell, read), poses, asked)
+    text = text_path.text_joints(
+        cell, planned.joints, read.joints, text_path.digits(cell, read), poses, asked
+    )
     second = points.second_opinion(cell, planned, joints, flange)
     return _concluded(cell, planned, read, poses, text, strayed, second, issues)
 
 
-def _verify_tips(cell: Cell, planned: Planned, program: Program, read: ReadMoves, issues: list[Issue]) -> Verification:
+def _verify_tips(
+    cell: Cell, planned: Planned, program: Program, read: ReadMoves, issues: list[Issue]
+) -> Verification:
     """Tips and directions of a text for a machine with rotary axes, which finds its linear axes itself, and the planned
     axis values against the same points. Such a controller takes the tip straight from point to point."""
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = text_path.joint_path(cell, joints, np.zeros(joints.shape[1]))
     tips = text_path.text_tips(cell, program, read)
     if read.joints is not None:
-        issues += points.joint_issues(cell, planned, read, text_path.shorter_way(cell, program, read))
+        issues += points.joint_issues(
+            cell, planned, read, text_path.shorter_way(cell, program, read)
+        )
     issues += points.point_issues(planned, path) + points.point_issues(planned, tips)
     shown = _in_turns(cell, planned, program, read)
-    text = text_path.text_joints(cell, planned.joints, shown, text_path.digits(cell, read), tips, None)
+    text = text_path.text_joints(
+        cell, planned.joints, shown, text_path.digits(cell, read), tips, None
+    )
     second = points.second_opinion(cell, planned, joints, flange)
     return _concluded(cell, planned, read, tips, text, 0.0, second, issues)
 
@@ -140,8 +169,14 @@ def _in_turns(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -
 
 
 def _concluded(
-    cell: Cell, planned: Planned, read: ReadMoves, path: text_path.Path, text: text_path.Joints, strayed: float,
-    second: tuple[list[Issue], tuple[str, ...]], issues: list[Issue],
+    cell: Cell,
+    planned: Planned,
+    read: ReadMoves,
+    path: text_path.Path,
+    text: text_path.Joints,
+    strayed: float,
+    second: tuple[list[Issue], tuple[str, ...]],
+    issues: list[Issue],
 ) -> Verification:
     """What is looked at whatever the text is told in, rapids and limits; what the second solver said, and who solved."""
     wandered, off = between.rapids_between(cell, planned, text, path, read.linear)
@@ -149,4 +184,6 @@ def _concluded(
     issues += points.limit_issues(cell, planned, text)
     solver_issues, solvers = second
     at_points = float(np.linalg.norm(path.position - planned.position, axis=1).max())
-    return Verification(tuple(issues + solver_issues), at_points, strayed, float(path.bound.max()), solvers)
+    return Verification(
+        tuple(issues + solver_issues), at_points, strayed, float(path.bound.max()), solvers
+    )

@@ -15,11 +15,21 @@ from typing import Any
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 OPTIONS = (
-    "--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    "--no-first-run", "--disable-extensions", "--window-size=1200,1100",
+    "--headless=new",
+    "--no-sandbox",
+    "--remote-debugging-pipe",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--no-first-run",
+    "--disable-extensions",
+    "--window-size=1200,1100",
 )
 
-READS, WRITES, FREE = 3, 4, 10  # what the browser calls its ends of the pipe; from where numbers are neither
+READS, WRITES, FREE = (
+    3,
+    4,
+    10,
+)  # what the browser calls its ends of the pipe; from where numbers are neither
 
 PATIENCE = 60  # s
 
@@ -49,8 +59,11 @@ class Browser:
             os.dup2(write, WRITES)
 
         self._process = subprocess.Popen(
-            [str(found()), *OPTIONS, f"--user-data-dir={profile}", "about:blank"], preexec_fn=joined,
-            pass_fds=(READS, WRITES), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            [str(found()), *OPTIONS, f"--user-data-dir={profile}", "about:blank"],
+            preexec_fn=joined,
+            pass_fds=(READS, WRITES),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
         os.close(read)
         os.close(write)
@@ -59,11 +72,15 @@ class Browser:
         self._held = b""
         self.errors: list[str] = []
         target = self._ask("Target.createTarget", url="about:blank")["targetId"]
-        self._session = self._ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        self._session = self._ask("Target.attachToTarget", targetId=target, flatten=True)[
+            "sessionId"
+        ]
         for domain in ("Runtime", "Log", "Page"):
             self._ask(f"{domain}.enable")
         self._ask("Page.navigate", url=page.resolve().as_uri())
-        self.run("new Promise((done) => document.readyState === 'complete' ? done() : addEventListener('load', done))")
+        self.run(
+            "new Promise((done) => document.readyState === 'complete' ? done() : addEventListener('load', done))"
+        )
 
     def __enter__(self) -> Browser:
         return self
@@ -76,7 +93,9 @@ class Browser:
 
     def run(self, script: str) -> Any:
         """The value of an expression in the page; of a promise what it comes to."""
-        told = self._ask("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
+        told = self._ask(
+            "Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True
+        )
         if "exceptionDetails" in told:
             raise AssertionError(told["exceptionDetails"])
         return told["result"].get("value")
@@ -96,7 +115,7 @@ class Browser:
             message["sessionId"] = self._session
         data = json.dumps(message).encode() + b"\0"
         while data:
-            data = data[os.write(self._into, data):]
+            data = data[os.write(self._into, data) :]
         while True:
             told = self._next()
             if told.get("id") == number:

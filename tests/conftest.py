@@ -19,7 +19,9 @@ host.find_freecad()
 
 import FreeCAD  # noqa: E402
 
-if not FreeCAD.GuiUp:  # as commands have it (freecad_am/batch/boot.py): a tenth of the time of what is computed here
+if (
+    not FreeCAD.GuiUp
+):  # as commands have it (freecad_am/batch/boot.py): a tenth of the time of what is computed here
     gc.set_threshold(300_000, 50, 50)
     allocation.keep_freed()
 
@@ -27,7 +29,9 @@ WHY, LONGEST = 6, 220  # lines of why a test failed, and characters of each
 
 
 def pytest_addoption(parser):
-    parser.addoption("--long", action="store_true", help="run what is marked as long too (docs/testing.md)")
+    parser.addoption(
+        "--long", action="store_true", help="run what is marked as long too (docs/testing.md)"
+    )
 
 
 def covering(variants):
@@ -51,7 +55,11 @@ def rest_of_variants(items):
             variants.setdefault(item.nodeid.partition("[")[0], []).append(item)
     for test, of_one in variants.items():
         names = of_one[0].get_closest_marker("always").args
-        stay = [item.nodeid for item in of_one if item.callspec.id in names] if names else covering(of_one)
+        stay = (
+            [item.nodeid for item in of_one if item.callspec.id in names]
+            if names
+            else covering(of_one)
+        )
         if names and len(of_one) > 1 and len(stay) < len(names):
             raise pytest.UsageError(f"{test} has not all of the variants {names}")
         spared.update(item.nodeid for item in of_one if item.nodeid not in stay)
@@ -59,7 +67,9 @@ def rest_of_variants(items):
 
 
 def pytest_collection_modifyitems(config, items):
-    named = tuple(word for word in config.args if "::" in word)  # one that is named runs in any case
+    named = tuple(
+        word for word in config.args if "::" in word
+    )  # one that is named runs in any case
     spared = rest_of_variants(items)
     long = [item for item in items if item.get_closest_marker("long") or item.nodeid in spared]
     long = [item for item in long if not item.nodeid.startswith(named)]
@@ -68,7 +78,11 @@ def pytest_collection_modifyitems(config, items):
         items[:] = [item for item in items if item not in long]
     for item in items:
         if item.get_closest_marker("gui") and not FreeCAD.GuiUp:
-            item.add_marker(pytest.mark.skip(reason="no FreeCAD main window: ./freecad-am test opens one under Xvfb"))
+            item.add_marker(
+                pytest.mark.skip(
+                    reason="no FreeCAD main window: ./freecad-am test opens one under Xvfb"
+                )
+            )
 
 
 def used():

@@ -42,12 +42,16 @@ def run():
         stderr = os.dup(2)  # pytest keeps what tests write to the other one
         # FreeCAD's window keeps stdout and stderr for its report view
         # unbuffered, so that a run that crashes or hangs shows how far it came (FreeCAD 1.0 heeds no PYTHONUNBUFFERED)
-        sys.stdout = io.TextIOWrapper(io.FileIO(1, "w", closefd=False), errors="replace", write_through=True)
+        sys.stdout = io.TextIOWrapper(
+            io.FileIO(1, "w", closefd=False), errors="replace", write_through=True
+        )
         sys.stderr = sys.__stderr__ or os.fdopen(2, "w")
         import pytest
 
         notes = Notes(os.environ.get("FAILED_TESTS"), os.environ.get("LAST_TEST"), stderr)
-        status = int(pytest.main(shlex.split(os.environ.get("PYTEST_ARGUMENTS", "")), plugins=[notes]))
+        status = int(
+            pytest.main(shlex.split(os.environ.get("PYTEST_ARGUMENTS", "")), plugins=[notes])
+        )
     except BaseException:
         import traceback
 

@@ -25,7 +25,9 @@ class KdlLinks:
         """That of a link, 0 the base, or of the flange, with joints q (axes,)."""
         for place, value in enumerate(self.order):
             self.angles[place] = float(q[value])
-        self.solver.JntToCart(self.angles, self.seen, 2 * self.links + 1 if link is None else 2 * link)
+        self.solver.JntToCart(
+            self.angles, self.seen, 2 * self.links + 1 if link is None else 2 * link
+        )
         pose = np.eye(4)
         pose[:3, :3] = [[self.seen.M[i, j] for j in range(3)] for i in range(3)]
         pose[:3, 3] = [self.seen.p.x(), self.seen.p.y(), self.seen.p.z()]

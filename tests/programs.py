@@ -9,4 +9,13 @@ from freecad_am.posts import catalogue
 def build(motion, cell, process, parameters, name, waits=(), returns=()):
     """The program of a motion for the post that the parameters name. Raises InputError as `objects.program` does."""
     controllers.check(cell, parameters)
-    return programs.build(motion, cell, process, parameters, catalogue.controller(parameters.post), name, waits, returns)
+    return programs.build(
+        motion,
+        cell,
+        process,
+        parameters,
+        catalogue.controller(parameters.post),
+        name,
+        waits,
+        returns,
+    )

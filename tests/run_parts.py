@@ -59,13 +59,21 @@ def say(text: str) -> None:
     """A line, with the name of its part where several run at the same time."""
     part = AT_HAND.get()
     for line in text.splitlines() or [""]:
-        print(f"{part.name:<18} | {line}\n" if part and PREFIXED else f"{line}\n", end="", flush=True)
+        print(
+            f"{part.name:<18} | {line}\n" if part and PREFIXED else f"{line}\n", end="", flush=True
+        )
 
 
 def watched(command: list[str], env: dict[str, str]) -> tuple[int, str]:
     """Run a command, pass its output on as it comes, and return status and output."""
     process = subprocess.Popen(
-        command, cwd=ROOT, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        command,
+        cwd=ROOT,
+        env=env,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
         errors="replace",
     )
     lines = []
@@ -110,7 +118,10 @@ def tell_times(parts: list[Part], wall: float, tests: str) -> None:
         print(f"  {part.wall:7.1f} s {part.used:7.1f} s  {part.name}")
     if len(parts) > 1:
         print(f"  {wall:7.1f} s {sum(part.used for part in parts):7.1f} s  in all")
-    rows = [(float(took), float(used), name) for took, used, name in (line.split("\t", 2) for line in tests.splitlines())]
+    rows = [
+        (float(took), float(used), name)
+        for took, used, name in (line.split("\t", 2) for line in tests.splitlines())
+    ]
     slowest = sorted((row for row in rows if row[0] >= 1.0), reverse=True)[:SLOWEST]
     if slowest:
         print(f"freecad-am: the slowest of {len(rows)} tests")
@@ -128,7 +139,10 @@ def failures(text: str) -> dict[str, Sequence[str]]:
 
 def told_of(found: Mapping[str, Sequence[str]]) -> str:
     """The lines that `failures` reads."""
-    return "".join(f"{FAILURE}{name}\n" + "".join(f"    {line}\n" for line in why) for name, why in found.items())
+    return "".join(
+        f"{FAILURE}{name}\n" + "".join(f"    {line}\n" for line in why)
+        for name, why in found.items()
+    )
 
 
 def tell_failures(parts: list[Part], sound: tuple[int, ...]) -> None:
@@ -138,10 +152,23 @@ def tell_failures(parts: list[Part], sound: tuple[int, ...]) -> None:
     for part in parts:
         found = failures(part.text)
         if not found and part.status not in sound:
-            lines = [line for line in part.text.splitlines() if line.strip() and not NOISE.fullmatch(line)]
+            lines = [
+                line
+                for line in part.text.splitlines()
+                if line.strip() and not NOISE.fullmatch(line)
+            ]
             found = {f"ended with status {part.status}": lines[-LAST:]}
         for name, why in found.items():
             told += 1
-            print(told_of({f"{name}  [{part.name}]" if len(parts) > 1 else name: why if told <= EXPLAINED else []}), end="")
+            print(
+                told_of(
+                    {
+                        f"{name}  [{part.name}]" if len(parts) > 1 else name: why
+                        if told <= EXPLAINED
+                        else []
+                    }
+                ),
+                end="",
+            )
         for names in re.findall(r"^total: .* at the second try: (.*)", part.text, re.MULTILINE):
             print(f"tried twice: {names}  [{part.name}]")

@@ -44,7 +44,17 @@ class Swept:
     layer; `turns` (n,) of a spiral. Points of the sections are `step` mm apart along the beads."""
 
     def __init__(self, beads, step=0.5):
-        base, flat, up, size, number, segment, line, self.begin, self.layer = [], [], [], [], [], [], [], [0], []
+        base, flat, up, size, number, segment, line, self.begin, self.layer = (
+            [],
+            [],
+            [],
+            [],
+            [],
+            [],
+            [],
+            [0],
+            [],
+        )
         for points, build, width, height, layer in beads:
             along = np.diff(points, axis=0)
             length = np.linalg.norm(along, axis=1)
@@ -60,11 +70,18 @@ class Swept:
                 base.append(points[k] + t * (points[k + 1] - points[k]))
                 flat.append((1.0 - t) * sides[0] + t * sides[1])
                 up.append((1.0 - t) * build[k] + t * build[k + 1])
-                size.append(np.full((count, 2), [0.5 * (width[k] + width[k + 1]), 0.5 * (height[k] + height[k + 1])]))
+                size.append(
+                    np.full(
+                        (count, 2),
+                        [0.5 * (width[k] + width[k + 1]), 0.5 * (height[k] + height[k + 1])],
+                    )
+                )
                 number.append(np.full(count, first + k + 1))
                 segment.append(np.full(count, len(line)))
                 line.append((points[k], points[k + 1]))
-        self.base, self.flat, self.up, self.size = (np.concatenate(column) for column in (base, flat, up, size))
+        self.base, self.flat, self.up, self.size = (
+            np.concatenate(column) for column in (base, flat, up, size)
+        )
         self.number, self.segment = np.concatenate(number), np.concatenate(segment)
         self.line = np.array(line)
 
@@ -83,7 +100,9 @@ class Swept:
         rows = np.flatnonzero(close & (x > low - ball) & (x < cone.length + ball))
         if not len(rows):
             return -np.inf
-        near = self._beside(tip, rows, 2.0 * (cone.radius + np.tan(cone.half_angle) * low)) & (self.number[rows] > own)
+        near = self._beside(tip, rows, 2.0 * (cone.radius + np.tan(cone.half_angle) * low)) & (
+            self.number[rows] > own
+        )
         lines = cone.depth(base[rows[near]], tool, low)
         rows = rows[~near]
         wide, tall = (size[rows, i, None, None] for i in (0, 1))
@@ -93,11 +112,14 @@ class Swept:
         # about the middle of the section: over the two flats, and about their ends
         u = np.concatenate([share, share, 1.0 + 0.0 * angle, -1.0 + 0.0 * angle, share])
         r = np.concatenate([0.0 * share, 0.0 * share, np.cos(angle), -np.cos(angle), 0.0 * share])
-        v = np.concatenate([1.0 + 0.0 * share, -1.0 + 0.0 * share, np.sin(angle), np.sin(angle), 0.0 * share])
+        v = np.concatenate(
+            [1.0 + 0.0 * share, -1.0 + 0.0 * share, np.sin(angle), np.sin(angle), 0.0 * share]
+        )
         assert (wide >= tall).all()
         across = 0.5 * (wide - tall) * u[None, :, None] + round_ * r[None, :, None]
         points = (
-            base[rows, None] + across * self.flat[rows, None]
+            base[rows, None]
+            + across * self.flat[rows, None]
             + (0.5 * tall + round_ * v[None, :, None]) * self.up[rows, None]
         )
         found = cone.depth(points.reshape(-1, 3), tool, low)
@@ -107,8 +129,12 @@ class Swept:
         """Whether the segments of some points pass the tip within their width, or `least` mm."""
         start, end = self.line[self.segment[rows], 0] - tip, self.line[self.segment[rows], 1] - tip
         along = end - start
-        share = np.clip(-np.einsum("ij,ij->i", start, along) / np.einsum("ij,ij->i", along, along), 0.0, 1.0)
-        return np.linalg.norm(start + share[:, None] * along, axis=1) < np.maximum(self.size[rows, 0], least)
+        share = np.clip(
+            -np.einsum("ij,ij->i", start, along) / np.einsum("ij,ij->i", along, along), 0.0, 1.0
+        )
+        return np.linalg.norm(start + share[:, None] * along, axis=1) < np.maximum(
+            self.size[rows, 0], least
+        )
 
 
 def in_platform(tip, tool, cone, low, radius, middle=(0.0, 0.0, 0.0), count=60_000):
@@ -117,5 +143,7 @@ def in_platform(tip, tool, cone, low, radius, middle=(0.0, 0.0, 0.0), count=60_0
     away = radius * np.sqrt((np.arange(count) + 0.5) / count)
     disc = np.stack([away * np.cos(turn), away * np.sin(turn), 0.0 * turn], axis=1)
     rim = np.linspace(0.0, 2.0 * np.pi, 2000)
-    disc = np.concatenate([disc, np.stack([radius * np.cos(rim), radius * np.sin(rim), 0.0 * rim], axis=1)])
+    disc = np.concatenate(
+        [disc, np.stack([radius * np.cos(rim), radius * np.sin(rim), 0.0 * rim], axis=1)]
+    )
     return float(cone.depth(disc + np.asarray(middle) - tip, tool, low).max())

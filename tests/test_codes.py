@@ -27,7 +27,11 @@ class Found(ast.NodeVisitor):
             if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
                 pairs = zip(target.elts, node.value.elts)
             for name, value in pairs:
-                if isinstance(name, ast.Name) and isinstance(value, ast.Constant) and isinstance(value.value, str):
+                if (
+                    isinstance(name, ast.Name)
+                    and isinstance(value, ast.Constant)
+                    and isinstance(value.value, str)
+                ):
                     self.names.setdefault(name.id, set()).add(value.value)
         self.generic_visit(node)
 
@@ -65,6 +69,8 @@ def test_each_code_that_is_told_is_listed(found, listed):
 
 
 def test_each_code_that_is_listed_is_told_and_listed_once(found, listed):
-    spelled = " ".join(word for word in found.words if "[" in word)  # lines that the console writes itself
+    spelled = " ".join(
+        word for word in found.words if "[" in word
+    )  # lines that the console writes itself
     assert [code for code in listed if code not in found.words and f"[{code}]" not in spelled] == []
     assert sorted(code for code in set(listed) if listed.count(code) > 1) == []

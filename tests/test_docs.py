@@ -32,15 +32,43 @@ SECTIONS = (
     ("substrate", ScanParameters),
 )
 # keys that are not fields of a parameters dataclass
-BY_HAND = {"version", "name", "part.file", "part.object", "part.solids", "part.faces", "part.start_edges", "part.edges",
-           "part.scale", "part.set", "substrate", "substrate.scan",
-           "substrate.scan_unit", "substrate.scan_fit", "substrate.scan_pairs", "fixtures", "strategy.kind",
-           "strategy.guide",
-           "strategy.start_faces", "features", "sequence"}
-WORDS = {f.LENGTH: "length", f.ANGLE: "angle", f.SPEED: "speed", f.TIME: "time", f.RATIO: "percentage", f.NUMBER: "number",
-         f.COUNT: "whole number", f.TEXT: "text", f.POSE: "pose", f.ANGLE_RANGE: "two angles",
-         f.RATIO_RANGE: "two percentages",
-         f.TURN_RATE: "turn"}
+BY_HAND = {
+    "version",
+    "name",
+    "part.file",
+    "part.object",
+    "part.solids",
+    "part.faces",
+    "part.start_edges",
+    "part.edges",
+    "part.scale",
+    "part.set",
+    "substrate",
+    "substrate.scan",
+    "substrate.scan_unit",
+    "substrate.scan_fit",
+    "substrate.scan_pairs",
+    "fixtures",
+    "strategy.kind",
+    "strategy.guide",
+    "strategy.start_faces",
+    "features",
+    "sequence",
+}
+WORDS = {
+    f.LENGTH: "length",
+    f.ANGLE: "angle",
+    f.SPEED: "speed",
+    f.TIME: "time",
+    f.RATIO: "percentage",
+    f.NUMBER: "number",
+    f.COUNT: "whole number",
+    f.TEXT: "text",
+    f.POSE: "pose",
+    f.ANGLE_RANGE: "two angles",
+    f.RATIO_RANGE: "two percentages",
+    f.TURN_RATE: "turn",
+}
 
 
 def parameters(prefix, cls):
@@ -67,8 +95,14 @@ def default_text(spec, value):
     if isinstance(value, tuple):
         if spec.kind == f.POSE:
             value = [*value[:3], *(number / f.TO_INNER[f.ANGLE] for number in value[3:])]
-        texts = [f.outer_text(dataclasses.replace(spec, kind=f.END_OF[spec.kind]), v) if spec.kind in f.END_OF
-                 else v if isinstance(v, str) else f"{v:.9g}" for v in value]
+        texts = [
+            f.outer_text(dataclasses.replace(spec, kind=f.END_OF[spec.kind]), v)
+            if spec.kind in f.END_OF
+            else v
+            if isinstance(v, str)
+            else f"{v:.9g}"
+            for v in value
+        ]
         return f"[{', '.join(texts)}]"
     return f.outer_text(spec, value)
 
@@ -102,9 +136,15 @@ JOB_ROWS = list(table_rows(DOCS / "job-file.md"))
 @pytest.mark.parametrize("key,field", FIELDS, ids=[key for key, _ in FIELDS])
 def test_every_key_of_a_job_is_documented(key, field):
     spec = f.spec_of(field)
-    wanted = [f"`{key}`", f"`{default_text(spec, field.default)}`", values_text(spec, str(field.type))]
+    wanted = [
+        f"`{key}`",
+        f"`{default_text(spec, field.default)}`",
+        values_text(spec, str(field.type)),
+    ]
     row = f"| {' | '.join(wanted)} | {spec.help} |"
-    assert wanted in [cells[:3] for cells in JOB_ROWS], f"docs/job-file.md lacks or contradicts the row\n{row}"
+    assert wanted in [cells[:3] for cells in JOB_ROWS], (
+        f"docs/job-file.md lacks or contradicts the row\n{row}"
+    )
 
 
 def test_no_key_is_documented_that_a_job_does_not_have():
@@ -120,8 +160,11 @@ def test_sections_and_strategies_are_those_of_a_job():
 
 def test_jobs_shown_are_read(tmp_path):
     """Every YAML block of README and job-file.md that has a part is a job the program accepts."""
-    blocks = [block for page in (ROOT / "README.md", DOCS / "job-file.md")
-              for block in re.findall(r"```yaml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)]
+    blocks = [
+        block
+        for page in (ROOT / "README.md", DOCS / "job-file.md")
+        for block in re.findall(r"```yaml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    ]
     jobs = [block for block in blocks if re.search(r"^part:", block, re.MULTILINE)]
     assert len(jobs) >= 2
     for number, block in enumerate(jobs):
@@ -135,7 +178,9 @@ def test_jobs_shown_are_read(tmp_path):
 
 def imports_table():
     """OURS, FOREIGN and ALONE of tests/test_imports.py."""
-    spec = importlib.util.spec_from_file_location("imports_table", ROOT / "tests" / "test_imports.py")
+    spec = importlib.util.spec_from_file_location(
+        "imports_table", ROOT / "tests" / "test_imports.py"
+    )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.OURS, module.FOREIGN, module.ALONE
@@ -149,13 +194,19 @@ def test_architecture_has_the_table_of_imports():
     ours, foreign, alone = imports_table()
     text = (DOCS / "architecture.md").read_text(encoding="utf-8")
     section = text.split("## Who may import whom")[1].split("\n## ")[0]
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines() if line.startswith("| `")]
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in section.splitlines()
+        if line.startswith("| `")
+    ]
     shown = {cells[0].strip("`"): listed(cells[1]) for cells in rows if len(cells) == 3}
     assert shown == ours
     for cells in rows:
         assert listed(cells[2]) == foreign[cells[0].strip("`").split("/")[0]], cells[0]
     told = re.search(r"Single files may import more: (.+?)\.", section)[1]
-    assert {file: listed(more) for file, more in re.findall(r"`([^`]+)` has (`[^;]+`)", told)} == alone
+    assert {
+        file: listed(more) for file, more in re.findall(r"`([^`]+)` has (`[^;]+`)", told)
+    } == alone
 
 
 def test_decisions_are_numbered_and_whole():
@@ -167,7 +218,9 @@ def test_decisions_are_numbered_and_whole():
         assert text.startswith(f"# {path.name[:4]} "), path.name
         for heading in ("**Status**", "**Context**", "**Decision**", "**Consequences**"):
             assert heading in text, f"{path.name} lacks {heading}"
-        assert f"decisions/{path.name}" in (DOCS / "architecture.md").read_text(encoding="utf-8"), path.name
+        assert f"decisions/{path.name}" in (DOCS / "architecture.md").read_text(encoding="utf-8"), (
+            path.name
+        )
 
 
 def test_every_tool_has_a_page_and_the_index_lists_it():
@@ -181,6 +234,10 @@ def test_every_tool_has_a_page_and_the_index_lists_it():
     assert all(page == f"{icon.replace('_', '-')}.md" for icon, _, page in listed)
     groups = re.search(r"^GROUPS = \((.*?)^\)", source, re.DOTALL | re.MULTILINE)[1]
     commands = dict(re.findall(r'"(\w+)": Tool\(\s*"(\w+)"', source))
-    assert [icon for icon, _, _ in listed] == [commands[name] for name in re.findall(r'"(\w+)"', groups)]
+    assert [icon for icon, _, _ in listed] == [
+        commands[name] for name in re.findall(r'"(\w+)"', groups)
+    ]
     for name, page in pages:
-        assert (DOCS / "tools" / page).read_text(encoding="utf-8").splitlines()[0] == f"# {name.rstrip('…')}", page
+        assert (DOCS / "tools" / page).read_text(encoding="utf-8").splitlines()[
+            0
+        ] == f"# {name.rstrip('…')}", page

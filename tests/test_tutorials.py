@@ -18,11 +18,21 @@ def lessons():
     """(page, steps, pictures) of each test: the literals of its calls, in the order of the file."""
     for path in sorted((ROOT / "tests" / "gui" / "tutorials").glob("test_*.py")):
         tree = ast.parse(path.read_text(encoding="utf-8"))
-        page = next(node.value.value for node in tree.body
-                    if isinstance(node, ast.Assign) and node.targets[0].id == "PAGE")
-        calls = sorted((node for node in ast.walk(tree) if isinstance(node, ast.Call)
-                        and isinstance(node.func, ast.Attribute) and node.func.attr in ("step", "picture")),
-                       key=lambda node: node.lineno)
+        page = next(
+            node.value.value
+            for node in tree.body
+            if isinstance(node, ast.Assign) and node.targets[0].id == "PAGE"
+        )
+        calls = sorted(
+            (
+                node
+                for node in ast.walk(tree)
+                if isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Attribute)
+                and node.func.attr in ("step", "picture")
+            ),
+            key=lambda node: node.lineno,
+        )
         yield page, [(call.func.attr, call.args[0].value) for call in calls]
 
 
@@ -33,7 +43,9 @@ DONE = dict(lessons())
 def test_a_tutorial_is_what_its_test_does(page):
     text = page.read_text(encoding="utf-8")
     found = re.findall(r"^## (\d+\. .+)$|!\[[^\]]+\]\(images/([\w-]+)\.png\)", text, re.MULTILINE)
-    told = [("step", heading.strip()) if heading else ("picture", picture) for heading, picture in found]
+    told = [
+        ("step", heading.strip()) if heading else ("picture", picture) for heading, picture in found
+    ]
     assert told == DONE[page.stem]
     assert 5 <= sum(kind == "picture" for kind, _ in told) <= 9
 

@@ -90,9 +90,13 @@ def program_of(path, cell, **options):
                     "interpolation": "linear" if kind == "deposit" else "joint",
                 }
             shown = cell.machine.to_controller(path.joints[rows])
-            moves = Moves(kind, int(layer), 0, shown, path.duration[rows], path.speed[rows], **extra)
+            moves = Moves(
+                kind, int(layer), 0, shown, path.duration[rows], path.speed[rows], **extra
+            )
             blocks += [DepositOn(0.5), moves, DepositOff(0.2)] if kind == "deposit" else [moves]
-    return Program("hemisphere", cell.machine.title, tuple(blocks), tuple(endless.tolist()), **options)
+    return Program(
+        "hemisphere", cell.machine.title, tuple(blocks), tuple(endless.tolist()), **options
+    )
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +153,10 @@ def test_a_dry_run_passes_and_differs_in_the_deposit_alone(cell, motion, program
     assert verify(cell, motion, dry, fanuc.write(dry)).issues == ()
     # the lead times go with it
     assert codes(verify(cell, motion, dry, files)) == {"VERIFY_DEPOSIT", "VERIFY_WAIT"}
-    assert codes(verify(cell, motion, program, fanuc.write(dry))) == {"VERIFY_DEPOSIT", "VERIFY_WAIT"}
+    assert codes(verify(cell, motion, program, fanuc.write(dry))) == {
+        "VERIFY_DEPOSIT",
+        "VERIFY_WAIT",
+    }
 
 
 @pytest.mark.parametrize("axis", range(6))
@@ -160,17 +167,24 @@ def test_one_joint_moved_is_caught_at_its_point(cell, motion, program, axis, cha
     joints[70, axis] += np.radians(change)
     blocks = (*program.blocks[:3], dataclasses.replace(moves, joints=joints), *program.blocks[4:])
     result = verify(cell, motion, program, fanuc.write(dataclasses.replace(program, blocks=blocks)))
-    for code in {"VERIFY_JOINT", *(["VERIFY_POINT"] if axis < 5 else [])}:  # axis 6 may move within what digits explain
+    for code in {
+        "VERIFY_JOINT",
+        *(["VERIFY_POINT"] if axis < 5 else []),
+    }:  # axis 6 may move within what digits explain
         first = next(issue for issue in result.issues if issue.code == code)
         assert (first.layer, first.bead, first.point) == (0, 0, 71)
 
 
 def test_a_point_left_out_is_caught(cell, motion, program, files):
-    assert codes(verify(cell, motion, program, edited(files, r" *\d+:J P\[80\][^\n]*\n", ""))) == {"VERIFY_COUNT"}
+    assert codes(verify(cell, motion, program, edited(files, r" *\d+:J P\[80\][^\n]*\n", ""))) == {
+        "VERIFY_COUNT"
+    }
 
 
 def test_a_point_left_out_with_another_one_repeated_is_caught(cell, motion, program, files):
-    assert "VERIFY_POINT" in codes(verify(cell, motion, program, edited(files, r"J P\[80\]", "J P[81]")))
+    assert "VERIFY_POINT" in codes(
+        verify(cell, motion, program, edited(files, r"J P\[80\]", "J P[81]"))
+    )
 
 
 def test_the_deposit_switched_at_the_wrong_place_is_caught(cell, motion, program, files):
@@ -181,7 +195,9 @@ def test_the_deposit_switched_at_the_wrong_place_is_caught(cell, motion, program
 
 
 def test_the_deposit_switched_one_move_late_is_caught(cell, motion, program, files):
-    late = edited(files, r"(  DO\[1\]=ON ;\r\n)( *\d+:  WAIT[^\n]*\n)( *\d+:)(J [^\n]*\n)", r"\4\2\3\1")
+    late = edited(
+        files, r"(  DO\[1\]=ON ;\r\n)( *\d+:  WAIT[^\n]*\n)( *\d+:)(J [^\n]*\n)", r"\4\2\3\1"
+    )
     result = verify(cell, motion, program, late)
     assert [(i.code, i.layer, i.bead, i.point) for i in result.issues] == [
         ("VERIFY_DEPOSIT", 0, 0, 1), ("VERIFY_WAIT", 0, 0, 1),
@@ -196,16 +212,24 @@ def test_a_time_halved_is_caught(cell, motion, program, files):
     assert codes(verify(cell, motion, program, percent)) == {"VERIFY_TIME"}
 
 
-def test_times_that_are_off_by_a_millisecond_each_are_caught_in_the_bead(cell, motion, program, files):
+def test_times_that_are_off_by_a_millisecond_each_are_caught_in_the_bead(
+    cell, motion, program, files
+):
     text = files["HEMISPHERE.LS"].decode()
     slowed = re.sub(r"(\d+)msec CNT", lambda m: f"{int(m[1]) + 1}msec CNT", text)
-    assert codes(verify(cell, motion, program, {"HEMISPHERE.LS": slowed.encode()})) == {"VERIFY_TIME"}
+    assert codes(verify(cell, motion, program, {"HEMISPHERE.LS": slowed.encode()})) == {
+        "VERIFY_TIME"
+    }
 
 
-def test_times_that_are_each_within_a_millisecond_are_caught_where_they_add_up(cell, motion, program, files):
+def test_times_that_are_each_within_a_millisecond_are_caught_where_they_add_up(
+    cell, motion, program, files
+):
     """Every move longer by what a whole millisecond forgives: a bead of 200 moves is off by a tenth of a second."""
     text = files["HEMISPHERE.LS"].decode()
-    laid = [block for block in program.blocks if isinstance(block, Moves) and block.kind == "deposit"]
+    laid = [
+        block for block in program.blocks if isinstance(block, Moves) and block.kind == "deposit"
+    ]
     planned = iter(np.concatenate([moves.duration for moves in laid]))
 
     def longer(found):
@@ -220,14 +244,18 @@ def test_times_that_are_each_within_a_millisecond_are_caught_where_they_add_up(c
 def test_layers_in_the_wrong_order_are_caught(cell, motion, program):
     parts = fanuc.write(dataclasses.replace(program, max_points=150))
     swaps = {b"CALL HEMISPHERE01": b"CALL HEMISPHERE02", b"CALL HEMISPHERE02": b"CALL HEMISPHERE01"}
-    parts["HEMISPHERE.LS"] = re.sub(rb"CALL HEMISPHERE0[12]", lambda m: swaps[m[0]], parts["HEMISPHERE.LS"])
+    parts["HEMISPHERE.LS"] = re.sub(
+        rb"CALL HEMISPHERE0[12]", lambda m: swaps[m[0]], parts["HEMISPHERE.LS"]
+    )
     assert "VERIFY_POINT" in codes(verify(cell, motion, program, parts))
 
 
 def test_a_path_that_bulges_between_its_points_is_caught(cell, motion, program):
     """Every third point of a bead alone is on the circle; the way between is not within the chord error."""
     kept = ~motion.deposit | (motion.point % 3 == 0)
-    thin = Motion(**{f.name: np.array(getattr(motion, f.name)[kept]) for f in dataclasses.fields(Motion)})
+    thin = Motion(
+        **{f.name: np.array(getattr(motion, f.name)[kept]) for f in dataclasses.fields(Motion)}
+    )
     length = np.r_[0.0, np.linalg.norm(np.diff(thin.position, axis=0), axis=1)]
     thin = dataclasses.replace(thin, duration=length / thin.speed)
     coarse = program_of(thin, cell)
@@ -255,7 +283,9 @@ def test_the_pendant_angle_of_axis_3_counts(cell, motion, program):
 def test_text_that_is_not_understood_is_refused(cell, motion, program, files):
     with pytest.raises(InputError) as raised:
         verify(cell, motion, program, edited(files, r"UTOOL_NUM=1", "OVERRIDE=100%"))
-    assert raised.value.code == "UNREADABLE_PROGRAM" and raised.value.where == "HEMISPHERE.LS line 23"
+    assert (
+        raised.value.code == "UNREADABLE_PROGRAM" and raised.value.where == "HEMISPHERE.LS line 23"
+    )
 
 
 def test_one_solver_alone_is_said(cell, motion, program, files, monkeypatch):
@@ -293,7 +323,9 @@ def test_the_bound_holds_and_is_tight_for_random_machines():
         assert 0.2 * path.tool_bound[0] < tilt <= path.tool_bound[0]
 
 
-def test_a_rapid_that_leaves_its_way_is_caught_even_where_coarse_digits_explain_it(cell, motion, program, files):
+def test_a_rapid_that_leaves_its_way_is_caught_even_where_coarse_digits_explain_it(
+    cell, motion, program, files
+):
     """As near a singularity, where a last digit turns other axes far: by half a millimetre no clearance is spent."""
 
     class Coarse:
@@ -321,7 +353,9 @@ def short_of(cell, axis, upper):
 
 @pytest.mark.parametrize("axis", range(6))
 @pytest.mark.parametrize("cartesian", [False, True], ids=["joint", "cartesian"])
-def test_a_text_that_leads_beyond_a_limit_is_caught_at_its_point(cell, motion, program, files, table, axis, cartesian):
+def test_a_text_that_leads_beyond_a_limit_is_caught_at_its_point(
+    cell, motion, program, files, table, axis, cartesian
+):
     """Rapids too: of what is rounded to a thousandth of a degree half of one is forgiven, of positions what they explain."""
     if cartesian:
         cell, motion, program = table
@@ -352,23 +386,37 @@ def test_cartesian_programs_pass(table):
 
 @pytest.mark.parametrize(
     ("word", "code"),
-    [("X", "VERIFY_POINT"), ("Z", "VERIFY_POINT"), ("W", "VERIFY_TOOL"), ("P", "VERIFY_TOOL"), ("R", "VERIFY_TOOL")],
+    [
+        ("X", "VERIFY_POINT"),
+        ("Z", "VERIFY_POINT"),
+        ("W", "VERIFY_TOOL"),
+        ("P", "VERIFY_TOOL"),
+        ("R", "VERIFY_TOOL"),
+    ],
 )
 def test_cartesian_positions_that_are_off_are_caught(table, word, code):
     cell, motion, program = table
     text = fanuc.write(program)["HEMISPHERE.LS"].decode()
-    moved = re.sub(rf"(?<=\t){word} = *(-?\d*\.\d+)", lambda m: f"{word} ={float(m[1]) + 0.02:10.3f}", text)
+    moved = re.sub(
+        rf"(?<=\t){word} = *(-?\d*\.\d+)", lambda m: f"{word} ={float(m[1]) + 0.02:10.3f}", text
+    )
     # and the rapids lead elsewhere as far as the digits tell
-    found = codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()})) - {"VERIFY_BETWEEN"}
+    found = codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()})) - {
+        "VERIFY_BETWEEN"
+    }
     assert found == ({code, "VERIFY_ROTATION"} if word in "WPR" else {code})
 
 
 def test_a_tool_turned_about_its_own_axis_is_caught(table):
     cell, motion, program = table
     text = fanuc.write(program)["HEMISPHERE.LS"].decode()
-    upright = re.search(r"\tR = *(-?\d*\.\d+) deg", text)  # the first layer stands upright: R turns about the tool
+    upright = re.search(
+        r"\tR = *(-?\d*\.\d+) deg", text
+    )  # the first layer stands upright: R turns about the tool
     moved = text[: upright.start(1)] + f"{float(upright[1]) + 1.0:.3f}" + text[upright.end(1) :]
-    assert codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()})) == {"VERIFY_ROTATION"}
+    assert codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()})) == {
+        "VERIFY_ROTATION"
+    }
 
 
 def test_cartesian_speeds_that_are_off_are_caught(table):
@@ -386,11 +434,14 @@ def test_cartesian_rapids_that_are_faster_are_caught(table):
 def test_joint_programs_with_the_tool_on_the_robot_pass(table):
     cell, motion, program = table
     blocks = tuple(
-        dataclasses.replace(block, interpolation="joint") if isinstance(block, Moves) else block for block in program.blocks
+        dataclasses.replace(block, interpolation="joint") if isinstance(block, Moves) else block
+        for block in program.blocks
     )
     joint = dataclasses.replace(program, motion="joint", blocks=blocks)
     result = verify(cell, motion, joint, fanuc.write(joint))
-    assert codes(result) <= {"VERIFY_BETWEEN"}  # joint moves do not run straight; points would be added
+    assert codes(result) <= {
+        "VERIFY_BETWEEN"
+    }  # joint moves do not run straight; points would be added
     assert result.at_points_mm <= result.bound_mm
 
 
@@ -411,13 +462,22 @@ def test_the_program_origin_moves_the_user_frame_and_nothing_else(table):
     assert np.abs(spots[0][0] - spots[1][0]).max() > 5.0
     assert np.abs(spots[0][1] - spots[1][1]).max() < 2e-3
     # a user frame that is not the one told of is caught
-    wrong = dataclasses.replace(program, station=(*program.station[:2], program.station[2] + 0.1, *program.station[3:]))
+    wrong = dataclasses.replace(
+        program, station=(*program.station[:2], program.station[2] + 0.1, *program.station[3:])
+    )
     assert "VERIFY_POINT" in codes(verify(cell, motion, wrong, files))
 
 
-@pytest.mark.parametrize(("told", "meant", "alike"), [
-    ("0.001", 0.0001, True), ("0.010", 0.0001, False), ("0.500", 0.5004, True), ("0.500", 0.52, False), ("2.5", 2.5, True),
-])
+@pytest.mark.parametrize(
+    ("told", "meant", "alike"),
+    [
+        ("0.001", 0.0001, True),
+        ("0.010", 0.0001, False),
+        ("0.500", 0.5004, True),
+        ("0.500", 0.52, False),
+        ("2.5", 2.5, True),
+    ],
+)
 def test_a_wait_is_told_to_its_last_digit(told, meant, alike):
     """One that is shorter than that may be one of it, and no more; half a digit is rounding."""
     half = 0.5 * 10.0 ** -len(told.split(".")[1])
@@ -438,7 +498,14 @@ class _Standing:
 @pytest.fixture(scope="module")
 def long_text(cell):
     """Joint values of more rows than are all driven through PyKDL, in a corner of their ranges, axis 1 at 0."""
-    joints = np.random.default_rng(8).uniform(0.0, 0.1, (points.EVERY * 3**6 + 5, 6)) * [0.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    joints = np.random.default_rng(8).uniform(0.0, 0.1, (points.EVERY * 3**6 + 5, 6)) * [
+        0.0,
+        1.0,
+        1.0,
+        1.0,
+        1.0,
+        1.0,
+    ]
     return _Standing(joints), cell.machine.to_controller(joints), cell.machine.chain.forward(joints)
 
 
@@ -452,11 +519,17 @@ def test_of_a_long_text_some_rows_are_driven_by_the_second_solver(cell, long_tex
 
     monkeypatch.setattr(points.kdl_chain, "KdlArm", Counted)
     assert points.second_opinion(cell, *long_text) == ([], ("chain", "pykdl"))
-    assert 3**6 + len(long_text[1]) / points.EVERY <= sum(driven) <= 3**6 + len(long_text[1]) / points.EVERY + 1
+    assert (
+        3**6 + len(long_text[1]) / points.EVERY
+        <= sum(driven)
+        <= 3**6 + len(long_text[1]) / points.EVERY + 1
+    )
 
 
 @pytest.mark.parametrize("axis", range(6))
-def test_solvers_that_disagree_elsewhere_are_caught_by_any_long_text(cell, long_text, monkeypatch, axis):
+def test_solvers_that_disagree_elsewhere_are_caught_by_any_long_text(
+    cell, long_text, monkeypatch, axis
+):
     """They differ where an axis is, by a tenth of a micrometre at most: nowhere on a text that leaves this axis there."""
     planned, _, _ = long_text
     joints = planned.joints.copy()
@@ -471,7 +544,7 @@ def test_solvers_that_disagree_elsewhere_are_caught_by_any_long_text(cell, long_
     text = _Standing(joints), cell.machine.to_controller(joints), cell.machine.chain.forward(joints)
     monkeypatch.setattr(points.kdl_chain, "KdlArm", Off)
     monkeypatch.setattr(points, "EVERY", 1)
-    (code, wrong), = points.second_opinion(cell, *text)[0]
+    ((code, wrong),) = points.second_opinion(cell, *text)[0]
     assert code == "VERIFY_SOLVERS" and len(wrong) == len(joints)
 
 
@@ -479,7 +552,7 @@ def test_a_row_that_is_driven_wrongly_is_caught_in_a_long_text(cell, long_text, 
     planned, shown, flange = long_text
     turned = flange.copy()
     turned[4000, 0, 0] += 1e-8
-    (code, wrong), = points.second_opinion(cell, planned, shown, turned)[0]
+    ((code, wrong),) = points.second_opinion(cell, planned, shown, turned)[0]
     assert code == "VERIFY_SOLVERS" and wrong.tolist() == [4000]
 
 
@@ -488,7 +561,9 @@ def test_what_differs_on_the_grid_bounds_what_differs_anywhere(cell):
     rng, joints = np.random.default_rng(12), np.zeros((1, 6))
     grid = points.grid_of(cell.machine.chain, joints)
     assert len(grid) == 3**6
-    fine = np.stack(np.meshgrid(*[np.arange(0.0, 6.3, 0.1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    fine = np.stack(np.meshgrid(*[np.arange(0.0, 6.3, 0.1)] * 3, indexing="ij"), axis=-1).reshape(
+        -1, 3
+    )
 
     def value(q, factors):
         terms = np.stack([np.ones_like(q), np.cos(q), np.sin(q)])

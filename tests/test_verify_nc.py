@@ -27,7 +27,11 @@ from tests.programs import build
 
 CHORD_ERROR = 0.02
 MACHINES = ("table-xyzac", "table-xyzbc", "head-table-xyzbc")
-WAYS = tuple(itertools.product(("siemens", "linuxcnc"), (("joint", "time"), ("joint", "path"), ("cartesian", "time"))))
+WAYS = tuple(
+    itertools.product(
+        ("siemens", "linuxcnc"), (("joint", "time"), ("joint", "path"), ("cartesian", "time"))
+    )
+)
 # machine and way; the controllers that drive heads are those of the machine file
 CASES = [(name, way) for name in MACHINES for way in WAYS if way[0] in machines.load(name).posts]
 
@@ -45,11 +49,16 @@ def turned_bead(distance, start):
 @functools.cache
 def plan(machine):
     parameters = CellParameters(
-        machine=machine, setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part"
+        machine=machine,
+        setup="rotary-table",
+        platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4),
+        mount="part",
     )
     cell = cells.resolve(parameters, np.eye(4), "developable")
     layers = tuple(Layer((turned_bead(3.0 * k, 0.9 * k),)) for k in range(3))
-    path = plan_joints(Toolpath(layers, np.eye(4), 3.0, CHORD_ERROR, family="developable"), cell, JointParameters())
+    path = plan_joints(
+        Toolpath(layers, np.eye(4), 3.0, CHORD_ERROR, family="developable"), cell, JointParameters()
+    )
     motion, issues = assemble(path, cell, ProcessParameters(travel_speed=8.0))
     assert path.feasible and not issues
     return cell, motion
@@ -59,7 +68,10 @@ def written(planned, way, max_points=2000):
     cell, motion = planned
     post, (kind, feed) = way
     parameters = ProgramParameters(
-        post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed),
+        post=post,
+        motion=kind,
+        max_points=max_points,
+        nc=NcParameters(feed=feed),
         origin=(3.0, 2.0, 1.0, 0.0, 0.0, 0.2) if kind == "cartesian" else "auto",
     )
     process = ProcessParameters(travel_speed=8.0)
@@ -98,29 +110,45 @@ def changed(text, line, word, step):
 def test_every_word_that_is_off_is_caught(machine, way):
     planned = plan(machine)
     program, files = written(planned, way)
-    (name, content), = files.items()
+    ((name, content),) = files.items()
     text = content.decode()
-    beads = [n for n, line in enumerate(text.split("\n")) if " G1 " in f" {line}" and ("A3=" in line or "C" in line)]
+    beads = [
+        n
+        for n, line in enumerate(text.split("\n"))
+        if " G1 " in f" {line}" and ("A3=" in line or "C" in line)
+    ]
     rng = np.random.default_rng(7)
     for line in [beads[1], *rng.choice(beads[1:], 6).tolist(), beads[-1]]:
-        words = re.findall(r"(?:^|\s)([ABC]3(?==)|[XYZABCF](?!3=))=?(?:DC\()?-?\d+\.\d", text.split("\n")[line])
+        words = re.findall(
+            r"(?:^|\s)([ABC]3(?==)|[XYZABCF](?!3=))=?(?:DC\()?-?\d+\.\d", text.split("\n")[line]
+        )
         assert set("XYZF") < set(words)
         for word in words:
             # a feed has seven digits, a direction is told by three numbers of six
             step = {"F": 40, "A3": 40, "B3": 40, "C3": 40}.get(word, 3)
             if word in ("A3", "B3", "C3"):
-                values = [float(v) for v in re.findall(r"[ABC]3=(-?\d+\.\d+)", text.split("\n")[line])]
+                values = [
+                    float(v) for v in re.findall(r"[ABC]3=(-?\d+\.\d+)", text.split("\n")[line])
+                ]
                 if abs(values["ABC".index(word[0])]) > 0.95:
                     continue  # along the direction a number may change without turning it
-            found, _ = codes(planned, program, {name: changed(text, line, word, step).encode()}, way)
-            assert found & {"VERIFY_POINT", "VERIFY_JOINT", "VERIFY_TOOL", "VERIFY_TIME", "VERIFY_SPEED"}, (line, word)
+            found, _ = codes(
+                planned, program, {name: changed(text, line, word, step).encode()}, way
+            )
+            assert found & {
+                "VERIFY_POINT",
+                "VERIFY_JOINT",
+                "VERIFY_TOOL",
+                "VERIFY_TIME",
+                "VERIFY_SPEED",
+            }, (line, word)
 
 
 @pytest.mark.parametrize(("machine", "way"), CASES)
 def test_a_deposit_switched_elsewhere_is_caught(machine, way):
     planned = plan(machine)
     program, files = written(planned, way)
-    (name, content), = files.items()
+    ((name, content),) = files.items()
     text = content.decode()
     off = re.search(r"\nN\d+ H1=0" if way[0] == "siemens" else r"\nM65 P0", text)
     moved = text[: off.start()] + text[off.end() :]
@@ -135,13 +163,15 @@ def test_another_turn_is_caught_by_counting_axes_and_is_none_to_endless_ones():
     planned = plan("table-xyzac")
     for post in ("siemens", "linuxcnc"):
         program, files = written(planned, (post, ("joint", "time")))
-        (name, content), = files.items()
+        ((name, content),) = files.items()
         lines = content.decode().split("\n")
         rows = [n for n, line in enumerate(lines) if " C" in line and "G1 " in line]
         assert ("C=DC(" in lines[rows[9]]) == (post == "siemens")
         for row in rows[9:]:
             if post == "linuxcnc":
-                lines[row] = re.sub(r"(?<= C)(-?\d+\.\d+)", lambda m: f"{float(m[0]) + 360.0:.5f}", lines[row])
+                lines[row] = re.sub(
+                    r"(?<= C)(-?\d+\.\d+)", lambda m: f"{float(m[0]) + 360.0:.5f}", lines[row]
+                )
         found, _ = codes(planned, program, {name: "\n".join(lines).encode()}, (post, None))
         assert ("VERIFY_JOINT" in found) == (post == "linuxcnc")
 
@@ -150,5 +180,7 @@ def test_the_work_offset_is_taken_from_the_program():
     planned = plan("table-xyzbc")
     way = ("linuxcnc", ("cartesian", "time"))
     program, files = written(planned, way)
-    elsewhere = dataclasses.replace(program, carried=(program.carried[0] + 0.01, *program.carried[1:]))
+    elsewhere = dataclasses.replace(
+        program, carried=(program.carried[0] + 0.01, *program.carried[1:])
+    )
     assert "VERIFY_POINT" in codes(planned, elsewhere, files, way)[0]

@@ -36,10 +36,14 @@ def planned():
 
     wall = RevolvedWall(Meridian.chained([sampled(curve, [0, 1.2])]), np.eye(4))
     strategy = RevolutionParameters(layer_height=6.0, chord_error=CHORD_ERROR)
-    toolpath = revolution.plan(wall, strategy, BuildDirectionParameters(), ProcessParameters(), NozzleParameters(), 60.0)
+    toolpath = revolution.plan(
+        wall, strategy, BuildDirectionParameters(), ProcessParameters(), NozzleParameters(), 60.0
+    )
     cell = cells.resolve(
         CellParameters(
-            machine="staubli-rx60bl", deposition_point=(300.0, 0.0, 300.0, np.pi, 0.0, 0.0), platform_diameter=60.0
+            machine="staubli-rx60bl",
+            deposition_point=(300.0, 0.0, 300.0, np.pi, 0.0, 0.0),
+            platform_diameter=60.0,
         ),
         toolpath.frame,
     )
@@ -77,7 +81,9 @@ def test_without_the_added_points_the_moving_tool_leaves_the_bead(planned):
     parameters = ProgramParameters(post="staubli", motion="cartesian")
     program = build(motion, cell, ProcessParameters(), parameters, "dome")
     result = verify(cell, motion, program, staubli.write(program))
-    assert {issue.code for issue in result.issues} == {"VERIFY_BETWEEN"} and result.between_mm > 1.5 * CHORD_ERROR
+    assert {issue.code for issue in result.issues} == {
+        "VERIFY_BETWEEN"
+    } and result.between_mm > 1.5 * CHORD_ERROR
 
 
 def test_added_points_lie_on_the_circles_and_the_arm_reaches_them(planned):
@@ -87,7 +93,10 @@ def test_added_points_lie_on_the_circles_and_the_arm_reaches_them(planned):
     for layer, bead in {(0, 0), (int(motion.layer.max()), 0)}:
         rows, more = ((m.deposit & (m.layer == layer) & (m.bead == bead)) for m in (motion, finer))
         assert finer.point[more].tolist() == list(range(int(more.sum())))
-        radius, height = (np.hypot(finer.position[more, 0], finer.position[more, 1]), finer.position[more, 2])
+        radius, height = (
+            np.hypot(finer.position[more, 0], finer.position[more, 1]),
+            finer.position[more, 2],
+        )
         assert np.abs(radius - radius[0]).max() < 1e-6 < CHORD_ERROR / 100 and np.ptp(height) < 1e-9
         assert int(rows.sum()) <= int(more.sum())
     tip, tool = cell.tip_in_part(KdlArm(cell.machine).forward(finer.joints))
@@ -119,7 +128,9 @@ def test_another_deposition_point_than_the_planned_one_is_caught(written):
     cell, motion, program, files = written
     if program.motion == "joint":
         return  # joint values stand on their own
-    moved = {name: content.replace(b'x="300.0000"', b'x="300.0500"') for name, content in files.items()}
+    moved = {
+        name: content.replace(b'x="300.0000"', b'x="300.0500"') for name, content in files.items()
+    }
     assert moved != files
     assert "VERIFY_POINT" in {issue.code for issue in verify(cell, motion, program, moved).issues}
 
@@ -142,10 +153,17 @@ def test_the_program_origin_changes_the_text_and_not_the_motion(planned):
         linear = read.deposit
         texts.append(files)
         flanges.append(read.frame @ np.linalg.inv(read.tool[linear]))
-        assert np.abs(flanges[-1] - cell.machine.chain.forward(motion.joints[motion.moves])[linear]).max() < 1e-3
+        assert (
+            np.abs(
+                flanges[-1] - cell.machine.chain.forward(motion.joints[motion.moves])[linear]
+            ).max()
+            < 1e-3
+        )
         # a gauge is the point of the part seen from the origin
         moves = np.concatenate([run.position for run in program.moves if run.kind == "deposit"])
-        seen = (motion.position[motion.moves][linear] - (np.array(origin[:3]) if origin != "auto" else cell.mount[:3, 3]))
+        seen = motion.position[motion.moves][linear] - (
+            np.array(origin[:3]) if origin != "auto" else cell.mount[:3, 3]
+        )
         assert np.abs(np.linalg.norm(moves, axis=1) - np.linalg.norm(seen, axis=1)).max() < 1e-9
     assert texts[0]["dome/dome.dtx"] != texts[1]["dome/dome.dtx"]
     assert np.abs(flanges[0] - flanges[1]).max() < 5e-4

@@ -41,11 +41,16 @@ def turned_bead(distance, start):
 @pytest.fixture(scope="module", params=["table-xyzac", "table-xyzbc", "head-table-xyzbc"])
 def planned(request):
     parameters = CellParameters(
-        machine=request.param, setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part"
+        machine=request.param,
+        setup="rotary-table",
+        platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4),
+        mount="part",
     )
     cell = cells.resolve(parameters, np.eye(4), "developable")
     layers = tuple(Layer((turned_bead(3.0 * k, 0.9 * k),)) for k in range(3))
-    path = plan_joints(Toolpath(layers, np.eye(4), 3.0, CHORD_ERROR, family="developable"), cell, JointParameters())
+    path = plan_joints(
+        Toolpath(layers, np.eye(4), 3.0, CHORD_ERROR, family="developable"), cell, JointParameters()
+    )
     motion, issues = assemble(path, cell, ProcessParameters(travel_speed=8.0))
     assert path.feasible and not issues
     return cell, motion
@@ -55,10 +60,14 @@ def told(program):
     """The events of a text that says what was planned: layers, and output 1 with no time before or after."""
     events, row = [], 0
     for block in program.blocks:
-        kind = {"LayerStart": "layer", "DepositOn": "on", "DepositOff": "off"}.get(type(block).__name__)
+        kind = {"LayerStart": "layer", "DepositOn": "on", "DepositOff": "off"}.get(
+            type(block).__name__
+        )
         row += len(block) if kind is None else 0
         if kind:
-            events.append(Event(row, kind, (float(block.layer),) if kind == "layer" else (1.0, "H1")))
+            events.append(
+                Event(row, kind, (float(block.layer),) if kind == "layer" else (1.0, "H1"))
+            )
         if kind in ("on", "off") and block.lead:
             events.insert(len(events) - (kind == "off"), Event(row, "wait", (block.lead,)))
     return tuple(events)
@@ -75,7 +84,8 @@ def written(cell, motion, way):
     """The program, and what a reader finds in a text of it: rounded as texts are."""
     cartesian = way in CARTESIAN
     parameters = ProgramParameters(
-        post="siemens", motion="cartesian" if cartesian else "joint",
+        post="siemens",
+        motion="cartesian" if cartesian else "joint",
         origin=(3.0, 2.0, 1.0, 0.0, 0.0, 0.2) if cartesian else "auto",
     )
     program = build(motion, cell, ProcessParameters(travel_speed=8.0), parameters, "cone")
@@ -89,21 +99,36 @@ def written(cell, motion, way):
     slides = cell.machine.chain.sliding
     joints = np.where(slides, rounded(column("joints"), MM), rounded(column("joints"), RAD))
     duration = column("duration")
-    deposit = np.concatenate([np.full(len(moves), moves.kind == "deposit") for moves in program.moves])
+    deposit = np.concatenate(
+        [np.full(len(moves), moves.kind == "deposit") for moves in program.moves]
+    )
     rest = [deposit & cartesian, motion.stops[motion.moves], told(program)]
     if way == "joints":
         times = duration * (1.0 + RELATIVE * np.sin(np.arange(len(duration))))
         return program, ReadMoves(
-            joints, RAD, times, deposit, *rest, linear_digits=MM, duration_digits=duration * RELATIVE,
+            joints,
+            RAD,
+            times,
+            deposit,
+            *rest,
+            linear_digits=MM,
+            duration_digits=duration * RELATIVE,
         )
     position = rounded(column("position"), MM)
-    known = {"position": position, "position_digits": MM, "speed": np.round(column("speed"), 3), "speed_digits": 5e-4}
+    known = {
+        "position": position,
+        "position_digits": MM,
+        "speed": np.round(column("speed"), 3),
+        "speed_digits": 5e-4,
+    }
     nothing = np.full(len(duration), np.nan)
     if way == "directions":
         direction = rounded(column("direction"), UNIT)
         known |= {"direction": direction, "direction_digits": UNIT}
         return program, ReadMoves(None, 0.0, first(nothing), deposit, *rest, **known)
-    return program, ReadMoves(np.where(slides, np.nan, joints), RAD, first(nothing), deposit, *rest, **known)
+    return program, ReadMoves(
+        np.where(slides, np.nan, joints), RAD, first(nothing), deposit, *rest, **known
+    )
 
 
 def verify(cell, motion, program, read):
@@ -134,7 +159,10 @@ def test_an_axis_value_that_is_off_is_caught(planned, axis, row):
     joints[row, axis] += 3.0 * (MM if slides else RAD)
     result = verify(cell, motion, program, dataclasses.replace(read, joints=joints))
     (issue,) = (issue for issue in result.issues if issue.code == "VERIFY_JOINT")
-    assert f"axis {cell.machine.axes[axis]} " in issue.message and (" mm " if slides else " deg ") in issue.message
+    assert (
+        f"axis {cell.machine.axes[axis]} " in issue.message
+        and (" mm " if slides else " deg ") in issue.message
+    )
 
 
 def test_whole_turns_are_turns(planned):
@@ -145,7 +173,9 @@ def test_whole_turns_are_turns(planned):
         for axis in np.flatnonzero(~cell.machine.chain.sliding):
             joints = read.joints.copy()
             joints[60:, axis] += 2.0 * math.pi
-            assert "VERIFY_JOINT" in codes(verify(cell, motion, program, dataclasses.replace(read, joints=joints)))
+            assert "VERIFY_JOINT" in codes(
+                verify(cell, motion, program, dataclasses.replace(read, joints=joints))
+            )
 
 
 def test_times_that_do_not_give_the_speed_are_caught(planned):
@@ -154,12 +184,16 @@ def test_times_that_do_not_give_the_speed_are_caught(planned):
     for factor in (1.0 + 4.0 * RELATIVE, 1.0 - 4.0 * RELATIVE):
         times = read.duration.copy()
         times[40] *= factor
-        assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {"VERIFY_TIME"}
+        assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {
+            "VERIFY_TIME"
+        }
     # a rapid that runs as fast as the machine does has no time; a bead must have one
     times = first(np.where(read.deposit, read.duration, np.nan))
     assert verify(cell, motion, program, dataclasses.replace(read, duration=times)).issues == ()
     times[np.flatnonzero(read.deposit)[5]] = np.nan
-    assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {"VERIFY_TIME"}
+    assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {
+        "VERIFY_TIME"
+    }
 
 
 def test_deposit_and_count_are_caught(planned):
@@ -167,10 +201,17 @@ def test_deposit_and_count_are_caught(planned):
     program, read = written(cell, motion, "joints")
     deposit = read.deposit.copy()
     deposit[20] = ~deposit[20]
-    assert codes(verify(cell, motion, program, dataclasses.replace(read, deposit=deposit))) == {"VERIFY_DEPOSIT"}
+    assert codes(verify(cell, motion, program, dataclasses.replace(read, deposit=deposit))) == {
+        "VERIFY_DEPOSIT"
+    }
     fewer = dataclasses.replace(
-        read, joints=read.joints[1:], duration=read.duration[1:], deposit=read.deposit[1:],
-        duration_digits=read.duration_digits[1:], linear=read.linear[1:], stops=read.stops[1:],
+        read,
+        joints=read.joints[1:],
+        duration=read.duration[1:],
+        deposit=read.deposit[1:],
+        duration_digits=read.duration_digits[1:],
+        linear=read.linear[1:],
+        stops=read.stops[1:],
     )
     assert codes(verify(cell, motion, program, fewer)) == {"VERIFY_COUNT"}
 
@@ -182,25 +223,41 @@ def test_positions_directions_and_speeds_that_are_off_are_caught(planned, way):
     for axis in range(3):
         position = read.position.copy()
         position[33, axis] += 4.0 * MM
-        assert "VERIFY_POINT" in codes(verify(cell, motion, program, dataclasses.replace(read, position=position)))
+        assert "VERIFY_POINT" in codes(
+            verify(cell, motion, program, dataclasses.replace(read, position=position))
+        )
     speed = read.speed.copy()
     speed[33] += 0.002
-    assert codes(verify(cell, motion, program, dataclasses.replace(read, speed=speed))) == {"VERIFY_SPEED"}
-    elsewhere = dataclasses.replace(program, carried=(program.carried[0] + 0.01, *program.carried[1:]))
+    assert codes(verify(cell, motion, program, dataclasses.replace(read, speed=speed))) == {
+        "VERIFY_SPEED"
+    }
+    elsewhere = dataclasses.replace(
+        program, carried=(program.carried[0] + 0.01, *program.carried[1:])
+    )
     assert "VERIFY_POINT" in codes(verify(cell, motion, elsewhere, read))
     if way == "directions":
-        for change in (lambda d: -d, lambda d: d + [5e-6, 0.0, 0.0], lambda d: np.full_like(d, np.nan)):
+        for change in (
+            lambda d: -d,
+            lambda d: d + [5e-6, 0.0, 0.0],
+            lambda d: np.full_like(d, np.nan),
+        ):
             direction = read.direction.copy()
             direction[33] = change(direction[33])
-            assert "VERIFY_TOOL" in codes(verify(cell, motion, program, dataclasses.replace(read, direction=direction)))
+            assert "VERIFY_TOOL" in codes(
+                verify(cell, motion, program, dataclasses.replace(read, direction=direction))
+            )
         # the length of a vector says nothing
-        scaled = dataclasses.replace(read, direction=2.0 * read.direction, direction_digits=2.0 * read.direction_digits)
+        scaled = dataclasses.replace(
+            read, direction=2.0 * read.direction, direction_digits=2.0 * read.direction_digits
+        )
         assert verify(cell, motion, program, scaled).issues == ()
     else:
         for axis in np.flatnonzero(~cell.machine.chain.sliding):
             joints = read.joints.copy()
             joints[33, axis] += 3.0 * RAD
-            assert codes(verify(cell, motion, program, dataclasses.replace(read, joints=joints))) >= {"VERIFY_JOINT"}
+            assert codes(
+                verify(cell, motion, program, dataclasses.replace(read, joints=joints))
+            ) >= {"VERIFY_JOINT"}
         nothing = dataclasses.replace(read, joints=None)
         assert codes(verify(cell, motion, program, nothing)) == {"VERIFY_TOOL", "VERIFY_BETWEEN"}
 
@@ -217,4 +274,7 @@ def test_the_bound_holds_and_is_tight(planned):
         tips, tools = cell.tip_in_part(cell.machine.chain.forward(shown + corners))
         off = np.linalg.norm(tips - path.position, axis=1).max()
         tilt = np.linalg.norm(tools - path.tool, axis=1).max()
-        assert 0.3 * path.bound[0] < off <= path.bound[0] and 0.2 * path.tool_bound[0] < tilt <= path.tool_bound[0]
+        assert (
+            0.3 * path.bound[0] < off <= path.bound[0]
+            and 0.2 * path.tool_bound[0] < tilt <= path.tool_bound[0]
+        )

@@ -13,7 +13,9 @@ def written(seconds):
     """Times (n,) s as a FANUC listing tells them."""
     n = len(seconds)
     moves = Moves("deposit", 0, 0, np.zeros((n, 6)), np.asarray(seconds), np.ones(n))
-    return np.array([float(word.removesuffix("msec")) / 1000.0 for word in fanuc_numbers.time_words(moves)])
+    return np.array(
+        [float(word.removesuffix("msec")) / 1000.0 for word in fanuc_numbers.time_words(moves)]
+    )
 
 
 def slack(seconds):
@@ -28,7 +30,9 @@ def test_what_is_written_is_within_what_is_owed(seed):
     assert told.sum() == pytest.approx(seconds.sum(), abs=5.1e-4) and told.min() >= 0.001
     assert (told - seconds <= 0.001 + 1e-9).all()
     assert (seconds - told <= slack(seconds)).all()
-    assert (seconds - told > 0.001 + 1e-9).any()  # without what is owed some of them would be refused
+    assert (
+        seconds - told > 0.001 + 1e-9
+    ).any()  # without what is owed some of them would be refused
 
 
 def test_nothing_is_owed_where_every_move_has_a_millisecond():

@@ -17,7 +17,9 @@ SIGNS = (("&lt;", "<"), ("&gt;", ">"), ("&quot;", '"'), ("&apos;", "'"), ("&amp;
 def table():
     """The French of all texts."""
     text = TABLE.read_text(encoding="utf-8")
-    found = re.findall(r"<source>(.*?)</source>\s*<translation>(.*?)</translation>", text, re.DOTALL)
+    found = re.findall(
+        r"<source>(.*?)</source>\s*<translation>(.*?)</translation>", text, re.DOTALL
+    )
     return {plain(source): plain(told) for source, told in found}
 
 
@@ -31,10 +33,16 @@ def untold(text, table):
     """Templates of a text, and of the texts put into it, that the table does not have; in full for a text that has none."""
     if not isinstance(text, Text):
         key = text.strip().replace("{", "{{").replace("}", "}}")
-        return [] if key in table or len(re.findall(r"[a-z]{2,}", LITERAL.sub("", key))) < 2 else [text]
+        return (
+            []
+            if key in table or len(re.findall(r"[a-z]{2,}", LITERAL.sub("", key))) < 2
+            else [text]
+        )
     own = text.template.strip()
     words = re.findall(r"[a-z]{3,}", LITERAL.sub("", own))
-    inner = [found for value in text.values if isinstance(value, Text) for found in untold(value, table)]
+    inner = [
+        found for value in text.values if isinstance(value, Text) for found in untold(value, table)
+    ]
     return ([own] if words and own not in table else []) + inner
 
 

@@ -39,7 +39,13 @@ def deposit_rows(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def screen() -> np.ndarray:
     """(3, 3) rows: right, up and towards the eye."""
     right = np.array([-np.sin(AZIMUTH), np.cos(AZIMUTH), 0.0])
-    eye = np.array([np.cos(ELEVATION) * np.cos(AZIMUTH), np.cos(ELEVATION) * np.sin(AZIMUTH), np.sin(ELEVATION)])
+    eye = np.array(
+        [
+            np.cos(ELEVATION) * np.cos(AZIMUTH),
+            np.cos(ELEVATION) * np.sin(AZIMUTH),
+            np.sin(ELEVATION),
+        ]
+    )
     return np.array([right, np.cross(eye, right), eye])
 
 
@@ -50,7 +56,12 @@ def draw(layer: np.ndarray, position: np.ndarray, direction: np.ndarray) -> Figu
     axes = figure.add_axes((0.02, 0.02, 0.84, 0.96))
     axes.set_aspect("equal")
     axes.axis("off")
-    platform(axes, view, float(np.hypot(position[:, 0], position[:, 1]).max()), float(position[:, 2].min()))
+    platform(
+        axes,
+        view,
+        float(np.hypot(position[:, 0], position[:, 1]).max()),
+        float(position[:, 2].min()),
+    )
     share = (layer - layer.min()) / max(1, np.ptp(layer))
     inside = layer[1:] == layer[:-1]
     start, end = position[:-1][inside] @ view.T, position[1:][inside] @ view.T
@@ -61,9 +72,16 @@ def draw(layer: np.ndarray, position: np.ndarray, direction: np.ndarray) -> Figu
     for near, width, opacity, order in ((False, 1.2, 0.35, 1), (True, 2.9, 1.0, 3)):
         chosen = (towards > 0.0) == near
         pairs = np.stack([start[chosen, :2], end[chosen, :2]], axis=1)
-        axes.add_collection(LineCollection(
-            pairs, colors=colours[chosen], linewidths=width, alpha=opacity, zorder=order, capstyle="round",
-        ))
+        axes.add_collection(
+            LineCollection(
+                pairs,
+                colors=colours[chosen],
+                linewidths=width,
+                alpha=opacity,
+                zorder=order,
+                capstyle="round",
+            )
+        )
     strokes(axes, view, layer, position, direction)
     axes.autoscale_view()
     axes.margins(0.03)
@@ -74,13 +92,21 @@ def draw(layer: np.ndarray, position: np.ndarray, direction: np.ndarray) -> Figu
 def platform(axes, view: np.ndarray, radius: float, height: float) -> None:
     """The round platform under the part."""
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
-    disc = np.stack([1.25 * radius * np.cos(angle), 1.25 * radius * np.sin(angle), np.full(181, height)], axis=1) @ view.T
-    below = (disc[:, :2] - [0.0, 5.0 * np.cos(ELEVATION)])
+    disc = (
+        np.stack(
+            [1.25 * radius * np.cos(angle), 1.25 * radius * np.sin(angle), np.full(181, height)],
+            axis=1,
+        )
+        @ view.T
+    )
+    below = disc[:, :2] - [0.0, 5.0 * np.cos(ELEVATION)]
     axes.fill(below[:, 0], below[:, 1], color="#c3c9d4", zorder=-2)
     axes.fill(disc[:, 0], disc[:, 1], color="#e6e9ef", ec="#c3c9d4", lw=0.8, zorder=-1)
 
 
-def strokes(axes, view: np.ndarray, layer: np.ndarray, position: np.ndarray, direction: np.ndarray) -> None:
+def strokes(
+    axes, view: np.ndarray, layer: np.ndarray, position: np.ndarray, direction: np.ndarray
+) -> None:
     """Build directions on the near side of every few layers."""
     pairs = []
     for number in range(0, int(layer.max()) + 1, EVERY_LAYER):
@@ -94,14 +120,23 @@ def strokes(axes, view: np.ndarray, layer: np.ndarray, position: np.ndarray, dir
                 pairs.append([(position[row] @ view.T)[:2], (tip @ view.T)[:2]])
     feet = np.array([pair[0] for pair in pairs])
     for colour, width, order in ((GROUND, 3.4, 4), (INK, 1.5, 5)):
-        axes.add_collection(LineCollection(pairs, colors=colour, linewidths=width, zorder=order, capstyle="round"))
-    axes.scatter(feet[:, 0], feet[:, 1], s=16, color=INK, zorder=6, linewidths=0.6, edgecolors=GROUND)
+        axes.add_collection(
+            LineCollection(pairs, colors=colour, linewidths=width, zorder=order, capstyle="round")
+        )
+    axes.scatter(
+        feet[:, 0], feet[:, 1], s=16, color=INK, zorder=6, linewidths=0.6, edgecolors=GROUND
+    )
 
 
 def scale(figure: Figure, last: int) -> None:
     """The colours of the layers."""
     axes = figure.add_axes((0.905, 0.18, 0.018, 0.64))
-    axes.imshow(np.linspace(1.0, 0.0, 256)[:, None], cmap="viridis", aspect="auto", extent=(0.0, 1.0, 0.0, float(last)))
+    axes.imshow(
+        np.linspace(1.0, 0.0, 256)[:, None],
+        cmap="viridis",
+        aspect="auto",
+        extent=(0.0, 1.0, 0.0, float(last)),
+    )
     axes.set_xticks([])
     axes.yaxis.tick_right()
     axes.tick_params(labelsize=11, colors=INK, length=3)
@@ -113,4 +148,6 @@ def scale(figure: Figure, last: int) -> None:
 if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit("usage: make_images.py WAYPOINTS.csv")
-    draw(*deposit_rows(Path(sys.argv[1]))).savefig(HERE / "hemisphere.png", metadata={"Software": None})
+    draw(*deposit_rows(Path(sys.argv[1]))).savefig(
+        HERE / "hemisphere.png", metadata={"Software": None}
+    )

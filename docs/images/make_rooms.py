@@ -9,12 +9,29 @@ COLUMNS = (  # rooms that stand above each other, from left to right: folder, wh
     (("api.py, macro/", "one call per stage", "#dbe7f6"),),
     (("objects/", "stages of a document", "#e7e1f3"),),
     (("brep/", "shapes to arrays", "#e7e1f3"),),
-    (("core/strategies/", "what to deposit", "#dff0e3"), ("slicing, layers, filling", "levels, regions, beads", "#eef7f0")),
-    (("core/planning/", "how to move", "#dff0e3"), ("kinematics, collision", "reach, limits, contact", "#eef7f0")),
+    (
+        ("core/strategies/", "what to deposit", "#dff0e3"),
+        ("slicing, layers, filling", "levels, regions, beads", "#eef7f0"),
+    ),
+    (
+        ("core/planning/", "how to move", "#dff0e3"),
+        ("kinematics, collision", "reach, limits, contact", "#eef7f0"),
+    ),
     (("posts/", "how to say it", "#fbe9d7"),),
-    (("verify.py, read_back/", "read and driven again", "#f9dedb"), ("report/", "figures and page", "#f9dedb")),
+    (
+        ("verify.py, read_back/", "read and driven again", "#f9dedb"),
+        ("report/", "figures and page", "#f9dedb"),
+    ),
 )
-BETWEEN = ("", "", "", "wall, solids", "Toolpath", "Motion, Program", "text")  # what goes on to the next column
+BETWEEN = (
+    "",
+    "",
+    "",
+    "wall, solids",
+    "Toolpath",
+    "Motion, Program",
+    "text",
+)  # what goes on to the next column
 
 
 def drawn() -> str:
@@ -34,12 +51,16 @@ def drawn() -> str:
             )
         if number < len(BETWEEN):
             end, middle = x + WIDE + GAP - 3, height / 2
-            shapes.append(f'<path d="M{x + WIDE + 3} {middle:g}H{end}m-6 -4 6 4 -6 4" fill="none" stroke="#566072"/>')
-            shapes.append(f'<text x="{x + WIDE + GAP / 2:g}" y="{height - 12:g}" fill="#8a4b10">{BETWEEN[number]}</text>')
+            shapes.append(
+                f'<path d="M{x + WIDE + 3} {middle:g}H{end}m-6 -4 6 4 -6 4" fill="none" stroke="#566072"/>'
+            )
+            shapes.append(
+                f'<text x="{x + WIDE + GAP / 2:g}" y="{height - 12:g}" fill="#8a4b10">{BETWEEN[number]}</text>'
+            )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="system-ui,sans-serif" '
         f'font-size="11.5" text-anchor="middle" fill="#1d2430"><rect width="100%" height="100%" fill="#fff"/>'
-        f'{"".join(shapes)}</svg>\n'
+        f"{''.join(shapes)}</svg>\n"
     )
 
 

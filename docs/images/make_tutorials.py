@@ -24,26 +24,45 @@ TESTS, PICTURES = ROOT / "tests" / "gui" / "tutorials", ROOT / "docs" / "tutoria
 SAMPLES = ROOT / "resources" / "examples" / "samples"
 GALLERY = ROOT / "docs" / "images" / "gallery"
 SMALL = {  # the pictures of the gallery, and which part of each
-    "hemisphere-job": "view", "tube-wall": "all", "tube-layers": "above", "hemisphere-map": "all",
-    "hemisphere-simulation": "left", "tube-plots": "all", "rotor-speeds": "above", "rotor-axes": "middle",
+    "hemisphere-job": "view",
+    "tube-wall": "all",
+    "tube-layers": "above",
+    "hemisphere-map": "all",
+    "hemisphere-simulation": "left",
+    "tube-plots": "all",
+    "rotor-speeds": "above",
+    "rotor-axes": "middle",
 }
 PARTS = {  # pixels: the window without toolbars, the 3D view alone, above a dock, left of one
-    "all": (0, 97, 1398, 870), "view": (334, 98, 1398, 845), "above": (334, 98, 1270, 605), "left": (334, 98, 1040, 640),
+    "all": (0, 97, 1398, 870),
+    "view": (334, 98, 1398, 845),
+    "above": (334, 98, 1270, 605),
+    "left": (334, 98, 1040, 640),
     "middle": (334, 220, 1040, 845),
 }
 HIGH = 400
-COLOURS, EXACT = 256, 96  # of a picture: how many, and how many of them the most frequent as they are
+COLOURS, EXACT = (
+    256,
+    96,
+)  # of a picture: how many, and how many of them the most frequent as they are
 RECORDED = ("hemisphere", "tube-on-pipe")  # the documents that are kept
 
 
 def main(pages: list[str]) -> int:
     """Status of the tests; nothing is replaced unless all of them passed."""
-    tests = [str(path) for path in sorted(TESTS.glob("test_*.py")) if not pages or path.stem.split("_")[-1] in pages]
+    tests = [
+        str(path)
+        for path in sorted(TESTS.glob("test_*.py"))
+        if not pages or path.stem.split("_")[-1] in pages
+    ]
     with tempfile.TemporaryDirectory() as folder:
         env = {**os.environ, "ROBOTIC_AM_PICTURES": folder}
         run = [sys.executable, "-m", "tests.run", "--long"]
         # each in a window of its own, where no panel has the size that another tutorial gave it
-        status = max(subprocess.run([*run, test], cwd=ROOT, env=env, check=False).returncode for test in tests)
+        status = max(
+            subprocess.run([*run, test], cwd=ROOT, env=env, check=False).returncode
+            for test in tests
+        )
         if status == 0:
             PICTURES.mkdir(exist_ok=True)
             for path in sorted((Path(folder) / "tutorials").glob("*.png")):
@@ -66,10 +85,16 @@ def keep(path: Path) -> None:
         whole = picture.convert("RGB")
     colours, counts = np.unique(np.asarray(whole).reshape(-1, 3), axis=0, return_counts=True)
     ranked = colours[np.argsort(-counts, kind="stable")]
-    rest = Image.fromarray(ranked[None, EXACT:]).quantize(COLOURS - EXACT, method=Image.Quantize.MAXCOVERAGE)
+    rest = Image.fromarray(ranked[None, EXACT:]).quantize(
+        COLOURS - EXACT, method=Image.Quantize.MAXCOVERAGE
+    )
     palette = Image.new("P", (1, 1))
-    palette.putpalette([*ranked[:EXACT].ravel().tolist(), *rest.getpalette()[: 3 * (COLOURS - EXACT)]])
-    whole.quantize(palette=palette, dither=Image.Dither.NONE).save(PICTURES / path.name, optimize=True)
+    palette.putpalette(
+        [*ranked[:EXACT].ravel().tolist(), *rest.getpalette()[: 3 * (COLOURS - EXACT)]]
+    )
+    whole.quantize(palette=palette, dither=Image.Dither.NONE).save(
+        PICTURES / path.name, optimize=True
+    )
 
 
 def shrink(path: Path, part: str) -> None:

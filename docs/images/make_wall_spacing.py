@@ -32,10 +32,18 @@ from freecad_am.core.strategies.walls.plan import sliced  # noqa: E402
 BEND, TUBE, PIPE, HEIGHT, END = 60.0, 15.0, 32.0, 5.0, 0.5 * np.pi
 AZIMUTH, ELEVATION = np.radians(-52.0), np.radians(22.0)
 INK, SOFT = "#1d2430", "#667085"
-SHADES = ("#2a3fb0", "#3f8fd4", "#3fa66f", "#e08a2c", "#b8272a")  # closer than asked, as asked, farther
+SHADES = (
+    "#2a3fb0",
+    "#3f8fd4",
+    "#3fa66f",
+    "#e08a2c",
+    "#b8272a",
+)  # closer than asked, as asked, farther
 NAMES = {
-    "iso-parameter": "along the lines up the wall", "normal": "normal to the centreline",
-    "constant-distance": "constant distance", "smooth": "smooth, within 20 %",
+    "iso-parameter": "along the lines up the wall",
+    "normal": "normal to the centreline",
+    "constant-distance": "constant distance",
+    "smooth": "smooth, within 20 %",
 }
 
 
@@ -43,7 +51,9 @@ def layers(wall: SurfaceWall, method: str) -> list:
     """The layers of one method, up to the first one wholly past the end."""
     surface = wall.surface()
     if method == "normal":
-        first = sliced(wall, surface, SurfaceParameters(layer_height=HEIGHT, spacing="iso-parameter"))[0]
+        first = sliced(
+            wall, surface, SurfaceParameters(layer_height=HEIGHT, spacing="iso-parameter")
+        )[0]
         return normal_layers.layers(surface, first, HEIGHT, wall.end)
     return sliced(wall, surface, SurfaceParameters(layer_height=HEIGHT, spacing=method))
 
@@ -55,21 +65,31 @@ def drawn(fronts: list) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         v, distance = local_distances(above, below, 4)
         points = above.curve.at(v)[0]
         outside = np.hypot(points[:, 0], points[:, 2]) >= PIPE - 1e-3
-        found.append((np.where(outside[:, None], points, np.nan), v, np.where(outside, distance, np.nan)))
+        found.append(
+            (np.where(outside[:, None], points, np.nan), v, np.where(outside, distance, np.nan))
+        )
     return found
 
 
 def screen() -> np.ndarray:
     """(2, 3) rows: right and up."""
     right = np.array([-np.sin(AZIMUTH), np.cos(AZIMUTH), 0.0])
-    eye = np.array([np.cos(ELEVATION) * np.cos(AZIMUTH), np.cos(ELEVATION) * np.sin(AZIMUTH), np.sin(ELEVATION)])
+    eye = np.array(
+        [
+            np.cos(ELEVATION) * np.cos(AZIMUTH),
+            np.cos(ELEVATION) * np.sin(AZIMUTH),
+            np.sin(ELEVATION),
+        ]
+    )
     return np.array([right, np.cross(eye, right)])
 
 
 def draw() -> Figure:
     """The picture."""
     torus = Torus(BEND, TUBE)
-    first = on_implicit(torus, Round.cylinder(PIPE, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360))
+    first = on_implicit(
+        torus, Round.cylinder(PIPE, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360)
+    )
     wall = SurfaceWall("torus", (BEND, TUBE), np.eye(4), END, first.curve.points[:-1])
     norm, view = TwoSlopeNorm(HEIGHT, 2.4, 6.4), screen()
     colours = LinearSegmentedColormap.from_list("local distance", SHADES)
@@ -80,21 +100,30 @@ def draw() -> Figure:
         fronts = layers(wall, method)
         found = drawn(fronts)
         left = 0.05 + 0.222 * column
-        top, plot = figure.add_axes((left - 0.012, 0.37, 0.22, 0.52)), figure.add_axes((left, 0.105, 0.195, 0.25))
+        top, plot = (
+            figure.add_axes((left - 0.012, 0.37, 0.22, 0.52)),
+            figure.add_axes((left, 0.105, 0.195, 0.25)),
+        )
         top.set_aspect("equal")
         top.axis("off")
         top.plot(*(view @ first.curve.points.T), color=SOFT, lw=1.6)
         for points, v, distance in found:
             seen = points @ view.T
             pairs = np.stack([seen[:-1], seen[1:]], axis=1)
-            top.add_collection(LineCollection(pairs, colors=colours(norm(distance[1:])), linewidths=2.0, capstyle="round"))
+            top.add_collection(
+                LineCollection(
+                    pairs, colors=colours(norm(distance[1:])), linewidths=2.0, capstyle="round"
+                )
+            )
             place = np.degrees(v - 2.0 * np.pi * np.round(v / (2.0 * np.pi)))
             order = np.argsort(place, kind="stable")
             plot.plot(place[order], distance[order], color=INK, lw=0.7, alpha=0.75)
         values = np.concatenate([distance for _, _, distance in found])
         corners.append(np.concatenate([points for points, _, _ in found]) @ view.T)
         pictures.append(top)
-        told = f"{name}\n{len(fronts)} layers, {np.nanmin(values):.2f} to {np.nanmax(values):.2f} mm"
+        told = (
+            f"{name}\n{len(fronts)} layers, {np.nanmin(values):.2f} to {np.nanmax(values):.2f} mm"
+        )
         figure.text(left + 0.0975, 0.9, told, fontsize=11, color=INK, ha="center")
         plot.set(xlim=(-180, 180), ylim=(2.2, 6.6), xticks=(-180, -90, 0, 90, 180))
         plot.grid(color="#dfe3ea", lw=0.8)
@@ -116,7 +145,9 @@ def scale(figure: Figure, norm: TwoSlopeNorm, colours) -> None:
     """The colours of the local distance."""
     axes = figure.add_axes((0.945, 0.42, 0.012, 0.40))
     values = np.linspace(norm.vmax, norm.vmin, 256)
-    axes.imshow(colours(norm(values))[:, None], aspect="auto", extent=(0.0, 1.0, norm.vmin, norm.vmax))
+    axes.imshow(
+        colours(norm(values))[:, None], aspect="auto", extent=(0.0, 1.0, norm.vmin, norm.vmax)
+    )
     axes.set_xticks([])
     axes.yaxis.tick_right()
     axes.tick_params(labelsize=9, colors=INK, length=3)

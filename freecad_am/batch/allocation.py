@@ -14,7 +14,11 @@ import sys
 
 # numbers of glibc's mallopt (malloc.h), and bytes
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
-LARGEST, LARGEST_BEFORE, KEPT = 1 << 30, 1 << 25, 1 << 30  # before glibc 2.35 arrays no larger than that
+LARGEST, LARGEST_BEFORE, KEPT = (
+    1 << 30,
+    1 << 25,
+    1 << 30,
+)  # before glibc 2.35 arrays no larger than that
 
 
 def keep_freed() -> None:

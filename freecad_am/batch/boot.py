@@ -14,16 +14,25 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 NOBODY = 2
-WELCOME = ("PyKDL", "shapely", "matplotlib")  # that jobs beyond the demo need: of programs, solids, plots
+WELCOME = (
+    "PyKDL",
+    "shapely",
+    "matplotlib",
+)  # that jobs beyond the demo need: of programs, solids, plots
 SCRIPTS = {
-    "test": os.path.join("tests", "run.py"), "bench": os.path.join("bench", "run.py"),
-    "rows": os.path.join("freecad_am", "batch", "row_host.py"),  # asked for by workers of a cluster, not by users
+    "test": os.path.join("tests", "run.py"),
+    "bench": os.path.join("bench", "run.py"),
+    "rows": os.path.join(
+        "freecad_am", "batch", "row_host.py"
+    ),  # asked for by workers of a cluster, not by users
 }
 
 
 def arguments():
     """The words after the script; freecadcmd leaves only what follows a double dash to it."""
-    return sys.argv[sys.argv.index("--") + 1 :] if "FREECAD_AM_HOSTED" in os.environ else sys.argv[1:]
+    return (
+        sys.argv[sys.argv.index("--") + 1 :] if "FREECAD_AM_HOSTED" in os.environ else sys.argv[1:]
+    )
 
 
 def hand_over(missing, words):
@@ -80,7 +89,10 @@ def run(words):
     status = cli.main(words)
     if demo and status == 0:
         folder = words[3]
-        print(f"freecad-am: look at {folder}/report.html, and open {folder}/hemisphere.FCStd in FreeCAD", file=sys.stderr)
+        print(
+            f"freecad-am: look at {folder}/report.html, and open {folder}/hemisphere.FCStd in FreeCAD",
+            file=sys.stderr,
+        )
     return status
 
 
@@ -114,5 +126,8 @@ def main():
         os._exit(status)
 
 
-if __name__ in ("__main__", "boot"):  # as a script; freecadcmd imports scripts under their own name, without the package
+if __name__ in (
+    "__main__",
+    "boot",
+):  # as a script; freecadcmd imports scripts under their own name, without the package
     main()

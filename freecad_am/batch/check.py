@@ -68,7 +68,9 @@ class Result(NamedTuple):
     exit_status: int
 
 
-def check(programs: Sequence[str], cell_file: str, post: str | None, folder: str | None, session: Any) -> Result:
+def check(
+    programs: Sequence[str], cell_file: str, post: str | None, folder: str | None, session: Any
+) -> Result:
     """Drive the program of these files, or of all files of a folder, in a cell and write what it does.
 
     cell_file: a job file, or a file with a cell alone. post: the name of the one that reads it, by default that of the job,
@@ -83,31 +85,58 @@ def check(programs: Sequence[str], cell_file: str, post: str | None, folder: str
     cell = cells.resolve(known.cell, np.eye(4), folders=user_machines.folders())
     name, read = _read(files, _posts(cell, known, post))
     settings = known.program or ProgramParameters(post=name)
-    motion = driven.driven(cell, without_moves(cell, settings, catalogue.controller(name), "check"), read)
+    motion = driven.driven(
+        cell, without_moves(cell, settings, catalogue.controller(name), "check"), read
+    )
     promises = _promises(motion, cell, known)
     findings = [
-        Finding(Issue(
-            ERROR, code, Text("{} - it does not: {}", one.promise, one.figure), *(one.place or (None, None, None))), one.row)
-        for code, one in zip(CODES, promises, strict=True) if one.ok is False
+        Finding(
+            Issue(
+                ERROR,
+                code,
+                Text("{} - it does not: {}", one.promise, one.figure),
+                *(one.place or (None, None, None)),
+            ),
+            one.row,
+        )
+        for code, one in zip(CODES, promises, strict=True)
+        if one.ok is False
     ]
     findings += [*switched.switching_findings(motion, read), *into_platform(motion, cell)]
     if not motion.deposit.any():
-        findings.append(Finding(Issue(NOTE, "NO_DEPOSIT", "the program never switches the deposit on"), None))
+        findings.append(
+            Finding(Issue(NOTE, "NO_DEPOSIT", "the program never switches the deposit on"), None)
+        )
     lines = [one.line(motion, read) for one in findings]
     issues = [_with_line(one.issue, line) for one, line in zip(findings, lines, strict=True)]
     stem = os.path.splitext(os.path.basename(catalogue.main_file(files)))[0]
-    target = folder or os.path.join(os.path.dirname(os.path.abspath(programs[0])), "out", f"{stem}-check")
+    target = folder or os.path.join(
+        os.path.dirname(os.path.abspath(programs[0])), "out", f"{stem}-check"
+    )
     with outputs.Outputs(target, session) as written:
-        written.write(outputs.WAYPOINTS, waypoints.text(motion, cell.machine.columns, cell.machine.units))
-        written.write(outputs.REPORT, [figures.text(_report(stem, name, motion, cell, promises, issues, lines))])
-        earlier = {one for one in (outputs.WAYPOINTS, outputs.REPORT) if os.path.isfile(os.path.join(written.folder, one))}
+        written.write(
+            outputs.WAYPOINTS, waypoints.text(motion, cell.machine.columns, cell.machine.units)
+        )
+        written.write(
+            outputs.REPORT,
+            [figures.text(_report(stem, name, motion, cell, promises, issues, lines))],
+        )
+        earlier = {
+            one
+            for one in (outputs.WAYPOINTS, outputs.REPORT)
+            if os.path.isfile(os.path.join(written.folder, one))
+        }
         made = [os.path.join(written.folder, one) for one in written.publish(earlier)]
     return Result(made, issues, 3 if any(one.level == ERROR for one in issues) else 0)
 
 
 def _with_line(issue: Issue, line: tuple[str, int] | None) -> Issue:
     """The issue with the line of the program that it is about, where that is known."""
-    return issue if line is None else replace(issue, message=Text("{}; {} line {}", issue.message, *line))
+    return (
+        issue
+        if line is None
+        else replace(issue, message=Text("{}; {} line {}", issue.message, *line))
+    )
 
 
 def _files(programs: Sequence[str]) -> dict[str, bytes]:
@@ -122,20 +151,35 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
             found[os.path.basename(one)] = one
     where = os.path.basename(os.path.abspath(programs[0]))
     if not found:
-        raise InputError("NO_FILE", where, "the folder holds no program; name its files, or the folder they are in")
+        raise InputError(
+            "NO_FILE",
+            where,
+            "the folder holds no program; name its files, or the folder they are in",
+        )
     if len(found) > MOST_FILES:
-        raise InputError("BAD_FILE", where, "the folder holds more than {} files; name those of the program", MOST_FILES)
+        raise InputError(
+            "BAD_FILE",
+            where,
+            "the folder holds more than {} files; name those of the program",
+            MOST_FILES,
+        )
     read, remaining = {}, LARGEST_MB * MB
     for name, path in sorted(found.items()):
         try:
             read[name] = content(path, LARGEST_MB, "BAD_FILE", name)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
-            raise InputError("NO_FILE", name, "it cannot be read ({}); name the program's files", reason) from None
+            raise InputError(
+                "NO_FILE", name, "it cannot be read ({}); name the program's files", reason
+            ) from None
         remaining -= len(read[name])
         if remaining < 0:
-            raise InputError("BAD_FILE", where, "its files are larger than {} MB together; name those of the program alone",
-                             LARGEST_MB)
+            raise InputError(
+                "BAD_FILE",
+                where,
+                "its files are larger than {} MB together; name those of the program alone",
+                LARGEST_MB,
+            )
     return read
 
 
@@ -146,7 +190,11 @@ def _known(path: str) -> Known:
         return Known(job_cell.of_file(os.path.abspath(path)), None, JointParameters(), None)
     read = job.read_job(path)
     if read.cell is None:
-        raise InputError("NO_CELL", f"{os.path.basename(path)}: cell", "the job has no cell to drive a program in; add one")
+        raise InputError(
+            "NO_CELL",
+            f"{os.path.basename(path)}: cell",
+            "the job has no cell to drive a program in; add one",
+        )
     heights = max(one.strategy.layer_height for one in read.features)
     return Known(read.cell, read.program, read.joints, (read.process.bead_width, heights))
 
@@ -170,7 +218,11 @@ def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves
         except InputError as error:
             refusals.append(error)
     if not refusals:
-        raise InputError("UNKNOWN_POST", "cell.machine", "no post reads programs of this machine; name one with --post")
+        raise InputError(
+            "UNKNOWN_POST",
+            "cell.machine",
+            "no post reads programs of this machine; name one with --post",
+        )
     raise refusals[0]
 
 
@@ -182,10 +234,19 @@ def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:
     if cell.machine.free and reached.any():
         asked = known.joints.min_condition
         least[:] = CONDITION_FLOOR if isinstance(asked, str) else asked
-        condition[reached] = _condition(cell, motion.joints[rows[reached]], known.joints.characteristic_length)
+        condition[reached] = _condition(
+            cell, motion.joints[rows[reached]], known.joints.characteristic_length
+        )
     found = joints.promises(
-        motion, cell, on_deposit(motion.deposit, condition), on_deposit(motion.deposit, least), DIGITS)
-    found[1] = replace(found[1], how="inverse kinematics of what the text tells in positions, and joints driven")
+        motion,
+        cell,
+        on_deposit(motion.deposit, condition),
+        on_deposit(motion.deposit, least),
+        DIGITS,
+    )
+    found[1] = replace(
+        found[1], how="inverse kinematics of what the text tells in positions, and joints driven"
+    )
     if known.bead is None:
         how = "not checked: a cell alone does not tell how wide and high beads are; give a job"
         return [*found, Promise(clearance.ON_RAPIDS, how, None)]
@@ -207,7 +268,12 @@ def _condition(cell: Cell, serial: Any, length: float) -> Any:
 
 
 def _report(
-    name: str, post: str, motion: Motion, cell: Cell, promises: Sequence[Promise], issues: Sequence[Issue],
+    name: str,
+    post: str,
+    motion: Motion,
+    cell: Cell,
+    promises: Sequence[Promise],
+    issues: Sequence[Issue],
     lines: Sequence[tuple[str, int] | None],
 ) -> dict[str, Any]:
     """The keys of a plan's report that a text alone can fill."""
@@ -216,25 +282,34 @@ def _report(
     shown = motion.joints[reached] / cell.machine.unit_values
     starts = motion.deposit & (motion.point == 0)
     return {
-        "version": figures.VERSION, "name": name, "post": post,
+        "version": figures.VERSION,
+        "name": name,
+        "post": post,
         "status": "infeasible" if any(one.level == ERROR for one in issues) else "ok",
         "issues": [
             {**one.as_dict(), **dict(zip(("file", "line"), line or (None, None), strict=True))}
             for one, line in zip(issues, lines, strict=True)
         ],
         "counts": {
-            "layers": len(np.unique(motion.layer[motion.deposit])), "beads": int(starts.sum()),
+            "layers": len(np.unique(motion.layer[motion.deposit])),
+            "beads": int(starts.sum()),
             "points": int(motion.deposit.sum()),
         },
-        "length_mm": float(way[deposited].sum()), "duration_s": motion.total_time,
+        "length_mm": float(way[deposited].sum()),
+        "duration_s": motion.total_time,
         "joints": {
             "min_deg": shown.min(axis=0).tolist() if len(shown) else None,
             "max_deg": shown.max(axis=0).tolist() if len(shown) else None,
         },
         "preflight": [one.as_dict() for one in promises],
         "machine": {
-            "id": cell.machine.id, "title": cell.machine.title, "setup": cell.setup, "limits": cell.limits.name,
-            "axes": list(cell.machine.columns), "labels": list(cell.machine.axes), "units": list(cell.machine.units),
+            "id": cell.machine.id,
+            "title": cell.machine.title,
+            "setup": cell.setup,
+            "limits": cell.limits.name,
+            "axes": list(cell.machine.columns),
+            "labels": list(cell.machine.axes),
+            "units": list(cell.machine.units),
             "controller": cell.machine.controller_remark,
         },
     }

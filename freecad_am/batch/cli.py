@@ -13,7 +13,12 @@ from typing import Any
 
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
 COMMANDS = ("plan", "export", "batch", "inspect", "check", "place", "machines")
-SHAPES = {"plan": "job", "export": "document", "inspect": "source", "place": "job"}  # read shapes, in what is named so
+SHAPES = {
+    "plan": "job",
+    "export": "document",
+    "inspect": "source",
+    "place": "job",
+}  # read shapes, in what is named so
 USAGE = """usage: freecad-am COMMAND
 
   plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
@@ -75,7 +80,12 @@ def _run(argv: list[str], session: Any) -> int:
     for word in argv:
         if not word.isascii() and word != word.encode("utf-8", "replace").decode("utf-8"):
             shown = word.encode("utf-8", "backslashreplace").decode("utf-8")
-            raise InputError("USAGE", "command line", "{!r} holds bytes that are not UTF-8; use a name in UTF-8", shown)
+            raise InputError(
+                "USAGE",
+                "command line",
+                "{!r} holds bytes that are not UTF-8; use a name in UTF-8",
+                shown,
+            )
     if command not in COMMANDS:
         import difflib
 
@@ -112,8 +122,10 @@ def _failed(error: Exception, session: Any) -> int:
         session.say(error.line())
         return error.exit_status
     what = " ".join(str(error).split()) or "no message"
-    session.say(f"error[INTERNAL] {type(error).__name__}: {what}; this is our fault, please report it with the job "
-                "(FREECAD_AM_DEBUG=1 shows where)")
+    session.say(
+        f"error[INTERNAL] {type(error).__name__}: {what}; this is our fault, please report it with the job "
+        "(FREECAD_AM_DEBUG=1 shows where)"
+    )
     return OUR_FAULT
 
 
@@ -124,7 +136,9 @@ def _parser(command: str) -> Any:
 
     class Parser(argparse.ArgumentParser):
         def error(self, message: str) -> Any:
-            raise InputError("USAGE", f"freecad-am {command}", "{}; try freecad-am {} --help", message, command)
+            raise InputError(
+                "USAGE", f"freecad-am {command}", "{}; try freecad-am {} --help", message, command
+            )
 
     parser = Parser(prog=f"freecad-am {command}", allow_abbrev=False, add_help=False)
     if command == "machines":
@@ -138,19 +152,52 @@ def _parser(command: str) -> Any:
         parser.add_argument("job", metavar="JOB.yaml")
     elif command == "export":
         parser.add_argument("document", metavar="DOC.FCStd")
-        parser.add_argument("--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label")
-        parser.add_argument("--wires", choices=("step", "dxf"), default="", help="write paths as wires instead of programs")
+        parser.add_argument(
+            "--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label"
+        )
+        parser.add_argument(
+            "--wires",
+            choices=("step", "dxf"),
+            default="",
+            help="write paths as wires instead of programs",
+        )
     elif command == "inspect":
         parser.add_argument("source", metavar="JOB.yaml|DOC.FCStd")
-        parser.add_argument("--measured", metavar="FILE", nargs="+", action="extend", required=True,
-                            help="points (csv, txt, xyz, asc) or scans (stl, obj, ply)")
-        parser.add_argument("--set", metavar="KEY=VALUE", nargs="+", action="extend", default=[], dest="settings",
-                            help="parameters of the inspection, such as tolerance=0.3 probe_radius=1.5 heights='15 25 35'")
-        parser.add_argument("--object", metavar="NAME", default="", help="Name or Label of what was measured, of a document")
+        parser.add_argument(
+            "--measured",
+            metavar="FILE",
+            nargs="+",
+            action="extend",
+            required=True,
+            help="points (csv, txt, xyz, asc) or scans (stl, obj, ply)",
+        )
+        parser.add_argument(
+            "--set",
+            metavar="KEY=VALUE",
+            nargs="+",
+            action="extend",
+            default=[],
+            dest="settings",
+            help="parameters of the inspection, such as tolerance=0.3 probe_radius=1.5 heights='15 25 35'",
+        )
+        parser.add_argument(
+            "--object",
+            metavar="NAME",
+            default="",
+            help="Name or Label of what was measured, of a document",
+        )
     elif command == "check":
-        parser.add_argument("program", metavar="PROGRAM", nargs="+", help="the files of a program, or their folder")
-        parser.add_argument("--cell", metavar="FILE", required=True, help="a job, or a cell in a file of its own")
-        parser.add_argument("--post", metavar="NAME", help="the post that reads it; else that of the job or of the machine")
+        parser.add_argument(
+            "program", metavar="PROGRAM", nargs="+", help="the files of a program, or their folder"
+        )
+        parser.add_argument(
+            "--cell", metavar="FILE", required=True, help="a job, or a cell in a file of its own"
+        )
+        parser.add_argument(
+            "--post",
+            metavar="NAME",
+            help="the post that reads it; else that of the job or of the machine",
+        )
     else:
         _choose_rows(parser)
     return parser
@@ -160,24 +207,55 @@ def _choose_rows(parser: Any) -> None:
     """The words of `batch`."""
     parser.add_argument("table", metavar="TABLE.csv")
     parser.add_argument("--job", metavar="JOB.yaml", required=True)
-    parser.add_argument("-j", "--jobs", metavar="N", type=_count, help="rows planned at the same time, 1 without")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="plan on the workers of this Dask scheduler")
-    parser.add_argument("--resume", action="store_true", help="keep the rows that an earlier run has done")
-    parser.add_argument("--dry-run", action="store_true", help="look whether rows are refused, and plan none")
+    parser.add_argument(
+        "-j", "--jobs", metavar="N", type=_count, help="rows planned at the same time, 1 without"
+    )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="plan on the workers of this Dask scheduler"
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="keep the rows that an earlier run has done"
+    )
+    parser.add_argument(
+        "--dry-run", action="store_true", help="look whether rows are refused, and plan none"
+    )
 
 
 def _choose_machines(parser: Any) -> None:
     """The words of `machines`."""
-    parser.add_argument("machine", metavar="NAME", nargs="?", help="a machine of the list, or a machine file")
+    parser.add_argument(
+        "machine", metavar="NAME", nargs="?", help="a machine of the list, or a machine file"
+    )
     forms = parser.add_mutually_exclusive_group()
-    forms.add_argument("--urdf", action="store_const", const="urdf", dest="form", help="write it as URDF, without looks")
-    forms.add_argument("--dh", action="store_const", const="dh", dest="form",
-                       help="write its table of Denavit and Hartenberg, in mm and degrees")
-    forms.add_argument("--modified-dh", action="store_const", const="modified-dh", dest="form", help="the same by Craig")
+    forms.add_argument(
+        "--urdf",
+        action="store_const",
+        const="urdf",
+        dest="form",
+        help="write it as URDF, without looks",
+    )
+    forms.add_argument(
+        "--dh",
+        action="store_const",
+        const="dh",
+        dest="form",
+        help="write its table of Denavit and Hartenberg, in mm and degrees",
+    )
+    forms.add_argument(
+        "--modified-dh",
+        action="store_const",
+        const="modified-dh",
+        dest="form",
+        help="the same by Craig",
+    )
     parser.add_argument("--maker", metavar="NAME", help="list those of this maker")
     parser.add_argument("--reach", metavar="LENGTH", help="list those that reach so far at least")
-    parser.add_argument("--payload", metavar="MASS", help="list those that are known to carry so much at least")
-    parser.add_argument("--post", metavar="NAME", help="list those whose controllers read the programs of this post")
+    parser.add_argument(
+        "--payload", metavar="MASS", help="list those that are known to carry so much at least"
+    )
+    parser.add_argument(
+        "--post", metavar="NAME", help="list those whose controllers read the programs of this post"
+    )
 
 
 def _count(text: str) -> int:
@@ -193,7 +271,9 @@ def _plan(options: Any, session: Any) -> int:
     from freecad_am.batch.job import job
 
     read = job.read_job(options.job)
-    result = run.run(read, options.output or run.default_folder(read), session, page=not options.no_page)
+    result = run.run(
+        read, options.output or run.default_folder(read), session, page=not options.no_page
+    )
     _tell_paths(result.paths, session)
     return result.exit_status
 
@@ -207,7 +287,9 @@ def _tell_paths(paths: list[str], session: Any) -> None:
 def _export(options: Any, session: Any) -> int:
     from freecad_am.batch import export
 
-    paths = export.export(options.document, options.output, tuple(options.object), session, options.wires)
+    paths = export.export(
+        options.document, options.output, tuple(options.object), session, options.wires
+    )
     _tell_paths(paths, session)
     return DONE
 
@@ -218,8 +300,12 @@ def _batch(options: Any, session: Any) -> int:
     if options.scheduler and options.jobs is not None:
         from freecad_am.core.issues import InputError
 
-        raise InputError("USAGE", "freecad-am batch", "-j is of rows on this machine, and --scheduler of those on a "
-                         "cluster, whose workers have their own number; leave one of them out")
+        raise InputError(
+            "USAGE",
+            "freecad-am batch",
+            "-j is of rows on this machine, and --scheduler of those on a "
+            "cluster, whose workers have their own number; leave one of them out",
+        )
     how = rows.How(options.jobs or 1, options.scheduler or "", options.resume, options.dry_run)
     return rows.run(options.table, options.job, options.output, how, session)
 
@@ -228,7 +314,12 @@ def _inspect(options: Any, session: Any) -> int:
     from freecad_am.batch import measured
 
     paths = measured.inspect(
-        options.source, tuple(options.measured), options.output, tuple(options.settings), options.object, session
+        options.source,
+        tuple(options.measured),
+        options.output,
+        tuple(options.settings),
+        options.object,
+        session,
     )
     _tell_paths(paths, session)
     return DONE
@@ -258,15 +349,25 @@ def _machines(options: Any, session: Any) -> int:
     from freecad_am.core.issues import InputError
 
     if options.form is None and options.machine is not None:
-        raise InputError("USAGE", "freecad-am machines", "in what form is {!r} to be written? Use --urdf, --dh or "
-                         "--modified-dh", options.machine)
+        raise InputError(
+            "USAGE",
+            "freecad-am machines",
+            "in what form is {!r} to be written? Use --urdf, --dh or --modified-dh",
+            options.machine,
+        )
     if options.form is not None and options.machine is None:
-        raise InputError("USAGE", "freecad-am machines", "--{} of what machine? Give its name", options.form)
+        raise InputError(
+            "USAGE", "freecad-am machines", "--{} of what machine? Give its name", options.form
+        )
     wanted = (options.maker, options.reach, options.payload, options.post)
     filtered = any(one is not None for one in wanted)
     if filtered and options.machine is not None:
-        raise InputError("USAGE", "freecad-am machines", "--maker, --reach, --payload and --post choose from the list; "
-                         "leave {!r} out, or them", options.machine)
+        raise InputError(
+            "USAGE",
+            "freecad-am machines",
+            "--maker, --reach, --payload and --post choose from the list; leave {!r} out, or them",
+            options.machine,
+        )
     if options.machine is not None:
         session.out(machines.written(options.machine, options.form))
     else:

@@ -62,7 +62,9 @@ class Cluster:
     def __exit__(self, *_: object) -> None:
         self._close()
 
-    def planned(self, rows: list[Row], folder: str, dry: bool, journal: Journal) -> Iterator[tuple[Row, dict[str, Any]]]:
+    def planned(
+        self, rows: list[Row], folder: str, dry: bool, journal: Journal
+    ) -> Iterator[tuple[Row, dict[str, Any]]]:
         """Rows with their results, as they end; their outputs are in place below `folder`, and written down. Raises
         InputError SCHEDULER where scheduler or workers are gone for a minute."""
         waiting, running = list(reversed(rows)), {}
@@ -89,11 +91,21 @@ class Cluster:
         links = [(name, os.path.realpath(name)) for name in names if os.path.realpath(name) != name]
         named = sorted({os.path.realpath(name) for name in names})
         order = {
-            "label": row.label, "values": row.tree().values, "path": os.path.abspath(row.path), "dry": dry, "files": named,
+            "label": row.label,
+            "values": row.tree().values,
+            "path": os.path.abspath(row.path),
+            "dry": dry,
+            "files": named,
             "links": links,
         }
         return self._client.submit(
-            self._module.planned, self._token, self._settings, order, self._package, *map(self._file, named), pure=False,
+            self._module.planned,
+            self._token,
+            self._settings,
+            order,
+            self._package,
+            *map(self._file, named),
+            pure=False,
             key=f"freecad-am-row-{row.number}-{self._token}",
         )
 
@@ -101,14 +113,20 @@ class Cluster:
         """A file of this machine on the cluster, once for all rows."""
         if path not in self._kept:
             if os.path.getsize(path) > LARGEST:
-                raise InputError(CODE, path, "a file of more than 1 GB is not sent to a cluster; plan without --scheduler")
+                raise InputError(
+                    CODE,
+                    path,
+                    "a file of more than 1 GB is not sent to a cluster; plan without --scheduler",
+                )
             with open(path, "rb") as stream:
                 self._kept[path] = self._sent(stream.read(), f"file-{len(self._kept)}")
         return self._kept[path]
 
     def _sent(self, content: bytes, name: str) -> Any:
         """A result on the cluster that is made of the content again if the worker that has it is lost."""
-        return self._client.submit(self._module.kept, content, pure=False, key=f"freecad-am-{name}-{self._token}")
+        return self._client.submit(
+            self._module.kept, content, pure=False, key=f"freecad-am-{name}-{self._token}"
+        )
 
     def _make_ready(self) -> None:
         """Tell the versions of every worker. InputError where there is none, or one cannot plan."""
@@ -116,16 +134,35 @@ class Cluster:
 
         workers = sorted(self._workers())
         if not workers:
-            raise InputError(CODE, WHERE, "{} has no workers; start some with: dask worker {}", self._address, self._address)
-        asked = {worker: self._client.submit(
-            self._module.ready, self._token, self._settings, self._package, workers=[worker], pure=False,
-            key=f"freecad-am-ready-{number}-{self._token}",
-        ) for number, worker in enumerate(workers)}
+            raise InputError(
+                CODE,
+                WHERE,
+                "{} has no workers; start some with: dask worker {}",
+                self._address,
+                self._address,
+            )
+        asked = {
+            worker: self._client.submit(
+                self._module.ready,
+                self._token,
+                self._settings,
+                self._package,
+                workers=[worker],
+                pure=False,
+                key=f"freecad-am-ready-{number}-{self._token}",
+            )
+            for number, worker in enumerate(workers)
+        }
         with contextlib.suppress(TimeoutError):
             wait(list(asked.values()), timeout=READY)
         for worker, future in asked.items():
             if future.status == "error":
-                raise InputError(CODE, worker, "this worker cannot plan: {}; install FreeCAD there, or end it", _why(future))
+                raise InputError(
+                    CODE,
+                    worker,
+                    "this worker cannot plan: {}; install FreeCAD there, or end it",
+                    _why(future),
+                )
             if future.status == "finished":
                 self._tell(worker, future.result())
 
@@ -140,18 +177,28 @@ class Cluster:
         self._session.say(f"note[WORKER] {worker}: {text}")
         if other:
             ours = ", ".join(f"{name} {own.get(name, 'missing')}" for name in other)
-            self._session.say(f"warning[VERSIONS] {worker}: here is {ours}; last digits of its rows may differ from what is "
-                              "planned here")
+            self._session.say(
+                f"warning[VERSIONS] {worker}: here is {ours}; last digits of its rows may differ from what is "
+                "planned here"
+            )
 
-    def _result(self, future: Any, row: Row, folder: str, dry: bool, journal: Journal) -> dict[str, Any]:
+    def _result(
+        self, future: Any, row: Row, folder: str, dry: bool, journal: Journal
+    ) -> dict[str, Any]:
         """What a row has come to, its outputs in place and written down, Ctrl-C or not."""
         if future.status != "finished":
             if future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
                 message = "each worker that planned it was lost; look into their memory, and plan this row alone"
                 return {"exit": 1, "message": message, "lines": [f"error[LOST] row: {message}"]}
-            raise InputError(CODE, WHERE, "{} gave up row {}: {}; rows that were done are whole: give --resume to plan the "
-                             "others",
-                             self._address, row.number, _why(future))
+            raise InputError(
+                CODE,
+                WHERE,
+                "{} gave up row {}: {}; rows that were done are whole: give --resume to plan the "
+                "others",
+                self._address,
+                row.number,
+                _why(future),
+            )
         result: dict[str, Any] = future.result()
         self._tell(result.pop("worker"), result.pop("versions"))
         found = result.pop("files")
@@ -175,10 +222,18 @@ class Cluster:
         return self._client.status == "running" and bool(self._workers())
 
     def _gone(self) -> InputError:
-        what = "it has no workers any more" if self._client.status == "running" else "it does not answer any more"
-        return InputError(CODE, WHERE, "{}: {}; rows that were done are whole: give --resume to plan the others",
-                          self._address,
-                          Word(what))
+        what = (
+            "it has no workers any more"
+            if self._client.status == "running"
+            else "it does not answer any more"
+        )
+        return InputError(
+            CODE,
+            WHERE,
+            "{}: {}; rows that were done are whole: give --resume to plan the others",
+            self._address,
+            Word(what),
+        )
 
     def _close(self) -> None:
         with contextlib.suppress(Exception):
@@ -192,14 +247,25 @@ def _connected(address: str) -> Any:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError("NO_DASK", WHERE, "rows are planned on a cluster by Dask, which is not there ({}); install "
-                         "python3-distributed, or leave the option out", error) from None
+        raise InputError(
+            "NO_DASK",
+            WHERE,
+            "rows are planned on a cluster by Dask, which is not there ({}); install "
+            "python3-distributed, or leave the option out",
+            error,
+        ) from None
     try:
         return Client(address, timeout=ANSWER)  # which `wait` goes by
     except Exception as error:  # of sockets, of names, of messages that are not understood
         why = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(CODE, WHERE, "no scheduler answers at {!r} ({}); start one with: dask scheduler, give its address "
-                         "such as tcp://host:8786, and use the same version of Dask everywhere", address, why) from None
+        raise InputError(
+            CODE,
+            WHERE,
+            "no scheduler answers at {!r} ({}); start one with: dask scheduler, give its address "
+            "such as tcp://host:8786, and use the same version of Dask everywhere",
+            address,
+            why,
+        ) from None
 
 
 def _refuse_versions(address: str, client: Any) -> None:
@@ -209,8 +275,15 @@ def _refuse_versions(address: str, client: Any) -> None:
     for where, there in (("scheduler", found["scheduler"]), *sorted(found["workers"].items())):
         theirs = (there or {}).get("packages", {}).get("distributed")
         if theirs != ours:
-            raise InputError(CODE, WHERE, "{}: {} has distributed {}, this command {}; install the same version everywhere",
-                             address, where, theirs, ours)
+            raise InputError(
+                CODE,
+                WHERE,
+                "{}: {} has distributed {}, this command {}; install the same version everywhere",
+                address,
+                where,
+                theirs,
+                ours,
+            )
 
 
 def _sent_module(client: Any) -> Any:
@@ -228,7 +301,10 @@ def _sent_module(client: Any) -> Any:
 def _settings() -> dict[str, Any]:
     from freecad_am.objects import user_machines
 
-    return {"machines": [os.path.abspath(folder) for folder in user_machines.folders()], "home": os.path.expanduser("~")}
+    return {
+        "machines": [os.path.abspath(folder) for folder in user_machines.folders()],
+        "home": os.path.expanduser("~"),
+    }
 
 
 def _first_done(futures: list[Any]) -> list[Any]:

@@ -26,7 +26,10 @@ _UNSEEN = re.compile(
 
 def escaped(text: str) -> str:
     """The text on one line, with control signs, ends of lines and what turns writing round as Python would write them."""
-    return _UNSEEN.sub(lambda found: repr(found[0])[1:-1] if found[0].isascii() else f"\\u{ord(found[0]):04x}", text)
+    return _UNSEEN.sub(
+        lambda found: repr(found[0])[1:-1] if found[0].isascii() else f"\\u{ord(found[0]):04x}",
+        text,
+    )
 
 
 class Session:
@@ -74,7 +77,7 @@ class Session:
         self._clear()
         text = escaped(line)
         if len(text) > LONGEST:
-            text = f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2:]}"
+            text = f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
         _write(self._saved[1], text + "\n")
 
     def issues(self, found: Iterable[Issue], others: str = "stand in report.json") -> None:
@@ -82,7 +85,9 @@ class Session:
         others are."""
         ordered = sorted(found, key=lambda issue: (issue.code not in FIRST, issue.level != ERROR))
         for issue in ordered[:_MOST_ISSUES]:
-            self.say(f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}")
+            self.say(
+                f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}"
+            )
         if len(ordered) > _MOST_ISSUES:
             self.say(f"note[MORE] job: {len(ordered) - _MOST_ISSUES} more findings {others}")
 
@@ -127,4 +132,4 @@ def _kept(descriptor: int) -> int:
 def _write(descriptor: int, text: str) -> None:
     data = text.encode("utf-8", "replace")
     while data:
-        data = data[os.write(descriptor, data):]
+        data = data[os.write(descriptor, data) :]

@@ -14,7 +14,9 @@ from .outputs import folder as outputs
 _PROGRAMS, _PATHS = ("program",), ("joint path", "toolpath", "program")
 
 
-def export(path: str, folder: str | None, names: tuple[str, ...], session: Any, wires: str = "") -> list[str]:
+def export(
+    path: str, folder: str | None, names: tuple[str, ...], session: Any, wires: str = ""
+) -> list[str]:
     """The paths of the files written: the programs of the document, or of the objects called `names` (Name or Label).
 
     They go into program/ of `folder`, by default out/<document> beside the document, which itself is not changed.
@@ -25,21 +27,29 @@ def export(path: str, folder: str | None, names: tuple[str, ...], session: Any, 
     if not os.path.isfile(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     if not path.lower().endswith(".fcstd"):
-        raise InputError("UNSUPPORTED_FILE", label, "programs are in FreeCAD documents; give a .FCStd file")
+        raise InputError(
+            "UNSUPPORTED_FILE", label, "programs are in FreeCAD documents; give a .FCStd file"
+        )
     paths.require_freecad()
     import FreeCAD
 
     from freecad_am.objects.shapes import document_file
 
-    target = folder or os.path.join(os.path.dirname(os.path.abspath(path)), "out", os.path.splitext(label)[0])
+    target = folder or os.path.join(
+        os.path.dirname(os.path.abspath(path)), "out", os.path.splitext(label)[0]
+    )
     with outputs.Outputs(target, session) as files:
         session.progress("opening ...")
         document = document_file.opened(path, label)
         try:
             if wires:
-                _write_wires(_chosen(document, label, names, _PATHS, "NO_PATH"), wires, files, session)
+                _write_wires(
+                    _chosen(document, label, names, _PATHS, "NO_PATH"), wires, files, session
+                )
             else:
-                for name, content in _files(_chosen(document, label, names, _PROGRAMS, "NO_PROGRAM"), session).items():
+                for name, content in _files(
+                    _chosen(document, label, names, _PROGRAMS, "NO_PROGRAM"), session
+                ).items():
                     files.write(f"{outputs.PROGRAMS}/{name}", content)
         finally:
             FreeCAD.closeDocument(document.Name)
@@ -47,20 +57,34 @@ def export(path: str, folder: str | None, names: tuple[str, ...], session: Any, 
         return [os.path.join(files.folder, name) for name in files.publish(earlier)]
 
 
-def _chosen(document: Any, label: str, names: tuple[str, ...], kinds: tuple[str, ...], code: str) -> list[Any]:
+def _chosen(
+    document: Any, label: str, names: tuple[str, ...], kinds: tuple[str, ...], code: str
+) -> list[Any]:
     """The objects called `names` among those of some kinds, else all of the first kind that there is."""
     from freecad_am import api
 
     of_kinds = [api.stages_of(document, kind) for kind in kinds]
     every = [obj for objects in of_kinds for obj in objects]
     if not every:
-        raise InputError(code, label, "the document has no {}s; make one with the workbench", kinds[0])
+        raise InputError(
+            code, label, "the document has no {}s; make one with the workbench", kinds[0]
+        )
     known = ", ".join(obj.Label for obj in every)
     chosen = []
     for name in names:
-        found = [obj for obj in every if obj.Name == name] or [obj for obj in every if obj.Label == name]
+        found = [obj for obj in every if obj.Name == name] or [
+            obj for obj in every if obj.Label == name
+        ]
         if len(found) != 1:
-            raise InputError("NO_OBJECT", label, "{} {}s are called {!r}; name one of {}", len(found), kinds[0], name, known)
+            raise InputError(
+                "NO_OBJECT",
+                label,
+                "{} {}s are called {!r}; name one of {}",
+                len(found),
+                kinds[0],
+                name,
+                known,
+            )
         chosen += found
     return chosen or next(objects for objects in of_kinds if objects)
 
@@ -76,7 +100,9 @@ def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: A
         session.check()
         name = Text("{}/{}.{}", outputs.WIRES, obj.Label.replace(os.sep, "-"), kind)
         if name in written:
-            raise InputError("SAME_NAME", obj.Label, "two paths write {}; give one another label", Word(name))
+            raise InputError(
+                "SAME_NAME", obj.Label, "two paths write {}; give one another label", Word(name)
+            )
         written.add(name)
         api.export_wires(obj, files.path(name), rapids=True)
 
@@ -98,7 +124,9 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
         _tell_findings(program, known, session)
         for name, content in api.result(program).files.items():
             if files.setdefault(name, content) != content:
-                raise InputError("SAME_NAME", program.Label, "two programs write {}; give one another name", name)
+                raise InputError(
+                    "SAME_NAME", program.Label, "two programs write {}; give one another name", name
+                )
     return files
 
 
@@ -106,7 +134,13 @@ def _tell_findings(program: Any, known: dict[Issue, None], session: Any) -> None
     """Those of a program and of all that it is made of, but for those that are known by now."""
     from freecad_am import api
 
-    inputs = [obj for obj in api.stages_of(program.Document) if obj is program or obj in program.OutListRecursive]
-    found = dict.fromkeys(issue for one in inputs for issue in api.issues(one) if issue not in known)
+    inputs = [
+        obj
+        for obj in api.stages_of(program.Document)
+        if obj is program or obj in program.OutListRecursive
+    ]
+    found = dict.fromkeys(
+        issue for one in inputs for issue in api.issues(one) if issue not in known
+    )
     known |= found
     session.issues(found, "are in the document")

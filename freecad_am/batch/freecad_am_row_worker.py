@@ -31,14 +31,20 @@ class Batch:
 
     def __init__(self, folder: str, settings: dict[str, Any]) -> None:
         self.path = tempfile.mkdtemp(prefix="freecad-am-", dir=folder)
-        self.settings = {**settings, "copies": os.path.join(self.path, "copies"), "folder": self.path}
+        self.settings = {
+            **settings,
+            "copies": os.path.join(self.path, "copies"),
+            "folder": self.path,
+        }
         self.versions: dict[str, str] = {}
         self._idle: queue.SimpleQueue[subprocess.Popen[str]] = queue.SimpleQueue()
         self._all: list[subprocess.Popen[str]] = []
         self._lock = threading.Lock()
         self._stopped = False
 
-    def unpacked(self, package: bytes, files: list[tuple[str, bytes]], links: list[tuple[str, str]]) -> None:
+    def unpacked(
+        self, package: bytes, files: list[tuple[str, bytes]], links: list[tuple[str, str]]
+    ) -> None:
         """Put code and files where they belong, what is not there yet."""
         with self._lock:
             if not os.path.isdir(os.path.join(self.path, "code")):
@@ -79,7 +85,9 @@ class Batch:
                 if process.poll() is None:
                     process.kill()
         until = time.monotonic() + 5.0
-        while os.path.exists(self.path) and time.monotonic() < until:  # a row that is being stopped may still write there
+        while (
+            os.path.exists(self.path) and time.monotonic() < until
+        ):  # a row that is being stopped may still write there
             shutil.rmtree(self.path, ignore_errors=True)
 
     def _process(self) -> subprocess.Popen[str]:
@@ -89,8 +97,13 @@ class Batch:
             if self._stopped:
                 raise RuntimeError(ENDED)
             process = subprocess.Popen(
-                ["/bin/sh", os.path.join(self.path, "code", "freecad-am"), "rows"], text=True, cwd=self.path,
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+                ["/bin/sh", os.path.join(self.path, "code", "freecad-am"), "rows"],
+                text=True,
+                cwd=self.path,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,
             )
             self._all.append(process)
         answer = _exchanged(process, self.settings)
@@ -112,13 +125,17 @@ def ready(token: str, settings: dict[str, Any], package: bytes) -> dict[str, str
     return dict(batch.ask({"versions": True}))
 
 
-def planned(token: str, settings: dict[str, Any], order: dict[str, Any], package: bytes, *contents: bytes) -> dict[str, Any]:
+def planned(
+    token: str, settings: dict[str, Any], order: dict[str, Any], package: bytes, *contents: bytes
+) -> dict[str, Any]:
     """The result of a row, with its outputs as `files`, the worker's address and its versions."""
     from distributed import get_worker
 
     batch = _batch(token, settings)
     asked = dict(order)
-    batch.unpacked(package, list(zip(asked.pop("files"), contents, strict=True)), asked.pop("links"))
+    batch.unpacked(
+        package, list(zip(asked.pop("files"), contents, strict=True)), asked.pop("links")
+    )
     with tempfile.TemporaryDirectory(dir=batch.path) as folder:
         result = batch.ask({**asked, "folder": os.path.join(folder, "row")})
         result["files"] = dict(_files(os.path.join(folder, "row")))
@@ -129,7 +146,10 @@ def stop(token: str, dask_worker: Any) -> None:
     """End what this worker does for a batch. `dask_worker` is put in by Dask."""
     with _making:
         known: dict[str, Batch | None] = dask_worker.__dict__.setdefault(_ATTRIBUTE, {})
-        batch, known[token] = known.get(token), None  # rows that were given out may still begin here
+        batch, known[token] = (
+            known.get(token),
+            None,
+        )  # rows that were given out may still begin here
     if batch is not None:
         batch.stop()
 

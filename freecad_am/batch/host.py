@@ -22,7 +22,10 @@ LIBRARY_FOLDERS = (
 def library_folders() -> list[str]:
     """Folders that may hold FreeCAD.so, the user's own choice (FREECAD_LIB) first."""
     own = [os.environ[name] for name in ("FREECAD_LIB",) if os.environ.get(name)]
-    python_folders = [os.path.join(sys.prefix, "lib"), os.path.join(sys.prefix, "lib", "freecad", "lib")]
+    python_folders = [
+        os.path.join(sys.prefix, "lib"),
+        os.path.join(sys.prefix, "lib", "freecad", "lib"),
+    ]
     return own + list(LIBRARY_FOLDERS) + python_folders
 
 
@@ -43,7 +46,11 @@ def _add_shims(folder: str) -> None:
     for share in ("/usr/share/freecad", os.path.dirname(folder)):
         modules = os.path.join(share, "Mod")
         # the folder of all modules too: PartDesign is a package there, and its objects are lost from a file without it
-        extra = [os.path.join(share, "Ext"), *sorted(glob.glob(os.path.join(modules, "*", ""))), modules]
+        extra = [
+            os.path.join(share, "Ext"),
+            *sorted(glob.glob(os.path.join(modules, "*", ""))),
+            modules,
+        ]
         for path in (entry.rstrip("/") for entry in extra):
             if os.path.isdir(path) and path not in sys.path:
                 sys.path.append(path)
@@ -78,10 +85,16 @@ def _is_private(path: str) -> bool:
         found = os.lstat(path)
     except OSError:
         return False
-    return stat.S_ISDIR(found.st_mode) and stat.S_IMODE(found.st_mode) == 0o700 and found.st_uid == os.getuid()
+    return (
+        stat.S_ISDIR(found.st_mode)
+        and stat.S_IMODE(found.st_mode) == 0o700
+        and found.st_uid == os.getuid()
+    )
 
 
 def missing_modules() -> list[str]:
     """Names of the modules this Python lacks to run the headless commands."""
     missing = [] if find_freecad() else ["FreeCAD"]
-    return missing + [name for name in ("numpy", "scipy", "yaml") if importlib.util.find_spec(name) is None]
+    return missing + [
+        name for name in ("numpy", "scipy", "yaml") if importlib.util.find_spec(name) is None
+    ]

@@ -35,7 +35,11 @@ def chosen(maker: str | None, reach: str | None, payload: str | None, post: str 
         catalogue.load(post)
     least = 0.0 if reach is None else quantity.read(reach, field.LENGTH, "--reach")
     found = machine_catalogue.chosen(
-        machine_catalogue.entries(user_machines.folders()), maker, least, 0.0 if payload is None else _mass(payload), post
+        machine_catalogue.entries(user_machines.folders()),
+        maker,
+        least,
+        0.0 if payload is None else _mass(payload),
+        post,
     )
     return _lines([(entry.id, f"{entry.title}{_figures(entry)}") for entry in found])
 
@@ -59,7 +63,9 @@ def _mass(text: str) -> float:
     except ValueError:
         mass = math.nan
     if not 0.0 <= mass < math.inf:
-        raise InputError("BAD_VALUE", "--payload", "{!r} is not a mass; give kilograms such as 20 kg", text)
+        raise InputError(
+            "BAD_VALUE", "--payload", "{!r} is not a mass; give kilograms such as 20 kg", text
+        )
     return mass
 
 
@@ -77,14 +83,19 @@ def written(name: str, form: str) -> str:
     from freecad_am.core.kinematics.machines import denavit_hartenberg
 
     table = denavit_hartenberg.table_of(found.chain, form == "modified-dh")
-    joints = [[math.degrees(row.theta), row.d, row.a, math.degrees(row.alpha)] for row in table.rows]
+    joints = [
+        [math.degrees(row.theta), row.d, row.a, math.degrees(row.alpha)] for row in table.rows
+    ]
     lines = [f"before {_words(_pose(table.before))}", "axis theta d a alpha"]
     lines += [f"{axis} {_words(row)}" for axis, row in zip(found.axes, joints)]
     return "\n".join([*lines, f"after {_words(_pose(table.after))}", ""])
 
 
 def _pose(pose: Any) -> list[float]:
-    return [*pose[:3, 3].tolist(), *(math.degrees(-angle) for angle in frames.to_bryant(pose[:3, :3].T).tolist())]
+    return [
+        *pose[:3, 3].tolist(),
+        *(math.degrees(-angle) for angle in frames.to_bryant(pose[:3, :3].T).tolist()),
+    ]
 
 
 def _words(values: list[float]) -> str:

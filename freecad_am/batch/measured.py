@@ -12,12 +12,22 @@ from freecad_am.core.issues import InputError, Text, Word
 from . import paths
 from .outputs import folder as outputs
 
-FIGURES, DATA, PAGE, DOCUMENT = "inspection.csv", "inspection.json", "inspection.html", "inspection.FCStd"
+FIGURES, DATA, PAGE, DOCUMENT = (
+    "inspection.csv",
+    "inspection.json",
+    "inspection.html",
+    "inspection.FCStd",
+)
 _KEPT = {"measured", "planned", "file", "label", "inspection"}
 
 
 def inspect(
-    source: str, measured: tuple[str, ...], folder: str | None, settings: tuple[str, ...], name: str, session: Any
+    source: str,
+    measured: tuple[str, ...],
+    folder: str | None,
+    settings: tuple[str, ...],
+    name: str,
+    session: Any,
 ) -> list[str]:
     """The paths of the files written: figures of every file of measured points, and over them mean and standard deviation.
 
@@ -30,19 +40,27 @@ def inspect(
     import FreeCAD
 
     stem = os.path.splitext(os.path.basename(source))[0]
-    target = folder or os.path.join(os.path.dirname(os.path.abspath(source)), "out", f"{stem}-inspection")
+    target = folder or os.path.join(
+        os.path.dirname(os.path.abspath(source)), "out", f"{stem}-inspection"
+    )
     labels = _labels(measured)
     with outputs.Outputs(target, session) as files:
         session.progress("opening ...")
         document, planned = _opened(source, name, session)
         try:
-            made = [_made(document, planned, path, label, values, session)
-                    for path, label in zip(measured, labels, strict=True)]
+            made = [
+                _made(document, planned, path, label, values, session)
+                for path, label in zip(measured, labels, strict=True)
+            ]
             _write(files, f"{document.Label}, {planned.Label}", made, labels)
             document.saveAs(files.path(DOCUMENT))
         finally:
             FreeCAD.closeDocument(document.Name)
-        earlier = {entry for entry in (FIGURES, DATA, PAGE, DOCUMENT) if os.path.isfile(os.path.join(files.folder, entry))}
+        earlier = {
+            entry
+            for entry in (FIGURES, DATA, PAGE, DOCUMENT)
+            if os.path.isfile(os.path.join(files.folder, entry))
+        }
         return [os.path.join(files.folder, entry) for entry in files.publish(earlier)]
 
 
@@ -51,7 +69,12 @@ def _values(settings: tuple[str, ...]) -> dict[str, str]:
     for text in settings:
         key, sign, value = text.partition("=")
         if not sign or key.strip() in _KEPT:
-            raise InputError("USAGE", "freecad-am inspect", "{!r} is not a setting; give such as --set tolerance=0.3", text)
+            raise InputError(
+                "USAGE",
+                "freecad-am inspect",
+                "{!r} is not a setting; give such as --set tolerance=0.3",
+                text,
+            )
         found[key.strip()] = value.strip()
     return found
 
@@ -73,8 +96,11 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
     if source.lower().endswith(".fcstd"):
         return _of_document(source, name)
     if name:
-        raise InputError("USAGE", "freecad-am inspect", "--object is for FCStd documents; leave it out of a job, whose part "
-                         "is compared")
+        raise InputError(
+            "USAGE",
+            "freecad-am inspect",
+            "--object is for FCStd documents; leave it out of a job, whose part is compared",
+        )
     import FreeCAD
 
     from .job import job
@@ -108,16 +134,26 @@ def _of_document(path: str, name: str) -> tuple[Any, Any]:
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     document = document_file.opened(path, label)
     known = api.stages_of(document, "feature") if not name else list(document.Objects)
-    found = known if not name else [one for one in known if one.Name == name] or [one for one in known if one.Label == name]
+    found = (
+        known
+        if not name
+        else [one for one in known if one.Name == name]
+        or [one for one in known if one.Label == name]
+    )
     if len(found) != 1:
         FreeCAD.closeDocument(document.Name)
-        text = Text("{} objects are called {!r}", len(found),
-                    name) if name else Text("it has {} features; choose with --object", len(found))
+        text = (
+            Text("{} objects are called {!r}", len(found), name)
+            if name
+            else Text("it has {} features; choose with --object", len(found))
+        )
         raise InputError("NO_OBJECT", label, "{}; name what was measured", Word(text))
     return document, found[0]
 
 
-def _made(document: Any, planned: Any, path: str, label: str, values: dict[str, str], session: Any) -> Any:
+def _made(
+    document: Any, planned: Any, path: str, label: str, values: dict[str, str], session: Any
+) -> Any:
     from freecad_am import api
 
     session.progress(f"{label} ...")
@@ -138,7 +174,11 @@ def _write(files: outputs.Outputs, planned: str, made: list[Any], labels: list[s
     lines = [",".join(map(_quoted, heads))]
     for name, unit, values, mean, deviation in compared:
         numbers = [*values, *((mean, deviation) if several else ())]
-        lines.append(",".join([_quoted(name), unit, *("" if one is None else f"{one:.6f}" for one in numbers)]))
+        lines.append(
+            ",".join(
+                [_quoted(name), unit, *("" if one is None else f"{one:.6f}" for one in numbers)]
+            )
+        )
     files.write(FIGURES, ["\n".join(lines) + "\n"])
     data = {"version": 1, "planned": planned, "inspections": [table.as_data(one) for one in made]}
     files.write(DATA, [json.dumps(data, indent=1, ensure_ascii=False) + "\n"])

@@ -12,7 +12,9 @@ from freecad_am.core.issues import ERROR, NOTE, Issue, Text, has_errors
 from .job.features import UPRIGHT, JobFeature, leans
 from .job.job import Job
 
-Plan = Callable[[Job, str], Any]  # the stages of a job, given the code of the error that what was chosen ends with
+Plan = Callable[
+    [Job, str], Any
+]  # the stages of a job, given the code of the error that what was chosen ends with
 
 
 def planned(job: Job, plan: Plan, close: Callable[[Any], None]) -> Any:
@@ -42,8 +44,12 @@ def _curved(job: Job, stages: Any) -> bool:
     from freecad_am.core.parameters.filled import GEODESIC
 
     chosen = zip(job.features, stages.job.features, strict=True)
-    return any(asked.sections is not None and "layers" not in asked.sections["strategy"]
-               and getattr(one.strategy, "layers", "") == GEODESIC for asked, one in chosen)
+    return any(
+        asked.sections is not None
+        and "layers" not in asked.sections["strategy"]
+        and getattr(one.strategy, "layers", "") == GEODESIC
+        for asked, one in chosen
+    )
 
 
 def _leaning(job: Job, stages: Any) -> bool:
@@ -61,9 +67,13 @@ def _with(feature: JobFeature, alone: bool) -> JobFeature:
     from freecad_am.core.parameters.filled import GEODESIC, OFFSET, PLANES
 
     if leans(feature, feature.strategy):
-        return dataclasses.replace(feature, build_direction=dataclasses.replace(feature.build_direction, mode=UPRIGHT))
+        return dataclasses.replace(
+            feature, build_direction=dataclasses.replace(feature.build_direction, mode=UPRIGHT)
+        )
     if alone and getattr(feature.strategy, "layers", "") in (GEODESIC, OFFSET):
-        return dataclasses.replace(feature, strategy=dataclasses.replace(feature.strategy, layers=PLANES))
+        return dataclasses.replace(
+            feature, strategy=dataclasses.replace(feature.strategy, layers=PLANES)
+        )
     return feature
 
 
@@ -80,7 +90,14 @@ def _with_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]
     other = plan(dataclasses.replace(job, features=features), "")
     feasible = not has_errors(other.issues)
     close(other)
-    note = Issue(NOTE, REMEDY, Text("with {} this job is feasible; tried, not applied", what)) if feasible else Issue(
-        NOTE, NO_REMEDY, Text("with {} the nozzle is clear, but the job is not feasible, which was tried", what))
+    note = (
+        Issue(NOTE, REMEDY, Text("with {} this job is feasible; tried, not applied", what))
+        if feasible
+        else Issue(
+            NOTE,
+            NO_REMEDY,
+            Text("with {} the nozzle is clear, but the job is not feasible, which was tried", what),
+        )
+    )
     stages.issues = [note if issue is text else issue for issue in stages.issues]
     return stages

@@ -20,7 +20,9 @@ def require_freecad() -> None:
     """Make FreeCAD importable. Raises InputError NO_FREECAD where this Python has none."""
     if not host.find_freecad():
         raise InputError(
-            "NO_FREECAD", "Python", "FreeCAD cannot be imported; set FREECAD_AM_PYTHON to a Python that can"
+            "NO_FREECAD",
+            "Python",
+            "FreeCAD cannot be imported; set FREECAD_AM_PYTHON to a Python that can",
         )
 
 
@@ -36,11 +38,17 @@ def load_meanwhile() -> None:
         return
     import scipy.spatial  # noqa: F401 - it has libraries too, of which the system loads one at a time
 
-    load = ctypes.CDLL(None).dlopen  # this call lets other threads have Python, which an import does not
+    load = ctypes.CDLL(
+        None
+    ).dlopen  # this call lets other threads have Python, which an import does not
     load.restype, load.argtypes = ctypes.c_void_p, (ctypes.c_char_p, ctypes.c_int)
-    thread = threading.Thread(target=load, args=(os.fsencode(spec.origin), os.RTLD_NOW), daemon=True)
+    thread = threading.Thread(
+        target=load, args=(os.fsencode(spec.origin), os.RTLD_NOW), daemon=True
+    )
     thread.start()
-    os.register_at_fork(before=thread.join)  # a copy of a process whose libraries are half loaded does not live
+    os.register_at_fork(
+        before=thread.join
+    )  # a copy of a process whose libraries are half loaded does not live
     from freecad_am import verify  # noqa: F401 - like the others it needs no FreeCAD
     from freecad_am.core.planning import plan  # noqa: F401
     from freecad_am.report import made  # noqa: F401

@@ -32,7 +32,9 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
     Raises InputError; then nothing is written.
     """
     if job.cell is None:
-        raise InputError("NO_CELL", "cell", "there is no cell to place the part in; add the section cell")
+        raise InputError(
+            "NO_CELL", "cell", "there is no cell to place the part in; add the section cell"
+        )
     paths.require_freecad()
     import FreeCAD
 
@@ -68,22 +70,45 @@ def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Res
         found = placing_of(stages.toolpath, stages.cell, job.joints).placed(job.place)
     files.write(TABLE, table.rows(found))
     files.write(PAGE, [place_page.render(job.name, found)])
-    files.publish({name for name in (TABLE, PAGE) if os.path.isfile(os.path.join(files.folder, name))})
+    files.publish(
+        {name for name in (TABLE, PAGE) if os.path.isfile(os.path.join(files.folder, name))}
+    )
     count, serve = len(found.poses), sum(one.feasible for one in found.judged)
     looked = Text("{} of {} points", found.points, found.of)
     if found.best is None:
         most = max(one.share for one in found.judged)
         wrong = found.judged[max(range(count), key=lambda k: found.judged[k].share)]
-        text = Text("none of {} poses serves, as far as {} tell: at most {:.3g} % of them are within reach and limits ({}); "
-                    "give a larger box in place, or another cell.branch", count, Word(looked), 100.0 * most, wrong.code)
+        text = Text(
+            "none of {} poses serves, as far as {} tell: at most {:.3g} % of them are within reach and limits ({}); "
+            "give a larger box in place, or another cell.branch",
+            count,
+            Word(looked),
+            100.0 * most,
+            wrong.code,
+        )
         if serve:
-            text = Text("none of the {} best of {} poses is feasible with all points, though some points of each are; raise "
-                        "place.points or place.proven", len(found.proven), serve)
+            text = Text(
+                "none of the {} best of {} poses is feasible with all points, though some points of each are; raise "
+                "place.points or place.proven",
+                len(found.proven),
+                serve,
+            )
         return Result("", [*stages.issues, Issue(ERROR, "NO_PLACE", text)], 3)
     best = found.of_pose(found.best)
     note = Issue(
-        NOTE, "PLACED", Text("{} of {} poses are feasible, as far as {} tell; the best one was planned with all points: "
-            "margin {:.3g} %, {:.0f} s; {} and {} are in {}", serve, count, Word(looked), 100.0 * best.margin, best.time,
-            TABLE, PAGE, files.folder)
+        NOTE,
+        "PLACED",
+        Text(
+            "{} of {} poses are feasible, as far as {} tell; the best one was planned with all points: "
+            "margin {:.3g} %, {:.0f} s; {} and {} are in {}",
+            serve,
+            count,
+            Word(looked),
+            100.0 * best.margin,
+            best.time,
+            TABLE,
+            PAGE,
+            files.folder,
+        ),
     )
     return Result(table.key(found, found.best), [*stages.issues, note], 0)

@@ -35,7 +35,9 @@ def main() -> None:
     for line in lines:
         asked = json.loads(line)
         _answer(answers, versions.found_versions() if "versions" in asked else _planned(asked))
-    shutil.rmtree(settings["folder"], ignore_errors=True)  # the worker is lost, and nobody else removes it
+    shutil.rmtree(
+        settings["folder"], ignore_errors=True
+    )  # the worker is lost, and nobody else removes it
 
 
 def _answer(stream: Any, answer: dict[str, Any]) -> None:

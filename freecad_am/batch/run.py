@@ -55,7 +55,8 @@ class Stages:
         session.progress(f"{name} ...")
         started = time.perf_counter()
         with told_to(
-            lambda fraction, text: session.progress(f"{name}: {text} {fraction:.0%}"), lambda issue: session.issues([issue])
+            lambda fraction, text: session.progress(f"{name}: {text} {fraction:.0%}"),
+            lambda issue: session.issues([issue]),
         ):
             yield
         session.check()
@@ -90,7 +91,8 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
             stages = otherwise.planned(
-                job, lambda of, fails: _in_a_document(of, session, fails),
+                job,
+                lambda of, fails: _in_a_document(of, session, fails),
                 lambda stages: FreeCAD.closeDocument(stages.document.Name),
             )
             try:
@@ -174,9 +176,13 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     if job.program is not None:
         from freecad_am.objects.checks import controllers
 
-        controllers.check_beads(api.result(stages.toolpath), job.program.post, job.program.max_points)
+        controllers.check_beads(
+            api.result(stages.toolpath), job.program.post, job.program.max_points
+        )
     with stages.timed("joint_path", session):
-        stages.joint_path = api.make_joint_path(document, stages.toolpath, stages.cell, joints=job.joints)
+        stages.joint_path = api.make_joint_path(
+            document, stages.toolpath, stages.cell, joints=job.joints
+        )
     found = api.issues(stages.joint_path)
     if any(issue.code == HEIGHTS for issue in found):  # at the speeds as run, not only as asked for
         stages.issues = [issue for issue in stages.issues if issue.code != HEIGHTS]
@@ -217,7 +223,9 @@ def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -
     job = stages.job = _as_chosen(job, shapes)
     for feature in stages.features:
         stages.issues += api.issues(feature)
-    session.issues(issue for issue in stages.issues if issue.code == LARGE)  # before the work that takes long
+    session.issues(
+        issue for issue in stages.issues if issue.code == LARGE
+    )  # before the work that takes long
     with stages.timed("toolpath", session):
         stages.toolpath = toolpath_of(job, document, stages.features, stages.cell, shapes[0].scan)
     # a toolpath repeats the findings about its wall
@@ -230,7 +238,9 @@ def _make_program(stages: Stages) -> None:
 
     job = stages.job
     try:
-        stages.program = api.make_program(stages.document, stages.joint_path, name=job.name, program=job.program)
+        stages.program = api.make_program(
+            stages.document, stages.joint_path, name=job.name, program=job.program
+        )
         stages.issues += api.issues(stages.program)
     except InfeasibleError as error:
         stages.issues += error.issues or [Issue("error", error.code, error.message)]
@@ -239,18 +249,30 @@ def _make_program(stages: Stages) -> None:
 def _as_chosen(job: Job, shapes: Sequence[Any]) -> Job:
     """The job with the features as they were chosen."""
     features = tuple(one.of for one in shapes)
-    return dataclasses.replace(job, features=features, process=features[0].process if len(features) == 1 else job.process)
+    return dataclasses.replace(
+        job, features=features, process=features[0].process if len(features) == 1 else job.process
+    )
 
 
 def _write(
-    job: Job, stages: Stages, cell: Any, files: outputs.Outputs, session: Any, started: float, page: bool
+    job: Job,
+    stages: Stages,
+    cell: Any,
+    files: outputs.Outputs,
+    session: Any,
+    started: float,
+    page: bool,
 ) -> Result:
     """Everything but the page, which is drawn last."""
     from freecad_am import api
     from freecad_am.core.simulation import waypoints
     from freecad_am.report import figures, made
 
-    programs = {} if stages.program is None or has_errors(stages.issues) else api.result(stages.program).files
+    programs = (
+        {}
+        if stages.program is None or has_errors(stages.issues)
+        else api.result(stages.program).files
+    )
     results = for_report.results(stages, [f"{outputs.PROGRAMS}/{name}" for name in programs])
     _, motion = made.as_run(results, cell)
     axes, units = ((), ()) if cell is None else (cell.machine.columns, cell.machine.units)
@@ -261,7 +283,9 @@ def _write(
     with stages.timed("document", session):
         job_document.save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
     asked = for_report.job(job, stages)
-    report = made.made(asked, results, cell, lambda stage: stages.timed(stage, session), session.progress)
+    report = made.made(
+        asked, results, cell, lambda stage: stages.timed(stage, session), session.progress
+    )
     report.content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [figures.text(report.content)])
     if page:

@@ -82,8 +82,11 @@ def crash(where: str, status: int) -> AmError:
         message = "the system ended the command, for lack of memory most likely; free some, or plan less at the same time"
         return AmError("ENDED", where, message)
     return InputError(
-        "CRASHED", where, "FreeCAD crashed ({}): a shape is damaged, or more than its geometry kernel can do; check the "
-        "part in FreeCAD (Part > Check geometry), repair it or export it again", name,
+        "CRASHED",
+        where,
+        "FreeCAD crashed ({}): a shape is damaged, or more than its geometry kernel can do; check the "
+        "part in FreeCAD (Part > Check geometry), repair it or export it again",
+        name,
     )
 
 

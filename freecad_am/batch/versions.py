@@ -27,8 +27,11 @@ def found_versions() -> dict[str, str]:
     import scipy
 
     found = {
-        "FreeCAD": ".".join(FreeCAD.Version()[:3]), "OpenCASCADE": str(Part.OCC_VERSION),
-        "Python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__,
+        "FreeCAD": ".".join(FreeCAD.Version()[:3]),
+        "OpenCASCADE": str(Part.OCC_VERSION),
+        "Python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
     }
     with contextlib.suppress(importlib.metadata.PackageNotFoundError):
         found["shapely"] = importlib.metadata.version("shapely")
@@ -63,6 +66,10 @@ def _files() -> Iterator[str]:
     yield LAUNCHER
     for folder, _, files in sorted(os.walk(os.path.join(ROOT, PACKAGE))):
         name = os.path.relpath(folder, ROOT)
-        if name.split(os.sep)[-1] == "__pycache__" or name == _WINDOW or name.startswith(_WINDOW + os.sep):
+        if (
+            name.split(os.sep)[-1] == "__pycache__"
+            or name == _WINDOW
+            or name.startswith(_WINDOW + os.sep)
+        ):
             continue
         yield from (os.path.join(name, file) for file in sorted(files))

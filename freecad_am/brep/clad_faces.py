@@ -25,7 +25,11 @@ from .walls.patch_wall import sound
 from .walls.sheet import sheet
 from .walls.wall import faces_by_name
 
-OF_RADIUS, OF_SPACING, FINEST = 0.25, 0.5, 0.1  # edges: of the smallest radius, of the bead spacing, at least
+OF_RADIUS, OF_SPACING, FINEST = (
+    0.25,
+    0.5,
+    0.1,
+)  # edges: of the smallest radius, of the bead spacing, at least
 MOST_NAMED = 8  # faces named in a message
 
 
@@ -41,8 +45,11 @@ def clad_faces(
         known = faces_by_name(shape, names, label)
         if not names and shape.Solids:
             raise InputError(
-                "NO_FACES", label, "it is a solid with {} face(s), and none is chosen; name those to cover: part.faces of a "
-                "job, or select them", len(known),
+                "NO_FACES",
+                label,
+                "it is a solid with {} face(s), and none is chosen; name those to cover: part.faces of a "
+                "job, or select them",
+                len(known),
             )
         named = [(name, known[name]) for name in dict.fromkeys(names or known)]
         _refuse_several(shape, named, back, label)
@@ -65,31 +72,45 @@ def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, la
         one = next(iter(owners))
         other = next(name for name, number in owners.items() if number != owners[one])
         raise InputError(
-            "SEVERAL_BODIES", label, "{} and {} are faces of different solids; cover each solid as a feature of its own, or "
-            "fuse them first", one, other,
+            "SEVERAL_BODIES",
+            label,
+            "{} and {} are faces of different solids; cover each solid as a feature of its own, or "
+            "fuse them first",
+            one,
+            other,
         )
     if back and owners:
         raise InputError(
-            "BACK_OF_SOLID", "strategy.side", "behind {} is the material of {}; use front, which is outside of it",
-            next(iter(owners)), label,
+            "BACK_OF_SOLID",
+            "strategy.side",
+            "behind {} is the material of {}; use front, which is outside of it",
+            next(iter(owners)),
+            label,
         )
 
 
 def _turned(wall: PatchWall) -> PatchWall:
     return replace(
-        wall, triangles=wall.triangles[:, ::-1].copy(), uv=wall.uv[:, ::-1].copy(),
+        wall,
+        triangles=wall.triangles[:, ::-1].copy(),
+        uv=wall.uv[:, ::-1].copy(),
         patches=tuple(replace(patch, sign=-patch.sign) for patch in wall.patches),
     )
 
 
-def _smooth(wall: PatchWall, height: float, label: str) -> tuple[tuple[PatchWall, ...], tuple[Issue, ...]]:
+def _smooth(
+    wall: PatchWall, height: float, label: str
+) -> tuple[tuple[PatchWall, ...], tuple[Issue, ...]]:
     """What of the wall hangs together without a crease, each as one; warnings where layers gape or overlap at creases."""
     edges = Edges(wall.triangles)
     if (edges.count > 2).any():
         at = wall.vertices[edges.ends[int(np.argmax(edges.count > 2))]].mean(axis=0)
         raise InputError(
-            "BRANCHING_FACES", label, "more than two faces meet in one edge at {}; leave one of them out, or cover it as a "
-            "feature of its own", place(at),
+            "BRANCHING_FACES",
+            label,
+            "more than two faces meet in one edge at {}; leave one of them out, or cover it as a "
+            "feature of its own",
+            place(at),
         )
     two = np.flatnonzero(edges.count == 2)
     pair = edges.faces[two]
@@ -99,7 +120,9 @@ def _smooth(wall: PatchWall, height: float, label: str) -> tuple[tuple[PatchWall
     links = coo_matrix((np.ones((~crease).sum()), pair[~crease].T), shape=(n, n))
     count, part = connected_components(links, directed=False)
     sheets = tuple(_part(wall, part == k) for k in range(count))
-    return sheets, _crease_issues(wall, edges.ends[two], pair, turn, inward, height) if height > 0.0 and crease.any() else ()
+    return sheets, _crease_issues(
+        wall, edges.ends[two], pair, turn, inward, height
+    ) if height > 0.0 and crease.any() else ()
 
 
 def _turns(wall: PatchWall, ends: Index, pair: Index) -> tuple[Array, Mask]:
@@ -127,8 +150,15 @@ def _part(wall: PatchWall, chosen: Mask) -> PatchWall:
     used, index = np.unique(wall.triangles[chosen], return_inverse=True)
     patches, patch = np.unique(wall.patch[chosen], return_inverse=True)
     return PatchWall(
-        wall.vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp), np.ravel(patch).astype(np.intp),
-        wall.uv[chosen], tuple(wall.patches[k] for k in patches), (), np.zeros(len(used), dtype=bool), (), wall.label,
+        wall.vertices[used],
+        np.ravel(index).reshape(-1, 3).astype(np.intp),
+        np.ravel(patch).astype(np.intp),
+        wall.uv[chosen],
+        tuple(wall.patches[k] for k in patches),
+        (),
+        np.zeros(len(used), dtype=bool),
+        (),
+        wall.label,
         tuple(wall.faces[k] for k in patches),
     )
 
@@ -144,9 +174,20 @@ def _crease_issues(
             continue
         one, other = (wall.faces[k] for k in wall.patch[pair[at]])
         what = "into one another" if hollow else "apart, with a wedge left open between them"
-        found.append(Issue(
-            WARNING, "CREASE", Text("{} and {} meet at an angle of {:.3g} deg at {}: layers above the first grow {}, up to "
-                "{:.3g} mm above the faces; round the edge, or cover the faces one after the other", one, other,
-                np.degrees(mine[at]), place(wall.vertices[ends[at]].mean(axis=0)), Word(what), height),
-        ))
+        found.append(
+            Issue(
+                WARNING,
+                "CREASE",
+                Text(
+                    "{} and {} meet at an angle of {:.3g} deg at {}: layers above the first grow {}, up to "
+                    "{:.3g} mm above the faces; round the edge, or cover the faces one after the other",
+                    one,
+                    other,
+                    np.degrees(mine[at]),
+                    place(wall.vertices[ends[at]].mean(axis=0)),
+                    Word(what),
+                    height,
+                ),
+            )
+        )
     return tuple(found)

@@ -23,11 +23,18 @@ def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, 
     wrong = [name for name in names if name not in known]
     if wrong:
         raise InputError(
-            "UNKNOWN_EDGE", label, "it has no {}; choose from Edge1 to Edge{}", ", ".join(wrong), len(known)
+            "UNKNOWN_EDGE",
+            label,
+            "it has no {}; choose from Edge1 to Edge{}",
+            ", ".join(wrong),
+            len(known),
         )
     if not names and shape.Faces:
         raise InputError(
-            "GUIDE_OPEN", label, "it has {} edges, of which a guide takes some; name them, as in edges: [Edge1]", len(known)
+            "GUIDE_OPEN",
+            label,
+            "it has {} edges, of which a guide takes some; name them, as in edges: [Edge1]",
+            len(known),
         )
     edges = [known[name] for name in dict.fromkeys(names)] or list(shape.Edges)
     return [_nodes(edge) for edge in edges if edge.Length > LEAST]

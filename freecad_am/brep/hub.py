@@ -28,11 +28,15 @@ from .shapes.tessellate import WELDED
 from .whole_mesh import whole
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
-CROSSED = 5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
+CROSSED = (
+    5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
+)
 TOLERANCE = 1e-6  # relative; surfaces of faces that differ less are one
 FITTED = 1e-3  # mm that a spline may be off the cylinder or cone it is taken for
 ALONG_EDGE = 361  # points of an edge, that may go round
-NARROWEST = math.radians(3.0)  # a gap narrower than this, as a keyway or between such points, is none
+NARROWEST = math.radians(
+    3.0
+)  # a gap narrower than this, as a keyway or between such points, is none
 KNOWN = ("Part::GeomPlane", "Part::GeomSphere", "Part::GeomToroid")
 
 
@@ -43,7 +47,9 @@ class Bodies(NamedTuple):
     issues: tuple[Issue, ...]
 
 
-def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching: bool = False) -> Bodies:
+def bodies_of(
+    source: Any, label: str, chord_error: float, mend: float, touching: bool = False
+) -> Bodies:
     """The solids of a Part.Shape, or the pieces of a mesh (a Mesh.Mesh, or a Body), in part coordinates.
     mend: the largest hole of a mesh that is closed, mm. touching: a solid may touch itself along edges, and cut itself.
 
@@ -54,10 +60,18 @@ def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching
             points, triangles = source.vertices, source.triangles
         else:
             points, triangles = (np.array([tuple(row) for row in rows]) for rows in source.Topology)
-        found = repaired(np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), label, mend, touching)
+        found = repaired(
+            np.asarray(points, dtype=np.float64),
+            np.asarray(triangles, dtype=np.intp),
+            label,
+            mend,
+            touching,
+        )
         return Bodies(_named(found.solids, label), found.issues)
     if source is None or source.isNull() or not source.Solids:
-        raise InputError("NO_SOLID", label, "it has no solid; choose solids or closed meshes to deposit")
+        raise InputError(
+            "NO_SOLID", label, "it has no solid; choose solids or closed meshes to deposit"
+        )
     made: list[tuple[Any, tuple[SolidMesh, ...]]] = []
     crossing: list[str] = []
     issues: list[Issue] = []
@@ -71,10 +85,15 @@ def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching
         issues += found.issues
         if touching and not found.issues:
             crossing += crossing_messages(found.solids[0], CROSSED * chord_error)
-    return Bodies(_named([mesh for _, meshes in made for mesh in meshes], label), (*issues, *mended_issues(label, crossing)))
+    return Bodies(
+        _named([mesh for _, meshes in made for mesh in meshes], label),
+        (*issues, *mended_issues(label, crossing)),
+    )
 
 
-def _meshed(solid: Any, source: Any, chord_error: float, label: str, mend: float, touching: bool) -> Repaired:
+def _meshed(
+    solid: Any, source: Any, chord_error: float, label: str, mend: float, touching: bool
+) -> Repaired:
     """The mesh of a solid; of one whose faces do not meet, what mending its triangles makes of it."""
     made, issues = whole(solid, SHARE * chord_error, label)
     vertices, corners = made.vertices, made.triangles
@@ -91,12 +110,19 @@ def _meshed(solid: Any, source: Any, chord_error: float, label: str, mend: float
             found = repaired(vertices, mesh.triangles, label, mend, touching)
             return found._replace(issues=(*found.issues, *issues))
         except InputError:
-            widest = max((hole.size for hole in holes(separated(vertices, mesh.triangles))), default=0.0)
+            widest = max(
+                (hole.size for hole in holes(separated(vertices, mesh.triangles))), default=0.0
+            )
         if widest <= mend:
             raise
         raise InputError(
-            unsound.code, label, "{}; up to strategy.mend, {:g} mm, what is open is closed, and the widest place is {:.4g} "
-            "mm across", unsound.message, mend, widest,
+            unsound.code,
+            label,
+            "{}; up to strategy.mend, {:g} mm, what is open is closed, and the widest place is {:.4g} "
+            "mm across",
+            unsound.message,
+            mend,
+            widest,
         ) from None
     if not touching:
         mesh.refuse_crossing(label, CROSSED * chord_error)
@@ -110,16 +136,25 @@ def _placed(first: Any, mesh: SolidMesh, solid: Any) -> SolidMesh:
 
 
 def _named(solids: Sequence[SolidMesh], label: str) -> tuple[Body, ...]:
-    names = [label] if len(solids) == 1 else [f"{label} solid {number + 1}" for number in range(len(solids))]
+    names = (
+        [label]
+        if len(solids) == 1
+        else [f"{label} solid {number + 1}" for number in range(len(solids))]
+    )
     return tuple(
-        Body(name, solid.vertices, solid.triangles.astype(np.int64)) for name, solid in zip(names, solids, strict=True)
+        Body(name, solid.vertices, solid.triangles.astype(np.int64))
+        for name, solid in zip(names, solids, strict=True)
     )
 
 
 def given(radius: float, height: float, point: Sequence[float], way: Sequence[float]) -> Seat:
     """A base by its numbers: middle of its base circle and direction of its axis, towards the apex, in the part."""
     z = np.array(way, dtype=np.float64)
-    base = Base("the base", Developable(radius, height), upright(np.array(point, dtype=np.float64), z / np.linalg.norm(z)))
+    base = Base(
+        "the base",
+        Developable(radius, height),
+        upright(np.array(point, dtype=np.float64), z / np.linalg.norm(z)),
+    )
     return Seat(base, (Stretch(-math.inf, math.inf),))
 
 
@@ -135,7 +170,10 @@ def seats(faces: Sequence[tuple[str, Any]], chosen: bool) -> list[Seat]:
             shift = _shift(other.base, seat.base)
             if shift is not None:
                 base = dataclasses.replace(other.base, name=f"{other.base.name}, {name}")
-                more = [face._replace(low=face.low + shift, high=face.high + shift) for face in seat.faces]
+                more = [
+                    face._replace(low=face.low + shift, high=face.high + shift)
+                    for face in seat.faces
+                ]
                 found[k] = Seat(base, (*other.faces, *more), chosen)
                 break
         else:
@@ -148,18 +186,25 @@ def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
     if round_one is None:
         if chosen:
             raise InputError(
-                "NOT_DEVELOPABLE", name, "it is not a cylinder and no cone; choose another face, or give strategy.base"
+                "NOT_DEVELOPABLE",
+                name,
+                "it is not a cylinder and no cone; choose another face, or give strategy.base",
             )
         return None
     origin, z, radius, taper = round_one
-    points = np.array([tuple(point) for edge in face.Edges for point in edge.discretize(ALONG_EDGE)])
+    points = np.array(
+        [tuple(point) for edge in face.Edges for point in edge.discretize(ALONG_EDGE)]
+    )
     along = (points - origin) @ z
     if along.mean() > 0.0 if taper else downwards(z):
         z, along = -z, -along
     if _faces_inwards(face, origin, z):
         if chosen:
-            raise InputError("INNER_FACE", name, "it is the inside of a bore; choose the outside of a hub, on which solids "
-                             "grow")
+            raise InputError(
+                "INNER_FACE",
+                name,
+                "it is the inside of a bore; choose the outside of a hub, on which solids grow",
+            )
         return None
     low, high = float(along.min()), float(along.max())
     shape = Developable(-low * math.tan(taper), -low) if taper else Developable(radius)
@@ -167,7 +212,11 @@ def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
     x, y = base.inside(points)[:, :2].T
     start, span = sector(np.arctan2(y, x)[np.hypot(x, y) > TOLERANCE * shape.radius])
     whole = span > TURN - NARROWEST
-    return Seat(base, (Stretch(0.0, high - low) if whole else Stretch(0.0, high - low, start, span),), chosen)
+    return Seat(
+        base,
+        (Stretch(0.0, high - low) if whole else Stretch(0.0, high - low, start, span),),
+        chosen,
+    )
 
 
 def _round(face: Any) -> tuple[Array, Array, float, float] | None:
@@ -176,21 +225,40 @@ def _round(face: Any) -> tuple[Array, Array, float, float] | None:
     such."""
     surface, kind = face.Surface, face.Surface.TypeId
     if kind == "Part::GeomCone":
-        return np.array(tuple(surface.Apex)), np.array(tuple(surface.Axis)), 0.0, abs(float(surface.SemiAngle))
+        return (
+            np.array(tuple(surface.Apex)),
+            np.array(tuple(surface.Axis)),
+            0.0,
+            abs(float(surface.SemiAngle)),
+        )
     if kind == "Part::GeomCylinder":
-        return np.array(tuple(surface.Center)), np.array(tuple(surface.Axis)), float(surface.Radius), 0.0
+        return (
+            np.array(tuple(surface.Center)),
+            np.array(tuple(surface.Axis)),
+            float(surface.Radius),
+            0.0,
+        )
     axis = None if kind in KNOWN else from_normals([face])
     if axis is None:
         return None
     origin, z = axis
     u0, u1, v0, v1 = face.ParameterRange
-    places = [(u, v) for u in np.linspace(u0, u1, 25) for v in np.linspace(v0, v1, 25) if face.isPartOfDomain(u, v)]
+    places = [
+        (u, v)
+        for u in np.linspace(u0, u1, 25)
+        for v in np.linspace(v0, v1, 25)
+        if face.isPartOfDomain(u, v)
+    ]
     points = np.array([tuple(surface.value(u, v)) for u, v in places]).reshape(-1, 3)
     if len(points) < 9 or _flat(points):
         return None
     origin, z = _best_axis(points, origin, z)
     along, rho, slope, at_origin = _profile(points, origin, z)
-    if np.abs(rho - slope * along - at_origin).max() > FITTED or np.ptp(along) <= FITTED or rho.max() <= FITTED:
+    if (
+        np.abs(rho - slope * along - at_origin).max() > FITTED
+        or np.ptp(along) <= FITTED
+        or rho.max() <= FITTED
+    ):
         return None
     if abs(slope) * np.ptp(along) <= FITTED:
         return origin, z, float(rho.mean()), 0.0
@@ -240,7 +308,10 @@ def _shift(one: Base, other: Base) -> float | None:
     """How far the frame of another base is up the axis of this one, where they are the same surface."""
     away = one.inside(other.frame[:3, 3])
     size = one.surface.radius
-    alike = other.frame[:3, 2] @ one.frame[:3, 2] > 1.0 - TOLERANCE and math.hypot(away[0], away[1]) < TOLERANCE * size
+    alike = (
+        other.frame[:3, 2] @ one.frame[:3, 2] > 1.0 - TOLERANCE
+        and math.hypot(away[0], away[1]) < TOLERANCE * size
+    )
     if not alike or abs(one.surface.taper - other.surface.taper) > TOLERANCE:
         return None
     rest = other.surface.radius - (one.surface.radius - away[2] * math.tan(one.surface.taper))

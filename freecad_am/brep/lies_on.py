@@ -19,8 +19,10 @@ def lies_on_bend(part: Any, ground: Any) -> bool:
     bent = [face for face in ground.Faces if face.Surface.TypeId != PLANE]
     return any(
         all(face.distToShape(Part.Vertex(place))[0] < TOUCHING for place in _within(own))
-        for own in part.Faces if own.Surface.TypeId != PLANE
-        for face in bent if face.BoundBox.intersect(own.BoundBox)
+        for own in part.Faces
+        if own.Surface.TypeId != PLANE
+        for face in bent
+        if face.BoundBox.intersect(own.BoundBox)
     )
 
 
@@ -37,6 +39,8 @@ def carrier(solids: Sequence[Any]) -> str:
 def _within(face: Any) -> list[Any]:
     """Places of a face, in its middle and about it, none of them beside it."""
     low_u, high_u, low_v, high_v = face.ParameterRange
-    shares = [(low_u + u * (high_u - low_u), low_v + v * (high_v - low_v)) for u in ACROSS for v in ACROSS]
+    shares = [
+        (low_u + u * (high_u - low_u), low_v + v * (high_v - low_v)) for u in ACROSS for v in ACROSS
+    ]
     found = [face.valueAt(*at) for at in shares if face.isPartOfDomain(*at)]
     return found or [vertex.Point for vertex in face.Vertexes]

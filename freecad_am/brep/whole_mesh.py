@@ -13,7 +13,9 @@ from .shapes.fine_mesh import fine
 from .shapes.tessellate import Tessellation
 
 FINER = (1.0, 0.8, 1.2, 0.5)  # of the deflection asked for, in the order in which they are tried
-MAX_DEFLECTIONS = 1.5  # deflections between triangles and shape, on average over its area, that are not fault
+MAX_DEFLECTIONS = (
+    1.5  # deflections between triangles and shape, on average over its area, that are not fault
+)
 
 
 def whole(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Issue, ...]]:
@@ -28,6 +30,11 @@ def whole(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Iss
             return made, ()
         found.append((volume, made))
     volume, made = min(found, key=lambda one: abs(one[0] - exact))
-    message = Text("{}: its triangles enclose {:.4g} cm3 and its faces {:.4g} cm3; check and export the part again, or "
-                   "deposit it from a mesh", label, 1e-3 * volume, 1e-3 * exact)
+    message = Text(
+        "{}: its triangles enclose {:.4g} cm3 and its faces {:.4g} cm3; check and export the part again, or "
+        "deposit it from a mesh",
+        label,
+        1e-3 * volume,
+        1e-3 * exact,
+    )
     return made, (Issue(WARNING, "MESH_VOLUME", message),)

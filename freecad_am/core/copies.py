@@ -47,7 +47,9 @@ class _Meanwhile(Generic[T]):
         self._end = weakref.finalize(self, _ended, pid, self._ours)
 
     def __call__(self) -> T:
-        with contextlib.suppress(EOFError, pickle.UnpicklingError):  # it has ended without, or was asked before
+        with contextlib.suppress(
+            EOFError, pickle.UnpicklingError
+        ):  # it has ended without, or was asked before
             with os.fdopen(self._ours, "rb", closefd=False) as stream:
                 found: T = pickle.load(stream)
             return found
@@ -74,7 +76,9 @@ def begun(work: Callable[[], object]) -> int:
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.flush()
-    asked = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))  # that no handler of ours runs there
+    asked = signal.pthread_sigmask(
+        signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM)
+    )  # that no handler of ours runs there
     try:
         pid = os.fork()
         if not pid:
@@ -104,7 +108,14 @@ def _carry_out(work: Callable[[], object], parent: int, asked: set[signal.Signal
 
 def take_no_signals() -> None:
     """Every signal ends this process, a fault of memory too: FreeCAD and its kernel would go on with what is broken."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGXCPU):
+    for number in (
+        signal.SIGINT,
+        signal.SIGTERM,
+        signal.SIGSEGV,
+        signal.SIGABRT,
+        signal.SIGFPE,
+        signal.SIGXCPU,
+    ):
         signal.signal(number, signal.SIG_DFL)
 
 

@@ -35,7 +35,9 @@ def plain(numbers: Integers, decimals: int) -> Characters:
         text[size + 1 - decimals] = _POINT
     before = slice(1, size + 1 - decimals)
     text[before] = digits[: size - decimals]
-    for place in range(decimals + 1, size):  # to the left of the decimals and one digit more, only what is not 0
+    for place in range(
+        decimals + 1, size
+    ):  # to the left of the decimals and one digit more, only what is not 0
         row = text[size - place]
         row[left < 10**place] = 0
     return text

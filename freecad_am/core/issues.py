@@ -54,7 +54,10 @@ class Text(str):
         """Several in a row: pairs of '{0}, {1}', however many there are; '' for none."""
         some, pair = list(texts), f"{{}}{between}{{}}"
         while len(some) > 1:
-            some = [Text(pair, *some[k : k + 2]) if k + 1 < len(some) else some[k] for k in range(0, len(some), 2)]
+            some = [
+                Text(pair, *some[k : k + 2]) if k + 1 < len(some) else some[k]
+                for k in range(0, len(some), 2)
+            ]
         return some[0] if some else ""
 
 
@@ -83,7 +86,11 @@ def _pieces(text: str, values: tuple[object, ...]) -> Iterator[tuple[str, str | 
         if isinstance(value, Word):
             yield literal, None
             inner = value.text
-            yield from _pieces(inner.template, inner.values) if isinstance(inner, Text) else [(inner, None)]
+            yield from (
+                _pieces(inner.template, inner.values)
+                if isinstance(inner, Text)
+                else [(inner, None)]
+            )
         elif isinstance(value, Text) and not form and not conversion:
             yield literal, value
         else:
@@ -110,7 +117,11 @@ class Issue:
         """The place in words, '' when there is none."""
         named = (("layer {}", self.layer), ("bead {}", self.bead), ("point {}", self.point))
         known = [(word, index) for word, index in named if index is not None]
-        return Text(" ".join(word for word, _ in known), *(index for _, index in known)) if known else ""
+        return (
+            Text(" ".join(word for word, _ in known), *(index for _, index in known))
+            if known
+            else ""
+        )
 
 
 def one_of_each(issues: Iterable[Issue]) -> list[Issue]:
@@ -120,7 +131,11 @@ def one_of_each(issues: Iterable[Issue]) -> list[Issue]:
         of_code.setdefault(issue.code, []).append(issue)
     found = []
     for code, (first, *others) in sorted(of_code.items()):
-        text = Text("{} (more layers like it: {})", first.message, len(others)) if others else first.message
+        text = (
+            Text("{} (more layers like it: {})", first.message, len(others))
+            if others
+            else first.message
+        )
         found.append(Issue(first.level, code, text, first.layer))
     return found
 
@@ -157,7 +172,12 @@ class InputError(AmError):
     exit_status = 2
 
     def __init__(
-        self, code: str, where: str, message: str, *values: object, mended_by: Mapping[str, Any] | None = None
+        self,
+        code: str,
+        where: str,
+        message: str,
+        *values: object,
+        mended_by: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(code, where, message, *values)
         self.mended_by = dict(mended_by or {})
@@ -168,6 +188,8 @@ class InfeasibleError(AmError):
 
     exit_status = 3
 
-    def __init__(self, code: str, where: str, message: str, *values: object, issues: tuple[Issue, ...] = ()) -> None:
+    def __init__(
+        self, code: str, where: str, message: str, *values: object, issues: tuple[Issue, ...] = ()
+    ) -> None:
         super().__init__(code, where, message, *values)
         self.issues = issues

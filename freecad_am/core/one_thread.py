@@ -22,12 +22,22 @@ from typing import NamedTuple
 
 # what tells the libraries that numpy may be built on: OpenBLAS, any with OpenMP, MKL, BLIS, Apple's
 ENVIRONMENT = dict.fromkeys(
-    ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
+    (
+        "OPENBLAS_NUM_THREADS",
+        "OMP_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "BLIS_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+    ),
+    "1",
 )
 # functions that tell and set the number; the wheels of numpy and scipy name those of OpenBLAS in ways of their own
 _NUMBERS = (
-    *((f"{before}openblas_get_num_threads{after}", f"{before}openblas_set_num_threads{after}")
-      for before in ("", "scipy_") for after in ("", "64_")),
+    *(
+        (f"{before}openblas_get_num_threads{after}", f"{before}openblas_set_num_threads{after}")
+        for before in ("", "scipy_")
+        for after in ("", "64_")
+    ),
     ("MKL_Get_Max_Threads", "MKL_Set_Num_Threads"),
     ("bli_thread_get_num_threads", "bli_thread_set_num_threads"),
 )
@@ -106,12 +116,18 @@ def _files() -> list[str]:
     for package, module in (("numpy", "_umath_linalg"), ("scipy", "_fblas")):
         spec = importlib.util.find_spec(package)
         for folder in (spec.submodule_search_locations or ()) if spec else ():
-            files += [os.path.join(folder, "linalg", module + ending) for ending in importlib.machinery.EXTENSION_SUFFIXES]
+            files += [
+                os.path.join(folder, "linalg", module + ending)
+                for ending in importlib.machinery.EXTENSION_SUFFIXES
+            ]
             if os.name == "nt":
                 files += glob.glob(os.path.join(glob.escape(f"{folder}.libs"), "*openblas*.dll"))
     if os.name == "nt":
-        for place in {os.path.dirname(sys.executable), os.path.join(sys.prefix, "bin"),
-                       os.path.join(sys.prefix, "Library", "bin")}:
+        for place in {
+            os.path.dirname(sys.executable),
+            os.path.join(sys.prefix, "bin"),
+            os.path.join(sys.prefix, "Library", "bin"),
+        }:
             for name in ("*openblas*.dll", "mkl_rt*.dll"):
                 files += glob.glob(os.path.join(glob.escape(place), name))
     return [file for file in files if os.path.exists(file)]

@@ -37,7 +37,11 @@ class Pendant:
 
 
 def _of_bryant(angles: Array) -> Array:
-    return np.asarray(frames.about_x(angles[..., 0]) @ frames.about_y(angles[..., 1]) @ frames.about_z(angles[..., 2]))
+    return np.asarray(
+        frames.about_x(angles[..., 0])
+        @ frames.about_y(angles[..., 1])
+        @ frames.about_z(angles[..., 2])
+    )
 
 
 def about_fixed(rotation: Array, still: str) -> Array:
@@ -55,7 +59,11 @@ def about_fixed(rotation: Array, still: str) -> Array:
 
 
 def _of_fixed(angles: Array) -> Array:
-    return np.asarray(frames.about_z(angles[..., 2]) @ frames.about_y(angles[..., 1]) @ frames.about_x(angles[..., 0]))
+    return np.asarray(
+        frames.about_z(angles[..., 2])
+        @ frames.about_y(angles[..., 1])
+        @ frames.about_x(angles[..., 0])
+    )
 
 
 def quaternions(rotation: Array) -> Array:
@@ -72,7 +80,11 @@ def quaternions(rotation: Array) -> Array:
         np.stack([wy, xy, squares[:, 2], yz], axis=1), np.stack([wz, xz, yz, squares[:, 3]], axis=1),
     ], axis=1)  # fmt: skip
     found = rows[np.arange(len(r)), np.argmax(squares, axis=1)]
-    unit: Array = found * np.where(found[:, :1] < 0.0, -1.0, 1.0) / np.linalg.norm(found, axis=1, keepdims=True)
+    unit: Array = (
+        found
+        * np.where(found[:, :1] < 0.0, -1.0, 1.0)
+        / np.linalg.norm(found, axis=1, keepdims=True)
+    )
     return unit
 
 
@@ -86,7 +98,9 @@ def _vectors(rotation: Array) -> Array:
     found = quaternions(rotation)
     sine = np.linalg.norm(found[:, 1:], axis=1)
     turn = 2.0 * np.arctan2(sine, np.ascontiguousarray(found[:, 0]))
-    vectors: Array = found[:, 1:] * np.where(sine > 1e-12, turn / np.maximum(sine, 1e-300), 2.0)[:, None]
+    vectors: Array = (
+        found[:, 1:] * np.where(sine > 1e-12, turn / np.maximum(sine, 1e-300), 2.0)[:, None]
+    )
     return vectors
 
 
@@ -96,7 +110,9 @@ def _of_vectors(vectors: Array) -> Array:
 
 def _about(axes: Array, angles: Array) -> Array:
     """The rotations by angles (n,) about axes (n, 3) of any length; about one of no length there is no turn."""
-    return np.asarray(frames.rotation_about(frames.unit(axes), np.where(axes.any(axis=-1), angles, 0.0)))
+    return np.asarray(
+        frames.rotation_about(frames.unit(axes), np.where(axes.any(axis=-1), angles, 0.0))
+    )
 
 
 def _reversed(numbers: Callable[[Array], Array]) -> Callable[[Array], Array]:
@@ -106,6 +122,9 @@ def _reversed(numbers: Callable[[Array], Array]) -> Callable[[Array], Array]:
 # R = Rx Ry Rz, as poses are here; Rz Ry Rx with the angle about X first, and with that about Z first
 MOVING_XYZ = Orientation(frames.to_bryant, _of_bryant)
 FIXED_XYZ = Orientation(lambda rotation: about_fixed(rotation, "x"), _of_fixed)
-MOVING_ZYX = Orientation(_reversed(lambda rotation: about_fixed(rotation, "z")), lambda angles: _of_fixed(angles[..., ::-1]))
+MOVING_ZYX = Orientation(
+    _reversed(lambda rotation: about_fixed(rotation, "z")),
+    lambda angles: _of_fixed(angles[..., ::-1]),
+)
 QUATERNION = Orientation(quaternions, _of_quaternions, False)
 ROTATION_VECTOR = Orientation(_vectors, _of_vectors, False)

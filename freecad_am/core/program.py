@@ -160,7 +160,18 @@ class Call:
     where: str = "process.between_layers.call"
 
 
-Block = Moves | DepositOn | DepositOff | Schedule | Weave | LayerStart | Wait | WaitInput | WaitBelow | Call
+Block = (
+    Moves
+    | DepositOn
+    | DepositOff
+    | Schedule
+    | Weave
+    | LayerStart
+    | Wait
+    | WaitInput
+    | WaitBelow
+    | Call
+)
 
 
 @dataclass(frozen=True)
@@ -261,7 +272,10 @@ class Program:
     @property
     def slides(self) -> Mask:
         """(axes,) bool: the track among all axes of a robot and those beside it."""
-        return np.array([*(False,) * self.own_axes, *(kind == LINEAR for kind in self.external_kinds)], dtype=np.bool_)
+        return np.array(
+            [*(False,) * self.own_axes, *(kind == LINEAR for kind in self.external_kinds)],
+            dtype=np.bool_,
+        )
 
     @property
     def moves(self) -> tuple[Moves, ...]:
@@ -273,7 +287,8 @@ class Program:
         """Layer and bead of the beads that are laid with a weave."""
         pairs = zip(self.blocks, self.blocks[1:])
         return frozenset(
-            (run.layer, run.bead) for block, run in pairs
+            (run.layer, run.bead)
+            for block, run in pairs
             if isinstance(block, Weave) and block.number and isinstance(run, Moves)
         )
 

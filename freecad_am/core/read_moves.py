@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 from .types import Array, Index, Mask
 
-ARC = "ARC"  # in place of the word of an output, where the deposit is switched by an arc instruction
+ARC = (
+    "ARC"  # in place of the word of an output, where the deposit is switched by an arc instruction
+)
 
 
 @dataclass(frozen=True)

@@ -23,13 +23,19 @@ from .geometry.obstacles import Body
 from .issues import Issue
 from .types import Array, Index
 
-FILLED = ("developable", "solid", "cladding")  # families whose beads fill solids, or layers on faces
+FILLED = (
+    "developable",
+    "solid",
+    "cladding",
+)  # families whose beads fill solids, or layers on faces
 PREDICTED = ("width", "height")  # columns of a bead that a bead model gives
 
 
 def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
     array = np.array(values, dtype=np.float64)
-    if array.ndim != len(shape) or any(want is not None and have != want for have, want in zip(array.shape, shape)):
+    if array.ndim != len(shape) or any(
+        want is not None and have != want for have, want in zip(array.shape, shape)
+    ):
         raise ValueError(f"{name} has the shape {array.shape}, expected {shape}")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} holds a value that is not finite")
@@ -85,7 +91,9 @@ class Bead:
         if self.tangents is not None:
             object.__setattr__(self, "tangents", _frozen(self.tangents, (n, 2, 3), "tangents"))
         if self.external is not None:
-            object.__setattr__(self, "external", _frozen(self.external, (n, self.external.shape[1]), "external"))
+            object.__setattr__(
+                self, "external", _frozen(self.external, (n, self.external.shape[1]), "external")
+            )
         for name in ("build", "tool", *(("tangents",) if self.tangents is not None else ())):
             if np.abs(np.linalg.norm(getattr(self, name), axis=-1) - 1.0).max() > 1e-9:
                 raise ValueError(f"{name} holds a vector that is not of unit length")
@@ -119,8 +127,12 @@ class Bead:
     def reversed(self) -> Bead:
         """The same bead run the other way."""
         return dataclasses.replace(
-            self, points=self.points[::-1], build=self.build[::-1], tool=self.tool[::-1],
-            parameter=self.parameter[::-1], speed=self.speed[::-1],
+            self,
+            points=self.points[::-1],
+            build=self.build[::-1],
+            tool=self.tool[::-1],
+            parameter=self.parameter[::-1],
+            speed=self.speed[::-1],
             tangents=None if self.tangents is None else -self.tangents[::-1, ::-1],
             external=None if self.external is None else self.external[::-1],
             **self._predicted(lambda column: column[::-1]),
@@ -138,9 +150,14 @@ class Bead:
         order = np.r_[index:n, 0 : index + 1]
         parameter = self.parameter[order] + np.where(np.arange(n + 1) >= n - index, turn, 0.0)
         return dataclasses.replace(
-            self, points=self.points[order], build=self.build[order], tool=self.tool[order], parameter=parameter,
+            self,
+            points=self.points[order],
+            build=self.build[order],
+            tool=self.tool[order],
+            parameter=parameter,
             speed=self.speed[np.where(order == 0, n, order)],
-            tangents=None if self.tangents is None else self.tangents[order], external=self._external_from(index),
+            tangents=None if self.tangents is None else self.tangents[order],
+            external=self._external_from(index),
             **self._predicted(lambda column: column[order]),
         )
 
@@ -149,7 +166,9 @@ class Bead:
         if self.external is None:
             return None
         moved = self.external[-1] - self.external[0]
-        return np.asarray(np.concatenate([self.external[index:-1], self.external[: index + 1] + moved]))
+        return np.asarray(
+            np.concatenate([self.external[index:-1], self.external[: index + 1] + moved])
+        )
 
     def halved(self, segments: Index) -> Bead:
         """The bead with a point in the middle of each of the segments (k,), rising: on the curve that the points outline,
@@ -165,10 +184,16 @@ class Bead:
 
         points, tangents = self.outline.at(segments, 0.5)
         return dataclasses.replace(
-            self, points=np.insert(self.points, at, points, axis=0), build=middle_direction(self.build),
-            tool=middle_direction(self.tool), parameter=middle(self.parameter),
-            speed=np.insert(self.speed, at, self.speed[at]), **self._predicted(middle),
-            tangents=None if self.tangents is None else np.insert(self.tangents, at, tangents[:, None], axis=0),
+            self,
+            points=np.insert(self.points, at, points, axis=0),
+            build=middle_direction(self.build),
+            tool=middle_direction(self.tool),
+            parameter=middle(self.parameter),
+            speed=np.insert(self.speed, at, self.speed[at]),
+            **self._predicted(middle),
+            tangents=None
+            if self.tangents is None
+            else np.insert(self.tangents, at, tangents[:, None], axis=0),
             external=None if self.external is None else middle(self.external),
         )
 
@@ -194,13 +219,22 @@ class Bead:
         position[-1] = last[0]
         turn = self.parameter[-1] - self.parameter[0]
         return dataclasses.replace(
-            self, points=np.concatenate([self.points, position]), build=directions(self.build), tool=directions(self.tool),
+            self,
+            points=np.concatenate([self.points, position]),
+            build=directions(self.build),
+            tool=directions(self.tool),
             parameter=np.concatenate([self.parameter, again(self.parameter) + turn]),
-            speed=np.concatenate([self.speed, self.speed[1 : count + 1]]), closed=False,
+            speed=np.concatenate([self.speed, self.speed[1 : count + 1]]),
+            closed=False,
             tangents=None if self.tangents is None else self._tangents_run_on(count, tangent),
-            external=None if self.external is None else np.concatenate([
-                self.external, again(self.external) + self.external[-1] - self.external[0],
-            ]),
+            external=None
+            if self.external is None
+            else np.concatenate(
+                [
+                    self.external,
+                    again(self.external) + self.external[-1] - self.external[0],
+                ]
+            ),
             **self._predicted(lambda column: np.concatenate([column, again(column)])),
         )
 
@@ -208,11 +242,15 @@ class Bead:
         """Tangents of the bead gone on to its point `count`, but ending along `last` (1, 3)."""
         assert self.tangents is not None
         seam = np.stack([self.tangents[-1, 0], self.tangents[0, 1]])[None]
-        return np.concatenate([self.tangents[:-1], seam, self.tangents[1:count], np.repeat(last[:, None], 2, axis=1)])
+        return np.concatenate(
+            [self.tangents[:-1], seam, self.tangents[1:count], np.repeat(last[:, None], 2, axis=1)]
+        )
 
     def part(self, rows: slice) -> Bead:
         """Some of its points, two or more in a row, as an open bead of their own."""
-        return dataclasses.replace(self, **self._rows(rows), closed=False, returns=self.returns and not rows.start)
+        return dataclasses.replace(
+            self, **self._rows(rows), closed=False, returns=self.returns and not rows.start
+        )
 
     def thinned(self, index: Index) -> Bead:
         """The bead with some of its points alone, by their numbers, rising, the first and the last among them."""
@@ -242,7 +280,11 @@ class SpeedLaw:
         if bead.width is None or bead.height is None:
             return dataclasses.replace(bead, speed=speed)
         width = bead.width + self.width * more
-        height = bead.height + self.height * more if bead.wire_share is None else bead.height * bead.width / width
+        height = (
+            bead.height + self.height * more
+            if bead.wire_share is None
+            else bead.height * bead.width / width
+        )
         return dataclasses.replace(bead, speed=speed, width=width, height=height)
 
 
@@ -349,19 +391,26 @@ class Toolpath:
         """(n,) mm, how wide beads are at all points in the order of deposit; 0 where nothing is known of it, as in documents
         of old: they count as lines."""
         known = [one.bead_width or 0.0 for one in self.features or (self,)]
-        return np.concatenate([
-            np.full(len(bead), known[self.layers[i].feature if self.features else 0]) if bead.width is None else bead.width
-            for i, _, bead in self
-        ])
+        return np.concatenate(
+            [
+                np.full(len(bead), known[self.layers[i].feature if self.features else 0])
+                if bead.width is None
+                else bead.width
+                for i, _, bead in self
+            ]
+        )
 
     @property
     def heights(self) -> Array:
         """(n,) mm, how high beads are at all points in the order of deposit: the layer height where none is predicted, 0
         where nothing is known of their width either."""
         known = self.layer_heights if self.bead_width else np.zeros(len(self.layers))
-        return np.concatenate([
-            np.full(len(bead), known[i]) if bead.height is None else bead.height for i, _, bead in self
-        ])
+        return np.concatenate(
+            [
+                np.full(len(bead), known[i]) if bead.height is None else bead.height
+                for i, _, bead in self
+            ]
+        )
 
     @property
     def length(self) -> float:

@@ -14,19 +14,33 @@ from types import ModuleType
 _GUI = __name__.rpartition(".")[0]
 MOVED = {
     f"{_GUI}.view_{name}": f"{_GUI}.views.{name}"
-    for name in ("cell", "cladding", "curves", "feature", "hub", "job", "joint_path", "program", "toolpath")
+    for name in (
+        "cell",
+        "cladding",
+        "curves",
+        "feature",
+        "hub",
+        "job",
+        "joint_path",
+        "program",
+        "toolpath",
+    )
 }
 
 
 class _FormerNames(MetaPathFinder, Loader):
     """Finds modules under the names they had, with the classes they have now."""
 
-    def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
+    def find_spec(
+        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
         return ModuleSpec(name, self) if name in MOVED else None
 
     def exec_module(self, module: ModuleType) -> None:
         now = importlib.import_module(MOVED[module.__name__])
-        vars(module).update({name: value for name, value in vars(now).items() if isinstance(value, type)})
+        vars(module).update(
+            {name: value for name, value in vars(now).items() if isinstance(value, type)}
+        )
 
 
 def install() -> None:

@@ -10,7 +10,9 @@ import FreeCAD as App
 
 import freecad_am
 
-FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(freecad_am.__file__))), "resources", "icons")
+FOLDER = os.path.join(
+    os.path.dirname(os.path.dirname(os.path.abspath(freecad_am.__file__))), "resources", "icons"
+)
 BADGES = {"stale": "#f5a623", "failed": "#e5243b", "infeasible": "#e5243b"}
 
 _made: dict[tuple[str, str], str] = {}
@@ -31,7 +33,12 @@ def with_badge(name: str, status: str) -> str:
             text = file.read()
         dot = f'<circle cx="50" cy="50" r="12" fill="{colour}" stroke="#ffffff" stroke-width="4"/>'
         with tempfile.NamedTemporaryFile(
-            "w", prefix=f"{name}_", suffix=".svg", dir=App.getTempPath(), delete=False, encoding="utf-8"
+            "w",
+            prefix=f"{name}_",
+            suffix=".svg",
+            dir=App.getTempPath(),
+            delete=False,
+            encoding="utf-8",
         ) as made:
             made.write(text.replace("</svg>", f"{dot}</svg>"))
         _made[name, colour] = made.name

@@ -47,7 +47,11 @@ def reference(obj: Any) -> str:
 
 def _document(document: Any) -> str:
     # another one may have become the active one since a panel was opened
-    return "App.ActiveDocument" if document is App.ActiveDocument else f"App.getDocument({document.Name!r})"
+    return (
+        "App.ActiveDocument"
+        if document is App.ActiveDocument
+        else f"App.getDocument({document.Name!r})"
+    )
 
 
 def _run(document: Any, function: str, first: str, arguments: dict[str, str]) -> None:

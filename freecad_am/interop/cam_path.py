@@ -41,7 +41,10 @@ def commands(lines: Sequence[Line]) -> list[tuple[str, dict[str, float]]]:
             found.append((f"({line.name})", {}))
             found.append((ON, {}))
             speeds = line.speed[1:].tolist()
-            found += [("G1", {**_xyz(at), "F": speed}) for at, speed in zip(points[1:], speeds, strict=True)]
+            found += [
+                ("G1", {**_xyz(at), "F": speed})
+                for at, speed in zip(points[1:], speeds, strict=True)
+            ]
             found.append((OFF, {}))
         else:
             found += [("G0", _xyz(at)) for at in points[1:]]

@@ -33,9 +33,13 @@ def text(cell: CellParameters, folder: str) -> str:
         lines.append(f"{field.name}: {_shown(value, f.spec_of(field).kind)}")
     if cell.nozzle != usual.nozzle:
         entries = [
-            f"{field.name}: " + (_file(cell.nozzle.shape, folder) if field.name == "shape" else _shown(
-                getattr(cell.nozzle, field.name), f.spec_of(field).kind
-            )) for field in dataclasses.fields(cell.nozzle)
+            f"{field.name}: "
+            + (
+                _file(cell.nozzle.shape, folder)
+                if field.name == "shape"
+                else _shown(getattr(cell.nozzle, field.name), f.spec_of(field).kind)
+            )
+            for field in dataclasses.fields(cell.nozzle)
             if getattr(cell.nozzle, field.name) != getattr(usual.nozzle, field.name)
         ]
         lines.append(f"nozzle: {{{', '.join(entries)}}}")
@@ -49,12 +53,19 @@ def text(cell: CellParameters, folder: str) -> str:
     around = obstacles.obstacles(cell.obstacles)
     lines += ["obstacles:"] if around else []
     for body in around:
-        what = f"file: {_file(body.file, folder)}" if body.size is None else f"box: {_shown(body.size, f.LENGTH)}"
+        what = (
+            f"file: {_file(body.file, folder)}"
+            if body.size is None
+            else f"box: {_shown(body.size, f.LENGTH)}"
+        )
         name = json.dumps(body.name, ensure_ascii=False)
         lines.append(f"- {{name: {name}, {what}, pose: {_shown(body.pose, f.POSE)}}}")
     points = touched.touched(cell.touched)
     lines += ["touched:"] if points else []
-    lines += [f"- {{part: {_shown(one.part, f.LENGTH)}, robot: {_shown(one.robot, f.LENGTH)}}}" for one in points]
+    lines += [
+        f"- {{part: {_shown(one.part, f.LENGTH)}, robot: {_shown(one.robot, f.LENGTH)}}}"
+        for one in points
+    ]
     if cell.world_up != usual.world_up:
         lines.append(f"world_up: {_shown(cell.upward(), f.NUMBER)}")
     return "\n".join(lines) + "\n"
@@ -79,7 +90,11 @@ def _machine(name: str, folder: str) -> str:
         return f"{{name: {_machine(measured.machine, folder)}, calibration: {_file(measured.file, folder)}}}"
     meant = urdf_reference.reference(name)
     if meant is not None:
-        links = [f", {key}: {json.dumps(link)}" for key, link in (("base", meant.base), ("tip", meant.tip)) if link]
+        links = [
+            f", {key}: {json.dumps(link)}"
+            for key, link in (("base", meant.base), ("tip", meant.tip))
+            if link
+        ]
         return f"{{file: {_file(meant.file, folder)}{''.join(links)}}}"
     return _file(name, folder) if os.sep in name or name.lower().endswith(".json") else name
 

@@ -26,7 +26,11 @@ def write_wires(obj: Any, path: str, rapids: bool) -> str:
     """
     ending = os.path.splitext(path)[1].lower()
     if ending not in STEP + DXF:
-        raise InputError("UNSUPPORTED_FILE", path, "wires are written as .step or .dxf; end the name with one of them")
+        raise InputError(
+            "UNSUPPORTED_FILE",
+            path,
+            "wires are written as .step or .dxf; end the name with one of them",
+        )
     lines = lines_of(obj, rapids)
     return _whole(path, lambda unfinished: _write(lines, unfinished, ending, obj.Label))
 
@@ -38,7 +42,9 @@ def write_waypoints(obj: Any, path: str) -> str:
     Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, and what `motion_of` raises.
     """
     if os.path.splitext(path)[1].lower() != ".csv":
-        raise InputError("UNSUPPORTED_FILE", path, "waypoints are written as .csv; end the name with it")
+        raise InputError(
+            "UNSUPPORTED_FILE", path, "waypoints are written as .csv; end the name with it"
+        )
     motion, columns, units = motion_of(obj)
 
     def write(unfinished: str) -> None:
@@ -54,7 +60,9 @@ def write_page(path: str, page: Callable[[], str], title: str) -> str:
     Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE; in the window Cancelled.
     """
     if os.path.splitext(path)[1].lower() != PAGE:
-        raise InputError("UNSUPPORTED_FILE", path, "reports are written as .html; end the name with it")
+        raise InputError(
+            "UNSUPPORTED_FILE", path, "reports are written as .html; end the name with it"
+        )
 
     def write(unfinished: str) -> None:
         text = hooks.carry_out(page, title, "making the report")
@@ -70,10 +78,14 @@ def write_cell(obj: Any, path: str) -> str:
     Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, and for what is not a cell.
     """
     if os.path.splitext(path)[1].lower() not in CELL:
-        raise InputError("UNSUPPORTED_FILE", path, "cells are written as .yaml; end the name with it")
+        raise InputError(
+            "UNSUPPORTED_FILE", path, "cells are written as .yaml; end the name with it"
+        )
     if getattr(getattr(obj, "Proxy", None), "kind", "") != "cell":
         raise InputError("WRONG_KIND", obj.Label, "this is not a cell; choose one")
-    saved = cell_file.text(obj.Proxy.parameters(obj, CellParameters), os.path.dirname(os.path.abspath(path)))
+    saved = cell_file.text(
+        obj.Proxy.parameters(obj, CellParameters), os.path.dirname(os.path.abspath(path))
+    )
 
     def write(unfinished: str) -> None:
         with open(unfinished, "w", encoding="utf-8", newline="\n") as stream:
@@ -86,14 +98,18 @@ def _whole(path: str, write: Callable[[str], None]) -> str:
     """Let a file be written beside, and put it in its place; the path."""
     folder = os.path.dirname(os.path.abspath(path))
     if not os.path.isdir(folder):
-        raise InputError("NO_FOLDER", path, "there is no folder {}; make it, or choose another", folder)
+        raise InputError(
+            "NO_FOLDER", path, "there is no folder {}; make it, or choose another", folder
+        )
     try:
         with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as temporary:
             unfinished = os.path.join(temporary, f"file{os.path.splitext(path)[1].lower()}")
             write(unfinished)
             os.replace(unfinished, path)
     except OSError as error:
-        raise InputError("NOT_WRITABLE", path, "{}; choose a file you can write", error.strerror or error) from None
+        raise InputError(
+            "NOT_WRITABLE", path, "{}; choose a file you can write", error.strerror or error
+        ) from None
     return path
 
 
@@ -107,14 +123,20 @@ def add_trajectory(obj: Any, tolerance: float, turn: float) -> Any:
     for name, value in (("tolerance", tolerance), ("turn", turn)):
         if not value > 0.0:
             raise InputError("OUT_OF_RANGE", name, "{:g} is not above 0; give a larger one", value)
-    return robot_trajectory.add(obj.Document, lines_of(obj), f"{obj.Label} (trajectory)", tolerance, turn)
+    return robot_trajectory.add(
+        obj.Document, lines_of(obj), f"{obj.Label} (trajectory)", tolerance, turn
+    )
 
 
 def _write(lines: Sequence[Line], path: str, ending: str, label: str) -> None:
     if ending in STEP:
         step_wires.write(lines, path, label)
         if not os.path.isfile(path):
-            raise InputError("NOT_WRITTEN", label, "FreeCAD wrote no STEP file; see the report view, or write DXF instead")
+            raise InputError(
+                "NOT_WRITTEN",
+                label,
+                "FreeCAD wrote no STEP file; see the report view, or write DXF instead",
+            )
     else:
         with open(path, "w", encoding="ascii", newline="") as stream:
             stream.writelines(dxf.text(lines))

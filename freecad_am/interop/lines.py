@@ -37,20 +37,32 @@ class Line:
 
     def chosen(self, rows: Index) -> Line:
         """The line through some of its points, the speed towards each kept."""
-        return Line(self.layer, self.bead, self.deposit, self.points[rows], self.tool[rows], self.speed[rows], self.closed)
+        return Line(
+            self.layer,
+            self.bead,
+            self.deposit,
+            self.points[rows],
+            self.tool[rows],
+            self.speed[rows],
+            self.closed,
+        )
 
 
 def of_toolpath(toolpath: Toolpath) -> tuple[Line, ...]:
     """Its beads, in the order of deposit."""
     return tuple(
-        Line(layer, index, True, bead.points, bead.tool, bead.speed, bead.closed) for layer, index, bead in toolpath
+        Line(layer, index, True, bead.points, bead.tool, bead.speed, bead.closed)
+        for layer, index, bead in toolpath
     )
 
 
 def of_motion(motion: Motion) -> tuple[Line, ...]:
     """Its beads and, from the second on, the rapid moves to them, in the order of motion; the last lifts off."""
     other = (np.diff(motion.bead) != 0) | (np.diff(motion.layer) != 0)
-    change = np.flatnonzero((motion.deposit[1:] != motion.deposit[:-1]) | (motion.deposit[1:] & other)) + 1
+    change = (
+        np.flatnonzero((motion.deposit[1:] != motion.deposit[:-1]) | (motion.deposit[1:] & other))
+        + 1
+    )
     starts, ends = np.r_[0, change], np.r_[change, len(motion)]
     found = []
     for start, end in zip(starts, ends, strict=True):
@@ -60,10 +72,17 @@ def of_motion(motion: Motion) -> tuple[Line, ...]:
         if len(points) < 2 or not (np.isfinite(points).all() and np.ptp(points, axis=0).any()):
             continue
         closed = deposit and len(points) > 3 and bool(np.abs(points[0] - points[-1]).max() < 1e-9)
-        found.append(Line(
-            int(motion.layer[start]), int(motion.bead[start]), deposit, points, motion.tool[first:end],
-            motion.speed[first:end], closed,
-        ))
+        found.append(
+            Line(
+                int(motion.layer[start]),
+                int(motion.bead[start]),
+                deposit,
+                points,
+                motion.tool[first:end],
+                motion.speed[first:end],
+                closed,
+            )
+        )
     return tuple(found)
 
 
@@ -79,7 +98,13 @@ def thinned(line: Line, tolerance: float, turn: float) -> Line:
             continue
         inner = np.arange(first + 1, last)
         off = _off(line.points[inner], line.points[first], line.points[last]) / tolerance
-        turned = np.minimum(_angle(line.tool[inner], line.tool[first]), _angle(line.tool[inner], line.tool[last])) / turn
+        turned = (
+            np.minimum(
+                _angle(line.tool[inner], line.tool[first]),
+                _angle(line.tool[inner], line.tool[last]),
+            )
+            / turn
+        )
         worst = np.maximum(off, turned)
         k = int(np.argmax(worst))
         if worst[k] > 1.0:
@@ -97,9 +122,15 @@ def _off(points: Array, start: Array, end: Array) -> Array:
     """Distance (n,) of points from the segment from start to end."""
     along = end - start
     length = float(along @ along)
-    share = np.clip((points - start) @ along / length, 0.0, 1.0) if length > 0.0 else np.zeros(len(points))
+    share = (
+        np.clip((points - start) @ along / length, 0.0, 1.0)
+        if length > 0.0
+        else np.zeros(len(points))
+    )
     return np.asarray(np.linalg.norm(points - start - share[:, None] * along, axis=1))
 
 
 def _angle(directions: Array, other: Array) -> Array:
-    return np.asarray(2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(directions - other, axis=1), 0.0, 1.0)))
+    return np.asarray(
+        2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(directions - other, axis=1), 0.0, 1.0))
+    )

@@ -10,7 +10,13 @@ from ..core.issues import InputError
 
 def lacking(what: str, workbench: str, otherwise: str) -> InputError:
     """The error that a workbench is not there, and what to do."""
-    return InputError("NO_MODULE", what, "this FreeCAD has no {} workbench; install it or {} instead", workbench, otherwise)
+    return InputError(
+        "NO_MODULE",
+        what,
+        "this FreeCAD has no {} workbench; install it or {} instead",
+        workbench,
+        otherwise,
+    )
 
 
 def added(document: Any, kind: str, name: str, label: str) -> Any:

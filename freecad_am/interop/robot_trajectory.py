@@ -25,9 +25,12 @@ def add(document: Any, lines: Sequence[Line], label: str, tolerance: float, turn
         raise neighbour.lacking("trajectory", "Robot", "make a CAM path") from None
     obj = neighbour.added(document, "Robot::TrajectoryObject", "AmTrajectory", label)
     trajectory = Robot.Trajectory()
-    trajectory.insertWaypoints([
-        Robot.Waypoint(place, type="LIN", name=name, vel=speed) for name, place, speed in waypoints(lines, tolerance, turn)
-    ])
+    trajectory.insertWaypoints(
+        [
+            Robot.Waypoint(place, type="LIN", name=name, vel=speed)
+            for name, place, speed in waypoints(lines, tolerance, turn)
+        ]
+    )
     obj.Trajectory = trajectory
     obj.purgeTouched()  # nothing is left to recompute, which the tree would ask for
     return obj
@@ -44,7 +47,11 @@ def waypoints(lines: Sequence[Line], tolerance: float, turn: float) -> list[tupl
         poses = pose(attitudes(few.tool), few.points)
         speed = np.where(np.arange(len(few.speed)) == 0, few.speed[1], few.speed)
         found += [
-            (f"{line.name} {k}", App.Placement(App.Matrix(*poses[k].ravel().tolist())), float(speed[k]))
+            (
+                f"{line.name} {k}",
+                App.Placement(App.Matrix(*poses[k].ravel().tolist())),
+                float(speed[k]),
+            )
             for k in range(skipped, len(few.points))
         ]
     return found

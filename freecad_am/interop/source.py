@@ -45,7 +45,9 @@ def _path_of(obj: Any) -> Any:
     stage = stage_of(obj)
     if stage is None or stage.kind not in KINDS:
         label = getattr(obj, "Label", repr(obj))
-        raise InputError("BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program")
+        raise InputError(
+            "BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program"
+        )
     if stage.kind != "program":
         return obj
     if obj.JointPath is None:

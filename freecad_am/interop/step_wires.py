@@ -24,11 +24,15 @@ def write(lines: Sequence[Line], path: str, label: str) -> None:
     try:
         import Import
     except ImportError:
-        raise InputError("NO_MODULE", "STEP", "this FreeCAD has no module Import; write DXF instead") from None
+        raise InputError(
+            "NO_MODULE", "STEP", "this FreeCAD has no module Import; write DXF instead"
+        ) from None
     active = App.ActiveDocument
     document = App.newDocument("RoboticAM_Export", label, True, True)
     try:
-        Import.export([_component(document, name, of) for name, of in _components(lines).items()], path)
+        Import.export(
+            [_component(document, name, of) for name, of in _components(lines).items()], path
+        )
     finally:
         App.closeDocument(document.Name)
         if active is not None:
@@ -42,7 +46,11 @@ def edge(line: Line) -> Any:
     knots = np.r_[0.0, np.cumsum(apart[apart > 0.0])].tolist()
     curve = Part.BSplineCurve()
     curve.buildFromPolesMultsKnots(
-        [App.Vector(*point) for point in points.tolist()], [2, *[1] * (len(points) - 2), 2], knots, False, 1,
+        [App.Vector(*point) for point in points.tolist()],
+        [2, *[1] * (len(points) - 2), 2],
+        knots,
+        False,
+        1,
     )
     return curve.toShape()
 

@@ -47,11 +47,19 @@ class KdlArm:
         self.order = machine.chain.order  # which of the joint values each joint takes
         # a fixed segment to the first joint's frame, then each joint about its axis, the way to the next frame behind it
         self.chain = self.kdl.Chain()
-        self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(machine.chain.origins[0])))
+        self.chain.addSegment(
+            self.kdl.Segment(self.kdl.Joint(), self.frame(machine.chain.origins[0]))
+        )
         behind = [*machine.chain.origins[1:], machine.chain.flange]
-        for value, direction, link in zip(machine.chain.order.tolist(), machine.chain.directions, behind, strict=True):
-            kind = self.kdl.Joint.TransAxis if machine.chain.sliding[value] else self.kdl.Joint.RotAxis
-            joint = self.kdl.Joint(f"q{value + 1}", self.kdl.Vector(), self.kdl.Vector(*direction), kind)
+        for value, direction, link in zip(
+            machine.chain.order.tolist(), machine.chain.directions, behind, strict=True
+        ):
+            kind = (
+                self.kdl.Joint.TransAxis if machine.chain.sliding[value] else self.kdl.Joint.RotAxis
+            )
+            joint = self.kdl.Joint(
+                f"q{value + 1}", self.kdl.Vector(), self.kdl.Vector(*direction), kind
+            )
             self.chain.addSegment(self.kdl.Segment(joint, self.frame(link)))
         self._forward = self.kdl.ChainFkSolverPos_recursive(self.chain)
         self._jacobian = self.kdl.ChainJntToJacSolver(self.chain)
@@ -59,7 +67,11 @@ class KdlArm:
     def forward(self, q: ArrayLike) -> Array:
         """Flange poses (n, 4, 4) of joint angles `q` (n, axes)."""
         values = np.asarray(q, float)[:, self.order]
-        frame, angles, solve = self.kdl.Frame(), self.kdl.JntArray(self.axes), self._forward.JntToCart
+        frame, angles, solve = (
+            self.kdl.Frame(),
+            self.kdl.JntArray(self.axes),
+            self._forward.JntToCart,
+        )
         # these calls are much of the time of a read-back: parts of the frame are looked up once, for the solver fills it in
         # place; a quaternion is one call where a matrix is nine; and joints that stay where they are need not be told again
         x, y, z, turned = frame.p.x, frame.p.y, frame.p.z, frame.M.GetQuaternion
@@ -86,7 +98,9 @@ class KdlArm:
             row[:, self.order] = [[columns[i, k] for k in range(self.axes)] for i in range(6)]
         return result
 
-    def inverse(self, poses: ArrayLike, seeds: ArrayLike, solver: str = "nr", tolerance: float = 1e-6) -> Array:
+    def inverse(
+        self, poses: ArrayLike, seeds: ArrayLike, solver: str = "nr", tolerance: float = 1e-6
+    ) -> Array:
         """Joint angles (n, axes) found numerically from `seeds` (n, axes); NaN where the solver gives up.
 
         `solver` is 'nr' (Newton-Raphson) or 'lma' (Levenberg-Marquardt); `tolerance` in mm and rad.
@@ -108,7 +122,9 @@ class KdlArm:
             raise ValueError(f"{name!r} is none of {', '.join(SOLVERS)}")
         # the solvers keep no reference of their own to one another
         self._velocity = self.kdl.ChainIkSolverVel_pinv(self.chain)
-        return self.kdl.ChainIkSolverPos_NR(self.chain, self._forward, self._velocity, ITERATIONS, tolerance)
+        return self.kdl.ChainIkSolverPos_NR(
+            self.chain, self._forward, self._velocity, ITERATIONS, tolerance
+        )
 
     def angles(self, angles: Array) -> Any:
         """Joint angles (axes,) as PyKDL's JntArray."""
@@ -136,9 +152,15 @@ def _rotations(quaternions: Array) -> Array:
     """The rotations (n, 3, 3) of quaternions x y z w (n, 4)."""
     x, y, z, w = quaternions.T
     rows = (
-        1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
-        2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-        2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y),
+        1 - 2 * (y * y + z * z),
+        2 * (x * y - z * w),
+        2 * (x * z + y * w),
+        2 * (x * y + z * w),
+        1 - 2 * (x * x + z * z),
+        2 * (y * z - x * w),
+        2 * (x * z - y * w),
+        2 * (y * z + x * w),
+        1 - 2 * (x * x + y * y),
     )
     result: Array = np.stack(rows, axis=1).reshape(-1, 3, 3)
     return result

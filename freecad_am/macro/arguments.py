@@ -18,19 +18,37 @@ from ..objects.fields.plain_text import is_text, shown
 def checked_document(doc: Any, where: str = "doc") -> Any:
     """The document. InputError BAD_INPUT for anything else, by the name of the argument."""
     if not isinstance(doc, App.Document) or is_gone(doc):
-        raise InputError("BAD_INPUT", where, "{} is not a document; give one, such as FreeCAD.ActiveDocument", named(doc))
+        raise InputError(
+            "BAD_INPUT",
+            where,
+            "{} is not a document; give one, such as FreeCAD.ActiveDocument",
+            named(doc),
+        )
     return doc
 
 
 def checked_object(value: Any, where: str, doc: Any = None) -> Any:
     """The object, of a document where that is given. InputError BAD_INPUT for anything else, by the name of the argument."""
     if isinstance(value, (tuple, list)) and value and isinstance(value[0], App.DocumentObject):
-        raise InputError("BAD_INPUT", where, "it takes one object alone; give that, and names of its faces apart")
+        raise InputError(
+            "BAD_INPUT", where, "it takes one object alone; give that, and names of its faces apart"
+        )
     if not isinstance(value, App.DocumentObject) or is_gone(value):
-        raise InputError("BAD_INPUT", where, "{} is not an object of a document; give one, such as doc.Body", named(value))
+        raise InputError(
+            "BAD_INPUT",
+            where,
+            "{} is not an object of a document; give one, such as doc.Body",
+            named(value),
+        )
     if doc is not None and value.Document != doc:
-        raise InputError("BAD_INPUT", where, "{} is an object of another document, {}; give one of {}, such as a copy of it",
-                         value.Label, value.Document.Label, doc.Label)
+        raise InputError(
+            "BAD_INPUT",
+            where,
+            "{} is an object of another document, {}; give one of {}, such as a copy of it",
+            value.Label,
+            value.Document.Label,
+            doc.Label,
+        )
     return value
 
 
@@ -39,7 +57,12 @@ def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
     if values is None:
         return []
     if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
-        raise InputError("BAD_INPUT", where, "{} is not a list of objects; give one, such as [doc.Clamp]", named(values))
+        raise InputError(
+            "BAD_INPUT",
+            where,
+            "{} is not a list of objects; give one, such as [doc.Clamp]",
+            named(values),
+        )
     return [checked_object(value, where, doc) for value in values]
 
 
@@ -47,8 +70,12 @@ def checked_names(names: Any, where: str) -> list[str]:
     """Names of faces and edges; a text is one name, and None is none. InputError BAD_INPUT for anything else."""
     found = [names] if isinstance(names, str) else [] if names is None else names
     if not isinstance(found, (list, tuple, set, frozenset)) or not all(map(is_text, found)):
-        raise InputError("BAD_INPUT", where, "{} are not names of faces or edges; give a list of texts, such as "
-                         "[\"Face1\"]", named(names))
+        raise InputError(
+            "BAD_INPUT",
+            where,
+            '{} are not names of faces or edges; give a list of texts, such as ["Face1"]',
+            named(names),
+        )
     return list(found)
 
 
@@ -71,7 +98,9 @@ def checked_keywords(values: Any, where: str) -> dict[str, Any]:
     if values is None:
         return {}
     if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
-        raise InputError("BAD_INPUT", where, "{} are not values by key; give a mapping", named(values))
+        raise InputError(
+            "BAD_INPUT", where, "{} are not values by key; give a mapping", named(values)
+        )
     return dict(values)
 
 
@@ -80,7 +109,9 @@ def checked_list(values: Any, where: str) -> list[Any]:
     if values is None:
         return []
     if not isinstance(values, (list, tuple)):
-        raise InputError("BAD_INPUT", where, "{} is not a list; give one, such as []", named(values))
+        raise InputError(
+            "BAD_INPUT", where, "{} is not a list; give one, such as []", named(values)
+        )
     return list(values)
 
 
@@ -88,7 +119,12 @@ def checked_target(path: Any, where: str) -> str:
     """As `checked_path`, of what is to be written: it has a name."""
     text = checked_path(path, where)
     if not text.strip():
-        raise InputError("BAD_INPUT", where, "{} is not a path; give one as a text, such as \"cup.step\"", named(path))
+        raise InputError(
+            "BAD_INPUT",
+            where,
+            '{} is not a path; give one as a text, such as "cup.step"',
+            named(path),
+        )
     return text
 
 
@@ -96,7 +132,12 @@ def checked_path(path: Any, where: str) -> str:
     """The path of a file or folder as a text. InputError BAD_INPUT for anything else, by the name of the argument."""
     text = os.fspath(path) if isinstance(path, os.PathLike) else path
     if not is_text(text):
-        raise InputError("BAD_INPUT", where, "{} is not a path; give one as a text, such as \"cup.step\"", named(path))
+        raise InputError(
+            "BAD_INPUT",
+            where,
+            '{} is not a path; give one as a text, such as "cup.step"',
+            named(path),
+        )
     return text
 
 
@@ -111,7 +152,9 @@ def checked_job(
     checked_number(mend, "mend")
     if source is not None:
         checked_object(source, "source", doc)
-    return checked_keywords(process, "process"), [checked_keywords(one, "then") for one in checked_list(then, "then")]
+    return checked_keywords(process, "process"), [
+        checked_keywords(one, "then") for one in checked_list(then, "then")
+    ]
 
 
 def is_gone(value: Any) -> bool:

@@ -73,7 +73,9 @@ def recompute(target: Any, force: bool = False) -> None:
 
     force: compute even what fits its inputs. `am.recompute(doc)`
     """
-    document = checked_document(target if is_gone(target) else getattr(target, "Document", target), "target")
+    document = checked_document(
+        target if is_gone(target) else getattr(target, "Document", target), "target"
+    )
     with one_step(document, "Recompute"):
         with stages.deferred():
             document.recompute()

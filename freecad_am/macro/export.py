@@ -26,7 +26,9 @@ def export(program: Any, folder: str) -> list[str]:
     elif kind == "program":
         from ..objects.program import files_of
     else:
-        raise InputError("WRONG_KIND", program.Label, "it is neither a program nor an inspection; choose one")
+        raise InputError(
+            "WRONG_KIND", program.Label, "it is neither a program nor an inspection; choose one"
+        )
     files = files_of(program)
     try:
         return written.write(folder, files)

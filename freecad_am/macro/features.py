@@ -15,9 +15,16 @@ from .steps import make_stage, owned, with_faces
 
 
 def make_feature(
-    doc: Any, source: Any, faces: Sequence[str] = (), label: str = "Feature", *, axis: Any = None,
-    fixtures: Sequence[Any] = (), strategy: RevolutionParameters | None = None,
-    build_direction: BuildDirectionParameters | None = None, **values: Any,
+    doc: Any,
+    source: Any,
+    faces: Sequence[str] = (),
+    label: str = "Feature",
+    *,
+    axis: Any = None,
+    fixtures: Sequence[Any] = (),
+    strategy: RevolutionParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None,
+    **values: Any,
 ) -> Any:
     """A feature of revolution of an object with a shape, or of some of its faces.
 
@@ -25,13 +32,28 @@ def make_feature(
     fixtures: objects, solids or meshes, that the nozzle must not touch.
     """
     links = {"Axis": axis, "Fixtures": fixtures}
-    return make_feature_of(doc, "revolution", source, faces, label=label, links=links,
-                           parameters=[strategy, build_direction], values=values)
+    return make_feature_of(
+        doc,
+        "revolution",
+        source,
+        faces,
+        label=label,
+        links=links,
+        parameters=[strategy, build_direction],
+        values=values,
+    )
 
 
 def make_feature_of(
-    doc: Any, kind: str, source: Any, faces: Sequence[str] = (), *, label: str = "Feature",
-    links: Mapping[str, Any] | None = None, parameters: Sequence[Any] = (), values: Mapping[str, Any] | None = None,
+    doc: Any,
+    kind: str,
+    source: Any,
+    faces: Sequence[str] = (),
+    *,
+    label: str = "Feature",
+    links: Mapping[str, Any] | None = None,
+    parameters: Sequence[Any] = (),
+    values: Mapping[str, Any] | None = None,
 ) -> Any:
     """A feature of any family, by its kind. links: by property name, of which those count that the family has; `StartEdges`
     and `BaseFaces` are names alone. parameters: dataclasses of its sections; values: single ones by key."""
@@ -40,11 +62,22 @@ def make_feature_of(
     known = {link.name: link.key for link in proxy.links}
     given_links = {"Source": with_faces(source, faces), **checked_keywords(links, "links")}
     chosen = {name: value for name, value in given_links.items() if name in known}
-    for name, owner in (("StartEdges", source), ("BaseFaces", given_links.get("Substrate")), ("StartFaces", source)):
+    for name, owner in (
+        ("StartEdges", source),
+        ("BaseFaces", given_links.get("Substrate")),
+        ("StartFaces", source),
+    ):
         if name in chosen and not _is_owned(chosen[name]):
             chosen[name] = owned(owner, chosen[name], known[name])
-    return make_stage(doc, proxy, "Feature", label, chosen, checked_list(parameters, "parameters"),
-                      checked_keywords(values, "values"))
+    return make_stage(
+        doc,
+        proxy,
+        "Feature",
+        label,
+        chosen,
+        checked_list(parameters, "parameters"),
+        checked_keywords(values, "values"),
+    )
 
 
 def _is_owned(names: Any) -> bool:
@@ -53,9 +86,17 @@ def _is_owned(names: Any) -> bool:
 
 
 def make_surface_feature(
-    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
-    start_edges: Sequence[str] = (), fixtures: Sequence[Any] = (), strategy: SurfaceParameters | None = None,
-    build_direction: BuildDirectionParameters | None = None, **values: Any,
+    doc: Any,
+    source: Any,
+    faces: Sequence[str] = (),
+    substrate: Any = None,
+    label: str = "Feature",
+    *,
+    start_edges: Sequence[str] = (),
+    fixtures: Sequence[Any] = (),
+    strategy: SurfaceParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None,
+    **values: Any,
 ) -> Any:
     """A wall, of an object's faces, that grows on a solid or closed mesh, or from edges of its own (start_edges).
 
@@ -63,14 +104,31 @@ def make_surface_feature(
     that the nozzle must not touch either.
     """
     links = {"Substrate": substrate, "Fixtures": fixtures, "StartEdges": start_edges}
-    return make_feature_of(doc, "surface", source, faces, label=label, links=links, parameters=[strategy, build_direction],
-                           values=values)
+    return make_feature_of(
+        doc,
+        "surface",
+        source,
+        faces,
+        label=label,
+        links=links,
+        parameters=[strategy, build_direction],
+        values=values,
+    )
 
 
 def make_developable_feature(
-    doc: Any, source: Any, substrate: Any = None, base_faces: Sequence[str] = (), label: str = "Feature", *,
-    faces: Sequence[str] = (), further: Sequence[Any] = (), fixtures: Sequence[Any] = (),
-    strategy: DevelopableParameters | None = None, build_direction: BuildDirectionParameters | None = None, **values: Any,
+    doc: Any,
+    source: Any,
+    substrate: Any = None,
+    base_faces: Sequence[str] = (),
+    label: str = "Feature",
+    *,
+    faces: Sequence[str] = (),
+    further: Sequence[Any] = (),
+    fixtures: Sequence[Any] = (),
+    strategy: DevelopableParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None,
+    **values: Any,
 ) -> Any:
     """Solids, or closed meshes, that grow on cylinders and cones of a hub (substrate), on the base_faces of it or on those
     that they are found to stand on. `am.make_developable_feature(doc, doc.Blades, doc.Spindle, layer_height=2.5)`
@@ -79,16 +137,36 @@ def make_developable_feature(
     or meshes, that the nozzle must not touch either. `base_radius=60, base_height=200` gives the base by numbers.
     """
     links = {
-        "Substrate": substrate, "Further": further, "Fixtures": fixtures, "BaseFaces": base_faces,
+        "Substrate": substrate,
+        "Further": further,
+        "Fixtures": fixtures,
+        "BaseFaces": base_faces,
     }
-    return make_feature_of(doc, "developable", source, faces, label=label, links=links,
-                           parameters=[strategy, build_direction], values=values)
+    return make_feature_of(
+        doc,
+        "developable",
+        source,
+        faces,
+        label=label,
+        links=links,
+        parameters=[strategy, build_direction],
+        values=values,
+    )
 
 
 def make_solid_feature(
-    doc: Any, source: Any, substrate: Any = None, label: str = "Feature", *, further: Sequence[Any] = (),
-    guide: Any = None, start_faces: Any = (), fixtures: Sequence[Any] = (), strategy: SolidParameters | None = None,
-    build_direction: BuildDirectionParameters | None = None, **values: Any,
+    doc: Any,
+    source: Any,
+    substrate: Any = None,
+    label: str = "Feature",
+    *,
+    further: Sequence[Any] = (),
+    guide: Any = None,
+    start_faces: Any = (),
+    fixtures: Sequence[Any] = (),
+    strategy: SolidParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None,
+    **values: Any,
 ) -> Any:
     """Any solids, or closed meshes, deposited in plane layers. `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
 
@@ -97,37 +175,76 @@ def make_solid_feature(
     ["Face1"]), that the first layer lies on; fixtures: objects, solids or meshes, that the nozzle must not touch either.
     """
     links = {
-        "Substrate": substrate, "Further": further, "Fixtures": fixtures,
+        "Substrate": substrate,
+        "Further": further,
+        "Fixtures": fixtures,
         "Guide": guide if guide is None or isinstance(guide, tuple) else (guide, [""]),
         "StartFaces": start_faces,
     }
-    return make_feature_of(doc, "solid", source, label=label, links=links, parameters=[strategy, build_direction],
-                           values=values)
+    return make_feature_of(
+        doc,
+        "solid",
+        source,
+        label=label,
+        links=links,
+        parameters=[strategy, build_direction],
+        values=values,
+    )
 
 
 def make_curves_feature(
-    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
-    fixtures: Sequence[Any] = (), strategy: CurvesParameters | None = None,
-    build_direction: BuildDirectionParameters | None = None, **values: Any,
+    doc: Any,
+    source: Any,
+    faces: Sequence[str] = (),
+    substrate: Any = None,
+    label: str = "Feature",
+    *,
+    fixtures: Sequence[Any] = (),
+    strategy: CurvesParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None,
+    **values: Any,
 ) -> Any:
     """Edges, a wire, a sketch, or a table of points that `open_part` has read, laid as beads as they are.
 
     `am.make_curves_feature(doc, doc.Sketch, repeat=3, layer_height=2)`; faces: names of faces whose normals are the
     directions, and of edges where not all are laid; substrate: what they are laid on.
     """
-    return make_feature_of(doc, "curves", source, faces, label=label, parameters=[strategy, build_direction],
-                           links={"Substrate": substrate, "Fixtures": fixtures}, values=values)
+    return make_feature_of(
+        doc,
+        "curves",
+        source,
+        faces,
+        label=label,
+        parameters=[strategy, build_direction],
+        links={"Substrate": substrate, "Fixtures": fixtures},
+        values=values,
+    )
 
 
 def make_cladding_feature(
-    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
-    fixtures: Sequence[Any] = (), strategy: CladdingParameters | None = None,
-    build_direction: BuildDirectionParameters | None = None, **values: Any,
+    doc: Any,
+    source: Any,
+    faces: Sequence[str] = (),
+    substrate: Any = None,
+    label: str = "Feature",
+    *,
+    fixtures: Sequence[Any] = (),
+    strategy: CladdingParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None,
+    **values: Any,
 ) -> Any:
     """Faces of an object, all of one that is not a solid, covered with layers of beads along their normals.
 
     `am.make_cladding_feature(doc, doc.Die, ["Face3"], layers=2, layer_height=2, bead_spacing=4)`; substrate, fixtures: what
     else the nozzle must not touch.
     """
-    return make_feature_of(doc, "cladding", source, faces, label=label, parameters=[strategy, build_direction],
-                           links={"Substrate": substrate, "Fixtures": fixtures}, values=values)
+    return make_feature_of(
+        doc,
+        "cladding",
+        source,
+        faces,
+        label=label,
+        parameters=[strategy, build_direction],
+        links={"Substrate": substrate, "Fixtures": fixtures},
+        values=values,
+    )

@@ -13,10 +13,15 @@ from ..objects.shapes.nested import resolved
 from ..objects.stage_parts import Link
 from .arguments import checked_names, checked_object, checked_objects, checked_text
 
-TEXTS = {"ProgramName": "name", "File": "file"}  # properties that stand with links, and what macros call them
+TEXTS = {
+    "ProgramName": "name",
+    "File": "file",
+}  # properties that stand with links, and what macros call them
 
 
-def checked_links(doc: Any, links: Sequence[Link], values: dict[str, Any], of: Any = None) -> dict[str, Any]:
+def checked_links(
+    doc: Any, links: Sequence[Link], values: dict[str, Any], of: Any = None
+) -> dict[str, Any]:
     """Values of links, by their names, as properties take them, and of what stands with them; None as it is. of: the stage
     whose they will be, where it is there already.
 
@@ -35,8 +40,13 @@ def checked_links(doc: Any, links: Sequence[Link], values: dict[str, Any], of: A
     for name in found.keys() & known.keys():
         for one in _objects(found[name]):
             if one in after:  # FreeCAD takes it, and falls over it
-                raise InputError("BAD_INPUT", known[name].key, "{} is made from {} itself; choose another object", one.Label,
-                                 of.Label)
+                raise InputError(
+                    "BAD_INPUT",
+                    known[name].key,
+                    "{} is made from {} itself; choose another object",
+                    one.Label,
+                    of.Label,
+                )
     return found
 
 

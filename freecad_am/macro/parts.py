@@ -37,7 +37,9 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
         part.Label = label
         setattr(part, "Mesh" if is_mesh else "Shape", shape)
         if is_mesh:
-            part.addProperty("App::PropertyLength", "FileScale", "Part", "How long one unit of the file is.", 1)
+            part.addProperty(
+                "App::PropertyLength", "FileScale", "Part", "How long one unit of the file is.", 1
+            )
             part.FileScale = scale
         part.purgeTouched()
     return part

@@ -7,12 +7,25 @@ from typing import Any
 
 from ..core.issues import InputError
 from ..core.parameters.inspection import AUTO, BEST, NONE, InspectionParameters
-from .arguments import checked_document, checked_number, checked_object, checked_target, checked_text
+from .arguments import (
+    checked_document,
+    checked_number,
+    checked_object,
+    checked_target,
+    checked_text,
+)
 from .steps import make_stage, one_step
 
 
 def make_scan(
-    doc: Any, substrate: Any, file: str, label: str = "Scan", *, fit: str = AUTO, unit: str = AUTO, pairs: str = "",
+    doc: Any,
+    substrate: Any,
+    file: str,
+    label: str = "Scan",
+    *,
+    fit: str = AUTO,
+    unit: str = AUTO,
+    pairs: str = "",
     within: float = 5.0,
 ) -> Any:
     """The points of a file (CSV, TXT, XYZ, ASC; vertices of STL, OBJ, PLY) as an inspection of an object with a shape or
@@ -36,13 +49,17 @@ def make_scan(
     body = taken(checked_object(substrate, "substrate", doc)).body()
     measured = point_file.read(file, unit)
     scan_checks.refuse_size(measured.points, measured.label, body)
-    asked = fit == BEST or (fit == AUTO and scan_checks.near(measured.points, body, within) < scan_checks.LEAST_ON_PART)
+    asked = fit == BEST or (
+        fit == AUTO and scan_checks.near(measured.points, body, within) < scan_checks.LEAST_ON_PART
+    )
     if asked and not pairs:
         motion = scan_motion.aligned(measured.points, body, measured.label)
         pairs = scan_motion.as_pairs(motion, scan_checks.extent(body.vertices))
     values = {"fit": NONE, "unit": unit, "pairs": pairs}
     with one_step(doc, f"Make {label}"):
-        found = make_stage(doc, Inspection, "Inspection", label, {"Planned": substrate, "File": file}, [], values)
+        found = make_stage(
+            doc, Inspection, "Inspection", label, {"Planned": substrate, "File": file}, [], values
+        )
         try:
             scan_checks.refuse_other(found.Proxy.value(found).points, measured.label, body, within)
         except InputError:

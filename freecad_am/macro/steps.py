@@ -17,7 +17,12 @@ from .links import checked_links
 
 
 def make_stage(
-    doc: Any, proxy: type[stages.Stage], name: str, label: str, links: dict[str, Any], parameters: Sequence[Any],
+    doc: Any,
+    proxy: type[stages.Stage],
+    name: str,
+    label: str,
+    links: dict[str, Any],
+    parameters: Sequence[Any],
     values: dict[str, Any],
 ) -> Any:
     """A stage with its links and parameters, computed; nothing is left of one that fails."""
@@ -51,7 +56,12 @@ def owned(owner: Any, names: Any, key: str) -> Any:
     """A link to faces or edges of an object; None for none. InputError BAD_INPUT for those of nothing."""
     names = checked_names(names, key)
     if names and owner is None:
-        raise InputError("BAD_INPUT", key, "{} are names without an object that they are of; give it too", ", ".join(names))
+        raise InputError(
+            "BAD_INPUT",
+            key,
+            "{} are names without an object that they are of; give it too",
+            ", ".join(names),
+        )
     return (owner, names) if names else None
 
 
@@ -71,7 +81,9 @@ def checked_stage(obj: Any) -> stages.Stage:
 
 def in_order(objects: Sequence[Any]) -> list[Any]:
     """The stages among objects, inputs first."""
-    return sorted((obj for obj in objects if stages.stage_of(obj)), key=lambda obj: len(obj.OutListRecursive))
+    return sorted(
+        (obj for obj in objects if stages.stage_of(obj)), key=lambda obj: len(obj.OutListRecursive)
+    )
 
 
 @contextlib.contextmanager

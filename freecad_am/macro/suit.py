@@ -61,7 +61,9 @@ def _is_above(cell: Any, features: Sequence[Any]) -> bool:
 def refuse_otherwise(kind: str, layers: str) -> None:
     """InputError where a feature of this kind has no layers to choose, or these, '' for none, are none of them."""
     if layers and kind != "solid":
-        raise InputError("BAD_VALUE", "layers_otherwise", "it is for kind: solid, not for {}; leave it out", kind)
+        raise InputError(
+            "BAD_VALUE", "layers_otherwise", "it is for kind: solid, not for {}; leave it out", kind
+        )
     if layers:
         SolidParameters(layers=layers)
 
@@ -74,7 +76,9 @@ def in_vain(stages: Sequence[Any], otherwise: str) -> bool:
     if failed is None or not otherwise or feature.Layers == otherwise:
         return False
     code = next((issue.code for issue in issues_of(failed) if issue.level == ERROR), "")
-    App.Console.PrintWarning(f"{feature.Label}: layers: {otherwise}, for {feature.Layers} ones end with {code}\n")
+    App.Console.PrintWarning(
+        f"{feature.Label}: layers: {otherwise}, for {feature.Layers} ones end with {code}\n"
+    )
     for stage in reversed(stages):
         stage.Document.removeObject(stage.Name)
     return True

@@ -37,9 +37,13 @@ class Cell(Stage):
         return work
 
     def further_inputs(self, obj: Any) -> list[str]:
-        named = [obj.Machine, *(one.machine for one in externals(self.parameters(obj, CellParameters).external))]
+        named = [
+            obj.Machine,
+            *(one.machine for one in externals(self.parameters(obj, CellParameters).external)),
+        ]
         files = [
             digest(path, LARGEST, "BAD_MACHINE", f"{obj.Label}.Machine")
-            for name in named for path in user_machines.files_of(name)
+            for name in named
+            for path in user_machines.files_of(name)
         ]
         return [*files, *cell_obstacles.hashes_of(obj.Obstacles, obj.NozzleShape)]

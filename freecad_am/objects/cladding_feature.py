@@ -41,11 +41,15 @@ class CladdingFeature(FeatureStage):
     def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, CladdingParameters)
-        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        self.parameters(
+            obj, BuildDirectionParameters
+        )  # bad ones are told where they stand, not by the toolpath
         source, faces = source_of(obj)
         part, fixtures = taken(source), fixtures_of(obj)
         if part.shape is None and faces:
-            raise InputError("UNKNOWN_FACE", source.Label, "a mesh has no faces to choose; leave them out")
+            raise InputError(
+                "UNKNOWN_FACE", source.Label, "a mesh has no faces to choose; leave them out"
+            )
         ground = () if obj.Substrate is None else (taken(obj.Substrate),)
         own = (part,) if part.shape is not None and part.shape.Solids else ()
 
@@ -55,12 +59,18 @@ class CladdingFeature(FeatureStage):
             back = strategy.side == "back"
             if part.shape is None:
                 body = part.body()
-                found = clad_mesh(body.vertices, body.triangles.astype(np.intp), spacing, back, part.label)
+                found = clad_mesh(
+                    body.vertices, body.triangles.astype(np.intp), spacing, back, part.label
+                )
             else:
                 found = clad_faces(part.shape.copy(False), faces, spacing, back, high, part.label)
             large = size.judged(size.of_cladding(found, strategy), strategy)
             made = dataclasses.replace(found, surroundings=bodies((*own, *ground, *fixtures)))
-            return Outcome(made, (*made.issues, *large), (("CladFaces", list(made.faces)), ("CladArea", made.area)))
+            return Outcome(
+                made,
+                (*made.issues, *large),
+                (("CladFaces", list(made.faces)), ("CladArea", made.area)),
+            )
 
         return work
 
@@ -68,6 +78,11 @@ class CladdingFeature(FeatureStage):
         source, faces = source_of(obj)
         ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         return [
-            fingerprint(source) if getattr(source, "Mesh", None) is not None else shape_fingerprint(source), " ".join(faces),
-            *ground, "|", *(fingerprint(fixture) for fixture in obj.Fixtures),
+            fingerprint(source)
+            if getattr(source, "Mesh", None) is not None
+            else shape_fingerprint(source),
+            " ".join(faces),
+            *ground,
+            "|",
+            *(fingerprint(fixture) for fixture in obj.Fixtures),
         ]

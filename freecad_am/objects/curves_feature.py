@@ -27,10 +27,18 @@ class CurvesFeature(FeatureStage):
     )
     links = (
         Link(
-            "Source", "", "The edges, wire, sketch or table of points to lay as beads; faces beside edges give the "
-            "directions.", type_name="App::PropertyLinkSub",
+            "Source",
+            "",
+            "The edges, wire, sketch or table of points to lay as beads; faces beside edges give the "
+            "directions.",
+            type_name="App::PropertyLinkSub",
         ),
-        Link("Substrate", "", "The part that they are laid on; none is needed on a platform.", required=False),
+        Link(
+            "Substrate",
+            "",
+            "The part that they are laid on; none is needed on a platform.",
+            required=False,
+        ),
         FIXTURES,
     )
     figures = (("Curves", "App::PropertyInteger", "Number of curves."),)
@@ -38,7 +46,9 @@ class CurvesFeature(FeatureStage):
     def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, CurvesParameters)
-        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        self.parameters(
+            obj, BuildDirectionParameters
+        )  # bad ones are told where they stand, not by the toolpath
         source, names = _source(obj)
         edges = tuple(name for name in names if name.startswith("Edge"))
         faces = tuple(name for name in names if name.startswith("Face"))
@@ -52,7 +62,9 @@ class CurvesFeature(FeatureStage):
                 found = table.curves(label, strategy.chord_error)
             else:
                 found = tuple(curves_of(shape, edges, faces, strategy.chord_error, label))
-            curves = Curves(label, found, bodies((*ground, *fixtures)), edges=None if shape is None else edges)
+            curves = Curves(
+                label, found, bodies((*ground, *fixtures)), edges=None if shape is None else edges
+            )
             return Outcome(curves, (), (("Curves", len(found)),))
 
         return work
@@ -62,7 +74,10 @@ class CurvesFeature(FeatureStage):
         table = points_of(source)
         ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         return [
-            shape_fingerprint(source) if table is None else table.text, " ".join(names), *ground, "|",
+            shape_fingerprint(source) if table is None else table.text,
+            " ".join(names),
+            *ground,
+            "|",
             *(fingerprint(fixture) for fixture in obj.Fixtures),
         ]
 
@@ -70,5 +85,9 @@ class CurvesFeature(FeatureStage):
 def _source(obj: Any) -> tuple[Any, tuple[str, ...]]:
     """The object of Source and the names of the edges and faces chosen. InputError NO_INPUT."""
     if not obj.Source:
-        raise InputError("NO_INPUT", obj.Label, "Source is missing; choose edges, a wire, a sketch or a table of points")
+        raise InputError(
+            "NO_INPUT",
+            obj.Label,
+            "Source is missing; choose edges, a wire, a sketch or a table of points",
+        )
     return obj.Source[0], names_of(obj.Source)

@@ -35,19 +35,30 @@ class DevelopableFeature(FeatureStage):
     )
     links = (
         Link(
-            "Source", "", "The solids or closed meshes to deposit; or a part and the faces of its hub, where both are one "
-            "solid.", type_name="App::PropertyLinkSub",
+            "Source",
+            "",
+            "The solids or closed meshes to deposit; or a part and the faces of its hub, where both are one "
+            "solid.",
+            type_name="App::PropertyLinkSub",
         ),
         Link(
-            "Further", "", "Further solids or closed meshes to deposit on the same hub.", required=False,
+            "Further",
+            "",
+            "Further solids or closed meshes to deposit on the same hub.",
+            required=False,
             type_name="App::PropertyLinkList",
         ),
         Link(
-            "Substrate", "", "The hub; none is needed where it is one of the solids, or the base is given by numbers.",
+            "Substrate",
+            "",
+            "The hub; none is needed where it is one of the solids, or the base is given by numbers.",
             required=False,
         ),
         Link(
-            "BaseFaces", "", "The cylinders and cones of the hub to grow on; found when left out.", required=False,
+            "BaseFaces",
+            "",
+            "The cylinders and cones of the hub to grow on; found when left out.",
+            required=False,
             type_name="App::PropertyLinkSub",
         ),
         FIXTURES,
@@ -60,14 +71,18 @@ class DevelopableFeature(FeatureStage):
     def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, DevelopableParameters)
-        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        self.parameters(
+            obj, BuildDirectionParameters
+        )  # bad ones are told where they stand, not by the toolpath
         given, fixtures = _Given.of(obj), fixtures_of(obj)
 
         def work() -> Outcome:
             solids = _solids(given, strategy)
             large = size.judged(size.of_solids(solids, strategy), strategy)
             substrate = () if given.substrate is None else (given.substrate.body(),)
-            solids = dataclasses.replace(solids, surroundings=(*substrate, *solids.surroundings, *bodies(fixtures)))
+            solids = dataclasses.replace(
+                solids, surroundings=(*substrate, *solids.surroundings, *bodies(fixtures))
+            )
             bases = [group.base.name for group in solids.groups]
             count = sum(len(group.bodies) for group in solids.groups)
             return Outcome(solids, (*solids.issues, *large), (("Bases", bases), ("Solids", count)))
@@ -80,7 +95,11 @@ class DevelopableFeature(FeatureStage):
         if obj.BaseFaces:
             hub += [fingerprint(obj.BaseFaces[0]), " ".join(obj.BaseFaces[1])]
         return [
-            fingerprint(source), " ".join(faces), *(fingerprint(other) for other in obj.Further), *hub, "|",
+            fingerprint(source),
+            " ".join(faces),
+            *(fingerprint(other) for other in obj.Further),
+            *hub,
+            "|",
             *(fingerprint(fixture) for fixture in obj.Fixtures),
         ]
 
@@ -102,18 +121,26 @@ class _Given:
         source, faces = source_of(obj)
         base = (taken(obj.BaseFaces[0]), tuple(obj.BaseFaces[1])) if obj.BaseFaces else None
         return cls(
-            obj.Label, tuple(taken(one) for one in (source, *obj.Further)), faces,
-            None if obj.Substrate is None else taken(obj.Substrate), base,
+            obj.Label,
+            tuple(taken(one) for one in (source, *obj.Further)),
+            faces,
+            None if obj.Substrate is None else taken(obj.Substrate),
+            base,
         )
 
 
 def found_in(
-    objects: Sequence[Taken], faces: Sequence[str], substrate: Taken | None,
-    base_faces: tuple[Taken, tuple[str, ...]] | None, strategy: DevelopableParameters,
+    objects: Sequence[Taken],
+    faces: Sequence[str],
+    substrate: Taken | None,
+    base_faces: tuple[Taken, tuple[str, ...]] | None,
+    strategy: DevelopableParameters,
 ) -> SolidsOnHub:
     """Solids and hub of objects, faces of the first of them, hub and faces of it, as a feature would find them; the
     InputErrors that it would raise."""
-    return _solids(_Given(objects[0].label, tuple(objects), tuple(faces), substrate, base_faces), strategy)
+    return _solids(
+        _Given(objects[0].label, tuple(objects), tuple(faces), substrate, base_faces), strategy
+    )
 
 
 def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
@@ -123,11 +150,22 @@ def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
     bases, hub = _bases(of, solid, strategy)
     rest = [body for body in solid if body is not hub]
     named = "" if of.substrate is None else of.substrate.label
-    meshes = [body for one, own in zip(of.objects, found, strict=True) if one.shape is None for body in own.bodies]
-    solids = on_hub(rest, bases, SHARE * strategy.chord_error, of.objects[0].label, issues, named, meshes)
+    meshes = [
+        body
+        for one, own in zip(of.objects, found, strict=True)
+        if one.shape is None
+        for body in own.bodies
+    ]
+    solids = on_hub(
+        rest, bases, SHARE * strategy.chord_error, of.objects[0].label, issues, named, meshes
+    )
     if hub is not None:
         return dataclasses.replace(solids, surroundings=(hub,), own=_apart(solid, hub))
-    return dataclasses.replace(solids, own=_within(solids)) if of.faces and of.base_faces is None else solids
+    return (
+        dataclasses.replace(solids, own=_within(solids))
+        if of.faces and of.base_faces is None
+        else solids
+    )
 
 
 def _apart(solids: Sequence[Body], hub: Body) -> OwnHub:
@@ -145,11 +183,17 @@ def _within(solids: SolidsOnHub) -> OwnHub:
             volume, surface = SolidMesh(body.vertices, body.triangles).volume, group.base.surface
             total += volume
             if isinstance(surface, Developable):
-                within += max(volume - volume_beyond(surface, group.base.inside(body.vertices), body.triangles), 0.0)
+                within += max(
+                    volume
+                    - volume_beyond(surface, group.base.inside(body.vertices), body.triangles),
+                    0.0,
+                )
     return OwnHub(total, within)
 
 
-def _bases(of: _Given, solids: Sequence[Body], strategy: DevelopableParameters) -> tuple[list[Seat], Body | None]:
+def _bases(
+    of: _Given, solids: Sequence[Body], strategy: DevelopableParameters
+) -> tuple[list[Seat], Body | None]:
     """The bases that solids may stand on, and the hub where it is one of the solids."""
     base = strategy.base
     if base.radius != "auto":
@@ -164,8 +208,10 @@ def _bases(of: _Given, solids: Sequence[Body], strategy: DevelopableParameters) 
     owned = [_faces(one, solid) for one in of.objects for solid in _parts(one)]
     if len(solids) < 2 or len(owned) != len(solids):
         raise InputError(
-            "NO_HUB", of.label, "the hub, a cylinder or cone that the solids stand on, is not known: choose it as "
-            "substrate, choose faces of it, or give strategy.base; what stands on a flat base is deposited by kind: solid"
+            "NO_HUB",
+            of.label,
+            "the hub, a cylinder or cone that the solids stand on, is not known: choose it as "
+            "substrate, choose faces of it, or give strategy.base; what stands on a flat base is deposited by kind: solid",
         )
     own = [seats(some, False) for some in owned]
     hub = hub_among(solids, own, SHARE * strategy.chord_error, of.label)
@@ -186,7 +232,9 @@ def _faces(source: Taken, solid: Any = None) -> list[tuple[str, Any]]:
     """All faces with names. InputError NO_BASE for a mesh, which has no exact ones."""
     if source.shape is None:
         raise InputError(
-            "NO_BASE", source.label, "a mesh has no cylinders and cones; give strategy.base, or a solid part as substrate"
+            "NO_BASE",
+            source.label,
+            "a mesh has no cylinders and cones; give strategy.base, or a solid part as substrate",
         )
     shape = source.shape if solid is None else solid
     return [(f"{source.label} Face{number + 1}", face) for number, face in enumerate(shape.Faces)]
@@ -198,5 +246,7 @@ def _named_faces(owner: Taken, names: Sequence[str], where: str) -> list[tuple[s
     wrong = [name for name in short if name not in known]
     if wrong or not short:
         text = ", ".join(wrong) or owner.label
-        raise InputError("BAD_FACES", where, "{} is not a face of {}; choose faces of the hub", text, owner.label)
+        raise InputError(
+            "BAD_FACES", where, "{} is not a face of {}; choose faces of the hub", text, owner.label
+        )
     return [known[name] for name in short]

@@ -30,11 +30,19 @@ class RevolutionFeature(FeatureStage):
         Section(BuildDirectionParameters, "build_direction", "Build direction"),
     )
     links = (
-        Link("Source", "", "The shape to deposit, or some of its faces.", type_name="App::PropertyLinkSub"),
         Link(
-            "Axis", "", "A straight edge, sketch axis or datum line to turn about, where the shape has none. "
+            "Source",
+            "",
+            "The shape to deposit, or some of its faces.",
+            type_name="App::PropertyLinkSub",
+        ),
+        Link(
+            "Axis",
+            "",
+            "A straight edge, sketch axis or datum line to turn about, where the shape has none. "
             "A sketch is turned about its vertical axis unless another one is chosen.",
-            required=False, type_name="App::PropertyLinkSub",
+            required=False,
+            type_name="App::PropertyLinkSub",
         ),
         FIXTURES,
     )
@@ -46,9 +54,16 @@ class RevolutionFeature(FeatureStage):
     def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, RevolutionParameters)
-        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        self.parameters(
+            obj, BuildDirectionParameters
+        )  # bad ones are told where they stand, not by the toolpath
         source, faces = source_of(obj)
-        shape, axis, label, fixtures = global_shape(source), axis_of(obj), source.Label, fixtures_of(obj)
+        shape, axis, label, fixtures = (
+            global_shape(source),
+            axis_of(obj),
+            source.Label,
+            fixtures_of(obj),
+        )
 
         def work() -> Outcome:
             wall = find_wall(shape, faces, strategy.wall, axis, label)
@@ -64,7 +79,9 @@ class RevolutionFeature(FeatureStage):
         source, faces = source_of(obj)
         axis = axis_of(obj)
         return [
-            shape_fingerprint(source), " ".join(faces), "" if axis is None else digits(*axis),
+            shape_fingerprint(source),
+            " ".join(faces),
+            "" if axis is None else digits(*axis),
             *(fingerprint(fixture) for fixture in obj.Fixtures),
         ]
 
@@ -82,8 +99,14 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
         return None
     target, names = link[0], names_of(link)
     name = names[0] if names else ""
-    placement = target.getGlobalPlacement() if hasattr(target, "getGlobalPlacement") else App.Placement()
-    sketch_axes = {"V_Axis": App.Vector(0, 1, 0), "H_Axis": App.Vector(1, 0, 0), "N_Axis": App.Vector(0, 0, 1)}
+    placement = (
+        target.getGlobalPlacement() if hasattr(target, "getGlobalPlacement") else App.Placement()
+    )
+    sketch_axes = {
+        "V_Axis": App.Vector(0, 1, 0),
+        "H_Axis": App.Vector(1, 0, 0),
+        "N_Axis": App.Vector(0, 0, 1),
+    }
     if name in sketch_axes:
         return placement.Base, placement.Rotation.multVec(sketch_axes[name])
     shape = getattr(target, "Shape", None)
@@ -91,14 +114,20 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
     if len(edges) == 1 and edges[0].ShapeType == "Edge" and edges[0].Curve.TypeId in _LINES:
         edge = edges[0]
         outer = placement.multiply(target.Placement.inverse())
-        start, end = outer.multVec(edge.valueAt(edge.FirstParameter)), outer.multVec(edge.valueAt(edge.LastParameter))
+        start, end = (
+            outer.multVec(edge.valueAt(edge.FirstParameter)),
+            outer.multVec(edge.valueAt(edge.LastParameter)),
+        )
         return start, (end - start).normalize()
     if target.TypeId in ("App::Line", "PartDesign::Line"):
         along = App.Vector(1, 0, 0) if target.TypeId == "App::Line" else App.Vector(0, 0, 1)
         return placement.Base, placement.Rotation.multVec(along)
     raise InputError(
-        "BAD_AXIS", f"{obj.Label}.Axis", "{} {} is not a straight line; choose a straight edge or an axis", target.Label,
-        name
+        "BAD_AXIS",
+        f"{obj.Label}.Axis",
+        "{} {} is not a straight line; choose a straight edge or an axis",
+        target.Label,
+        name,
     )
 
 

@@ -34,7 +34,13 @@ class Inspection(Stage):
 
     kind = "inspection"
     sections = (Section(InspectionParameters, "inspection", "Inspection"),)
-    links = (Link("Planned", "", "The feature, toolpath, or object with a shape or mesh that was measured."),)
+    links = (
+        Link(
+            "Planned",
+            "",
+            "The feature, toolpath, or object with a shape or mesh that was measured.",
+        ),
+    )
     figures = (
         ("Points", "App::PropertyInteger", "Number of points that count."),
         ("Mean", "App::PropertyDistance", "Mean deviation, outside with a plus."),
@@ -42,20 +48,43 @@ class Inspection(Stage):
         ("Least", "App::PropertyDistance", "Least deviation."),
         ("Most", "App::PropertyDistance", "Largest deviation."),
         ("WithinTolerance", "App::PropertyFloat", "Share of the points within tolerance (%)."),
-        ("Sphericity", "App::PropertyString", "Width of the narrowest zone between two spheres that holds all points."),
-        ("Circularity", "App::PropertyStringList", "Width of the narrowest zone between two circles, by height."),
+        (
+            "Sphericity",
+            "App::PropertyString",
+            "Width of the narrowest zone between two spheres that holds all points.",
+        ),
+        (
+            "Circularity",
+            "App::PropertyStringList",
+            "Width of the narrowest zone between two circles, by height.",
+        ),
     )
 
     def complete(self, obj: Any) -> None:
         if "File" not in obj.PropertiesList:
-            obj.addProperty("App::PropertyString", "File", "Inputs", "The file of measured points or of a scanned mesh.")
+            obj.addProperty(
+                "App::PropertyString",
+                "File",
+                "Inputs",
+                "The file of measured points or of a scanned mesh.",
+            )
         if "FileDigest" not in obj.PropertiesList:
-            obj.addProperty("App::PropertyString", "FileDigest", "Inputs", "What was in the file.", HIDDEN | OUTPUT)
+            obj.addProperty(
+                "App::PropertyString",
+                "FileDigest",
+                "Inputs",
+                "What was in the file.",
+                HIDDEN | OUTPUT,
+            )
         super().complete(obj)
 
     def prepare(self, obj: Any) -> Work:
         linked = self.linked(obj)
-        parameters, path, where = self.parameters(obj, InspectionParameters), file_of(obj), f"{obj.Label}.File"
+        parameters, path, where = (
+            self.parameters(obj, InspectionParameters),
+            file_of(obj),
+            f"{obj.Label}.File",
+        )
         if not path:
             raise InputError("NO_FILE", where, "no file of measured points is given; choose one")
         if is_predicted(obj):
@@ -71,20 +100,34 @@ class Inspection(Stage):
 
         return work
 
-    def _predicted(self, obj: Any, linked: dict[str, Any], parameters: InspectionParameters) -> Work:
+    def _predicted(
+        self, obj: Any, linked: dict[str, Any], parameters: InspectionParameters
+    ) -> Work:
         """The deposit that a toolpath is predicted to leave, in place of what was measured."""
         from .checks import predicted_shape  # few inspections need it
 
         toolpath = linked.get("Planned")
         if toolpath is None or toolpath.Proxy.kind != "toolpath":
-            raise InputError("NO_INPUT", f"{obj.Label}.Planned", "only the deposit of a toolpath can be predicted; choose a "
-                             "toolpath under Planned, or a file of measured points")
+            raise InputError(
+                "NO_INPUT",
+                f"{obj.Label}.Planned",
+                "only the deposit of a toolpath can be predicted; choose a "
+                "toolpath under Planned, or a file of measured points",
+            )
         obj.FileDigest = ""
-        value, targets, label = toolpath.Proxy.value(toolpath), toolpath.Proxy.targets(toolpath), toolpath.Label
-        allowance = toolpath.Proxy.parameters(toolpath, ProcessParameters).machining_allowance or 0.0
+        value, targets, label = (
+            toolpath.Proxy.value(toolpath),
+            toolpath.Proxy.targets(toolpath),
+            toolpath.Label,
+        )
+        allowance = (
+            toolpath.Proxy.parameters(toolpath, ProcessParameters).machining_allowance or 0.0
+        )
 
         def work() -> Outcome:
-            found = predicted_shape.inspected(value, targets, allowance, parameters.tolerance, label, progress.report)
+            found = predicted_shape.inspected(
+                value, targets, allowance, parameters.tolerance, label, progress.report
+            )
             return Outcome(found, found.issues, _figures(found))
 
         return work
@@ -129,7 +172,9 @@ def _digest(path: str, where: str) -> str:
         return digest(path, point_file.LARGEST, "BAD_FILE", where)
     except (OSError, ValueError) as error:
         why = (getattr(error, "strerror", None) or str(error)).lower()
-        raise InputError("NO_FILE", where, "{} cannot be read ({}); choose the file again", path, why) from None
+        raise InputError(
+            "NO_FILE", where, "{} cannot be read ({}); choose the file again", path, why
+        ) from None
 
 
 def _stage_surface(target: Any) -> Callable[[], Planned]:
@@ -152,7 +197,12 @@ def _shape_surface(target: Any) -> Callable[[], Planned]:
     def of_shape() -> Planned:
         faces = skin(source.shape.copy(False), source.label)
         return of_triangles(
-            source.label, faces.vertices, faces.triangles, exact=faces.exact, chord=faces.deflection, most=FACES_FITTED
+            source.label,
+            faces.vertices,
+            faces.triangles,
+            exact=faces.exact,
+            chord=faces.deflection,
+            most=FACES_FITTED,
         )
 
     return of_mesh if source.shape is None else of_shape
@@ -161,19 +211,32 @@ def _shape_surface(target: Any) -> Callable[[], Planned]:
 def _figures(found: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
     spread = found.spread
     return (
-        ("Points", spread.count), ("Mean", spread.mean), ("Deviation", spread.deviation), ("Least", spread.least),
-        ("Most", spread.most), ("WithinTolerance", 100.0 * spread.within),
+        ("Points", spread.count),
+        ("Mean", spread.mean),
+        ("Deviation", spread.deviation),
+        ("Least", spread.least),
+        ("Most", spread.most),
+        ("WithinTolerance", 100.0 * spread.within),
         ("Sphericity", "" if found.ball is None else f"{found.ball.zone.zone:.4f} mm"),
-        ("Circularity", [Text("{:g} mm: {:.4f} mm", one.height, one.zone.zone) for one in found.circles]),
+        (
+            "Circularity",
+            [Text("{:g} mm: {:.4f} mm", one.height, one.zone.zone) for one in found.circles],
+        ),
     )
 
 
 def files_of_figures(obj: Any) -> dict[str, bytes]:
     """The figures of an inspection as a table and as JSON, and all points with their deviations. InputError NO_RESULT."""
     found, name = obj.Proxy.value(obj), obj.Label
-    figures = "figure,value,unit\n" + "".join(f"\"{row.name}\",{row.value:.6f},{row.unit}\n" for row in table.rows(found))
+    figures = "figure,value,unit\n" + "".join(
+        f'"{row.name}",{row.value:.6f},{row.unit}\n' for row in table.rows(found)
+    )
     files = {
-        f"{name}.csv": figures, f"{name}-deviations.csv": "".join(table.deviations(found)),
+        f"{name}.csv": figures,
+        f"{name}-deviations.csv": "".join(table.deviations(found)),
         f"{name}.json": json.dumps(table.as_data(found), indent=1, ensure_ascii=False) + "\n",
     }
-    return {"".join("_" if sign in "/\\:" else sign for sign in key): text.encode() for key, text in files.items()}
+    return {
+        "".join("_" if sign in "/\\:" else sign for sign in key): text.encode()
+        for key, text in files.items()
+    }

@@ -73,7 +73,9 @@ def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters
     for link in ("Toolpath", "Cell"):
         linked = getattr(path, link)
         if linked is None or not linked.Key:
-            raise InputError("NO_INPUT", path.Label, "its {} is missing; choose one and recompute", link.lower())
+            raise InputError(
+                "NO_INPUT", path.Label, "its {} is missing; choose one and recompute", link.lower()
+            )
     planned, toolpath, cell = (one.Proxy.value(one) for one in (path, path.Toolpath, path.Cell))
     return planned, toolpath, cell
 
@@ -89,23 +91,46 @@ class JointPath(Stage):
     )
     figures = (
         ("Duration", "App::PropertyFloat", "Time of all moves (s)."),
-        ("SmallestCondition", "App::PropertyFloat", "Smallest condition of the Jacobian while depositing."),
-        ("TotalTime", "App::PropertyFloat", "Time of the whole job with lead times and waits between layers (s)."),
+        (
+            "SmallestCondition",
+            "App::PropertyFloat",
+            "Smallest condition of the Jacobian while depositing.",
+        ),
+        (
+            "TotalTime",
+            "App::PropertyFloat",
+            "Time of the whole job with lead times and waits between layers (s).",
+        ),
         ("DepositTime", "App::PropertyFloat", "Time of depositing moves (s)."),
         ("WaitTime", "App::PropertyFloat", "Lead times and waits between layers (s)."),
         ("DepositLength", "App::PropertyLength", "Length of the deposit as it is run."),
-        ("DepositVolume", "App::PropertyFloat", "Volume of the deposit, bead width times layer height (cm\u00b3)."),
+        (
+            "DepositVolume",
+            "App::PropertyFloat",
+            "Volume of the deposit, bead width times layer height (cm\u00b3).",
+        ),
         ("DepositMass", "App::PropertyFloat", "Mass of the deposit (g)."),
     )
 
     def look_ahead(self, obj: Any) -> None:
         """Tell the programs of the joint path what makes them impossible, before long work for them begins."""
-        programs = [found for found in obj.InList if (stage := stage_of(found)) is not None and stage.kind == "program"]
+        programs = [
+            found
+            for found in obj.InList
+            if (stage := stage_of(found)) is not None and stage.kind == "program"
+        ]
         toolpath, cell = obj.Toolpath, obj.Cell
-        if not programs or stage_of(toolpath) is None or stage_of(cell) is None or cell.Status != UP_TO_DATE:
+        if (
+            not programs
+            or stage_of(toolpath) is None
+            or stage_of(cell) is None
+            or cell.Status != UP_TO_DATE
+        ):
             return
         with contextlib.suppress(AmError):  # what is wrong with these they say themselves
-            resolved = cells.resolve(cell.Proxy.value(cell), np.eye(4), folders=user_machines.folders())
+            resolved = cells.resolve(
+                cell.Proxy.value(cell), np.eye(4), folders=user_machines.folders()
+            )
             process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
             for program in programs:
                 program.Proxy.refuse_early(program, resolved, process, toolpath)
@@ -115,9 +140,13 @@ class JointPath(Stage):
         linked = self.linked(obj)
         toolpath, cell = linked["Toolpath"], linked["Cell"]
         return Job(
-            toolpath.Proxy.reader(toolpath), cell.Proxy.value(cell), tuple(user_machines.folders()),
-            toolpath.Proxy.parameters(toolpath, ProcessParameters), self.parameters(obj, JointParameters),
-            toolpath.Proxy.fixed(toolpath), toolpath.Proxy.own_speeds(toolpath),
+            toolpath.Proxy.reader(toolpath),
+            cell.Proxy.value(cell),
+            tuple(user_machines.folders()),
+            toolpath.Proxy.parameters(toolpath, ProcessParameters),
+            self.parameters(obj, JointParameters),
+            toolpath.Proxy.fixed(toolpath),
+            toolpath.Proxy.own_speeds(toolpath),
         )
 
     def prepare(self, obj: Any) -> Work:
@@ -129,27 +158,63 @@ class JointPath(Stage):
             cell = cell_obstacles.resolved(job.settings, toolpath, job.folders)
             cylinders = () if cell.arm_clearance is None else cylinders_of(cell)
             joint_path = plan_joints(
-                toolpath, cell, job.parameters, lambda fraction, text: progress.report(JOINTS * fraction, text), cylinders
+                toolpath,
+                cell,
+                job.parameters,
+                lambda fraction, text: progress.report(JOINTS * fraction, text),
+                cylinders,
             )
             progress.report(JOINTS, "joining the beads by rapid moves")
             motion, rapid_issues = assemble(
-                joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, cylinders
+                joint_path,
+                cell,
+                process,
+                toolpath.surroundings,
+                job.parameters,
+                toolpath.layer_height,
+                cylinders,
             )
-            near = () if not cylinders else arm_issues(
-                motion, cell, toolpath, process, cylinders, (*joint_path.issues, *rapid_issues))
+            near = (
+                ()
+                if not cylinders
+                else arm_issues(
+                    motion, cell, toolpath, process, cylinders, (*joint_path.issues, *rapid_issues)
+                )
+            )
             notes = (*_not_kept(cell), *_not_known(cell), *_drawn_plain(cell), *_moved(cell))
-            issues = (*joint_path.issues, *rapid_issues, *near, *notes, *_heights_as_run(joint_path, toolpath, process))
+            issues = (
+                *joint_path.issues,
+                *rapid_issues,
+                *near,
+                *notes,
+                *_heights_as_run(joint_path, toolpath, process),
+            )
             asked = Tried(
-                lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
-                cylinders=cylinders, obstacles=cell.obstacles, torch=cell.torch, external_links=cell.external_links,
+                lambda: toolpath,
+                job.settings,
+                job.folders,
+                process,
+                job.parameters,
+                job.fixed,
+                own_speed=job.own_speed,
+                cylinders=cylinders,
+                obstacles=cell.obstacles,
+                torch=cell.torch,
+                external_links=cell.external_links,
             )
             _tell_remedies(cell, toolpath, issues)
-            issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)
+            issues = (
+                *remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)),
+                *issues,
+            )
             issues = (*issues, *payload.issues(motion, cell, toolpath, process))
             condition = np.concatenate([bead.condition for bead in joint_path.beads])
             smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
-            return Outcome(Planned(joint_path, motion), issues,
-                           (("SmallestCondition", smallest), *_sums(motion, process, toolpath)))
+            return Outcome(
+                Planned(joint_path, motion),
+                issues,
+                (("SmallestCondition", smallest), *_sums(motion, process, toolpath)),
+            )
 
         return work
 
@@ -170,12 +235,24 @@ def _moved(cell: cells.Cell) -> list[Issue]:
     if cell.offset is None:
         return []
     residual, six = cell.offset.residual, cell.offset.six()
-    left, pose = (", ".join(f"{value:.{digits}g}" for value in values) for values, digits in ((residual, 3), (six, 7)))
-    return [Issue(
-        NOTE, "WORK_OFFSET", Text("by {} touched points the part's coordinates are at [{}] mm and deg in the robot's base; "
-            "left at the points: {} mm, {:.3g} mm in the mean of squares", len(residual), pose, left,
-            float(np.sqrt((residual**2).mean()))),
-    )]
+    left, pose = (
+        ", ".join(f"{value:.{digits}g}" for value in values)
+        for values, digits in ((residual, 3), (six, 7))
+    )
+    return [
+        Issue(
+            NOTE,
+            "WORK_OFFSET",
+            Text(
+                "by {} touched points the part's coordinates are at [{}] mm and deg in the robot's base; "
+                "left at the points: {} mm, {:.3g} mm in the mean of squares",
+                len(residual),
+                pose,
+                left,
+                float(np.sqrt((residual**2).mean())),
+            ),
+        )
+    ]
 
 
 def _not_kept(cell: cells.Cell) -> list[Issue]:
@@ -183,29 +260,51 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
     if not cell.obstacles or cell.arm_clearance is not None or not cell.arrangement.links_known:
         return []
     names = ", ".join(one.name for one in cell.obstacles)
-    return [Issue(
-        NOTE, "OBSTACLES_NOT_KEPT", Text("{}: checked for the nozzle, and for links and part only in simulation and "
-            "preflight; give cell.arm_clearance so that these are kept clear of it while planning", names)
-    )]
+    return [
+        Issue(
+            NOTE,
+            "OBSTACLES_NOT_KEPT",
+            Text(
+                "{}: checked for the nozzle, and for links and part only in simulation and "
+                "preflight; give cell.arm_clearance so that these are kept clear of it while planning",
+                names,
+            ),
+        )
+    ]
 
 
 def _not_known(cell: cells.Cell) -> list[Issue]:
     """A note on positioners and tracks of which nothing is kept clear, for no file says what they are made of."""
-    if cell.external is None or not (lacking := ", ".join(of_unknown_shape(cell.external, cell.external_links))):
+    if cell.external is None or not (
+        lacking := ", ".join(of_unknown_shape(cell.external, cell.external_links))
+    ):
         return []
-    return [Issue(
-        NOTE, "BODIES_NOT_KNOWN", Text("no file says what {} is made of, so nozzle, torch and robot are not kept clear of "
-            "it; give its machine file bodies, or name what of it stands still in cell.obstacles", lacking)
-    )]
+    return [
+        Issue(
+            NOTE,
+            "BODIES_NOT_KNOWN",
+            Text(
+                "no file says what {} is made of, so nozzle, torch and robot are not kept clear of "
+                "it; give its machine file bodies, or name what of it stands still in cell.obstacles",
+                lacking,
+            ),
+        )
+    ]
 
 
 def _drawn_plain(cell: cells.Cell) -> list[Issue]:
     """A note on what the URDF of a robot tells that was left out, such as meshes that cannot be drawn."""
     notes = cell.robot.remarks if cell.robot.controller_remark == UNKNOWN_REMARK else ()
-    return [Issue(NOTE, "URDF_LOOKS", Text("{}: {}", cell.robot.title, Text.joined("; ", notes)))] if notes else []
+    return (
+        [Issue(NOTE, "URDF_LOOKS", Text("{}: {}", cell.robot.title, Text.joined("; ", notes)))]
+        if notes
+        else []
+    )
 
 
-def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:
+def _heights_as_run(
+    path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters
+) -> list[Issue]:
     """What a bead model predicts of the heights where beads are slowed, in place of what the toolpath told."""
     model = None if toolpath.law is None else bead_table.of_process(process)
     if model is None or not any(issue.code == SLOWED for issue in path.issues):
@@ -214,12 +313,18 @@ def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessPar
     return [predicted.with_heights(beads, toolpath.layer_height, process, model, as_run=True)]
 
 
-def _sums(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> tuple[tuple[str, float], ...]:
+def _sums(
+    motion: Motion, process: ProcessParameters, toolpath: Toolpath
+) -> tuple[tuple[str, float], ...]:
     """What the job takes and deposits, by property name."""
     times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
     sums = totals(motion, times, process, toolpath)
     return (
-        ("Duration", float(np.nansum(motion.duration))), ("TotalTime", sums.time), ("DepositTime", sums.deposit_time),
-        ("WaitTime", sums.wait_time), ("DepositLength", sums.length), ("DepositVolume", sums.volume / MM3_PER_CM3),
+        ("Duration", float(np.nansum(motion.duration))),
+        ("TotalTime", sums.time),
+        ("DepositTime", sums.deposit_time),
+        ("WaitTime", sums.wait_time),
+        ("DepositLength", sums.length),
+        ("DepositVolume", sums.volume / MM3_PER_CM3),
         ("DepositMass", sums.mass),
     )

@@ -69,24 +69,41 @@ class Program(Stage):
     kind = "program"
     sections = (Section(ProgramParameters, "program", "Program"),)
     links = (Link("JointPath", "joint path", "The joint path to write."),)
-    figures = (("Files", "App::PropertyStringList", "The controller's files; double-click to read and export them."),)
+    figures = (
+        (
+            "Files",
+            "App::PropertyStringList",
+            "The controller's files; double-click to read and export them.",
+        ),
+    )
 
     def complete(self, obj: Any) -> None:
         if "ProgramName" not in obj.PropertiesList:
-            obj.addProperty("App::PropertyString", "ProgramName", "Program", "Name of the program and of its files.")
+            obj.addProperty(
+                "App::PropertyString",
+                "ProgramName",
+                "Program",
+                "Name of the program and of its files.",
+            )
         super().complete(obj)
 
     def job(self, obj: Any) -> Job:
         """Read the inputs. Raises InputError and InfeasibleError where there is nothing to write."""
         if not obj.ProgramName:
-            raise InputError("NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; give one")
+            raise InputError(
+                "NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; give one"
+            )
         path = self.linked(obj)["JointPath"]
         linked = path.Proxy.linked(path)
         toolpath, cell = linked["Toolpath"], linked["Cell"]
         return Job(
-            path.Proxy.reader(path), toolpath.Proxy.reader(toolpath), cell.Proxy.value(cell),
-            tuple(user_machines.folders()), toolpath.Proxy.parameters(toolpath, ProcessParameters),
-            self.parameters(obj, ProgramParameters), obj.ProgramName,
+            path.Proxy.reader(path),
+            toolpath.Proxy.reader(toolpath),
+            cell.Proxy.value(cell),
+            tuple(user_machines.folders()),
+            toolpath.Proxy.parameters(toolpath, ProcessParameters),
+            self.parameters(obj, ProgramParameters),
+            obj.ProgramName,
         )
 
     def prepare(self, obj: Any) -> Work:
@@ -98,13 +115,17 @@ class Program(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         return [obj.ProgramName]
 
-    def refuse_early(self, obj: Any, cell: cells.Cell, process: ProcessParameters, toolpath: Any) -> None:
+    def refuse_early(
+        self, obj: Any, cell: cells.Cell, process: ProcessParameters, toolpath: Any
+    ) -> None:
         """Say at once, before joints are planned, what makes the program impossible in the cell, or of a toolpath."""
         try:
             parameters = self.parameters(obj, ProgramParameters)
             refuse(cell, process, parameters)
             if catalogue.controller(parameters.post).whole_beads:
-                controllers.check_beads(toolpath.Proxy.value(toolpath), parameters.post, parameters.max_points)
+                controllers.check_beads(
+                    toolpath.Proxy.value(toolpath), parameters.post, parameters.max_points
+                )
         except InputError as error:
             self.say_failed(obj, error)
 
@@ -119,7 +140,10 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     post = catalogue.load(parameters.post)
     controllers.check(cell, parameters)
     post.refuse_setup(
-        parameters.motion, cell.setup, programs.external_kinds(cell), programs.carried(cell, parameters)
+        parameters.motion,
+        cell.setup,
+        programs.external_kinds(cell),
+        programs.carried(cell, parameters),
     )
     if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
         raise refusals.wire_refused(post.NO_WIRE)
@@ -130,10 +154,17 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     by = parameters.schedule.by
     if parameters.trigger.lead is not None and not parameters.dry_run:
         _refuse_trigger(by, post.NO_TRIGGER)
-    post.refuse_process(refusals.Asked(
-        parameters.motion, cell.arrangement.holds_part, ROTARY in programs.external_kinds(cell), by,
-        process.wire.feed_mode != "constant" and not parameters.dry_run, process.weaves, parameters.dry_run,
-    ))
+    post.refuse_process(
+        refusals.Asked(
+            parameters.motion,
+            cell.arrangement.holds_part,
+            ROTARY in programs.external_kinds(cell),
+            by,
+            process.wire.feed_mode != "constant" and not parameters.dry_run,
+            process.weaves,
+            parameters.dry_run,
+        )
+    )
     if by in post.NO_SCHEDULE and (process.scheduled or by == program_beads.ARC):
         raise refusals.schedule_refused(by, post.NO_SCHEDULE[by])
 
@@ -164,7 +195,9 @@ def posted(job: Job) -> Posted:
         motion = linear_approach.with_short_approaches(motion, cell)
     waits = [layer.wait for layer in toolpath.layers]
     returns = programs.returning(toolpath, planned.joint_path.beads)
-    program = programs.build(motion, cell, job.process, parameters, post.CONTROLLER, job.name, waits, returns)
+    program = programs.build(
+        motion, cell, job.process, parameters, post.CONTROLLER, job.name, waits, returns
+    )
     progress.report(0.3, "writing")
     return Posted(cell, toolpath, _run(motion, parameters), program, post.write(program))
 
@@ -174,14 +207,23 @@ def _written(job: Job, label: str) -> Outcome:
     made = posted(job)
     progress.report(0.5, "reading back and checking")
     checked = verification.verify(
-        made.cell, made.motion, made.program, made.files, catalogue.load(job.parameters.post), made.toolpath.chord_error
+        made.cell,
+        made.motion,
+        made.program,
+        made.files,
+        catalogue.load(job.parameters.post),
+        made.toolpath.chord_error,
     )
     if has_errors(checked.issues):
         raise InfeasibleError(
-            "NOT_VERIFIED", label, "reading the program back does not give the planned path; do not use it",
+            "NOT_VERIFIED",
+            label,
+            "reading the program back does not give the planned path; do not use it",
             issues=tuple(checked.issues),
         )
-    return Outcome(Written(made.files, checked), tuple(checked.issues), (("Files", sorted(made.files)),))
+    return Outcome(
+        Written(made.files, checked), tuple(checked.issues), (("Files", sorted(made.files)),)
+    )
 
 
 def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
@@ -196,11 +238,17 @@ def files_of(obj: Any) -> dict[str, bytes]:
     """The controller's files of a program object. InputError 'NO_PROGRAM' when there are none, saying why."""
     if obj.Key and obj.Status == "up to date" and obj.Proxy.key(obj) != obj.Key:
         raise InputError(
-            "NO_PROGRAM", obj.Label, "an earlier version wrote this program, whose rapids were not all checked; recompute "
+            "NO_PROGRAM",
+            obj.Label,
+            "an earlier version wrote this program, whose rapids were not all checked; recompute "
             "the job, and read Migrating in the changelog",
         )
     files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.Key else {}
     if obj.Status != "up to date" or not files:
-        raise InputError("NO_PROGRAM", obj.Label, "no program fits its inputs ({}); mend that and recompute it",
-                         reason_of(obj) or obj.Status)
+        raise InputError(
+            "NO_PROGRAM",
+            obj.Label,
+            "no program fits its inputs ({}); mend that and recompute it",
+            reason_of(obj) or obj.Status,
+        )
     return files

@@ -31,19 +31,39 @@ class SolidFeature(FeatureStage):
         Section(BuildDirectionParameters, "build_direction", "Build direction"),
     )
     links = (
-        Link("Source", "", "The solids or closed meshes to deposit.", type_name="App::PropertyLinkSub"),
         Link(
-            "Further", "", "Further solids or closed meshes to deposit.", required=False,
+            "Source",
+            "",
+            "The solids or closed meshes to deposit.",
+            type_name="App::PropertyLinkSub",
+        ),
+        Link(
+            "Further",
+            "",
+            "Further solids or closed meshes to deposit.",
+            required=False,
             type_name="App::PropertyLinkList",
         ),
-        Link("Substrate", "", "The part that they stand on; none is needed on a platform.", required=False),
         Link(
-            "Guide", "", "The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
-            "solid.", required=False, type_name="App::PropertyLinkSub",
+            "Substrate",
+            "",
+            "The part that they stand on; none is needed on a platform.",
+            required=False,
         ),
         Link(
-            "StartFaces", "", "The faces on which the first of geodesic and offset layers lies; none: where they stand.",
-            required=False, type_name="App::PropertyLinkSub",
+            "Guide",
+            "",
+            "The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
+            "solid.",
+            required=False,
+            type_name="App::PropertyLinkSub",
+        ),
+        Link(
+            "StartFaces",
+            "",
+            "The faces on which the first of geodesic and offset layers lies; none: where they stand.",
+            required=False,
+            type_name="App::PropertyLinkSub",
         ),
         FIXTURES,
     )
@@ -55,23 +75,48 @@ class SolidFeature(FeatureStage):
     def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, SolidParameters)
-        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        self.parameters(
+            obj, BuildDirectionParameters
+        )  # bad ones are told where they stand, not by the toolpath
         objects = tuple(taken(one) for one in (source_of(obj)[0], *obj.Further))
         ground = () if obj.Substrate is None else (taken(obj.Substrate),)
         fixtures, label = fixtures_of(obj), objects[0].label
-        guide = _picked(obj, "Guide", strategy, ("along",), (
-            Text("layers: {} have no guide; use layers: along, or leave the guide out", strategy.layers)
-        ))
-        start = _picked(obj, "StartFaces", strategy, ("geodesic", "offset"), (
-            Text("layers: {} have no start faces; use layers: geodesic or offset, or leave the faces out", strategy.layers)
-        ))
+        guide = _picked(
+            obj,
+            "Guide",
+            strategy,
+            ("along",),
+            (
+                Text(
+                    "layers: {} have no guide; use layers: along, or leave the guide out",
+                    strategy.layers,
+                )
+            ),
+        )
+        start = _picked(
+            obj,
+            "StartFaces",
+            strategy,
+            ("geodesic", "offset"),
+            (
+                Text(
+                    "layers: {} have no start faces; use layers: geodesic or offset, or leave the faces out",
+                    strategy.layers,
+                )
+            ),
+        )
 
         def work() -> Outcome:
             solid: list[Body] = []
             issues: tuple[Issue, ...] = ()
             for one in objects:
-                found = bodies_of(one.body() if one.shape is None else one.shape, one.label, strategy.chord_error,
-                                  strategy.mend, True)
+                found = bodies_of(
+                    one.body() if one.shape is None else one.shape,
+                    one.label,
+                    strategy.chord_error,
+                    strategy.mend,
+                    True,
+                )
                 solid += found.bodies
                 issues += found.issues
             if strategy.layers == "along":
@@ -82,24 +127,41 @@ class SolidFeature(FeatureStage):
             if start is not None:
                 corners = triangles_of_faces(*start, strategy.chord_error)
                 solids = dataclasses.replace(
-                    solids, groups=tuple(dataclasses.replace(group, start=corners) for group in solids.groups)
+                    solids,
+                    groups=tuple(
+                        dataclasses.replace(group, start=corners) for group in solids.groups
+                    ),
                 )
             large = size.judged(size.of_solids(solids, strategy), strategy)
             solids = dataclasses.replace(solids, surroundings=bodies((*ground, *fixtures)))
             base = solids.groups[0].base
-            height = max(float(base.surface.distance(base.inside(body.vertices)).max()) for body in solid)
-            return Outcome(solids, (*solids.issues, *large), (("Solids", len(solid)), ("Height", height)))
+            height = max(
+                float(base.surface.distance(base.inside(body.vertices)).max()) for body in solid
+            )
+            return Outcome(
+                solids, (*solids.issues, *large), (("Solids", len(solid)), ("Height", height))
+            )
 
         return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
-        guide = [shape_fingerprint(obj.Guide[0]), " ".join(obj.Guide[1])] if getattr(obj, "Guide", None) else []
+        guide = (
+            [shape_fingerprint(obj.Guide[0]), " ".join(obj.Guide[1])]
+            if getattr(obj, "Guide", None)
+            else []
+        )
         faces = getattr(obj, "StartFaces", None)
         start = [shape_fingerprint(faces[0]), " ".join(faces[1])] if faces else []
         return [
-            fingerprint(source_of(obj)[0]), *(fingerprint(other) for other in obj.Further), "|", *ground, "|",
-            *(fingerprint(fixture) for fixture in obj.Fixtures), *guide, *start,
+            fingerprint(source_of(obj)[0]),
+            *(fingerprint(other) for other in obj.Further),
+            "|",
+            *ground,
+            "|",
+            *(fingerprint(fixture) for fixture in obj.Fixtures),
+            *guide,
+            *start,
         ]
 
 
@@ -114,6 +176,10 @@ def _picked(
         raise InputError("NOT_FOR_FAMILY", f"{obj.Label}.{name}", refusal)
     owner = getattr(obj, name)[0]
     if getattr(owner, "Mesh", None) is not None:
-        raise InputError("NO_SHAPE", f"{obj.Label}.{name}", "{} is a mesh, which has no edges or faces; choose a shape",
-                         owner.Label)
+        raise InputError(
+            "NO_SHAPE",
+            f"{obj.Label}.{name}",
+            "{} is a mesh, which has no edges or faces; choose a shape",
+            owner.Label,
+        )
     return global_shape(owner), names_of(getattr(obj, name)), owner.Label

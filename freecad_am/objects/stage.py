@@ -75,25 +75,62 @@ class Stage(Stored):
 
         for link in self.links:
             # parts and bodies may be nested in assemblies: links to them reach into those
-            add(link.type_name if link.kind else f"{link.type_name}Global", link.name, "Inputs", link.help)
+            add(
+                link.type_name if link.kind else f"{link.type_name}Global",
+                link.name,
+                "Inputs",
+                link.help,
+            )
         for section in self.sections:
             properties.add(obj, section.cls, section.group)
-        if add("App::PropertyEnumeration", "Status", _RESULT, "Whether the result fits.", READ_ONLY | OUTPUT):
+        if add(
+            "App::PropertyEnumeration",
+            "Status",
+            _RESULT,
+            "Whether the result fits.",
+            READ_ONLY | OUTPUT,
+        ):
             obj.Status = list(STATUSES)
             obj.Status = STALE
-        add("App::PropertyString", "Message", _RESULT, "What is wrong, and what to do.", READ_ONLY | OUTPUT)
+        add(
+            "App::PropertyString",
+            "Message",
+            _RESULT,
+            "What is wrong, and what to do.",
+            READ_ONLY | OUTPUT,
+        )
         for name, type_name, help in self.figures:
             add(type_name, name, _RESULT, help, READ_ONLY | OUTPUT)
         hidden = HIDDEN | OUTPUT
         add("App::PropertyString", "Issues", _RESULT, "Findings, as JSON.", hidden)
-        add("App::PropertyString", "Texts", _RESULT, "Template and values of message and findings, as JSON.", hidden)
-        add("App::PropertyString", "Key", _RESULT, "Fingerprint of the inputs the result was made from.", hidden)
+        add(
+            "App::PropertyString",
+            "Texts",
+            _RESULT,
+            "Template and values of message and findings, as JSON.",
+            hidden,
+        )
+        add(
+            "App::PropertyString",
+            "Key",
+            _RESULT,
+            "Fingerprint of the inputs the result was made from.",
+            hidden,
+        )
         add("App::PropertyFloat", "Seconds", _RESULT, "How long computing took.", hidden)
         add("App::PropertyFloatList", "ResultData", _RESULT, "Arrays of the result.", hidden)
         add("App::PropertyString", "ResultLayout", _RESULT, "What is where in the arrays.", hidden)
-        if add("App::PropertyString", CLASS_PROPERTY, _RESULT, "What the object is, should its proxy be lost.", hidden):
+        if add(
+            "App::PropertyString",
+            CLASS_PROPERTY,
+            _RESULT,
+            "What the object is, should its proxy be lost.",
+            hidden,
+        ):
             setattr(obj, CLASS_PROPERTY, f"{type(self).__module__}.{type(self).__name__}")
-        if add("App::PropertyInteger", "SchemaVersion", _RESULT, "Version of these properties.", hidden):
+        if add(
+            "App::PropertyInteger", "SchemaVersion", _RESULT, "Version of these properties.", hidden
+        ):
             obj.SchemaVersion = SCHEMA_VERSION
 
     def parameters(self, obj: Any, cls: type) -> Any:
@@ -110,11 +147,17 @@ class Stage(Stored):
         user cancels, or when the object is gone by the time it is computed.
         """
         if hooks.carrying():
-            raise InputError("BUSY", obj.Label, "something else is being computed; wait until that is done, or cancel it")
+            raise InputError(
+                "BUSY",
+                obj.Label,
+                "something else is being computed; wait until that is done, or cancel it",
+            )
         try:
             with one_thread(), faults.kernel(obj):
                 key = self.key(obj)
-                refused = obj.Status != INFEASIBLE and has_errors(issues_of(obj))  # what is told is of other inputs
+                refused = obj.Status != INFEASIBLE and has_errors(
+                    issues_of(obj)
+                )  # what is told is of other inputs
                 outdated = (force or refused or key != obj.Key) and self._compute(obj, key)
             found = issues_of(obj)
             with self._own_changes():
@@ -134,7 +177,13 @@ class Stage(Stored):
             raise
         except BaseException as error:
             with self._own_changes():
-                say(obj, FAILED, error.sentence if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
+                say(
+                    obj,
+                    FAILED,
+                    error.sentence
+                    if isinstance(error, AmError)
+                    else f"{type(error).__name__}: {error}",
+                )
             raise
         return self.value(obj)
 
@@ -186,11 +235,16 @@ class Stage(Stored):
             if link.required and not getattr(obj, link.name):
                 return Text("{} is missing; choose {}", link.name, link.wanted)
             if broken := broken_link(getattr(obj, link.name)):
-                return Text("{} links to nothing, what it showed is gone or was not loaded; choose another {}", broken,
-                            link.name)
+                return Text(
+                    "{} links to nothing, what it showed is gone or was not loaded; choose another {}",
+                    broken,
+                    link.name,
+                )
         return expressions.broken(obj)
 
-    def _store(self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float) -> None:
+    def _store(
+        self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float
+    ) -> None:
         obj.ResultData, obj.ResultLayout, obj.Seconds = floats, text, seconds
         store_issues(obj, outcome.issues)
         for name, figure in outcome.figures:
@@ -210,7 +264,9 @@ class Stage(Stored):
         cancelled waits for it."""
         if _deferred:
             return
-        stale = next((linked.Label for linked in self._linked_stages(obj) if linked.Status == STALE), "")
+        stale = next(
+            (linked.Label for linked in self._linked_stages(obj) if linked.Status == STALE), ""
+        )
         if stale:
             with self._own_changes():
                 say(obj, STALE, Text("waits for {}; recompute", stale))
@@ -224,7 +280,11 @@ class Stage(Stored):
                 App.Console.PrintWarning(f"{obj.Label}: cancelled\n")
 
     def _linked_stages(self, obj: Any) -> list[Any]:
-        linked = [(getattr(obj, link.name) if link.many else [getattr(obj, link.name)]) for link in self.links if link.kind]
+        linked = [
+            (getattr(obj, link.name) if link.many else [getattr(obj, link.name)])
+            for link in self.links
+            if link.kind
+        ]
         return [one for some in linked for one in some if stage_of(one) is not None]
 
     def mustExecute(self, obj: Any) -> bool:
@@ -276,7 +336,9 @@ def checked(obj: Any, link: Link) -> Any:
     """The linked stage, or a list of them: of the right kind, and computed; None without one. InputError BAD_INPUT,
     INPUT_FAILED; InfeasibleError INPUT_INFEASIBLE."""
     linked = getattr(obj, link.name)
-    return [_checked(obj, link, one) for one in linked] if link.many else _checked(obj, link, linked)
+    return (
+        [_checked(obj, link, one) for one in linked] if link.many else _checked(obj, link, linked)
+    )
 
 
 def _checked(obj: Any, link: Link, linked: Any) -> Any:
@@ -285,11 +347,23 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
     stage = stage_of(linked)
     if stage is None or stage.kind != link.kind:
         article = "an" if link.kind[0] in "aeiou" else "a"
-        raise InputError("BAD_INPUT", f"{obj.Label}.{link.name}", "{} is not {} {}; choose one", linked.Label, Word(article),
-                         link.kind)
+        raise InputError(
+            "BAD_INPUT",
+            f"{obj.Label}.{link.name}",
+            "{} is not {} {}; choose one",
+            linked.Label,
+            Word(article),
+            link.kind,
+        )
     if linked.Status == INFEASIBLE:
         why = Text("{} cannot be carried out: {}", linked.Label, reason_of(linked))
         raise InfeasibleError("INPUT_INFEASIBLE", obj.Label, why, issues=issues_of(linked))
     if linked.Status == FAILED or not linked.Key:
-        raise InputError("INPUT_FAILED", obj.Label, "waits for {}: {}", linked.Label, reason_of(linked) or "recompute it")
+        raise InputError(
+            "INPUT_FAILED",
+            obj.Label,
+            "waits for {}: {}",
+            linked.Label,
+            reason_of(linked) or "recompute it",
+        )
     return linked

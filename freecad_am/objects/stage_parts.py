@@ -39,7 +39,9 @@ class Link:
     @property
     def key(self) -> str:
         """Its name as a macro keyword: joint_path for JointPath."""
-        return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in self.name).lstrip("_")
+        return "".join(
+            f"_{letter.lower()}" if letter.isupper() else letter for letter in self.name
+        ).lstrip("_")
 
 
 @dataclass(frozen=True)

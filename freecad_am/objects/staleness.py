@@ -14,10 +14,23 @@ UP_TO_DATE, STALE, FAILED, INFEASIBLE = "up to date", "stale", "failed", "infeas
 STATUSES = (UP_TO_DATE, STALE, FAILED, INFEASIBLE)
 
 # properties that are not inputs
-RESULTS = frozenset({
-    "Status", "Message", "Issues", "Texts", "Key", "Seconds", "ResultData", "ResultLayout", "SchemaVersion", "Proxy",
-    "Label", "Label2", "Visibility",
-})
+RESULTS = frozenset(
+    {
+        "Status",
+        "Message",
+        "Issues",
+        "Texts",
+        "Key",
+        "Seconds",
+        "ResultData",
+        "ResultLayout",
+        "SchemaVersion",
+        "Proxy",
+        "Label",
+        "Label2",
+        "Visibility",
+    }
+)
 
 _observer: _Observer | None = None
 
@@ -25,7 +38,12 @@ _observer: _Observer | None = None
 def changed(obj: Any, name: str) -> None:
     """Mark a stage, after its property `name` changed, and all that follows as stale."""
     document = obj.Document
-    if document is None or document.Restoring or document.Transacting or "Output" in obj.getTypeOfProperty(name):
+    if (
+        document is None
+        or document.Restoring
+        or document.Transacting
+        or "Output" in obj.getTypeOfProperty(name)
+    ):
         return
     _mark(obj, name)
     _mark_followers(obj)
@@ -46,7 +64,10 @@ class _Observer:
         if name in RESULTS or hasattr(obj, "ResultLayout") or not getattr(obj, "InList", None):
             return
         document = obj.Document
-        if not (document.Restoring or document.Transacting or document.Recomputing) and "Touched" in obj.State:
+        if (
+            not (document.Restoring or document.Transacting or document.Recomputing)
+            and "Touched" in obj.State
+        ):
             _mark_followers(obj)
 
     def slotRecomputedDocument(self, document: Any) -> None:
@@ -65,6 +86,8 @@ def _mark_followers(obj: Any) -> None:
 def _mark(obj: Any, cause: str) -> None:
     obj.Proxy.changes += 1
     missing = obj.Proxy.missing(obj)
-    status, message = (FAILED, missing) if missing else (STALE, Text("{} changed; recompute", cause))
+    status, message = (
+        (FAILED, missing) if missing else (STALE, Text("{} changed; recompute", cause))
+    )
     if obj.Status != status or (missing and obj.Message != missing):
         say(obj, status, message)

@@ -30,32 +30,51 @@ class SurfaceFeature(FeatureStage):
     links = (
         Link("Source", "", "The wall to deposit, or its faces.", type_name="App::PropertyLinkSub"),
         Link(
-            "Substrate", "", "The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.",
+            "Substrate",
+            "",
+            "The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.",
             required=False,
         ),
         Link(
-            "StartEdges", "", "Edges of the wall in which layers start, in place of where it leaves the substrate.",
-            required=False, type_name="App::PropertyLinkSub",
+            "StartEdges",
+            "",
+            "Edges of the wall in which layers start, in place of where it leaves the substrate.",
+            required=False,
+            type_name="App::PropertyLinkSub",
         ),
         FIXTURES,
     )
     figures = (
         ("WallFaces", "App::PropertyStringList", "Faces of the wall."),
-        ("WallKind", "App::PropertyString", "torus, cone (cylinders too) or table; patches for a wall of any "
-        "connected faces; mesh."),
+        (
+            "WallKind",
+            "App::PropertyString",
+            "torus, cone (cylinders too) or table; patches for a wall of any "
+            "connected faces; mesh.",
+        ),
     )
 
     def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, SurfaceParameters)
-        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        self.parameters(
+            obj, BuildDirectionParameters
+        )  # bad ones are told where they stand, not by the toolpath
         source, faces = source_of(obj)
         substrates = () if obj.Substrate is None else (taken(obj.Substrate),)
-        part, label, edges, fixtures = taken(source), source.Label, _start_edges(obj), fixtures_of(obj)
+        part, label, edges, fixtures = (
+            taken(source),
+            source.Label,
+            _start_edges(obj),
+            fixtures_of(obj),
+        )
         if obj.Substrate == source and not edges:
             raise InputError(
-                "OWN_SUBSTRATE", f"{obj.Label}.Substrate", "the wall and what it grows on are the same, {}; choose the part "
-                "that is there before it, or none where the wall starts on the platform or from edges", label,
+                "OWN_SUBSTRATE",
+                f"{obj.Label}.Substrate",
+                "the wall and what it grows on are the same, {}; choose the part "
+                "that is there before it, or none where the wall starts on the platform or from edges",
+                label,
             )
         if part.shape is None and faces:
             raise InputError("UNKNOWN_FACE", label, "a mesh has no faces to choose; leave them out")
@@ -64,15 +83,41 @@ class SurfaceFeature(FeatureStage):
             ground = bodies(substrates)
             solid, name = None, ""
             for substrate in substrates:
-                solid, name = (ground[0] if substrate.shape is None else substrate.shape), substrate.label
+                solid, name = (
+                    (ground[0] if substrate.shape is None else substrate.shape),
+                    substrate.label,
+                )
             shape = part.body() if part.shape is None else part.shape.copy(False)
-            wall = wall_on(shape, faces, solid, strategy.layer_height, label, name, edges, strategy.mend,
-                           strategy.method == FRONTS)
+            wall = wall_on(
+                shape,
+                faces,
+                solid,
+                strategy.layer_height,
+                label,
+                name,
+                edges,
+                strategy.mend,
+                strategy.method == FRONTS,
+            )
             large = size.judged(size.of_wall(wall, strategy), strategy)
-            depths = None if part.shape is None else of_faces(part.shape, wall.faces, label, ground[0] if ground else None)
-            wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)), depths=depths)
-            kind = "mesh" if part.shape is None else "patches" if isinstance(wall, PatchWall) else wall.kind
-            return Outcome(wall, (*wall.issues, *large), (("WallFaces", list(wall.faces)), ("WallKind", kind)))
+            depths = (
+                None
+                if part.shape is None
+                else of_faces(part.shape, wall.faces, label, ground[0] if ground else None)
+            )
+            wall = dataclasses.replace(
+                wall, surroundings=(*ground, *bodies(fixtures)), depths=depths
+            )
+            kind = (
+                "mesh"
+                if part.shape is None
+                else "patches"
+                if isinstance(wall, PatchWall)
+                else wall.kind
+            )
+            return Outcome(
+                wall, (*wall.issues, *large), (("WallFaces", list(wall.faces)), ("WallKind", kind))
+            )
 
         return work
 
@@ -92,6 +137,10 @@ def _start_edges(obj: Any) -> tuple[str, ...]:
     if wrong or not names or owner != obj.Source[0]:
         text = ", ".join(wrong) or owner.Label
         raise InputError(
-            "BAD_EDGES", f"{obj.Label}.StartEdges", "{} is not an edge of {}; choose edges of it", text, obj.Source[0].Label
+            "BAD_EDGES",
+            f"{obj.Label}.StartEdges",
+            "{} is not an edge of {}; choose edges of it",
+            text,
+            obj.Source[0].Label,
         )
     return names

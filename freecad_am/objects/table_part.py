@@ -46,12 +46,16 @@ def open_points(document: Any, path: str) -> Any:
     curves = found.curves(name, _DRAWN)
     part = document.addObject("Part::Feature", "Table")
     part.Label = os.path.splitext(name)[0]
-    part.addProperty("App::PropertyStringList", _PROPERTY, "Table", "The points as they were read.", 1)
+    part.addProperty(
+        "App::PropertyStringList", _PROPERTY, "Table", "The points as they were read.", 1
+    )
     setattr(part, _PROPERTY, found.text.splitlines())
     if found.form != CSV:
         part.addProperty("App::PropertyString", _FORM, "Table", "What the file is.", 1)
         setattr(part, _FORM, found.form)
-    part.Shape = Part.Compound([Part.makePolygon([App.Vector(*row) for row in one.points.tolist()]) for one in curves])
+    part.Shape = Part.Compound(
+        [Part.makePolygon([App.Vector(*row) for row in one.points.tolist()]) for one in curves]
+    )
     return part
 
 
@@ -63,7 +67,9 @@ def _read(path: str, name: str, form: str) -> Points:
         what = "G-code" if form == GCODE else "a table of points as CSV"
         raise InputError("BAD_FILE", name, "it is not text; give {}", Word(what)) from None
     except OSError as error:
-        raise InputError("NO_FILE", name, "it cannot be read: {}; choose a file that can", error.strerror) from None
+        raise InputError(
+            "NO_FILE", name, "it cannot be read: {}; choose a file that can", error.strerror
+        ) from None
 
 
 def points_of(source: Any) -> Points | None:

@@ -33,7 +33,10 @@ if TYPE_CHECKING:
     from .checks.predicted_shape import Target
 
 FIXED = "fixed"
-LEANING = (RevolutionParameters, SurfaceParameters)  # whose build directions follow the wall, unless asked to be one
+LEANING = (
+    RevolutionParameters,
+    SurfaceParameters,
+)  # whose build directions follow the wall, unless asked to be one
 
 
 class Toolpath(Stage):
@@ -43,14 +46,26 @@ class Toolpath(Stage):
     """
 
     kind = "toolpath"
-    sections = (Section(ProcessParameters, "process", "Process"), Section(ScanParameters, "substrate", "Scan"))
+    sections = (
+        Section(ProcessParameters, "process", "Process"),
+        Section(ScanParameters, "substrate", "Scan"),
+    )
     links = (
         Link("Feature", "feature", "The feature to deposit."),
-        Link("Further", "feature", "Further features, deposited after it in this order.", required=False,
-             type_name="App::PropertyLinkList"),
+        Link(
+            "Further",
+            "feature",
+            "Further features, deposited after it in this order.",
+            required=False,
+            type_name="App::PropertyLinkList",
+        ),
         Link("Cell", "cell", "The cell, for the clearance of nozzle and platform.", required=False),
-        Link("Scan", "inspection", "An inspection of the substrate by a scan of it, which the first layers are fitted to.",
-             required=False),
+        Link(
+            "Scan",
+            "inspection",
+            "An inspection of the substrate by a scan of it, which the first layers are fitted to.",
+            required=False,
+        ),
     )
     figures = (
         ("Layers", "App::PropertyInteger", "Number of layers."),
@@ -61,11 +76,19 @@ class Toolpath(Stage):
 
     def complete(self, obj: Any) -> None:
         if "Sequence" not in obj.PropertiesList:
-            obj.addProperty("App::PropertyEnumeration", "Sequence", "Inputs",
-                            "Several features: one after the other, or the lowest layer of all first.")
+            obj.addProperty(
+                "App::PropertyEnumeration",
+                "Sequence",
+                "Inputs",
+                "Several features: one after the other, or the lowest layer of all first.",
+            )
             obj.Sequence = [BY_FEATURE, BY_HEIGHT]
-            obj.addProperty("App::PropertyStringList", "FeatureProcess", "Inputs",
-                            "Several features: what of the process differs for each, as JSON.")
+            obj.addProperty(
+                "App::PropertyStringList",
+                "FeatureProcess",
+                "Inputs",
+                "Several features: what of the process differs for each, as JSON.",
+            )
         super().complete(obj)
 
     def key(self, obj: Any) -> str:
@@ -84,17 +107,26 @@ class Toolpath(Stage):
         features = [linked["Feature"], *linked["Further"]]
         cell = _cell(obj)
         given = [
-            _given(feature, process, cell) for feature, process in zip(features, self.processes(obj), strict=True)
+            _given(feature, process, cell)
+            for feature, process in zip(features, self.processes(obj), strict=True)
         ]
         fixed, look = self.fixed(obj), self._look(obj)
         if len(features) > 1:
             if obj.Scan is not None:
-                raise InputError("NOT_YET", f"{obj.Label}.Scan", "several features in one go are not fitted to a scan yet; "
-                                 "leave it out, or deposit them one by one")
-            members = [member(feature, one, features) for feature, one in zip(features, given, strict=True)]
+                raise InputError(
+                    "NOT_YET",
+                    f"{obj.Label}.Scan",
+                    "several features in one go are not fitted to a scan yet; "
+                    "leave it out, or deposit them one by one",
+                )
+            members = [
+                member(feature, one, features) for feature, one in zip(features, given, strict=True)
+            ]
             names = [tuple(one.Name for one in _sources(feature)) for feature in features]
             order = obj.Sequence
-            return lambda: _outcome(with_remedy(look(planned_in_sequence(members, order, names)), fixed))
+            return lambda: _outcome(
+                with_remedy(look(planned_in_sequence(members, order, names)), fixed)
+            )
         sources = tuple(taken(one) for one in _sources(features[0]))
         fit = self._fit(obj)
 
@@ -105,7 +137,11 @@ class Toolpath(Stage):
                 deposit_balance.of_toolpath(given[0].wall, toolpath, given[0].process.bead_width)
             )
             other = in_planes(given[0], fit) if fixed is None else fixed
-            return _outcome(with_remedy(look(dataclasses.replace(toolpath, issues=(*more, *toolpath.issues))), other))
+            return _outcome(
+                with_remedy(
+                    look(dataclasses.replace(toolpath, issues=(*more, *toolpath.issues))), other
+                )
+            )
 
         return work
 
@@ -116,7 +152,9 @@ class Toolpath(Stage):
         from .checks.predicted_shape import Target
 
         return [
-            Target(_given(one, process, cell), tuple(map(taken, _sources(one))), tuple(one.Source[1]))
+            Target(
+                _given(one, process, cell), tuple(map(taken, _sources(one))), tuple(one.Source[1])
+            )
             for one, process in zip(features, self.processes(obj), strict=True)
         ]
 
@@ -151,10 +189,15 @@ class Toolpath(Stage):
                 own = None
             if not isinstance(own, dict) or not set(own) <= set(OF_FEATURE):
                 raise InputError(
-                    "BAD_VALUE", f"{obj.Label}.FeatureProcess", "{!r} is not understood; give a JSON mapping with keys of "
-                    "{}", text, ", ".join(OF_FEATURE)
+                    "BAD_VALUE",
+                    f"{obj.Label}.FeatureProcess",
+                    "{!r} is not understood; give a JSON mapping with keys of {}",
+                    text,
+                    ", ".join(OF_FEATURE),
                 )
-            found.append(rows.build(ProcessParameters, {**rows.flat(process), **own}) if own else process)
+            found.append(
+                rows.build(ProcessParameters, {**rows.flat(process), **own}) if own else process
+            )
         return found
 
     def fixed(self, obj: Any) -> Fixed | None:
@@ -167,7 +210,8 @@ class Toolpath(Stage):
         if not features or None in shapes:
             return None
         turned = [
-            strategy_of(shape) in LEANING and shape.parameters(one, BuildDirectionParameters).mode != FIXED
+            strategy_of(shape) in LEANING
+            and shape.parameters(one, BuildDirectionParameters).mode != FIXED
             for one, shape in zip(features, shapes, strict=True)
         ]
         if not any(turned):
@@ -175,11 +219,23 @@ class Toolpath(Stage):
         process = self.parameters(obj, ProcessParameters)
         carried = _cell(obj)
         if len(features) > 1:
-            made = [_given(one, own, carried) for one, own in zip(features, self.processes(obj), strict=True)]
+            made = [
+                _given(one, own, carried)
+                for one, own in zip(features, self.processes(obj), strict=True)
+            ]
             made = [_upright(one) if turn else one for one, turn in zip(made, turned, strict=True)]
-            members = [member(one, given, features) for one, given in zip(features, made, strict=True)]
-            names, order = [tuple(one.Name for one in _sources(feature)) for feature in features], obj.Sequence
-            fixed = (f"`features[{k}].build_direction.mode: fixed`" for k, turn in enumerate(turned) if turn)
+            members = [
+                member(one, given, features) for one, given in zip(features, made, strict=True)
+            ]
+            names, order = (
+                [tuple(one.Name for one in _sources(feature)) for feature in features],
+                obj.Sequence,
+            )
+            fixed = (
+                f"`features[{k}].build_direction.mode: fixed`"
+                for k, turn in enumerate(turned)
+                if turn
+            )
             text = Text.joined(" and ", fixed)
             return Fixed(text, lambda: planned_in_sequence(members, order, names))
         shape, feature = shapes[0], features[0]
@@ -214,8 +270,9 @@ def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
     shared = sorted(set(own) - set(OF_FEATURE))
     if shared:
         raise InputError(
-            "NOT_FOR_FEATURE", f"process.{shared[0]}", "it holds for the whole program, not for one of its features; "
-            "give it at the top level"
+            "NOT_FOR_FEATURE",
+            f"process.{shared[0]}",
+            "it holds for the whole program, not for one of its features; give it at the top level",
         )
     return json.dumps(own) if own else ""
 
@@ -236,7 +293,9 @@ def _sources(feature: Any) -> tuple[Any, ...]:
 
 
 def _input_key(link: str, linked: Any) -> str:
-    return repr(seen_of(linked.Proxy.value(linked))) if link == "Cell" else keys.of_all(link, linked)
+    return (
+        repr(seen_of(linked.Proxy.value(linked))) if link == "Cell" else keys.of_all(link, linked)
+    )
 
 
 def _cell(obj: Any) -> CellParameters | None:
@@ -247,7 +306,10 @@ def _cell(obj: Any) -> CellParameters | None:
 def _given(feature: Any, process: ProcessParameters, cell: CellParameters | None) -> Given:
     shape = stage_of(feature)
     assert shape is not None
-    strategy, build = shape.parameters(feature, strategy_of(shape)), shape.parameters(feature, BuildDirectionParameters)
+    strategy, build = (
+        shape.parameters(feature, strategy_of(shape)),
+        shape.parameters(feature, BuildDirectionParameters),
+    )
     return Given(shape.value(feature), strategy, build, process, cell)
 
 
@@ -258,7 +320,9 @@ def _upright(given: Given) -> Given:
 
 def _outcome(toolpath: CoreToolpath) -> Outcome:
     figures = (
-        ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),
+        ("Layers", len(toolpath.layers)),
+        ("Beads", toolpath.bead_count),
+        ("Points", toolpath.point_count),
         ("Length", toolpath.length),
     )
     return Outcome(toolpath, toolpath.issues, figures)

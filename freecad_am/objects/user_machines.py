@@ -31,7 +31,9 @@ def folders() -> tuple[str, ...]:
     if _travelled is not None:
         return _travelled
     own = os.path.join(App.getUserAppDataDir(), FOLDER)
-    return tuple(folder for folder in (own, preferences.machine_folder()) if preferences.existing(folder))
+    return tuple(
+        folder for folder in (own, preferences.machine_folder()) if preferences.existing(folder)
+    )
 
 
 def save(name: str, text: str) -> str:
@@ -42,15 +44,21 @@ def save(name: str, text: str) -> str:
     folder = os.path.join(App.getUserAppDataDir(), FOLDER)
     path = os.path.join(folder, f"{name}.json")
     if os.path.exists(path) or (machine.BUILT_IN / f"{name}.json").exists():
-        raise InputError("NOT_WRITTEN", "id", "there is a machine {!r} already; choose another name", name)
+        raise InputError(
+            "NOT_WRITTEN", "id", "there is a machine {!r} already; choose another name", name
+        )
     try:
         os.makedirs(folder, exist_ok=True)
         with open(f"{path}.new", "w", encoding="utf-8") as file:
             file.write(text)
         os.replace(f"{path}.new", path)
     except OSError as error:
-        raise InputError("NOT_WRITTEN", path, "it cannot be written: {}; check the folder",
-                         error.strerror or error) from None
+        raise InputError(
+            "NOT_WRITTEN",
+            path,
+            "it cannot be written: {}; check the folder",
+            error.strerror or error,
+        ) from None
     return path
 
 
@@ -60,5 +68,8 @@ def files_of(name: str) -> list[str]:
     if measured is not None:
         return [*files_of(measured.machine), *([measured.file] if is_there(measured.file) else [])]
     meant = urdf_reference.reference(name)
-    candidates = [name if meant is None else meant.file, *(os.path.join(folder, f"{name}.json") for folder in folders())]
+    candidates = [
+        name if meant is None else meant.file,
+        *(os.path.join(folder, f"{name}.json") for folder in folders()),
+    ]
     return [path for path in candidates if is_there(path)][:1]

@@ -39,10 +39,16 @@ PICTURES = {
     "shares": Entry("Joint speeds in %", joints.shares, machine=True),
     "accelerations": Entry("Joint accelerations", joints.accelerations, machine=True),
     "jerks": Entry("Joint jerks", joints.jerks, machine=True),
-    "condition": Entry("Condition", joints.condition, machine=True, lacking="this machine has no condition"),
+    "condition": Entry(
+        "Condition", joints.condition, machine=True, lacking="this machine has no condition"
+    ),
     "travel": Entry("Speed along the path", process.travel),
     "deposit": Entry("Deposit rate", process.deposit),
-    "spacing": Entry("Distance between layers", of=process.spacing, lacking="none of these layers lies on another"),
+    "spacing": Entry(
+        "Distance between layers",
+        of=process.spacing,
+        lacking="none of these layers lies on another",
+    ),
     "volumes": Entry("Volume by layer", of=process.by_layer, lacking=_NO_PLANES),
     "section": Entry("Section of the last layer", of=process.section, lacking=_NO_PLANES),
     "heights": Entry("Predicted heights", of=process.heights, lacking=_NO_MODEL),
@@ -51,7 +57,9 @@ PICTURES = {
 }
 
 
-def picture(name: str, source: Source, over: str = TIME, layers: tuple[int, int] | None = None) -> Picture:
+def picture(
+    name: str, source: Source, over: str = TIME, layers: tuple[int, int] | None = None
+) -> Picture:
     """A picture of PICTURES, over TIME or PATH where it is one along the job. layers: first and last, all when left out.
 
     One that there is not has no charts and says why. InputError where a table of a bead model cannot be read.

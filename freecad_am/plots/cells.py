@@ -46,7 +46,9 @@ def figure(cells: Cells, width: int, height: int) -> Figure:
     axes = made.add_subplot()
     axes.imshow(cells.colours, origin="lower", aspect="auto", interpolation="nearest")
     if cells.hatched.any():
-        axes.contourf(cells.hatched.astype(float), levels=[0.5, 1.5], colors="none", hatches=["////"])
+        axes.contourf(
+            cells.hatched.astype(float), levels=[0.5, 1.5], colors="none", hatches=["////"]
+        )
     for column in cells.lines[0]:
         axes.axvline(column, color="white", linewidth=0.8, alpha=0.7)
     for row in cells.lines[1]:
@@ -61,8 +63,14 @@ def figure(cells: Cells, width: int, height: int) -> Figure:
     axes.tick_params(labelsize=FONT_SIZE)
     axes.set_xlabel(cells.title)
     axes.set_ylabel(cells.up)
-    made.colorbar(ScalarMappable(Normalize(cells.low, cells.high), ListedColormap(cells.ramp)), ax=axes, label=cells.scale)
-    swatches = [axes.bar([0.0], [0.0], color=[colour], label=name) for name, colour in cells.classes]
+    made.colorbar(
+        ScalarMappable(Normalize(cells.low, cells.high), ListedColormap(cells.ramp)),
+        ax=axes,
+        label=cells.scale,
+    )
+    swatches = [
+        axes.bar([0.0], [0.0], color=[colour], label=name) for name, colour in cells.classes
+    ]
     if cells.hatched.any():
         swatches.append(axes.bar([0.0], [0.0], color="none", hatch="////", label=cells.hatching))
     if swatches:

@@ -113,7 +113,11 @@ class Chart:
             return 0.0, 1.08 * float(self.bars.heights.max(initial=0.0)) or 1.0
         values = [curve.y for curve in self.curves]
         low, high = _ends(values, [value for value, _ in self.marks])
-        near = [end for end in self.limits if np.isfinite(end) and max(abs(low), abs(high)) >= SHOWN_FROM * abs(end)]
+        near = [
+            end
+            for end in self.limits
+            if np.isfinite(end) and max(abs(low), abs(high)) >= SHOWN_FROM * abs(end)
+        ]
         return _padded(*_ends(values, [*(value for value, _ in self.marks), *near]))
 
 
@@ -132,10 +136,13 @@ def together(title: str, charts: Sequence[Chart]) -> Chart:
     units = list(dict.fromkeys(chart.y.unit for chart in charts))
     curves = tuple(
         replace(curve, colour=number)
-        for number, chart in enumerate(charts) for curve in chart.curves
+        for number, chart in enumerate(charts)
+        for curve in chart.curves
     )
     y = Quantity(charts[0].y.name, " or ".join(units))
-    return replace(charts[0], title=title, y=y, curves=curves, limits=(-INF, INF), span=None, unlimited="")
+    return replace(
+        charts[0], title=title, y=y, curves=curves, limits=(-INF, INF), span=None, unlimited=""
+    )
 
 
 def _ends(values: Sequence[Array], more: Sequence[float]) -> tuple[float, float]:

@@ -60,19 +60,25 @@ def _map(found: DeviationMap, view: _View) -> Chart | None:
     number = band_of(found.beyond, step_of(found.beyond))
     dots = [
         Curve(band.text, x[rows], y[rows], css(band.colour), DOTS)
-        for k, band in reversed(list(enumerate(bands(step_of(found.beyond))))) if (rows := seen & (number == k)).any()
+        for k, band in reversed(list(enumerate(bands(step_of(found.beyond)))))
+        if (rows := seen & (number == k)).any()
     ]
     names = tuple(
         (float(x[k]), float(y[k]), name_of(k)) for k in range(len(found.worst)) if seen[k]
     )
-    return Chart(view.title, X, Quantity("up in the picture", "mm"), tuple(dots), plane=True, names=names)
+    return Chart(
+        view.title, X, Quantity("up in the picture", "mm"), tuple(dots), plane=True, names=names
+    )
 
 
 def _spread(found: DeviationMap, allowance: float) -> Chart:
     marks = [(allowance, "allowance")] + ([(0.0, "the part")] if allowance else [])
     return Chart(
-        "Deposit beyond the faces", Quantity("beyond the faces", "mm"), Quantity("share of the area", "%"),
-        bars=Bars("share", found.edges, 100.0 * found.shares), upright=tuple(marks),
+        "Deposit beyond the faces",
+        Quantity("beyond the faces", "mm"),
+        Quantity("share of the area", "%"),
+        bars=Bars("share", found.edges, 100.0 * found.shares),
+        upright=tuple(marks),
     )
 
 
@@ -82,8 +88,12 @@ def _layers(found: DeviationMap, allowance: float) -> tuple[Chart, ...]:
         return ()
     least, mean = found.layers[known].T
     number = known.astype(np.float64)
-    return (Chart(
-        "Layer by layer", Quantity("layer"), Quantity("beyond the faces", "mm"),
-        (Curve("least", number, least, 1, MARKED), Curve("mean", number, mean, 0, MARKED)),
-        marks=((allowance, "allowance"),),
-    ),)
+    return (
+        Chart(
+            "Layer by layer",
+            Quantity("layer"),
+            Quantity("beyond the faces", "mm"),
+            (Curve("least", number, least, 1, MARKED), Curve("mean", number, mean, 0, MARKED)),
+            marks=((allowance, "allowance"),),
+        ),
+    )

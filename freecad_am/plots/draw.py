@@ -59,22 +59,42 @@ def figure(
     """Charts one below the other, width times height pixels at 100 to the inch; where they count the same across, only the
     last one has the numbers. The same charts make the same figure."""
     window = window or Window()
-    made = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=look.paper, edgecolor="none")
+    made = Figure(
+        figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=look.paper, edgecolor="none"
+    )
     shared = share(charts)
-    across = (min(chart.across()[0] for chart in charts), max(chart.across()[1] for chart in charts)) if shared else None
+    across = (
+        (min(chart.across()[0] for chart in charts), max(chart.across()[1] for chart in charts))
+        if shared
+        else None
+    )
     places, top = [], 0.0
     across_pixels = max(width - LEFT - RIGHT, 20.0)
-    numbers = [chart.borders is not None and (number == 0 or not shared) for number, chart in enumerate(charts)]
-    above = [ABOVE + NUMBERS * there + KEYS * len(_rows_of_keys(chart, look, across_pixels))
-             for chart, there in zip(charts, numbers, strict=True)]
-    fixed = sum(above) + sum(BELOW if _numbered(shared, number, charts) else BARE for number in range(len(charts)))
+    numbers = [
+        chart.borders is not None and (number == 0 or not shared)
+        for number, chart in enumerate(charts)
+    ]
+    above = [
+        ABOVE + NUMBERS * there + KEYS * len(_rows_of_keys(chart, look, across_pixels))
+        for chart, there in zip(charts, numbers, strict=True)
+    ]
+    fixed = sum(above) + sum(
+        BELOW if _numbered(shared, number, charts) else BARE for number in range(len(charts))
+    )
     tall = max((height - fixed) / len(charts), 12.0)
     for number, chart in enumerate(charts):
         numbered = _numbered(shared, number, charts)
-        place = _to_scale(chart, Place(
-            LEFT, top + above[number], across_pixels, tall,
-            window.across.get(0 if shared else number) or across or chart.across(), window.up.get(number) or chart.up(),
-        ))
+        place = _to_scale(
+            chart,
+            Place(
+                LEFT,
+                top + above[number],
+                across_pixels,
+                tall,
+                window.across.get(0 if shared else number) or across or chart.across(),
+                window.up.get(number) or chart.up(),
+            ),
+        )
         _Frame(made, chart, look, place, width, height, numbered, numbers[number]).draw()
         places.append(place)
         top += above[number] + tall + (BELOW if numbered else BARE)
@@ -97,7 +117,9 @@ def _to_scale(chart: Chart, place: Place) -> Place:
     (left, right), (low, high) = place.across, place.up
     scale = max((right - left) / place.width, (high - low) / place.height)
     more = 0.5 * (scale * place.width - right + left), 0.5 * (scale * place.height - high + low)
-    return replace(place, across=(left - more[0], right + more[0]), up=(low - more[1], high + more[1]))
+    return replace(
+        place, across=(left - more[0], right + more[0]), up=(low - more[1], high + more[1])
+    )
 
 
 def _named(chart: Chart) -> list[Curve]:
@@ -142,15 +164,19 @@ class _Frame:
     def draw(self) -> None:
         place = self.place
         bottom = 1.0 - (place.top + place.height) / self.height
-        axes = self.made.add_axes((place.left / self.width, bottom, place.width / self.width, place.height / self.height),
-                                  facecolor="none")
+        axes = self.made.add_axes(
+            (place.left / self.width, bottom, place.width / self.width, place.height / self.height),
+            facecolor="none",
+        )
         axes.set_xlim(*place.across)
         axes.set_ylim(*place.up)
         self._scales(axes)
         self._grounds(axes)
         self._borders(axes)
         if self.chart.bars is not None:
-            axes.stairs(self.chart.bars.heights, self.chart.bars.edges, fill=True, color=BAR, linewidth=0.0)
+            axes.stairs(
+                self.chart.bars.heights, self.chart.bars.edges, fill=True, color=BAR, linewidth=0.0
+            )
         for curve in self.chart.curves:
             self._curve(axes, curve)
         self._marks(axes)
@@ -168,30 +194,70 @@ class _Frame:
             numbers.set_powerlimits((-4, 6))
             axis.set_major_formatter(numbers)
             axis.get_offset_text().set(color=self.look.soft, size=SMALL_TEXT)
-        axes.tick_params(length=0.0, pad=3.0, labelsize=TEXT, labelcolor=self.look.soft, labelbottom=self.numbered,
-                         grid_color=self.look.grid, grid_linewidth=0.8)
+        axes.tick_params(
+            length=0.0,
+            pad=3.0,
+            labelsize=TEXT,
+            labelcolor=self.look.soft,
+            labelbottom=self.numbered,
+            grid_color=self.look.grid,
+            grid_linewidth=0.8,
+        )
         axes.grid(True)
         axes.set_axisbelow(True)
         if self.numbered:
-            self._text(self.place.left + 0.5 * self.place.width, self.place.top + self.place.height + 30.0,
-                       self.chart.x.label, ha="center")
-        label = self.chart.y.unit if self.place.height < CHARACTER * len(self.chart.y.label) else self.chart.y.label
-        self._text(12.0, self.place.top + 0.5 * self.place.height, label, rotation=90.0, ha="center", va="center")
+            self._text(
+                self.place.left + 0.5 * self.place.width,
+                self.place.top + self.place.height + 30.0,
+                self.chart.x.label,
+                ha="center",
+            )
+        label = (
+            self.chart.y.unit
+            if self.place.height < CHARACTER * len(self.chart.y.label)
+            else self.chart.y.label
+        )
+        self._text(
+            12.0,
+            self.place.top + 0.5 * self.place.height,
+            label,
+            rotation=90.0,
+            ha="center",
+            va="center",
+        )
 
     def _grounds(self, axes: Any) -> None:
         """What limits forbid, and the band that is wanted."""
         (low, high), (least, most) = self.place.up, self.chart.limits
         for start, end in ((low, min(least, high)), (max(most, low), high)):
             if np.isfinite(end - start) and end > start:
-                axes.add_patch(Rectangle((0.0, start), 1.0, end - start, transform=axes.get_yaxis_transform(),
-                                         facecolor=self.look.bad, alpha=FORBIDDEN, linewidth=0.0))
+                axes.add_patch(
+                    Rectangle(
+                        (0.0, start),
+                        1.0,
+                        end - start,
+                        transform=axes.get_yaxis_transform(),
+                        facecolor=self.look.bad,
+                        alpha=FORBIDDEN,
+                        linewidth=0.0,
+                    )
+                )
         for value in self.chart.limits:
             if low <= value <= high:
                 self._across(axes, value, self.look.bad, f"{value:.6g}")
         if self.chart.band is not None:
             start, end = self.chart.band
-            axes.add_patch(Rectangle((start, 0.0), end - start, 1.0, transform=axes.get_xaxis_transform(),
-                                     facecolor=self.look.good, alpha=WANTED, linewidth=0.0))
+            axes.add_patch(
+                Rectangle(
+                    (start, 0.0),
+                    end - start,
+                    1.0,
+                    transform=axes.get_xaxis_transform(),
+                    facecolor=self.look.good,
+                    alpha=WANTED,
+                    linewidth=0.0,
+                )
+            )
 
     def _borders(self, axes: Any) -> None:
         """Where layers begin; some of them where there are many."""
@@ -203,8 +269,17 @@ class _Frame:
         seen = seen[:: -(-len(seen) // MOST_BORDERS) or 1]
         x = np.repeat(chart.borders[seen], 3)
         y = np.tile([0.0, 1.0, np.nan], len(seen))
-        axes.add_line(Line2D(x, y, transform=axes.get_xaxis_transform(), color=self.look.soft, alpha=BORDER, linewidth=0.7,
-                             linestyle=(0, (1, 2))))
+        axes.add_line(
+            Line2D(
+                x,
+                y,
+                transform=axes.get_xaxis_transform(),
+                color=self.look.soft,
+                alpha=BORDER,
+                linewidth=0.7,
+                linestyle=(0, (1, 2)),
+            )
+        )
         if not self.layers:
             return
         last = -np.inf
@@ -212,28 +287,63 @@ class _Frame:
             share = (float(chart.borders[number]) - low) / (high - low)
             text = ("{}" if last >= 0.0 else self.look.words.layer).format(chart.layers[number])
             if share * self.place.width >= last + APART:
-                self._text(self.place.left + share * self.place.width, self.place.top - 4.0, text, size=SMALL_TEXT)
+                self._text(
+                    self.place.left + share * self.place.width,
+                    self.place.top - 4.0,
+                    text,
+                    size=SMALL_TEXT,
+                )
                 last = share * self.place.width + CHARACTER * len(text)
 
     def _curve(self, axes: Any, curve: Curve) -> None:
         colour = self.look.colour(curve.colour)
         style = {"drawstyle": "steps-pre"} if curve.kind == STEP else {}
         if curve.kind == DOTS:
-            axes.add_line(Line2D(curve.x, curve.y, color=colour, linestyle="none", marker="o", markersize=4.0))
+            axes.add_line(
+                Line2D(curve.x, curve.y, color=colour, linestyle="none", marker="o", markersize=4.0)
+            )
             return
         if curve.kind == OUTLINE:
-            to_points = 72.0 / DPI * self.place.width / (self.place.across[1] - self.place.across[0])
-            style = {"linewidth": to_points * curve.width, "alpha": BEAD} if curve.width else {"linewidth": 1.3}
-            axes.add_line(Line2D(curve.x, curve.y, color=colour, solid_joinstyle="round", solid_capstyle="round", **style))
+            to_points = (
+                72.0 / DPI * self.place.width / (self.place.across[1] - self.place.across[0])
+            )
+            style = (
+                {"linewidth": to_points * curve.width, "alpha": BEAD}
+                if curve.width
+                else {"linewidth": 1.3}
+            )
+            axes.add_line(
+                Line2D(
+                    curve.x,
+                    curve.y,
+                    color=colour,
+                    solid_joinstyle="round",
+                    solid_capstyle="round",
+                    **style,
+                )
+            )
             return
         rows = envelope(curve.x, curve.y, int(self.place.width), *self.place.across)
         x, y = curve.x[rows], curve.y[rows]
-        dots = {"marker": "o", "markersize": 2.6} if curve.kind == MARKED and len(x) < 0.2 * self.place.width else {}
+        dots = (
+            {"marker": "o", "markersize": 2.6}
+            if curve.kind == MARKED and len(x) < 0.2 * self.place.width
+            else {}
+        )
         axes.add_line(Line2D(x, y, color=colour, linewidth=1.1, **dots, **style))
         wrong = self.chart.wrong(y)
         if wrong.any():  # with dots where they are few: one alone makes no line
             few = {"marker": "o", "markersize": 2.6} if wrong.sum() <= FEW_WRONG else {}
-            axes.add_line(Line2D(x, np.where(wrong, y, np.nan), color=self.look.bad, linewidth=2.2, **few, **style))
+            axes.add_line(
+                Line2D(
+                    x,
+                    np.where(wrong, y, np.nan),
+                    color=self.look.bad,
+                    linewidth=2.2,
+                    **few,
+                    **style,
+                )
+            )
 
     def _marks(self, axes: Any) -> None:
         low, high = self.place.up
@@ -243,27 +353,60 @@ class _Frame:
         for value, name in self.chart.upright:
             start, end = self.place.across
             if start <= value <= end:
-                axes.add_line(Line2D([value, value], [0.0, 1.0], transform=axes.get_xaxis_transform(), color=self.look.ink,
-                                     linewidth=1.0, linestyle="--"))
+                axes.add_line(
+                    Line2D(
+                        [value, value],
+                        [0.0, 1.0],
+                        transform=axes.get_xaxis_transform(),
+                        color=self.look.ink,
+                        linewidth=1.0,
+                        linestyle="--",
+                    )
+                )
                 share = (value - start) / (end - start)
-                self._text(self.place.left + share * self.place.width + 4.0, self.place.top + 10.0, name, size=SMALL_TEXT)
+                self._text(
+                    self.place.left + share * self.place.width + 4.0,
+                    self.place.top + 10.0,
+                    name,
+                    size=SMALL_TEXT,
+                )
 
     def _across(self, axes: Any, value: float, colour: str, name: str, left: bool = False) -> None:
         """A dashed line with its name at its right or left end, below it where there is no room above."""
-        axes.add_line(Line2D([0.0, 1.0], [value, value], transform=axes.get_yaxis_transform(), color=colour, linewidth=1.0,
-                             linestyle="--"))
+        axes.add_line(
+            Line2D(
+                [0.0, 1.0],
+                [value, value],
+                transform=axes.get_yaxis_transform(),
+                color=colour,
+                linewidth=1.0,
+                linestyle="--",
+            )
+        )
         low, high = self.place.up
         down = self.place.top + (high - value) / (high - low) * self.place.height
         above = down - self.place.top > 11.0
-        self._text(self.place.left + (4.0 if left else self.place.width - 4.0), down - 3.0 if above else down + 10.0, name,
-                   color=colour, ha="left" if left else "right", size=SMALL_TEXT)
+        self._text(
+            self.place.left + (4.0 if left else self.place.width - 4.0),
+            down - 3.0 if above else down + 10.0,
+            name,
+            color=colour,
+            ha="left" if left else "right",
+            size=SMALL_TEXT,
+        )
 
     def _title(self) -> None:
         words = self.look.words
         down = self.place.top - (7.0 + NUMBERS if self.layers else 7.0)
         rows = _rows_of_keys(self.chart, self.look, self.place.width)
-        self._text(self.place.left, down - KEYS * len(rows), _titled(self.chart, self.look), size=TITLE, weight="bold",
-                   color=self.look.bad if self.chart.wrong_count else self.look.ink)
+        self._text(
+            self.place.left,
+            down - KEYS * len(rows),
+            _titled(self.chart, self.look),
+            size=TITLE,
+            weight="bold",
+            color=self.look.bad if self.chart.wrong_count else self.look.ink,
+        )
         named = _named(self.chart)
         right = self.place.left + self.place.width
         least, most = self.chart.limits
@@ -271,7 +414,9 @@ class _Frame:
             ends = [f"{end:.6g}" for end in (least, most) if np.isfinite(end)]
             if np.isfinite(most):
                 word = words.limits if len(ends) == 2 else words.limit
-                self._text(right, down, word.format(*ends, self.chart.y.unit), ha="right", size=SMALL_TEXT)
+                self._text(
+                    right, down, word.format(*ends, self.chart.y.unit), ha="right", size=SMALL_TEXT
+                )
             elif self.chart.unlimited:
                 self._text(right, down, self.chart.unlimited, ha="right", size=SMALL_TEXT)
             return
@@ -293,5 +438,11 @@ class _Frame:
         self._text(left - 10.0, down, "●", color=self.look.colour(curve.colour))
 
     def _text(self, left: float, down: float, text: str, **style: Any) -> None:
-        style = {"color": self.look.soft, "size": TEXT, "va": "baseline", "parse_math": False, **style}
+        style = {
+            "color": self.look.soft,
+            "size": TEXT,
+            "va": "baseline",
+            "parse_math": False,
+            **style,
+        }
         self.made.text(left / self.width, 1.0 - down / self.height, text, **style)

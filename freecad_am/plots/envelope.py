@@ -21,7 +21,9 @@ def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> Index
     rows = np.arange(first, end)
     if len(rows) <= POINTS_KEPT * columns:
         return rows
-    column = np.clip(np.floor((x[first:end] - low) / (high - low) * columns), -1, columns).astype(np.intp)
+    column = np.clip(np.floor((x[first:end] - low) / (high - low) * columns), -1, columns).astype(
+        np.intp
+    )
     begins = np.concatenate([[0], np.flatnonzero(np.diff(column)) + 1])
     ends = np.concatenate([begins[1:], [len(rows)]]) - 1
     known = np.flatnonzero(np.isfinite(y[first:end]))

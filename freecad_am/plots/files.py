@@ -20,10 +20,16 @@ from .look import VARIABLES
 KINDS = ("png", "svg", "pdf")
 # what must be left out of a file for it not to tell when or with what it was made
 _UNDATED = {
-    "png": {"Software": None}, "svg": {"Date": None, "Creator": None},
+    "png": {"Software": None},
+    "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
-_SETTINGS = {"svg.fonttype": "none", "svg.hashsalt": "robotic-am", "text.usetex": False, "path.simplify": True}
+_SETTINGS = {
+    "svg.fonttype": "none",
+    "svg.hashsalt": "robotic-am",
+    "text.usetex": False,
+    "path.simplify": True,
+}
 SHARP = 150  # dots per inch of PNG
 _ROWS_AT_ONCE = 20_000
 
@@ -32,7 +38,9 @@ def image(figure: Figure, kind: str) -> bytes:
     """A file of one of KINDS."""
     stream = io.BytesIO()
     with matplotlib.rc_context(_SETTINGS):
-        figure.savefig(stream, format=kind, dpi=SHARP if kind == "png" else figure.dpi, metadata=_UNDATED[kind])
+        figure.savefig(
+            stream, format=kind, dpi=SHARP if kind == "png" else figure.dpi, metadata=_UNDATED[kind]
+        )
     return stream.getvalue()
 
 
@@ -49,11 +57,17 @@ def pixels(figure: Figure, ratio: float = 1.0) -> tuple[bytes, int, int]:
 def inline(figure: Figure, title: str) -> str:
     """An SVG element to stand in a page that has the variables of `look.VARIABLES`; drawn in the look PAGE."""
     text = image(figure, "svg").decode()
-    text = text[text.index("<svg"):]
-    text = re.sub(r"\s*<metadata>.*?</metadata>|\s*<style.*?</style>|<!--.*?-->", "", text, flags=re.DOTALL)
+    text = text[text.index("<svg") :]
+    text = re.sub(
+        r"\s*<metadata>.*?</metadata>|\s*<style.*?</style>|<!--.*?-->", "", text, flags=re.DOTALL
+    )
     text = re.sub(r'<g id="[^"]*"/>\s*', "", text)
     text = re.sub(r'<g id="[^"]*">', "<g>", text)
-    text = re.sub(r"font: ([0-9.]+px|[0-9]+ [0-9.]+px|bold [0-9.]+px)[^;\"]*", r"font: \1 system-ui, sans-serif", text)
+    text = re.sub(
+        r"font: ([0-9.]+px|[0-9]+ [0-9.]+px|bold [0-9.]+px)[^;\"]*",
+        r"font: \1 system-ui, sans-serif",
+        text,
+    )
     text = re.sub(r"(\d\.\d)\d+", r"\1", text)
     for colour, variable in VARIABLES.items():
         text = text.replace(colour, f"var({variable})")
@@ -75,9 +89,19 @@ def values(picture: Picture) -> Iterator[str]:
         chart, first = curves[0]
         alone = len({curve.name for _, curve in curves}) == len(curves)
         named = [] if first.layer is None else ["layer"]
-        yield ",".join([_header(chart.x.name, chart.x.unit), *named, *(
-            _header(curve.name if alone else f"{one.title} {curve.name}", one.y.unit) for one, curve in curves
-        )]) + "\n"
+        yield (
+            ",".join(
+                [
+                    _header(chart.x.name, chart.x.unit),
+                    *named,
+                    *(
+                        _header(curve.name if alone else f"{one.title} {curve.name}", one.y.unit)
+                        for one, curve in curves
+                    ),
+                ]
+            )
+            + "\n"
+        )
         layers = [] if first.layer is None else [first.layer]
         yield from _table([first.x, *(curve.y for _, curve in curves)], layers)
         return
@@ -88,7 +112,9 @@ def values(picture: Picture) -> Iterator[str]:
     for chart in picture.charts:
         if chart.bars is not None:
             name = f"{_plain(chart.title)},{_plain(chart.y.label)},"
-            yield from _rows(name, [chart.bars.edges[:-1], chart.bars.edges[1:], chart.bars.heights])
+            yield from _rows(
+                name, [chart.bars.edges[:-1], chart.bars.edges[1:], chart.bars.heights]
+            )
 
 
 def _table(columns: list[Array], whole: list[Integers]) -> Iterator[str]:
@@ -109,7 +135,13 @@ def _text(value: float) -> str:
 
 
 def _header(name: str, unit: str) -> str:
-    unit = unit.replace("/", "_").replace("²", "2").replace("³", "3").replace("%", "percent").replace(" or ", "_or_")
+    unit = (
+        unit.replace("/", "_")
+        .replace("²", "2")
+        .replace("³", "3")
+        .replace("%", "percent")
+        .replace(" or ", "_or_")
+    )
     return _plain(name.replace(" ", "_") + (f"_{unit}" if unit else ""))
 
 

@@ -22,7 +22,20 @@ def fit(measured: Measured, model: BeadModel, wanted: float | None = None) -> Ch
         rows = measured.radius == radius
         widths = model.widths(speed, np.full(STEPS, radius))
         curves.append(Curve(f"r {radius:g} mm", MINUTE * speed, widths, number))
-        curves.append(Curve(Text("r {:g} mm, measured", radius), MINUTE * measured.speed[rows], measured.width[rows], number,
-                            DOTS))
+        curves.append(
+            Curve(
+                Text("r {:g} mm, measured", radius),
+                MINUTE * measured.speed[rows],
+                measured.width[rows],
+                number,
+                DOTS,
+            )
+        )
     marks = () if wanted is None else ((wanted, f"asked: {wanted:g}"),)
-    return Chart("Width of beads", Quantity("travel speed", "mm/min"), Quantity("width", "mm"), tuple(curves), marks=marks)
+    return Chart(
+        "Width of beads",
+        Quantity("travel speed", "mm/min"),
+        Quantity("width", "mm"),
+        tuple(curves),
+        marks=marks,
+    )

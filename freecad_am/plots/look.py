@@ -12,10 +12,21 @@ PALETTE = ("#3b6fd4", "#d9633b", "#2f9e6e", "#9a5bd0", "#c79a1e", "#cf3f74", "#3
 BAR = PALETTE[0]
 
 # anchors of a perceptually even scale from dark blue over green to yellow
-_SCALE = np.array([
-    (68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142),
-    (31, 158, 137), (53, 183, 121), (109, 205, 89), (180, 222, 44), (253, 231, 37),
-], dtype=float)
+_SCALE = np.array(
+    [
+        (68, 1, 84),
+        (72, 40, 120),
+        (62, 74, 137),
+        (49, 104, 142),
+        (38, 130, 142),
+        (31, 158, 137),
+        (53, 183, 121),
+        (109, 205, 89),
+        (180, 222, 44),
+        (253, 231, 37),
+    ],
+    dtype=float,
+)
 
 
 @dataclass(frozen=True)
@@ -52,12 +63,20 @@ LIGHT = Look("#1d2430", "#667085", "#dfe3ea", "#b8322a", "#1a7f4b", "#ffffff")
 DARK = Look("#e6e9ef", "#98a2b3", "#323a47", "#ff7a70", "#4cc38a", "#1a202b")
 # of a page that sets the colours itself: each stands for a variable of its style
 PAGE = Look("#010203", "#010204", "#010205", "#010206", "#010207", "none")
-VARIABLES = {PAGE.ink: "--ink", PAGE.soft: "--soft", PAGE.grid: "--line", PAGE.bad: "--bad", PAGE.good: "--good"}
+VARIABLES = {
+    PAGE.ink: "--ink",
+    PAGE.soft: "--soft",
+    PAGE.grid: "--line",
+    PAGE.bad: "--bad",
+    PAGE.good: "--good",
+}
 
 
 def shade(share: float) -> str:
     """A colour of the scale at 0 to 1, as #rrggbb."""
     at = min(max(share, 0.0), 1.0) * (len(_SCALE) - 1)
     low = min(int(at), len(_SCALE) - 2)
-    red, green, blue = (_SCALE[low] + (at - low) * (_SCALE[low + 1] - _SCALE[low])).round().astype(int)
+    red, green, blue = (
+        (_SCALE[low] + (at - low) * (_SCALE[low + 1] - _SCALE[low])).round().astype(int)
+    )
     return f"#{red:02x}{green:02x}{blue:02x}"

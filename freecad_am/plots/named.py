@@ -17,5 +17,13 @@ def named(axes: Any, chart: Chart, colour: str, size: float) -> None:
     """Put a ring about each place of a chart that has a name, and this beside it, of so many points."""
     for x, y, name in chart.names:
         axes.add_line(Line2D([x], [y], color=colour, **RING))
-        axes.annotate(name, (x, y), NAME_OFFSET, textcoords="offset points", color=colour, size=size, weight="bold",
-                      parse_math=False)
+        axes.annotate(
+            name,
+            (x, y),
+            NAME_OFFSET,
+            textcoords="offset points",
+            color=colour,
+            size=size,
+            weight="bold",
+            parse_math=False,
+        )

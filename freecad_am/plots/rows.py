@@ -53,9 +53,19 @@ def rows(source: Source, over: str = TIME, layers: tuple[int, int] | None = None
     index = np.repeat(np.arange(len(motion)), 1 + waits)
     standing = np.concatenate([np.zeros(min(1, len(index)), dtype=bool), np.diff(index) == 0])
     if over == TIME:
-        x, units, total = np.where(standing, times.leave[index], times.arrive[index]), TIMES, times.total
+        x, units, total = (
+            np.where(standing, times.leave[index], times.arrive[index]),
+            TIMES,
+            times.total,
+        )
     else:
-        way = np.cumsum(np.nan_to_num(np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)))
+        way = np.cumsum(
+            np.nan_to_num(
+                np.linalg.norm(
+                    np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1
+                )
+            )
+        )
         x, units, total = way[index], LENGTHS, float(way[-1]) if len(way) else 0.0
     unit, name = next((size, name) for size, name in units if total >= 3.0 * size or size == 1.0)
     x = np.maximum.accumulate(x / unit)  # sums of times fall by rounding

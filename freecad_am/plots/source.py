@@ -77,16 +77,23 @@ class Source:
         """What the machine keeps of the speeds; None without one."""
         if self.cell is None:
             return None
-        return achievable_feed(self.motion, self.cell.machine.max_speed, self.cell.machine.max_acceleration)
+        return achievable_feed(
+            self.motion, self.cell.machine.max_speed, self.cell.machine.max_acceleration
+        )
 
     @cached_property
     def distances(self) -> tuple[Array, Integers]:
         """(n,) mm, the local distances between layers that are known, beads that close gaps left out; the layer of each."""
         beads = list(self.toolpath)
         local = spacing.local_distances(self.toolpath)
-        taken = [values for (_, _, bead), values in zip(beads, local, strict=True) if not bead.closing]
+        taken = [
+            values for (_, _, bead), values in zip(beads, local, strict=True) if not bead.closing
+        ]
         layers = [np.full(len(bead), layer) for layer, _, bead in beads if not bead.closing]
-        values, layer = np.concatenate([*taken, np.zeros(0)]), np.concatenate([*layers, np.zeros(0, np.int64)])
+        values, layer = (
+            np.concatenate([*taken, np.zeros(0)]),
+            np.concatenate([*layers, np.zeros(0, np.int64)]),
+        )
         known = np.isfinite(values)
         return values[known], layer[known].astype(np.int64)
 
@@ -101,4 +108,6 @@ class Source:
     def segments(self, layers: tuple[int, int]) -> predicted.Segments:
         """What the bead model predicts of the beads of layers, the last one included."""
         low, high = layers
-        return predicted.segments([bead for layer, _, bead in self.toolpath if low <= layer <= high])
+        return predicted.segments(
+            [bead for layer, _, bead in self.toolpath if low <= layer <= high]
+        )

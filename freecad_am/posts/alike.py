@@ -30,12 +30,16 @@ def numbers(texts: Sequence[str], shape: str, spans: Sequence[tuple[int, int]]) 
     counts = [word.count("0") for word in words]
     if max(counts) > _EXACT:
         return np.array([[float(text[begin:end]) for begin, end in spans] for text in texts])
-    table = np.frombuffer("".join(texts).encode("latin-1"), dtype=np.uint8).reshape(len(texts), len(shape))
+    table = np.frombuffer("".join(texts).encode("latin-1"), dtype=np.uint8).reshape(
+        len(texts), len(shape)
+    )
     places = [place for begin, end in spans for place in range(begin, end) if shape[place] == "0"]
     worth = [10**power for count in counts for power in range(count - 1, -1, -1)]
     digits = (table.T[places] - np.uint8(ord("0"))) * np.array(worth)[:, None]
     whole = np.add.reduceat(digits, np.cumsum([0, *counts[:-1]]))
     # one division of two whole numbers is rounded as the text itself would be
-    divisor = [(-1.0 if "-" in word else 1.0) * 10.0 ** word.partition(".")[2].count("0") for word in words]
+    divisor = [
+        (-1.0 if "-" in word else 1.0) * 10.0 ** word.partition(".")[2].count("0") for word in words
+    ]
     found: Array = whole.T / np.array(divisor)
     return found

@@ -17,7 +17,16 @@ from ..core.read_moves import ReadMoves
 from .names import Naming
 from .refusals import Asked
 
-NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuka")  # of the modules beside this one
+NAMES = (
+    "fanuc",
+    "staubli",
+    "siemens",
+    "linuxcnc",
+    "ur",
+    "yaskawa",
+    "abb",
+    "kuka",
+)  # of the modules beside this one
 
 
 class Post(Protocol):
@@ -45,7 +54,11 @@ class Post(Protocol):
         """The controller's files, name -> content; raises InputError for what the controller would refuse."""
 
     def refuse_setup(
-        self, motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+        self,
+        motion: str,
+        setup: str,
+        external: tuple[str, ...] = (),
+        carried: tuple[float, ...] | None = None,
     ) -> None:
         """Raises InputError, saying why, when this motion of this set-up cannot be said to the controller, with external
         axes of these kinds, as programs have them, and what the flange carries, None where that is not known yet."""
@@ -62,7 +75,9 @@ def load(name: str) -> Post:
     """The post of that name, imported when it is first asked for. Raises InputError UNKNOWN_POST."""
     if name not in NAMES:
         known = ", ".join(NAMES)
-        raise InputError("UNKNOWN_POST", "program.post", "{!r} is not known; use one of {}, or none", name, known)
+        raise InputError(
+            "UNKNOWN_POST", "program.post", "{!r} is not known; use one of {}, or none", name, known
+        )
     post: Any = importlib.import_module(f".{name}.post", __package__)
     found: Post = post
     return found

@@ -14,11 +14,26 @@ import re
 OUR_REMARKS = ("Limits: ", "Travel speed ")
 # endings of main programs, and those of their parts
 PART_ENDINGS = {
-    ".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script", ".jbi": ".jbi", ".mod": ".mod", ".src": ".src",
+    ".ls": ".ls",
+    ".mpf": ".spf",
+    ".ngc": ".ngc",
+    ".script": ".script",
+    ".jbi": ".jbi",
+    ".mod": ".mod",
+    ".src": ".src",
 }
-APPLICATION = ("{}.pjx", "{}.dtx", "start.pgx", "stop.pgx")  # files of a folder, an application or a part of one
+APPLICATION = (
+    "{}.pjx",
+    "{}.dtx",
+    "start.pgx",
+    "stop.pgx",
+)  # files of a folder, an application or a part of one
 # how a program of a kind says its own name: a copy under another name is somebody's
-_TITLES = {".ls": r"/PROG\s+{}\s", ".mod": r"MODULE\s+{}\s", ".src": r"&ACCESS RVP\s+&REL 1\s+DEF {}\(\)"}
+_TITLES = {
+    ".ls": r"/PROG\s+{}\s",
+    ".mod": r"MODULE\s+{}\s",
+    ".src": r"&ACCESS RVP\s+&REL 1\s+DEF {}\(\)",
+}
 _HEAD = 4096  # characters of a program that hold the remarks it begins with
 _LARGEST = 1 << 20  # characters of a main program that are looked through for its parts
 
@@ -40,13 +55,17 @@ def programs(folder: str) -> dict[str, set[str]]:
             numbered = [part for part in parts if re.fullmatch(re.escape(name) + r"\d+", part)]
             files_of = {part: _entries(os.path.join(inside, part))[0] for part in numbered}
             found[f"{name}/{name}.pjx"] = {f"{name}/{file}" for file in _application(name, own)} | {
-                f"{name}/{part}/{file}" for part, there in files_of.items() for file in _application(part, there)
+                f"{name}/{part}/{file}"
+                for part, there in files_of.items()
+                for file in _application(part, there)
             }
     return found
 
 
 def _is_ours(text: str, stem: str, ending: str) -> bool:
-    start = text.find("//INST") if ending.lower() == ".jbi" else 0  # remarks of a job follow its positions
+    start = (
+        text.find("//INST") if ending.lower() == ".jbi" else 0
+    )  # remarks of a job follow its positions
     head = text[start : start + _HEAD] if start >= 0 else ""
     title = _TITLES.get(ending.lower())
     if title and not re.match(title.format(re.escape(stem)), text, re.IGNORECASE):
@@ -61,7 +80,9 @@ def _application(name: str, files: list[str]) -> set[str]:
 
 def _parts(text: str, stem: str, ending: str, files: list[str]) -> set[str]:
     """The files of the parts that a main program names."""
-    called = {name.lower() for name in re.findall(rf"\b{re.escape(stem)}\d+\b", text, re.IGNORECASE)}
+    called = {
+        name.lower() for name in re.findall(rf"\b{re.escape(stem)}\d+\b", text, re.IGNORECASE)
+    }
     split = ((file, *os.path.splitext(file.lower())) for file in files)
     return {file for file, name, its in split if its == ending and name in called}
 

@@ -34,7 +34,11 @@ class Lines:
     def move_at(self, name: str, line: int) -> int | None:
         """The move that a line of a file tells, the first one of a loop; between two moves the next one, after the last
         the last one. None of a file without any."""
-        mine = np.flatnonzero(self.file == self.files.index(name)) if name in self.files else np.zeros(0, np.int64)
+        mine = (
+            np.flatnonzero(self.file == self.files.index(name))
+            if name in self.files
+            else np.zeros(0, np.int64)
+        )
         if not len(mine):
             return None
         return int(mine[min(int(np.searchsorted(self.line[mine], line)), len(mine) - 1)])
@@ -43,7 +47,9 @@ class Lines:
 def lines_of(post: str, files: dict[str, bytes]) -> Lines:
     """The lines of all moves of a program of ours. Parts of a program are run in the order of their numbers."""
     pattern = catalogue.load(post).MOVE_LINE
-    names = tuple(sorted(files, key=lambda name: [int(number) for number in _NUMBER.findall(name)] + [0]))
+    names = tuple(
+        sorted(files, key=lambda name: [int(number) for number in _NUMBER.findall(name)] + [0])
+    )
     found = [_moves(pattern, files[name]) for name in names]
     file = np.repeat(np.arange(len(names)), [len(lines) for lines in found])
     return Lines(names, file, np.array([line for lines in found for line in lines], dtype=np.int64))

@@ -11,7 +11,9 @@ from dataclasses import dataclass, field
 from ..core.issues import InputError, Text
 
 # names that files cannot have on the computers programs pass through
-DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))))
+DEVICES = frozenset(
+    ("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10)))
+)
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,9 @@ class Naming:
         if not name:
             raise self.refused(name, where, "it is empty")
         if re.search(r"[^A-Za-z0-9_]", shown):
-            raise self.refused(name, where, "it may hold only the letters A to Z, digits and underscores")
+            raise self.refused(
+                name, where, "it may hold only the letters A to Z, digits and underscores"
+            )
         if not re.match(self.start, shown):
             raise self.refused(name, where, Text("it must start with {}", self.starts))
         if len(shown) > self.longest:
@@ -57,7 +61,12 @@ class Naming:
     def refused(self, name: str, where: str, why: str) -> InputError:
         """The error for a name that is none, with one that is."""
         return InputError(
-            "PROGRAM_NAME", where, "{!r} cannot be {} on the controller: {}; use {!r}", name, self.what, why,
+            "PROGRAM_NAME",
+            where,
+            "{!r} cannot be {} on the controller: {}; use {!r}",
+            name,
+            self.what,
+            why,
             self.proposed(name),
         )
 
@@ -74,7 +83,13 @@ class Naming:
         names = [f"{name}{number:0{digits}d}" for number in range(1, count + 1)]
         if len(names[0]) > self.longest:
             raise self.refused(
-                name, "name", Text("with the {} digits of its parts it has more than {} characters", digits, self.longest)
+                name,
+                "name",
+                Text(
+                    "with the {} digits of its parts it has more than {} characters",
+                    digits,
+                    self.longest,
+                ),
             )
         return names
 
@@ -84,5 +99,9 @@ class Naming:
 
 def plain(text: str) -> str:
     """The text in ASCII characters that can be printed."""
-    apart = unicodedata.normalize("NFKD", text.replace("ß", "ss")).encode("ascii", "ignore").decode("ascii")
+    apart = (
+        unicodedata.normalize("NFKD", text.replace("ß", "ss"))
+        .encode("ascii", "ignore")
+        .decode("ascii")
+    )
     return re.sub(r"[^ -~]+", " ", apart)

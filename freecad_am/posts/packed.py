@@ -37,4 +37,8 @@ class Lines:
 
     def read(self) -> TextLines:
         """Those of all moves."""
-        return TextLines(tuple(self._files), np.array(self._file, dtype=np.intp), np.array(self._line, dtype=np.intp))
+        return TextLines(
+            tuple(self._files),
+            np.array(self._file, dtype=np.intp),
+            np.array(self._line, dtype=np.intp),
+        )

@@ -8,7 +8,17 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..core.issues import InputError, Text
-from ..core.program import DEPOSIT, RAPID, RETRACT, Block, DepositOff, DepositOn, LayerStart, Moves, Program
+from ..core.program import (
+    DEPOSIT,
+    RAPID,
+    RETRACT,
+    Block,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+)
 
 
 @dataclass(frozen=True)
@@ -29,7 +39,9 @@ Piece = Run | list[str]
 
 
 def grouped(
-    program: Program, words: Callable[[Moves], Sequence[str]], instructions: Callable[[Block], list[str]]
+    program: Program,
+    words: Callable[[Moves], Sequence[str]],
+    instructions: Callable[[Block], list[str]],
 ) -> Iterator[list[Piece]]:
     """The blocks as pieces, in groups that belong to one bead each: what may be cut apart with the deposit off.
 
@@ -43,12 +55,19 @@ def grouped(
             if not len(block):
                 continue
             piece: Piece = Run(block, words(block), 0, len(block))
-            starts = block.kind == RAPID and not on and bead not in (None, (block.layer, block.bead))
+            starts = (
+                block.kind == RAPID and not on and bead not in (None, (block.layer, block.bead))
+            )
             bead = (block.layer, block.bead)
         else:
             on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
             piece = instructions(block)
-            starts = isinstance(block, LayerStart) and not on and bead is not None and bead[0] != block.layer
+            starts = (
+                isinstance(block, LayerStart)
+                and not on
+                and bead is not None
+                and bead[0] != block.layer
+            )
             bead = None if starts else bead
         if starts and group:
             yield group
@@ -58,7 +77,9 @@ def grouped(
 
 
 def packed(
-    groups: Sequence[list[Piece]], most_points: int, most_lines: int,
+    groups: Sequence[list[Piece]],
+    most_points: int,
+    most_lines: int,
     cut: Callable[[list[Piece], int, int], Iterator[list[Piece]]],
 ) -> list[list[Piece]]:
     """The groups in files of at most so many points and lines, in order. cut: what becomes of a group too large."""
@@ -99,7 +120,9 @@ def with_retracts(parts: list[list[Piece]]) -> list[list[Piece]]:
 
 def size(pieces: Sequence[Piece]) -> tuple[int, int]:
     """How many points the pieces have, and how many lines a file with one line per move takes for them."""
-    return sum(len(piece) for piece in pieces if isinstance(piece, Run)), sum(len(piece) for piece in pieces)
+    return sum(len(piece) for piece in pieces if isinstance(piece, Run)), sum(
+        len(piece) for piece in pieces
+    )
 
 
 def continued(
@@ -111,11 +134,16 @@ def continued(
 
     def cut(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
         runs = [piece for piece in group if isinstance(piece, Run)]
-        if any(run.moves.kind == DEPOSIT and (run.moves.layer, run.moves.bead) in woven for run in runs):
+        if any(
+            run.moves.kind == DEPOSIT and (run.moves.layer, run.moves.bead) in woven for run in runs
+        ):
             raise InputError(
-                "BEAD_TOO_LONG", "program.max_points", "{} is woven and has {} points with its approach, and whether a "
+                "BEAD_TOO_LONG",
+                "program.max_points",
+                "{} is woven and has {} points with its approach, and whether a "
                 "weave goes on in another program was not confirmed; allow more points in one, or a larger chord error",
-                place(runs[-1].moves), sum(map(len, runs)),
+                place(runs[-1].moves),
+                sum(map(len, runs)),
             )
         events = sum(len(piece) for piece in group if isinstance(piece, list))
         most = min(most_points, most_lines - events - len(going_on) - len(resumed))
@@ -146,12 +174,18 @@ def whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[lis
 
 def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
     """Raises InputError BEAD_TOO_LONG for a bead longer than a file, where files have to be loaded one after the other."""
-    moves = next(piece.moves for piece in group if isinstance(piece, Run) and piece.moves.kind == DEPOSIT)
+    moves = next(
+        piece.moves for piece in group if isinstance(piece, Run) and piece.moves.kind == DEPOSIT
+    )
     points = size(group)[0]
     raise InputError(
-        "BEAD_TOO_LONG", "program.max_points",
+        "BEAD_TOO_LONG",
+        "program.max_points",
         "{} has {} points with its approach, and loading another part within a bead would stop the robot while it deposits; "
-        "use at least {}", place(moves), points, points + 1,
+        "use at least {}",
+        place(moves),
+        points,
+        points + 1,
     )
 
 
@@ -167,7 +201,9 @@ def switching(program: Program) -> Iterator[tuple[Moves, DepositOn | DepositOff]
 
 def lines_of(pieces: Sequence[Piece], motion: Callable[[Run], list[str]]) -> list[str]:
     """The lines of a part; `motion` writes those of a run."""
-    return [line for piece in pieces for line in (motion(piece) if isinstance(piece, Run) else piece)]
+    return [
+        line for piece in pieces for line in (motion(piece) if isinstance(piece, Run) else piece)
+    ]
 
 
 def place(moves: Moves) -> str:

@@ -12,7 +12,17 @@ import numpy as np
 from freecad_am.core.types import Array
 
 from ..core.issues import InputError, Text
-from ..core.program import LINEAR_MOVE, Call, DepositOff, DepositOn, Moves, Program, Schedule, WaitBelow, Weave
+from ..core.program import (
+    LINEAR_MOVE,
+    Call,
+    DepositOff,
+    DepositOn,
+    Moves,
+    Program,
+    Schedule,
+    WaitBelow,
+    Weave,
+)
 from .parts import place, switching
 
 CALL = "process.between_layers.call"
@@ -44,7 +54,12 @@ def refuse_wire(program: Program, no_wire: str) -> None:
 
 def wire_refused(no_wire: str) -> InputError:
     """The error for a controller that cannot be told the speed of the wire along a bead."""
-    return InputError("NO_WIRE_OUTPUT", "process.wire.feed_mode", "{}; use constant, or another controller", no_wire)
+    return InputError(
+        "NO_WIRE_OUTPUT",
+        "process.wire.feed_mode",
+        "{}; use constant, or another controller",
+        no_wire,
+    )
 
 
 def refuse_cooling(program: Program, last: int, why: str = "") -> None:
@@ -53,38 +68,57 @@ def refuse_cooling(program: Program, last: int, why: str = "") -> None:
     waits = [block for block in program.blocks if isinstance(block, WaitBelow)]
     if waits and why:
         raise InputError(
-            "NO_ANALOGUE_INPUT", "process.cooling.below", "{}; use process.between_layers.input, strategy.wait, or another "
-            "controller", why,
+            "NO_ANALOGUE_INPUT",
+            "process.cooling.below",
+            "{}; use process.between_layers.input, strategy.wait, or another controller",
+            why,
         )
     if any(block.number > last for block in waits):
         raise InputError(
-            "ANALOGUE_INPUT", "process.cooling.input",
-            "the controller's program reads analogue inputs 1 to {}, not {}; use one of these", last, waits[0].number,
+            "ANALOGUE_INPUT",
+            "process.cooling.input",
+            "the controller's program reads analogue inputs 1 to {}, not {}; use one of these",
+            last,
+            waits[0].number,
         )
 
 
-def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 0, inside: bool = False) -> None:
+def refuse_schedules(
+    program: Program, last: int, most: int, most_of_arc: int = 0, inside: bool = False
+) -> None:
     """Raises InputError SCHEDULE for a schedule beyond `most`, or beyond `most_of_arc` where arc instructions name it, or
     one set on an output that is none of 1 to `last`. inside: another one can be
     told within a bead."""
     if not inside and any(isinstance(block, Schedule) and block.inside for block in program.blocks):
         raise InputError(
-            "SCHEDULE", "process.start.schedule",
+            "SCHEDULE",
+            "process.start.schedule",
             "beads change their schedule, and as far as is known this controller sets outputs between moves ahead of the"
             " motion; give start and end nothing but other speeds, or use another controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
     if numbers and not 1 <= program.schedule_output <= last:
         raise InputError(
-            "SCHEDULE", "program.schedule.output",
-            "the number of a schedule is set on one of 1 to {}, not {}; use one of these", last, program.schedule_output,
+            "SCHEDULE",
+            "program.schedule.output",
+            "the number of a schedule is set on one of 1 to {}, not {}; use one of these",
+            last,
+            program.schedule_output,
         )
-    named = [block.schedule for block in program.blocks if isinstance(block, DepositOn) and block.schedule is not None]
+    named = [
+        block.schedule
+        for block in program.blocks
+        if isinstance(block, DepositOn) and block.schedule is not None
+    ]
     largest, most = (max(named), most_of_arc or most) if named else (max(numbers, default=0), most)
     if largest > most:
         raise InputError(
-            "SCHEDULE", "process.schedule", "the controller takes schedules up to {}, not {}; use another number, there "
-            "or in process.classes", most, largest,
+            "SCHEDULE",
+            "process.schedule",
+            "the controller takes schedules up to {}, not {}; use another number, there "
+            "or in process.classes",
+            most,
+            largest,
         )
 
 
@@ -103,19 +137,26 @@ JOINT_WEAVE = "as far as is known controllers weave on linear moves, and these a
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
     """The error for a weave that cannot be told."""
     return InputError(
-        "WEAVE", where, "{}; set program.motion to cartesian with the tool on the robot (fanuc, yaskawa; abb with "
-        "program.schedule.by: arc too), or process.weave, also in process.classes, to 0", why,
+        "WEAVE",
+        where,
+        "{}; set program.motion to cartesian with the tool on the robot (fanuc, yaskawa; abb with "
+        "program.schedule.by: arc too), or process.weave, also in process.classes, to 0",
+        why,
     )
 
 
 def schedule_refused(by: str, why: str) -> InputError:
     """The error for a controller that cannot be told schedules in this way."""
-    return InputError("SCHEDULE", "program.schedule.by", "{}: {}; use another way, or another controller", by, why)
+    return InputError(
+        "SCHEDULE", "program.schedule.by", "{}: {}; use another way, or another controller", by, why
+    )
 
 
 def trigger_refused(why: str) -> InputError:
     """The error for a controller, or a program, in which the deposit cannot be switched ahead of a place."""
-    return InputError("TRIGGER", "program.trigger.lead", "{}; leave it out, or use another controller", why)
+    return InputError(
+        "TRIGGER", "program.trigger.lead", "{}; leave it out, or use another controller", why
+    )
 
 
 @dataclass(frozen=True)
@@ -144,7 +185,11 @@ def refuse_triggers(program: Program, no_trigger: str) -> None:
 def switched_ahead(program: Program) -> list[Ahead]:
     """All that is switched ahead of the end of a move."""
     pairs = [] if program.dry_run else switching(program)
-    return [Ahead(moves, block.ahead, float(moves.duration[-1])) for moves, block in pairs if block.ahead is not None]
+    return [
+        Ahead(moves, block.ahead, float(moves.duration[-1]))
+        for moves, block in pairs
+        if block.ahead is not None
+    ]
 
 
 def refuse_leads(ahead: Sequence[Ahead]) -> None:
@@ -155,16 +200,24 @@ def refuse_leads(ahead: Sequence[Ahead]) -> None:
     most = _whole_steps(least.seconds + least.slack, least.steps)
     if least.corner:
         raise InputError(
-            "TRIGGER_LEAD", place(least.moves),
+            "TRIGGER_LEAD",
+            place(least.moves),
             "the corner before the move at the end of which the deposit is switched is rounded, and leaves {:.4g} s of it, "
             "less than the {:.4g} s that it would be switched ahead; use a program.trigger.lead of {:g} s at most, a "
-            "smaller program.blend, or a larger strategy.chord_error", least.seconds, least.lead, most,
+            "smaller program.blend, or a larger strategy.chord_error",
+            least.seconds,
+            least.lead,
+            most,
         )
     raise InputError(
-        "TRIGGER_LEAD", place(least.moves),
+        "TRIGGER_LEAD",
+        place(least.moves),
         "the move at the end of which the deposit is switched takes {:.4g} s, less than the {:.4g} s that it would be "
         "switched ahead; use a program.trigger.lead of {:g} s at most, a larger retract distance where it is switched on, "
-        "or a larger strategy.chord_error where it is switched off", least.seconds, least.lead, most,
+        "or a larger strategy.chord_error where it is switched off",
+        least.seconds,
+        least.lead,
+        most,
     )
 
 
@@ -178,12 +231,23 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
     """Raises InputError NOTHING_TO_WRITE, UNSUPPORTED_AXES (other than `axes` of them) or UNREACHABLE."""
     moves = program.moves
     if not sum(len(run) for run in moves):
-        raise InputError("NOTHING_TO_WRITE", "program", "the program holds no moves; check where it starts")
+        raise InputError(
+            "NOTHING_TO_WRITE", "program", "the program holds no moves; check where it starts"
+        )
     if any(run.joints.shape[1] != axes for run in moves) or len(program.continuous) != axes:
-        raise InputError("UNSUPPORTED_AXES", "program.post", "the post {} writes {} axes; use another post", post, axes)
+        raise InputError(
+            "UNSUPPORTED_AXES",
+            "program.post",
+            "the post {} writes {} axes; use another post",
+            post,
+            axes,
+        )
     if not all(np.isfinite(run.joints).all() for run in moves):
-        raise InputError("UNREACHABLE", "program", "some points have no joint values; plan a joint path that reaches them "
-                         "all")
+        raise InputError(
+            "UNREACHABLE",
+            "program",
+            "some points have no joint values; plan a joint path that reaches them all",
+        )
 
 
 def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
@@ -194,14 +258,19 @@ def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
     end = program.first_external + len(program.external_kinds) - 1
     if end > last:
         raise InputError(
-            "UNSUPPORTED_AXES", "program.axes.first",
-            "the external axes would end with number {}, and the controller has {}; use a smaller first one", end,
+            "UNSUPPORTED_AXES",
+            "program.axes.first",
+            "the external axes would end with number {}, and the controller has {}; use a smaller first one",
+            end,
             last,
         )
     if not re.fullmatch(unit, program.unit) and (program.on_positioner or program.unit):
         raise InputError(
-            "UNSUPPORTED_AXES", "program.axes.unit", "{!r} is not a positioner of this controller; give {}", program.unit,
-            form
+            "UNSUPPORTED_AXES",
+            "program.axes.unit",
+            "{!r} is not a positioner of this controller; give {}",
+            program.unit,
+            form,
         )
 
 
@@ -209,7 +278,10 @@ def refuse_named_track(program: Program, what: str) -> None:
     """Raises InputError UNSUPPORTED_AXES where a track that has no name is given one: it is `what`."""
     if program.unit and program.on_track and not program.on_positioner:
         raise InputError(
-            "UNSUPPORTED_AXES", "program.axes.unit", "a track has no name of its own here, it is {}; leave unit out", what,
+            "UNSUPPORTED_AXES",
+            "program.axes.unit",
+            "a track has no name of its own here, it is {}; leave unit out",
+            what,
         )
 
 
@@ -218,9 +290,12 @@ def refuse_continuous(program: Program) -> None:
     if any(program.continuous):
         axis = program.continuous.index(True) + 1
         raise InputError(
-            "ENDLESS_AXIS", "cell.limits",
+            "ENDLESS_AXIS",
+            "cell.limits",
             "axis {} has no limits, but joint values of this controller count every turn up to a limit; use limits that "
-            "have one for axis {}", axis, axis,
+            "have one for axis {}",
+            axis,
+            axis,
         )
 
 
@@ -233,10 +308,14 @@ def refuse_without_speeds(program: Program, axes: int) -> None:
     first = int(known.argmin()) if len(known) == axes else 0
     in_urdf = Text("`velocity` to the `<limit>` of each of its joints")
     raise InputError(
-        "NO_JOINT_SPEED", "cell.machine" if first < program.own_axes else "cell.external",
+        "NO_JOINT_SPEED",
+        "cell.machine" if first < program.own_axes else "cell.external",
         "on this controller the speed of joint moves is programmed in percent of the axes' largest speeds, and the "
-        "machine file of {} does not give them; add {}", (program.axis_machines or (program.machine,) * axes)[first],
-        in_urdf if program.of_urdf and program.of_urdf[first] else Text("`max_speed` to its joints"),
+        "machine file of {} does not give them; add {}",
+        (program.axis_machines or (program.machine,) * axes)[first],
+        in_urdf
+        if program.of_urdf and program.of_urdf[first]
+        else Text("`max_speed` to its joints"),
     )
 
 
@@ -246,17 +325,25 @@ def refuse_without_positions(program: Program, straight: bool = False) -> None:
         return
     runs = [run for run in program.moves if run.interpolation == LINEAR_MOVE or not straight]
     if program.station is None or any(run.position is None or run.rotation is None for run in runs):
-        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+        raise InputError(
+            "NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`"
+        )
 
 
-def refuse_calls_of_own(program: Program, names: set[str], program_name: Callable[[str, str], str]) -> None:
+def refuse_calls_of_own(
+    program: Program, names: set[str], program_name: Callable[[str, str], str]
+) -> None:
     """Raises InputError PROGRAM_NAME where a program called between layers has the name of a part of this one."""
-    own = {name.upper() for name in names}  # controllers and disks that know no case would take one for the other
+    own = {
+        name.upper() for name in names
+    }  # controllers and disks that know no case would take one for the other
     for block in program.blocks:
         if isinstance(block, Call) and program_name(block.program, block.where).upper() in own:
             raise InputError(
-                "PROGRAM_NAME", block.where,
-                "{!r} is a program of this very job; call another one, or rename the job", block.program,
+                "PROGRAM_NAME",
+                block.where,
+                "{!r} is a program of this very job; call another one, or rename the job",
+                block.program,
             )
 
 
@@ -268,8 +355,10 @@ def refuse_names_of_data(program: Program, names: Collection[str], data: Collect
     for name, where in {**called, **dict.fromkeys(sorted(names), "name")}.items():
         if name.upper() in taken:
             raise InputError(
-                "PROGRAM_NAME", where,
-                "{!r} is also the name of data or a signal that the program uses; call it otherwise", name,
+                "PROGRAM_NAME",
+                where,
+                "{!r} is also the name of data or a signal that the program uses; call it otherwise",
+                name,
             )
 
 
@@ -278,7 +367,11 @@ def speeds_within(moves: Moves, least: float, most: float) -> Array:
     fits = (moves.speed >= least) & (moves.speed <= most)
     if not fits.all():
         raise InputError(
-            "MOVE_SPEED", place(moves),
-            "{:.4g} mm/s cannot be written; use a speed between {} and {:.0f} mm/s", moves.speed[~fits][0], least, most,
+            "MOVE_SPEED",
+            place(moves),
+            "{:.4g} mm/s cannot be written; use a speed between {} and {:.0f} mm/s",
+            moves.speed[~fits][0],
+            least,
+            most,
         )
     return moves.speed

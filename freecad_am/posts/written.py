@@ -47,7 +47,9 @@ def _refuse_links(path: str, folder: str) -> None:
     parent = os.path.dirname(path)
     while len(parent) > len(folder):
         if os.path.islink(parent):
-            raise NotADirectoryError(20, "a link stands where a folder of the program belongs", parent)
+            raise NotADirectoryError(
+                20, "a link stands where a folder of the program belongs", parent
+            )
         parent = os.path.dirname(parent)
 
 

@@ -18,7 +18,9 @@ from .text_path import Joints, Path, tip_bounds
 BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 
-def rapids_between(cell: Cell, planned: Planned, text: Joints, path: Path, linear: Mask) -> tuple[float, Mask]:
+def rapids_between(
+    cell: Cell, planned: Planned, text: Joints, path: Path, linear: Mask
+) -> tuple[float, Mask]:
     """Largest distance of the tip from where it was looked at on rapids, and the moves (n,) that leave that way by more than
     the digits explain: as the text says them, the joints straight or (linear) the tip."""
     off, ends = np.zeros(len(planned.deposit), dtype=bool), planned.rapids
@@ -51,7 +53,9 @@ def _tips(cell: Cell, serial: Array) -> tuple[Array, Array]:
     return cell.tip_in_part(cell.machine.chain.forward(serial))
 
 
-def beads_between(cell: Cell, planned: Planned, shown: Array, path: Path, chord_error: float) -> tuple[float, Mask]:
+def beads_between(
+    cell: Cell, planned: Planned, shown: Array, path: Path, chord_error: float
+) -> tuple[float, Mask]:
     """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off.
 
     The tip is driven where it can be off, or farther than it is anywhere else: between points no farther from the planned
@@ -59,7 +63,9 @@ def beads_between(cell: Cell, planned: Planned, shown: Array, path: Path, chord_
     """
     serial, ends = cell.machine.from_controller(shown), planned.ends
     largest, off = 0.0, np.zeros(len(shown), dtype=bool)
-    most = _larger_at_ends(lengths(path.position - planned.position), ends) + _bow(cell, serial, ends)
+    most = _larger_at_ends(lengths(path.position - planned.position), ends) + _bow(
+        cell, serial, ends
+    )
     most[~(most <= chord_error + _larger_at_ends(path.bound, ends))] = np.inf
     falling = np.argsort(-most)
     for some in pieces(falling):
@@ -83,7 +89,10 @@ def _bow(cell: Cell, serial: Array, ends: Index) -> Array:
     twice on what slides."""
     chain, slides = cell.machine.chain, cell.machine.chain.sliding
     links = [*chain.origins, chain.flange, cell.carried, cell.station]
-    lever = sum(np.linalg.norm(link[:3, 3]) for link in links) + np.abs(serial[:, slides]).max(axis=0).sum()
+    lever = (
+        sum(np.linalg.norm(link[:3, 3]) for link in links)
+        + np.abs(serial[:, slides]).max(axis=0).sum()
+    )
     step = np.abs(serial[ends] - serial[ends - 1])
     turned, slid = step[:, ~slides].sum(axis=1), step[:, slides].sum(axis=1)
     bow: Array = turned * (0.125 * lever * turned + 0.25 * slid)
@@ -96,8 +105,13 @@ def tools_between(
     """The same while tools (n, 4, 4), another one at each point, on flanges at `asked` (n, 4, 4) run straight."""
     largest, off = 0.0, np.zeros(len(asked), dtype=bool)
     for ends in pieces(planned.ends):
-        ways = _straight(asked[ends - 1] @ tools[ends], asked[ends] @ tools[ends]) @ frames.inverse(tools[ends])[:, None]
-        strayed, off[ends] = _off_segments(planned, ends, cell.tip_in_part(ways.reshape(-1, 4, 4))[0], path, chord_error)
+        ways = (
+            _straight(asked[ends - 1] @ tools[ends], asked[ends] @ tools[ends])
+            @ frames.inverse(tools[ends])[:, None]
+        )
+        strayed, off[ends] = _off_segments(
+            planned, ends, cell.tip_in_part(ways.reshape(-1, 4, 4))[0], path, chord_error
+        )
         largest = float(np.maximum(largest, strayed))
     return largest, off
 
@@ -121,9 +135,20 @@ def _off_segments(
 def _straight(start: Array, end: Array) -> Array:
     """(n, len(BETWEEN), 4, 4) poses on the way from start to end (n, 4, 4): straight, turning about one axis."""
     turn = np.swapaxes(start[:, :3, :3], 1, 2) @ end[:, :3, :3]
-    axis = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    axis = 0.5 * np.stack(
+        [
+            turn[:, 2, 1] - turn[:, 1, 2],
+            turn[:, 0, 2] - turn[:, 2, 0],
+            turn[:, 1, 0] - turn[:, 0, 1],
+        ],
+        1,
+    )
     sine = np.linalg.norm(axis, axis=1)
     angle = np.arctan2(sine, 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1.0))
     axis = np.where(sine[:, None] > 1e-12, axis / np.maximum(sine, 1e-12)[:, None], [0.0, 0.0, 1.0])
-    rotated = start[:, None, :3, :3] @ frames.rotation_about(axis[:, None], BETWEEN * angle[:, None])
-    return frames.pose(rotated, start[:, None, :3, 3] + BETWEEN[:, None] * (end - start)[:, None, :3, 3])
+    rotated = start[:, None, :3, :3] @ frames.rotation_about(
+        axis[:, None], BETWEEN * angle[:, None]
+    )
+    return frames.pose(
+        rotated, start[:, None, :3, 3] + BETWEEN[:, None] * (end - start)[:, None, :3, 3]
+    )

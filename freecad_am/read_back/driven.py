@@ -48,16 +48,31 @@ def driven(cell: Cell, program: Program, read: ReadMoves) -> Motion:
     way = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
     speed = np.divide(way, duration, out=np.zeros(len(way)), where=duration > 0.0)
     return Motion(
-        deposit=deposit, layer=layer, bead=bead, point=point, position=position, build=tool, tool=tool, speed=speed,
-        width=np.full(len(rows), np.nan), joints=serial[rows], duration=duration,
+        deposit=deposit,
+        layer=layer,
+        bead=bead,
+        point=point,
+        position=position,
+        build=tool,
+        tool=tool,
+        speed=speed,
+        width=np.full(len(rows), np.nan),
+        joints=serial[rows],
+        duration=duration,
     )
 
 
 def beads(motion: Motion) -> list[DrivenBead]:
     """The beads of a motion, in order."""
     deposited = np.flatnonzero(motion.deposit)
-    parts = np.split(deposited, np.flatnonzero(motion.point[deposited] == 0)[1:]) if len(deposited) else []
-    return [DrivenBead(motion.position[rows], motion.build[rows], motion.tool[rows]) for rows in parts]
+    parts = (
+        np.split(deposited, np.flatnonzero(motion.point[deposited] == 0)[1:])
+        if len(deposited)
+        else []
+    )
+    return [
+        DrivenBead(motion.position[rows], motion.build[rows], motion.tool[rows]) for rows in parts
+    ]
 
 
 def _driven(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array]:
@@ -66,7 +81,9 @@ def _driven(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array]
     if read.position is None:
         assert read.joints is not None
         shown = _in_turns(read.joints, continuous)
-        return text_path.joint_path(cell, shown, text_path.digits(cell, read))[0], machine.from_controller(shown)
+        return text_path.joint_path(cell, shown, text_path.digits(cell, read))[
+            0
+        ], machine.from_controller(shown)
     if not cell.machine.free:
         path = text_path.text_tips(cell, program, read)
         serial = followed.by_table(cell, read, path)
@@ -94,7 +111,9 @@ def _durations(cell: Cell, read: ReadMoves, position: Array, serial: Array) -> A
     if read.speed is not None:
         by_speed = np.divide(way, read.speed, out=np.full(len(way), np.nan), where=read.speed > 0.0)
         # a speed of the tip says nothing where the tip stands still
-        taken = np.where(np.isnan(taken), np.maximum(by_speed, np.where(way > 0.0, 0.0, quickest)), taken)
+        taken = np.where(
+            np.isnan(taken), np.maximum(by_speed, np.where(way > 0.0, 0.0, quickest)), taken
+        )
     if read.share is not None:
         taken = np.where(np.isnan(taken), quickest / read.share, taken)
     taken = np.where(np.isnan(taken), quickest, taken)
@@ -116,7 +135,9 @@ def _layers(events: tuple[Event, ...], starts: Index) -> Integers:
     if not layers:
         return np.zeros(len(starts), dtype=np.int64)
     rows, numbers = np.array(layers, dtype=np.int64).T
-    return np.asarray(numbers[np.maximum(np.searchsorted(rows, starts, side="right") - 1, 0)], dtype=np.int64)
+    return np.asarray(
+        numbers[np.maximum(np.searchsorted(rows, starts, side="right") - 1, 0)], dtype=np.int64
+    )
 
 
 def _places(deposit: Mask, fresh: Mask, layers: Integers) -> tuple[Integers, ...]:

@@ -41,25 +41,44 @@ _FAMILIES = (
 def event_issues(planned: Planned, program: Program, read: ReadMoves) -> list[Issue]:
     """The deposit in each move, the speed of its wire, and all events."""
     wanted = planned.deposit & (not program.dry_run)
-    wire = np.where(wanted, planned.motion.wire[planned.rows] * (0.06 * program.nc.wire_gain), np.nan)
+    wire = np.where(
+        wanted, planned.motion.wire[planned.rows] * (0.06 * program.nc.wire_gain), np.nan
+    )
     feed = np.where(read.deposit, np.nan if read.wire is None else read.wire, np.nan)
-    wrong = (np.abs(feed - wire) > read.wire_digits + COMPUTED_AXIS * wire) | (np.isnan(feed) != np.isnan(wire))
+    wrong = (np.abs(feed - wire) > read.wire_digits + COMPUTED_AXIS * wire) | (
+        np.isnan(feed) != np.isnan(wire)
+    )
     if read.wire_output not in (None, program.nc.wire_output):
         wrong |= wanted
-    issues = planned.issue("VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned")
-    issues += planned.issue("VERIFY_WIRE", wrong, "the speed of the wire in the text is not the planned one")
+    issues = planned.issue(
+        "VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned"
+    )
+    issues += planned.issue(
+        "VERIFY_WIRE", wrong, "the speed of the wire in the text is not the planned one"
+    )
     known = {issue.code for issue in issues}
     found, due = _joined(timed(read.events, speeds_of(planned, read))), _joined(_due(program))
     for code, message, kinds in _FAMILIES:
         if code not in known:
             issues += _compared(planned, program, code, message, _of(found, kinds), _of(due, kinds))
-    if not issues and [(event.row, event.kind) for event in found] != [(event.row, event.kind) for event in due]:
-        issues.append(Issue(ERROR, "VERIFY_ORDER", "what happens between moves is in another order than planned"))
+    if not issues and [(event.row, event.kind) for event in found] != [
+        (event.row, event.kind) for event in due
+    ]:
+        issues.append(
+            Issue(
+                ERROR, "VERIFY_ORDER", "what happens between moves is in another order than planned"
+            )
+        )
     return issues
 
 
 def _compared(
-    planned: Planned, program: Program, code: str, message: str, found: Sequence[Event], due: Sequence[Event]
+    planned: Planned,
+    program: Program,
+    code: str,
+    message: str,
+    found: Sequence[Event],
+    due: Sequence[Event],
 ) -> list[Issue]:
     """An error where the events of a text are not those that are due."""
     alike = [_alike(program, one, other) for one, other in zip(found, due)]
@@ -68,7 +87,14 @@ def _compared(
         return []
     first = alike.index(False) if False in alike else len(alike)
     row = min((events[first].row for events in (found, due) if first < len(events)), default=0)
-    return [Issue(ERROR, code, Text("{}; {} of {} events", message, off, max(len(found), len(due))), *planned.place(row))]
+    return [
+        Issue(
+            ERROR,
+            code,
+            Text("{}; {} of {} events", message, off, max(len(found), len(due))),
+            *planned.place(row),
+        )
+    ]
 
 
 def _alike(program: Program, found: Event, due: Event) -> bool:
@@ -78,7 +104,10 @@ def _alike(program: Program, found: Event, due: Event) -> bool:
     if ARC in (*found.value, *due.value):
         return found.value == due.value
     if due.kind in ("on", "off") and program.nc.deposit_on and program.axis_names:
-        return found.value[1] == (program.nc.deposit_on if due.kind == "on" else program.nc.deposit_off).upper()
+        return (
+            found.value[1]
+            == (program.nc.deposit_on if due.kind == "on" else program.nc.deposit_off).upper()
+        )
     if due.kind in ("on", "off"):
         return found.value[0] == due.value[0]
     if due.kind == "call":
@@ -109,7 +138,9 @@ def _joined(events: Sequence[Event] | Iterator[Event]) -> list[Event]:
         if event.kind == "wait" and event.value == (0.0,):
             continue
         if last and (last.row, last.kind, event.kind) == (event.row, "wait", "wait"):
-            joined[-1] = Event(event.row, "wait", (float(last.value[0]) + float(event.value[0]),), event.digits)
+            joined[-1] = Event(
+                event.row, "wait", (float(last.value[0]) + float(event.value[0]),), event.digits
+            )
         else:
             joined.append(event)
     return joined
@@ -123,15 +154,27 @@ def _due(program: Program) -> Iterator[Event]:
             row += len(block)
             continue
         for kind, *value in _happening(program, block):
-            ahead = block.ahead if isinstance(block, (DepositOn, DepositOff)) and kind != "wait" else None
+            ahead = (
+                block.ahead
+                if isinstance(block, (DepositOn, DepositOff)) and kind != "wait"
+                else None
+            )
             yield Event(row, str(kind), tuple(value), ahead=ahead)
 
 
 def _happening(program: Program, block: Block) -> list[tuple[float | str, ...]]:
     if isinstance(block, DepositOn):
-        return [] if program.dry_run else [("on", *_switched(program, block.schedule)), ("wait", float(block.lead))]
+        return (
+            []
+            if program.dry_run
+            else [("on", *_switched(program, block.schedule)), ("wait", float(block.lead))]
+        )
     if isinstance(block, DepositOff):
-        return [] if program.dry_run else [("wait", float(block.lead)), ("off", *_switched(program, block.schedule))]
+        return (
+            []
+            if program.dry_run
+            else [("wait", float(block.lead)), ("off", *_switched(program, block.schedule))]
+        )
     if isinstance(block, Schedule):
         return [("schedule", float(program.schedule_output), float(block.number))]
     if isinstance(block, Weave):

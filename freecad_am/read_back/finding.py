@@ -28,4 +28,14 @@ class Finding(NamedTuple):
 
 def error_at(code: str, message: Text, motion: Motion, row: int) -> Finding:
     """An error about a row of the motion."""
-    return Finding(Issue(ERROR, code, message, int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])), row)
+    return Finding(
+        Issue(
+            ERROR,
+            code,
+            message,
+            int(motion.layer[row]),
+            int(motion.bead[row]),
+            int(motion.point[row]),
+        ),
+        row,
+    )

@@ -26,7 +26,9 @@ def by_robot(cell: Cell, read: ReadMoves, asked: Array) -> Array:
     neither names a configuration nor says what it is next to, and the cell leaves it open too.
     """
     machine, own = cell.machine, cell.robot.chain.axes
-    shown = np.full((len(asked), machine.chain.axes), np.nan) if read.joints is None else read.joints
+    shown = (
+        np.full((len(asked), machine.chain.axes), np.nan) if read.joints is None else read.joints
+    )
     unknown = np.isnan(shown[:, :own]).any(axis=1)
     serial = np.full_like(shown, np.nan)
     serial[~unknown] = machine.from_controller(shown[~unknown])
@@ -35,7 +37,9 @@ def by_robot(cell: Cell, read: ReadMoves, asked: Array) -> Array:
         asked, serial[:, own:] = frames.inverse(cell.external.base(external)) @ asked, external
     if read.near is not None:
         known = unknown & np.isfinite(read.near).all(axis=1)
-        serial[known, :own] = _nearest_turns(cell, asked[known], machine.from_controller(read.near[known])[:, :own])
+        serial[known, :own] = _nearest_turns(
+            cell, asked[known], machine.from_controller(read.near[known])[:, :own]
+        )
         unknown &= ~known
     for start, end in _runs(unknown):
         before = serial[start - 1, :own] if start else np.full(own, np.nan)
@@ -74,14 +78,20 @@ def _arm(cell: Cell, read: ReadMoves, asked: Array, rows: slice, before: Array) 
     """(k, 6) joints of the arm at some rows of the text that follow each other after joints `before` (6,)."""
     arm = cell.robot.arm
     assert arm is not None
-    solutions = [arm.solutions(asked[rows][some]) for some in pieces(np.arange(rows.stop - rows.start))]
+    solutions = [
+        arm.solutions(asked[rows][some]) for some in pieces(np.arange(rows.stop - rows.start))
+    ]
     found = np.concatenate([np.moveaxis(joints, 0, 1) for joints, _ in solutions])
     if read.configuration is not None:
-        return _as_named(cell, read, found, np.concatenate([words.T for _, words in solutions]), rows)
+        return _as_named(
+            cell, read, found, np.concatenate([words.T for _, words in solutions]), rows
+        )
     if not np.isfinite(before).all():
         if cell.branch is None:
             raise InputError(
-                "NO_CONFIGURATION", "program", "it begins with a position and names no configuration of the arm; say it in "
+                "NO_CONFIGURATION",
+                "program",
+                "it begins with a position and names no configuration of the arm; say it in "
                 "the cell, branch: [front, up, flip]",
             )
         before = found[0, cell.branch]
@@ -107,10 +117,18 @@ def _as_named(cell: Cell, read: ReadMoves, found: Array, words: Index, rows: sli
     shown = cell.robot.to_controller(found)
     named = (names[..., 0] == "front") == configuration.front[rows, None]
     named &= (names[..., 1] == "up") == configuration.up[rows, None]
-    named &= ((shown[..., 4] > 0.0) == configuration.flip[rows, None]) & np.isfinite(found).all(axis=2) & (words >= 0)
+    named &= (
+        ((shown[..., 4] > 0.0) == configuration.flip[rows, None])
+        & np.isfinite(found).all(axis=2)
+        & (words >= 0)
+    )
     if configuration.turns[rows, :-1].any():
-        raise InputError("NOT_YET", "program", "it names turns of other axes than the last one, which cannot be followed; "
-                         "give these positions in joints")
+        raise InputError(
+            "NOT_YET",
+            "program",
+            "it names turns of other axes than the last one, which cannot be followed; "
+            "give these positions in joints",
+        )
     chosen = shown[np.arange(len(found)), named.argmax(axis=1)]
     chosen -= TURN * np.rint(chosen / TURN)
     chosen[:, -1] += TURN * configuration.turns[rows, -1]
@@ -125,7 +143,9 @@ def _nearest(found: Array, free: Mask, before: Array) -> Array:
     chosen = [first]
     for some in pieces(np.arange(len(found) - 1)):
         apart = _apart(found[some, :, None], found[some + 1, None])
-        nearest = np.where(np.isfinite(apart).any(axis=2), apart.argmin(axis=2), np.arange(found.shape[1]))
+        nearest = np.where(
+            np.isfinite(apart).any(axis=2), apart.argmin(axis=2), np.arange(found.shape[1])
+        )
         for after in nearest.tolist():
             chosen.append(after[chosen[-1]])
     joints = np.vstack([before, found[np.arange(len(found)), chosen]])

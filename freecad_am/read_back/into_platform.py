@@ -20,13 +20,18 @@ def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
     rows = np.flatnonzero(motion.deposit & motion.reachable)
     place = frames.inverse(cell.mount)
     points = motion.position[rows] @ place[:3, :3].T + place[:3, 3]
-    below = (points[:, 2] < -ROUNDED) & (np.hypot(points[:, 0], points[:, 1]) < 0.5 * cell.platform_diameter)
+    below = (points[:, 2] < -ROUNDED) & (
+        np.hypot(points[:, 0], points[:, 1]) < 0.5 * cell.platform_diameter
+    )
     if not below.any():
         return []
     low, count = int(np.where(below, points[:, 2], np.inf).argmin()), int(below.sum())
     text = Text(
         "the nozzle deposits at 1 point below the platform, by {1:.3g} mm; correct its height, or the cell's platform"
-        if count == 1 else "the nozzle deposits at {0} points below the platform, here {1:.3g} mm; correct their heights, "
-        "or the cell's platform", count, -points[low, 2],
+        if count == 1
+        else "the nozzle deposits at {0} points below the platform, here {1:.3g} mm; correct their heights, "
+        "or the cell's platform",
+        count,
+        -points[low, 2],
     )
     return [error_at("INTO_PLATFORM", text, motion, int(rows[low]))]

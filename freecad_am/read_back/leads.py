@@ -21,14 +21,18 @@ MOST_DIGITS = 0.0005
 def timed(events: Sequence[Event], speed: Array) -> tuple[Event, ...]:
     """The events, each with a time in place of a way: of the tip, which has such a speed (n,), mm/s, on each move. NaN where
     it has none."""
-    return tuple(event if event.before is None else _timed(event, event.before, speed) for event in events)
+    return tuple(
+        event if event.before is None else _timed(event, event.before, speed) for event in events
+    )
 
 
 def speeds_of(planned: Planned, read: ReadMoves) -> Array:
     """(n,) mm/s of the tip on each move: as the text says it, else by the planned points and times, against which its own
     are held."""
     way = np.linalg.norm(np.diff(planned.position, axis=0, prepend=planned.position[:1]), axis=1)
-    speed: Array = np.divide(way, planned.duration, out=np.zeros(len(way)), where=planned.duration > 0.0)
+    speed: Array = np.divide(
+        way, planned.duration, out=np.zeros(len(way)), where=planned.duration > 0.0
+    )
     if read.speed is None:
         return speed
     return np.asarray(np.where(np.isfinite(read.speed), read.speed, speed))
@@ -40,4 +44,6 @@ def _timed(event: Event, before: float, speed: Array) -> Event:
         return dataclasses.replace(event, ahead=0.0, digits=0.0, before=None)
     if not along > 0.0:
         return dataclasses.replace(event, ahead=np.nan, digits=0.0, before=None)
-    return dataclasses.replace(event, ahead=before / along, digits=min(event.digits / along, MOST_DIGITS), before=None)
+    return dataclasses.replace(
+        event, ahead=before / along, digits=min(event.digits / along, MOST_DIGITS), before=None
+    )

@@ -26,19 +26,31 @@ class Planned:
         self.stops, self.halt = motion.stops[rows], motion.halt[rows]
         # moves that begin where another one ended: of beads, and of rapids
         moved = np.arange(len(rows)) > 0
-        self.ends, self.rapids = np.flatnonzero(self.deposit & moved), np.flatnonzero(~self.deposit & moved)
+        self.ends, self.rapids = (
+            np.flatnonzero(self.deposit & moved),
+            np.flatnonzero(~self.deposit & moved),
+        )
 
     def issue(self, code: str, wrong: Mask, message: str) -> list[Issue]:
         """An error at the first wrong move, none when there is none; the message says how many there are."""
         if not wrong.any():
             return []
         count, first = int(wrong.sum()), int(np.argmax(wrong))
-        return [Issue(ERROR, code, Text("{}; {} of {} moves", message, count, len(wrong)), *self.place(first))]
+        return [
+            Issue(
+                ERROR,
+                code,
+                Text("{}; {} of {} moves", message, count, len(wrong)),
+                *self.place(first),
+            )
+        ]
 
     def place(self, move: int) -> tuple[int, int, int]:
         """Layer, bead and point of a move; of the last one for what follows it."""
         row = self.rows[min(move, len(self.rows) - 1)]
-        layer, bead, point = (int(column[row]) for column in (self.motion.layer, self.motion.bead, self.motion.point))
+        layer, bead, point = (
+            int(column[row]) for column in (self.motion.layer, self.motion.bead, self.motion.point)
+        )
         return layer, bead, point
 
 

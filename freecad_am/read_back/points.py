@@ -19,7 +19,9 @@ from .text_path import Joints, Path, digits, given_by_position, positions_path
 
 EVERY = 8  # of a long text so many-th row is driven through PyKDL
 THIRDS = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
-GRID_TO_ALL = 5.0 / 3.0  # how much larger a sum of a constant, a sine and a cosine is anywhere than at three angles
+GRID_TO_ALL = (
+    5.0 / 3.0
+)  # how much larger a sum of a constant, a sine and a cosine is anywhere than at three angles
 
 
 def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, continuous: Mask) -> list[Issue]:
@@ -34,8 +36,12 @@ def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, continuous: Mask
     found = []
     for axis in np.flatnonzero(wrong.any(axis=0)):
         most = np.abs(apart[:, axis]).max() / cell.machine.unit_values[axis]
-        message = Text("axis {} is up to {:.3g} {} from the planned value", cell.machine.axes[axis], most,
-                       cell.machine.units[axis])
+        message = Text(
+            "axis {} is up to {:.3g} {} from the planned value",
+            cell.machine.axes[axis],
+            most,
+            cell.machine.units[axis],
+        )
         found += planned.issue("VERIFY_JOINT", wrong[:, axis], message)
     return found
 
@@ -46,7 +52,9 @@ def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
     worst, label = -np.inf, 0
     for rows in pieces(np.arange(len(text.serial))):
         reach = text.reach[rows]
-        over = -limits.margin(text.serial[rows]) - np.hstack([reach, reach @ np.abs(limits.coefficients).T])
+        over = -limits.margin(text.serial[rows]) - np.hstack(
+            [reach, reach @ np.abs(limits.coefficients).T]
+        )
         wrong[rows] = (over > COMPUTED_AXIS).any(axis=1)
         most = np.nan_to_num(np.fmax.reduce(over), nan=-np.inf)
         if most.max() > worst:
@@ -55,20 +63,30 @@ def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
         return []
     unit = cell.machine.units[label] if label < limits.axes else "deg"
     shown = worst / (cell.machine.unit_values[label] if label < limits.axes else np.radians(1.0))
-    message = Text("the text takes {} up to {:.3g} {} beyond its limit", limits.labels[label], shown, unit)
+    message = Text(
+        "the text takes {} up to {:.3g} {} beyond its limit", limits.labels[label], shown, unit
+    )
     return planned.issue("VERIFY_LIMIT", wrong, message)
 
 
 def point_issues(planned: Planned, path: Path) -> list[Issue]:
     off = lengths(path.position - planned.position)
     tilted = lengths(path.tool - planned.tool)
-    message = Text("the text leads up to {:.3g} mm away from the planned point, more than its digits explain", off.max())
+    message = Text(
+        "the text leads up to {:.3g} mm away from the planned point, more than its digits explain",
+        off.max(),
+    )
     found = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
-    message = Text("the tool is tilted by up to {:.3g} deg, more than the digits explain", np.degrees(tilted.max()))
+    message = Text(
+        "the tool is tilted by up to {:.3g} deg, more than the digits explain",
+        np.degrees(tilted.max()),
+    )
     return found + planned.issue("VERIFY_TOOL", ~(tilted <= path.tool_bound), message)
 
 
-def twice_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves, flange: Array) -> list[Issue]:
+def twice_issues(
+    cell: Cell, planned: Planned, program: Program, read: ReadMoves, flange: Array
+) -> list[Issue]:
     """Positions that a text tells beside the joint values of a row, as where an arc is struck, against the planned point and
     flange (n, 4, 4)."""
     if read.position is None or read.joints is None:
@@ -78,8 +96,12 @@ def twice_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves
         return []
     path, asked, _ = positions_path(cell, program, read)
     off = ~(lengths(path.position - planned.position) <= path.bound)
-    off |= ~(lengths(path.tool - planned.tool) <= path.tool_bound) | turned_otherwise(asked, flange, path)
-    return planned.issue("VERIFY_POINT", twice & off, "the text gives another position there than the joint values")
+    off |= ~(lengths(path.tool - planned.tool) <= path.tool_bound) | turned_otherwise(
+        asked, flange, path
+    )
+    return planned.issue(
+        "VERIFY_POINT", twice & off, "the text gives another position there than the joint values"
+    )
 
 
 def turned_otherwise(asked: Array, flange: Array, path: Path) -> Mask:
@@ -89,7 +111,9 @@ def turned_otherwise(asked: Array, flange: Array, path: Path) -> Mask:
     return np.asarray(apart > np.sqrt(2.0) * path.tool_bound)
 
 
-def second_opinion(cell: Cell, planned: Planned, shown: Array, flange: Array) -> tuple[list[Issue], tuple[str, ...]]:
+def second_opinion(
+    cell: Cell, planned: Planned, shown: Array, flange: Array
+) -> tuple[list[Issue], tuple[str, ...]]:
     """The same joint values through PyKDL, where it is installed: all of them, or of a long text some and joint values of
     every kind (docs/decisions/0022)."""
     if not kdl_chain.available():

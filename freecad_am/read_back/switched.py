@@ -43,7 +43,9 @@ def _findings(motion: Motion, read: ReadMoves) -> Iterator[Finding]:
             message = Text(
                 "the move at the end of which the deposit is switched takes {:.3g} s, less than the {:.3g} s that it "
                 "would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance "
-                "where it is switched on, or a larger strategy.chord_error where it is switched off", seconds, event.ahead,
+                "where it is switched on, or a larger strategy.chord_error where it is switched off",
+                seconds,
+                event.ahead,
             )
             yield _finding("TRIGGER_LEAD", message, motion, rows, event.row - 1)
     if on:
@@ -59,6 +61,10 @@ def _finding(code: str, message: Text, motion: Motion, rows: Index, move: int) -
 def _time_of_its_move(event: Event, seconds: Array) -> float | None:
     """s of the move that an event is on, where it comes before that begins. How long the first move takes nobody knows."""
     move = event.row - 1
-    if event.ahead is None or move < 1 or not event.ahead > seconds[move] + event.digits + MOST_LONGER:
+    if (
+        event.ahead is None
+        or move < 1
+        or not event.ahead > seconds[move] + event.digits + MOST_LONGER
+    ):
         return None
     return float(seconds[move])

@@ -42,7 +42,9 @@ class Joints:
 def given_by_position(cell: Cell, joints: Array) -> Mask:
     """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: a robot's own
     ones, and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
-    own = np.arange(joints.shape[1]) < cell.robot.chain.axes  # a position says nothing of the external axes
+    own = (
+        np.arange(joints.shape[1]) < cell.robot.chain.axes
+    )  # a position says nothing of the external axes
     untold = np.isnan(joints[:, own]).all(axis=1, keepdims=True)
     return np.asarray((cell.machine.chain.sliding | untold) & own, dtype=np.bool_)
 
@@ -69,7 +71,9 @@ def joint_path(cell: Cell, shown: Array, half: Array) -> tuple[Path, Array]:
         at = machine.chain.frames(serial)
         flange[rows] = at.flange
         path.position[rows], path.tool[rows] = cell.tip_in_part(at.flange)
-        path.bound[rows], path.tool_bound[rows] = _bounds(cell, at, machine.controller_matrix, half[None])
+        path.bound[rows], path.tool_bound[rows] = _bounds(
+            cell, at, machine.controller_matrix, half[None]
+        )
     return path, flange
 
 
@@ -92,12 +96,17 @@ def _bounds(cell: Cell, at: JointFrames, matrix: Array, half: Array) -> tuple[Ar
         linear[:, row] -= direction[:, last] * lever[:, following]
     linear[slides], angular[slides] = direction[slides], 0.0
     more = 1.0 + (np.abs(to_serial) @ half.T)[~slides].sum(axis=0)
-    shown = [(to_serial.T @ rows.reshape(len(rows), -1)).reshape(rows.shape) for rows in (linear, angular)]
+    shown = [
+        (to_serial.T @ rows.reshape(len(rows), -1)).reshape(rows.shape)
+        for rows in (linear, angular)
+    ]
     moved, turned = ((np.sqrt(np.square(rows).sum(axis=1)) * half.T).sum(axis=0) for rows in shown)
     return more * moved + COMPUTED_MM, more * turned + COMPUTED_AXIS
 
 
-def text_joints(cell: Cell, near: Array, shown: Array | None, half: Array, path: Path, asked: Array | None) -> Joints:
+def text_joints(
+    cell: Cell, near: Array, shown: Array | None, half: Array, path: Path, asked: Array | None
+) -> Joints:
     """The joints that a text asks for: its values `shown` (n, axes), as the controller counts them, off by `half` (axes,).
     Where it has none (NaN) they bring flange or tip to its positions, by one step of Newton from serial joints `near`
     (n, axes).
@@ -113,8 +122,11 @@ def text_joints(cell: Cell, near: Array, shown: Array | None, half: Array, path:
     rows = np.flatnonzero(unknown.any(axis=1))
     if len(rows):
         reach = reach.copy()
-        columns, away, about = _to_tip(cell, serial[rows], path, rows) if asked is None else _to_flange(
-            cell, serial[rows], path, asked[rows], rows)
+        columns, away, about = (
+            _to_tip(cell, serial[rows], path, rows)
+            if asked is None
+            else _to_flange(cell, serial[rows], path, asked[rows], rows)
+        )
         inverse = np.linalg.pinv(columns * unknown[rows, None, :], rcond=1e-9)
         serial[rows] += np.einsum("nij,nj->ni", inverse, away)
         solved = np.einsum("nij,nj->ni", np.abs(inverse), about)
@@ -126,7 +138,9 @@ def text_joints(cell: Cell, near: Array, shown: Array | None, half: Array, path:
 _LEVER = 300.0
 
 
-def _to_flange(cell: Cell, serial: Array, path: Path, asked: Array, rows: Index) -> tuple[Array, Array, Array]:
+def _to_flange(
+    cell: Cell, serial: Array, path: Path, asked: Array, rows: Index
+) -> tuple[Array, Array, Array]:
     """Of the flange: how joints move it (n, 6, axes), how far it is from where it is asked to be (n, 6), and by how much
     that may be off (n, 6); mm, and radians times the lever."""
     at = cell.machine.chain.frames(serial)
@@ -136,10 +150,20 @@ def _to_flange(cell: Cell, serial: Array, path: Path, asked: Array, rows: Index)
     turned = np.where(slides, 0.0, at.directions) * _LEVER
     turn = asked[:, :3, :3] @ np.swapaxes(at.flange[:, :3, :3], 1, 2)
     # the angles are those of digits: their sines are as good
-    about = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    about = 0.5 * np.stack(
+        [
+            turn[:, 2, 1] - turn[:, 1, 2],
+            turn[:, 0, 2] - turn[:, 2, 0],
+            turn[:, 1, 0] - turn[:, 0, 1],
+        ],
+        1,
+    )
     away = np.hstack([asked[:, :3, 3] - place, about * _LEVER])
     arm = np.linalg.norm(cell.deposition_point(at.flange) - place, axis=1)
-    off = np.stack([path.bound[rows] + arm * path.tool_bound[rows]] * 3 + [path.tool_bound[rows] * _LEVER] * 3, axis=1)
+    off = np.stack(
+        [path.bound[rows] + arm * path.tool_bound[rows]] * 3 + [path.tool_bound[rows] * _LEVER] * 3,
+        axis=1,
+    )
     return np.swapaxes(np.concatenate([moved, turned], axis=2), 1, 2), away, off
 
 
@@ -152,7 +176,9 @@ def _to_tip(cell: Cell, serial: Array, path: Path, rows: Index) -> tuple[Array, 
     moved = np.where(slides, at.directions, np.cross(at.directions, lever))
     turned = np.cross(np.where(slides, 0.0, at.directions), cell.station[:3, 2]) * _LEVER
     into = cell.mount[:3, :3] @ np.swapaxes((at.flange @ cell.carried)[:, :3, :3], 1, 2)
-    columns = -np.concatenate([moved @ np.swapaxes(into, 1, 2), turned @ np.swapaxes(into, 1, 2)], axis=2)
+    columns = -np.concatenate(
+        [moved @ np.swapaxes(into, 1, 2), turned @ np.swapaxes(into, 1, 2)], axis=2
+    )
     away = np.hstack([path.position[rows] - tip, (path.tool[rows] - tool) * _LEVER])
     off = np.stack([path.bound[rows]] * 3 + [path.tool_bound[rows] * _LEVER] * 3, axis=1)
     return np.swapaxes(columns, 1, 2), away, off
@@ -169,14 +195,23 @@ def text_tips(cell: Cell, program: Program, read: ReadMoves) -> Path:
     if read.direction is not None:
         length = np.linalg.norm(read.direction, axis=1)
         tool = (read.direction / np.maximum(length, 1e-300)[:, None]) @ in_part[:3, :3].T
-        tool_bound = np.sqrt(3.0) * read.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
+        tool_bound = (
+            np.sqrt(3.0) * read.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
+        )
     elif read.joints is not None:  # where the linear axes stand does not turn the tool
-        given, _ = joint_path(cell, np.where(cell.machine.chain.sliding, 0.0, read.joints), digits(cell, read))
+        given, _ = joint_path(
+            cell, np.where(cell.machine.chain.sliding, 0.0, read.joints), digits(cell, read)
+        )
         tool, tool_bound = given.tool, given.tool_bound
     if read.joints is not None:
         rows = np.isfinite(read.joints).all(axis=1)  # told in axes
         path, _ = joint_path(cell, read.joints[rows], digits(cell, read))
-        position[rows], tool[rows], bound[rows], tool_bound[rows] = path.position, path.tool, path.bound, path.tool_bound
+        position[rows], tool[rows], bound[rows], tool_bound[rows] = (
+            path.position,
+            path.tool,
+            path.bound,
+            path.tool_bound,
+        )
     return Path(position, tool, bound, tool_bound)
 
 
@@ -188,7 +223,11 @@ def text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Arra
         rows = np.isfinite(read.joints).all(axis=1)
         given, asked[rows] = joint_path(cell, read.joints[rows], digits(cell, read))
         path.position[rows], path.tool[rows], path.bound[rows], path.tool_bound[rows] = (
-            given.position, given.tool, given.bound, given.tool_bound)
+            given.position,
+            given.tool,
+            given.bound,
+            given.tool_bound,
+        )
     return path, asked, tools
 
 
@@ -201,8 +240,15 @@ def positions_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path,
     """
     assert read.position is not None and read.rotation is not None
     count, lever = 1, np.zeros(len(read.position))
-    user = cell.station if program.station is None else cell.machine.base @ frames.bryant(program.station)
-    seen, tools = user @ frames.pose(read.rotation, read.position), np.broadcast_to(cell.carried, (len(lever), 4, 4))
+    user = (
+        cell.station
+        if program.station is None
+        else cell.machine.base @ frames.bryant(program.station)
+    )
+    seen, tools = (
+        user @ frames.pose(read.rotation, read.position),
+        np.broadcast_to(cell.carried, (len(lever), 4, 4)),
+    )
     if read.frame is not None and read.tool is not None:
         count, tools = 3, read.tool
         seen = cell.machine.base @ read.frame @ frames.pose(read.rotation, read.position)
@@ -210,7 +256,11 @@ def positions_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path,
         if read.lever is not None and read.lever.any():
             count, lever = 4, lever + read.lever
     asked = seen @ frames.inverse(tools)
-    bound = count * np.sqrt(3.0) * read.position_digits + 3.0 * read.rotation_digits * lever + COMPUTED_MM
+    bound = (
+        count * np.sqrt(3.0) * read.position_digits
+        + 3.0 * read.rotation_digits * lever
+        + COMPUTED_MM
+    )
     tool_bound = np.full(len(bound), 3.0 * count * read.rotation_digits + COMPUTED_AXIS)
     position, tool = cell.tip_in_part(asked)
     return Path(position, tool, bound, tool_bound), asked, tools

@@ -38,7 +38,10 @@ def time_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
     allowed = np.where(wanted < LONGEST_MSEC, MILLISECOND, TENTH) + 1e-9
     taken, coarse = read.duration, allowed > TENTH
     if read.duration_digits is not None:
-        allowed, coarse = read.duration_digits + 1e-9 * wanted + 1e-12, np.ones(len(timed), dtype=bool)
+        allowed, coarse = (
+            read.duration_digits + 1e-9 * wanted + 1e-12,
+            np.ones(len(timed), dtype=bool),
+        )
     if cell.arrangement.named_axes:  # rapids at the machine's own speed: the text says no more
         timed &= planned.deposit | np.isfinite(taken)
     # written as 1 ms, the shortest there is
@@ -46,12 +49,17 @@ def time_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
     if read.share is not None:
         times, times_allowed, tame = _share_times(cell, planned, read, read.share, wanted)
         by_share = np.isfinite(read.share)
-        taken, allowed = np.where(by_share, times, taken), np.where(by_share, times_allowed, allowed)
+        taken, allowed = (
+            np.where(by_share, times, taken),
+            np.where(by_share, times_allowed, allowed),
+        )
         coarse |= by_share
         short |= timed & ~planned.deposit & by_share & tame
     least = allowed + np.where(coarse, 0.0, owed(wanted))
     wrong = timed & ~short & ~((taken - wanted <= allowed) & (wanted - taken <= least))
-    issues += planned.issue("VERIFY_TIME", wrong, "the time in the text does not give the planned speed")
+    issues += planned.issue(
+        "VERIFY_TIME", wrong, "the time in the text does not give the planned speed"
+    )
     share = np.nan if read.share is None else float(read.share[0])
     first = abs(share - FIRST_SHARE) <= 1e-6 or abs(taken[0] - FIRST_TIME) <= allowed[0] + 1e-6
     message = "the first move, from wherever the machine stands, is not as slow as it has to be"
@@ -62,7 +70,9 @@ def time_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
         rounded = np.where(planned.deposit & coarse, allowed, 0.0)
         excess = np.abs(np.add.reduceat(off, beads)) > MILLISECOND + np.add.reduceat(rounded, beads)
         first = np.isin(np.arange(len(timed)), beads[excess])
-        issues += planned.issue("VERIFY_TIME", first, "the times of a bead do not add up to the planned one")
+        issues += planned.issue(
+            "VERIFY_TIME", first, "the times of a bead do not add up to the planned one"
+        )
     return issues
 
 
@@ -90,6 +100,10 @@ def _share_times(
     ends = 2.0 * float((digits(cell, read) / cell.machine.max_speed).max()) / share
     # the share itself was as much as a half digit less: at few percent that is more of the time than of the share
     least = np.maximum(share - read.share_digits, 0.5 * share)
-    slowest = (wanted <= SHORTEST_RAPID * (1.0 + 1e-9)) & (share <= 2.0 * read.share_digits) & (times <= wanted)
+    slowest = (
+        (wanted <= SHORTEST_RAPID * (1.0 + 1e-9))
+        & (share <= 2.0 * read.share_digits)
+        & (times <= wanted)
+    )
     tame = (turned.max(axis=1) < STILL) | slowest
     return times, times * read.share_digits / least + ends + COMPUTED_AXIS, tame

@@ -27,14 +27,19 @@ HALF_TURN = np.radians(0.001)
 
 def way_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> list[Issue]:
     """VERIFY_INTERPOLATION, VERIFY_BLEND, VERIFY_FRAME, VERIFY_CONFIGURATION."""
-    linear = np.repeat([run.interpolation == LINEAR_MOVE for run in program.moves], [len(run) for run in program.moves])
+    linear = np.repeat(
+        [run.interpolation == LINEAR_MOVE for run in program.moves],
+        [len(run) for run in program.moves],
+    )
     return [
         *planned.issue(
-            "VERIFY_INTERPOLATION", read.linear != linear,
+            "VERIFY_INTERPOLATION",
+            read.linear != linear,
             "the text moves straight in space where straight in the joints was planned, or the other way",
         ),
         *planned.issue(
-            "VERIFY_BLEND", _rounded_otherwise(cell, planned, program, read),
+            "VERIFY_BLEND",
+            _rounded_otherwise(cell, planned, program, read),
             "the text stops, or rounds the corner, otherwise than planned",
         ),
         *_frame_issues(cell, planned, program, read, linear),
@@ -51,18 +56,28 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, read: Rea
     if read.blend_radius is not None:
         return _blended_otherwise(cell, planned, program, read)
     if read.blend is not None:
-        return np.asarray((read.stops != planned.stops) | (~planned.stops & (read.blend != program.blend)))
+        return np.asarray(
+            (read.stops != planned.stops) | (~planned.stops & (read.blend != program.blend))
+        )
     if read.rounding is None:
         return np.asarray(read.stops != planned.stops)
     # the last corner of a bead is named, and not passed; a rounding of nothing is a stop
     table = bool(program.axis_names)
-    rounding = np.full(len(read.stops), program.nc.tolerance) if table else _share_of_shortest(planned, program.blend)
+    rounding = (
+        np.full(len(read.stops), program.nc.tolerance)
+        if table
+        else _share_of_shortest(planned, program.blend)
+    )
     rounded = np.where(np.isnan(read.rounding), 0.0, read.rounding)
     # a stop that names no rounding says all there is to say where a stop was planned
-    rounding = np.where(planned.deposit & ~(planned.stops & read.stops & np.isnan(read.rounding)), rounding, 0.0)
+    rounding = np.where(
+        planned.deposit & ~(planned.stops & read.stops & np.isnan(read.rounding)), rounding, 0.0
+    )
     rounding = np.where(planned.halt, 0.0, rounding)
     off = ~(np.abs(rounded - rounding) <= (1e-5 if table else THOUSANDTH))
-    return np.asarray((planned.stops & ~read.stops) | ~planned.stops & read.stops & (rounded > 0.0) | off)
+    return np.asarray(
+        (planned.stops & ~read.stops) | ~planned.stops & read.stops & (rounded > 0.0) | off
+    )
 
 
 def _blended_otherwise(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Mask:
@@ -72,7 +87,9 @@ def _blended_otherwise(cell: Cell, planned: Planned, program: Program, read: Rea
     tip = np.empty_like(planned.position)
     for rows in pieces(np.arange(len(tip))):
         flange = cell.machine.chain.forward(planned.joints[rows])
-        tip[rows] = np.einsum("nij,nj->ni", flange[:, :3, :3], read.tool[rows, :3, 3]) + flange[:, :3, 3]
+        tip[rows] = (
+            np.einsum("nij,nj->ni", flange[:, :3, :3], read.tool[rows, :3, 3]) + flange[:, :3, 3]
+        )
     way = np.linalg.norm(np.diff(tip, axis=0, prepend=tip[:1]), axis=1)
     radius = 0.01 * BLEND_SHARE * program.blend * np.minimum(way, np.append(way[1:], 0.0))
     passed = ~planned.stops & (radius > 0.0)
@@ -91,20 +108,38 @@ def _share_of_shortest(planned: Planned, blend: float) -> Array:
     return np.minimum(0.005 * blend * np.where(np.isfinite(shortest), shortest, 0.0), 100.0)
 
 
-def _frame_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves, linear: Mask) -> list[Issue]:
+def _frame_issues(
+    cell: Cell, planned: Planned, program: Program, read: ReadMoves, linear: Mask
+) -> list[Issue]:
     wrong = np.zeros(len(linear), dtype=bool)
     if read.user_frame is not None:
         checked = linear if program.axis_names else np.ones(len(linear), dtype=bool)
         wrong |= checked & (read.user_frame != program.user_frame)
     if read.tool_frame is not None:
         wrong |= read.tool_frame != program.tool_frame
-    message = Text("the text selects another frame or tool than {} and {}", program.user_frame, program.tool_frame)
+    message = Text(
+        "the text selects another frame or tool than {} and {}",
+        program.user_frame,
+        program.tool_frame,
+    )
     issues = planned.issue("VERIFY_FRAME", wrong, message)
-    if program.external_kinds and (read.unit, read.first_external) != (program.unit, program.first_external):
-        issues.append(Issue(
-            ERROR, "VERIFY_FRAME", Text("the text moves {} from axis {} on, the program {} from axis {} on",
-                read.unit or "no positioner", read.first_external, program.unit, program.first_external),
-        ))
+    if program.external_kinds and (read.unit, read.first_external) != (
+        program.unit,
+        program.first_external,
+    ):
+        issues.append(
+            Issue(
+                ERROR,
+                "VERIFY_FRAME",
+                Text(
+                    "the text moves {} from axis {} on, the program {} from axis {} on",
+                    read.unit or "no positioner",
+                    read.first_external,
+                    program.unit,
+                    program.first_external,
+                ),
+            )
+        )
     return issues
 
 
@@ -115,21 +150,36 @@ def _near_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
     apart = np.abs(read.near - cell.machine.to_controller(planned.joints))
     wrong = (np.isfinite(apart) & ~(apart <= read.near_digits + COMPUTED_AXIS)).any(axis=1)
     wrong |= np.isnan(read.near).any(axis=1) & ~read.linear
-    return planned.issue("VERIFY_CONFIGURATION", wrong, "the text asks for joint values other than the planned ones")
+    return planned.issue(
+        "VERIFY_CONFIGURATION", wrong, "the text asks for joint values other than the planned ones"
+    )
 
 
-def _configuration_issues(cell: Cell, planned: Planned, program: Program, named: Configuration | None) -> list[Issue]:
+def _configuration_issues(
+    cell: Cell, planned: Planned, program: Program, named: Configuration | None
+) -> list[Issue]:
     """The configuration of the arm and the turns of the last axis at each position; the other two turns must be none."""
     if named is None:
         return []
     arm = cell.machine.arm
     if arm is None:
-        return [Issue(ERROR, "VERIFY_CONFIGURATION", "the text names configurations of an arm, and the machine has none")]
+        return [
+            Issue(
+                ERROR,
+                "VERIFY_CONFIGURATION",
+                "the text names configurations of an arm, and the machine has none",
+            )
+        ]
     names = np.array([opw.branch_name(index) for index in range(8)])[arm.branch_of(planned.joints)]
     shown = cell.machine.to_controller(planned.joints)
     last = np.where(np.array(program.continuous)[-1], 0.0, shown[:, -1])
-    near, far = (np.rint((np.abs(last) + side) / (2.0 * np.pi)) * np.sign(last) for side in (-HALF_TURN, HALF_TURN))
-    turned = (named.turns[:, -1] != near) & (named.turns[:, -1] != far) | (named.turns[:, :-1] != 0.0).any(axis=1)
+    near, far = (
+        np.rint((np.abs(last) + side) / (2.0 * np.pi)) * np.sign(last)
+        for side in (-HALF_TURN, HALF_TURN)
+    )
+    turned = (named.turns[:, -1] != near) & (named.turns[:, -1] != far) | (
+        named.turns[:, :-1] != 0.0
+    ).any(axis=1)
     bent = np.abs(shown[:, 4]) > COMPUTED_AXIS
     other = bent & (named.flip != (shown[:, 4] > 0.0)) | (named.up != (names[:, 1] == "up"))
     other |= named.front != (names[:, 0] == "front")

@@ -12,5 +12,6 @@ def key_of(tolerance: float) -> str:
     """A coloured square and the range in mm of each band, from the most inside on."""
     return " ".join(
         f'<span style="white-space:nowrap"><span style="color:{css(band.colour)}">&#9632;</span> {escape(band.text)}&ensp;'
-        "</span>" for band in bands(tolerance)
+        "</span>"
+        for band in bands(tolerance)
     )

@@ -37,7 +37,11 @@ VERSION = 1
 
 
 def build(
-    name: str, toolpath: Toolpath, motion: Motion, process: ProcessParameters, issues: Sequence[Issue]
+    name: str,
+    toolpath: Toolpath,
+    motion: Motion,
+    process: ProcessParameters,
+    issues: Sequence[Issue],
 ) -> dict[str, Any]:
     """The report of a toolpath alone; `add_joints` and what `made` looks at complete it. Lengths mm, times s; None where
     there is no value."""
@@ -49,19 +53,29 @@ def build(
         "status": "infeasible" if has_errors(list(issues)) else "ok",
         "issues": [issue.as_dict() for issue in issues],
         "counts": {
-            "layers": len(toolpath.layers), "beads": toolpath.bead_count, "points": int(motion.deposit.sum())
+            "layers": len(toolpath.layers),
+            "beads": toolpath.bead_count,
+            "points": int(motion.deposit.sum()),
         },
         "length_mm": toolpath.length,
         "duration_s": sums.time,
         "totals": totals.as_dict(sums),
         "spacing_mm": None,
-        "layer_heights": [] if toolpath.uneven is None else [
+        "layer_heights": []
+        if toolpath.uneven is None
+        else [
             {"layer": int(layer), "least_mm": float(least), "largest_mm": float(largest)}
             for layer, least, largest in toolpath.uneven
         ],
         "unsupported_mm": toolpath.unsupported,
-        "on_part": None if toolpath.on_part is None else dict(
-            zip(("places", "worst_mm", "allowed_mm"), (int(toolpath.on_part[0]), *toolpath.on_part[1:]), strict=True)
+        "on_part": None
+        if toolpath.on_part is None
+        else dict(
+            zip(
+                ("places", "worst_mm", "allowed_mm"),
+                (int(toolpath.on_part[0]), *toolpath.on_part[1:]),
+                strict=True,
+            )
         ),
         "scan": _scan(toolpath),
         "predicted_shape": _predicted_shape(toolpath),
@@ -79,26 +93,47 @@ def build(
 
 
 def features(
-    of_job: Sequence[Feature], toolpath: Toolpath, motion: Motion, balances: Sequence[Balance | None],
+    of_job: Sequence[Feature],
+    toolpath: Toolpath,
+    motion: Motion,
+    balances: Sequence[Balance | None],
     compared: Sequence[list[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
     """The key `features`: what each of several features comes to. compared: of each, how else its wall may be cut."""
     found = []
-    for one, (part, numbers), balance, rows_of_wall in zip(of_job, toolpath.parts, balances, compared, strict=True):
+    for one, (part, numbers), balance, rows_of_wall in zip(
+        of_job, toolpath.parts, balances, compared, strict=True
+    ):
         rows = motion.deposit & np.isin(motion.layer, numbers)
-        found.append({
-            "name": one.name, "kind": family_of(one.strategy).kind, "layers": [int(number) for number in numbers],
-            "counts": {"layers": len(part.layers), "beads": part.bead_count, "points": int(rows.sum())},
-            "length_mm": part.length, "layer_height_mm": part.layer_height, "bead_width_mm": part.bead_width,
-            "deposit_s": float(np.nan_to_num(motion.duration)[rows & motion.moves].sum()),
-            "spacing_mm": spread(layer_spacing.between_layers(part)), "unsupported_mm": part.unsupported,
-            "deposit": deposit_balance.as_dict(balance), "spacing_comparison": rows_of_wall,
-            "beads": None if one.process.bead_model == "none" else predicted.beads(part, numbers),
-        })
+        found.append(
+            {
+                "name": one.name,
+                "kind": family_of(one.strategy).kind,
+                "layers": [int(number) for number in numbers],
+                "counts": {
+                    "layers": len(part.layers),
+                    "beads": part.bead_count,
+                    "points": int(rows.sum()),
+                },
+                "length_mm": part.length,
+                "layer_height_mm": part.layer_height,
+                "bead_width_mm": part.bead_width,
+                "deposit_s": float(np.nan_to_num(motion.duration)[rows & motion.moves].sum()),
+                "spacing_mm": spread(layer_spacing.between_layers(part)),
+                "unsupported_mm": part.unsupported,
+                "deposit": deposit_balance.as_dict(balance),
+                "spacing_comparison": rows_of_wall,
+                "beads": None
+                if one.process.bead_model == "none"
+                else predicted.beads(part, numbers),
+            }
+        )
     return found
 
 
-def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float) -> None:
+def add_joints(
+    report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float
+) -> None:
     """Add the figures of the joint path, over the deposit; `seconds` is what planning it took, comparison included."""
     others: list[dict[str, Any]] = [dict(entry) for entry in planned.comparison]
     report["joints"] = {
@@ -115,9 +150,14 @@ def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: J
     }
     report["comparison"] = others
     report["machine"] = {
-        "id": cell.machine.id, "title": cell.machine.title, "setup": cell.setup, "limits": planned.limits,
-        "axes": list(cell.machine.columns), "labels": list(cell.machine.axes),
-        "units": list(cell.machine.units), "controller": cell.machine.controller_remark,
+        "id": cell.machine.id,
+        "title": cell.machine.title,
+        "setup": cell.setup,
+        "limits": planned.limits,
+        "axes": list(cell.machine.columns),
+        "labels": list(cell.machine.axes),
+        "units": list(cell.machine.units),
+        "controller": cell.machine.controller_remark,
     }
 
 
@@ -127,7 +167,12 @@ def _external(cell: Cell, planned: JointPath, joints: JointParameters) -> dict[s
     if planned.of_level is None:
         return found
     task = Task(cell, opw.branch_index(planned.branch), joints)
-    return {**found, "rule": OPTIMISED, **external_rule.figures(task, planned.beads), "level": planned.of_level}
+    return {
+        **found,
+        "rule": OPTIMISED,
+        **external_rule.figures(task, planned.beads),
+        "level": planned.of_level,
+    }
 
 
 def text(report: dict[str, Any]) -> str:
@@ -138,7 +183,11 @@ def text(report: dict[str, Any]) -> str:
 def speed_ratio(motion: Motion, cell: Cell) -> Array:
     """(n, axes) speed of each axis on the segment that ends at the row, as a share of the largest it can do."""
     turned = np.abs(np.diff(motion.joints, axis=0, prepend=motion.joints[:1]))
-    ratio: Array = turned / np.where(motion.duration > 0.0, motion.duration, np.inf)[:, None] / cell.machine.max_speed
+    ratio: Array = (
+        turned
+        / np.where(motion.duration > 0.0, motion.duration, np.inf)[:, None]
+        / cell.machine.max_speed
+    )
     return ratio
 
 
@@ -170,18 +219,27 @@ def _predicted_shape(toolpath: Toolpath) -> dict[str, Any] | None:
 
 def _process(process: ProcessParameters, toolpath: Toolpath) -> dict[str, Any]:
     return {
-        "travel_speed_mm_s": process.travel_speed, "bead_width_mm": process.bead_width,
+        "travel_speed_mm_s": process.travel_speed,
+        "bead_width_mm": process.bead_width,
         "bead_width_counted_mm": toolpath.bead_width,
         "wire": {
-            "diameter_mm": process.wire.diameter, "feed_mm_s": toolpath.wire_feed, "feed_mode": process.wire.feed_mode,
+            "diameter_mm": process.wire.diameter,
+            "feed_mm_s": toolpath.wire_feed,
+            "feed_mode": process.wire.feed_mode,
             "feed": "auto" if process.wire.feed == "auto" else "given",
         },
         "density_g_cm3": process.density,
-        "material": None if process.material.name is None else {
-            "name": process.material.name, "source": process.material.source,
-            "slowest_mm_s": process.material.slowest, "fastest_mm_s": process.material.fastest,
+        "material": None
+        if process.material.name is None
+        else {
+            "name": process.material.name,
+            "source": process.material.source,
+            "slowest_mm_s": process.material.slowest,
+            "fastest_mm_s": process.material.fastest,
         },
-        "temperature": process.temperature, "gas": process.gas, "stand_off_mm": process.stand_off,
+        "temperature": process.temperature,
+        "gas": process.gas,
+        "stand_off_mm": process.stand_off,
     }
 
 

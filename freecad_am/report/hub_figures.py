@@ -34,7 +34,10 @@ def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
     for group, mine in zip(solids.groups, by_group):
         run = runs[int(mine[0])]
         places = dict.fromkeys((0, len(run) // 2))
-        found += [_flat(group, toolpath.layers[run[place]], place, toolpath.layer_height) for place in places]
+        found += [
+            _flat(group, toolpath.layers[run[place]], place, toolpath.layer_height)
+            for place in places
+        ]
     return found
 
 
@@ -57,8 +60,11 @@ def _flat(group: Group, layer: Layer, place: int, height: float) -> str:
     pad = 0.03 * float((high - low).max())
     ratio = float((high[1] - low[1] + 2.0 * pad) / (high[0] - low[0] + 2.0 * pad))
     plot = svg.Plot(
-        f"{group.base.name}, layer {place}, laid flat", (low[0] - pad, high[0] + pad), (low[1] - pad, high[1] + pad),
-        *AXES[isinstance(base.surface, (Plane, Guide))], height=int(np.clip(EDGES + ratio * WIDE, 140.0, 620.0)),
+        f"{group.base.name}, layer {place}, laid flat",
+        (low[0] - pad, high[0] + pad),
+        (low[1] - pad, high[1] + pad),
+        *AXES[isinstance(base.surface, (Plane, Guide))],
+        height=int(np.clip(EDGES + ratio * WIDE, 140.0, 620.0)),
     )
     speeds = np.concatenate([bead.speed[1:] for bead in layer.beads])
     slow, fast = float(speeds.min()), float(speeds.max())
@@ -66,9 +72,20 @@ def _flat(group: Group, layer: Layer, place: int, height: float) -> str:
         if fast - slow > 1e-6 * fast:
             _coloured(plot, bead, line, slow, fast)
         else:
-            plot.curve(line[:, 0], line[:, 1], shade(number / max(len(lines) - 1, 1)), f"bead {number}", 1.2)
+            plot.curve(
+                line[:, 0],
+                line[:, 1],
+                shade(number / max(len(lines) - 1, 1)),
+                f"bead {number}",
+                1.2,
+            )
     if fast - slow > 1e-6 * fast:
-        plot.legend([(f"{MINUTE * slow:.0f} mm/min", shade(0.0)), (f"{MINUTE * fast:.0f} mm/min", shade(1.0))])
+        plot.legend(
+            [
+                (f"{MINUTE * slow:.0f} mm/min", shade(0.0)),
+                (f"{MINUTE * fast:.0f} mm/min", shade(1.0)),
+            ]
+        )
     return plot.text()
 
 

@@ -41,7 +41,9 @@ class Made:
 
     def page(self) -> str:
         """report.html."""
-        from freecad_am.plots.source import Source  # slow to import, and not every report has a page
+        from freecad_am.plots.source import (
+            Source,  # slow to import, and not every report has a page
+        )
 
         from . import page
 
@@ -61,7 +63,9 @@ class Made:
 def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
     """The toolpath as it is run, and its motion: that of the deposit alone where nothing was planned."""
     if results.planned is None:
-        return results.toolpath, deposit.alone(results.toolpath, 0 if cell is None else len(cell.machine.columns))
+        return results.toolpath, deposit.alone(
+            results.toolpath, 0 if cell is None else len(cell.machine.columns)
+        )
     return results.planned.joint_path.toolpath(results.toolpath), results.planned.motion
 
 
@@ -86,7 +90,9 @@ def made(job: Job, results: Results, cell: Cell | None, timed: Timed, tell: Tell
         if not toolpath.features:
             found["spacing_comparison"] = with_motion(job, shown[0], results, cell, tell)
     if toolpath.features:
-        found["features"] = figures.features(job.features, toolpath, motion, balances, [list(one.rows) for one in shown])
+        found["features"] = figures.features(
+            job.features, toolpath, motion, balances, [list(one.rows) for one in shown]
+        )
     found["programs"] = sorted(results.programs)
     return Made(found, job, toolpath, motion, results, shown, cell)
 
@@ -97,24 +103,32 @@ def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> 
     found = []
     for one, (part, _) in zip(job.features, toolpath.parts, strict=True):
         apart = spacing.between_layers(part) if toolpath.features else distances
-        shown = OfFeature(one.name if toolpath.features else "", part, apart, getattr(one.strategy, "band", None))
+        shown = OfFeature(
+            one.name if toolpath.features else "", part, apart, getattr(one.strategy, "band", None)
+        )
         if family_of(one.strategy).kind == "surface":
             from . import spacing_comparison  # slow to import, and only walls need it
 
             compared = spacing_comparison.compare(one.shape(), one.strategy)
-            shown = shown._replace(compared=compared, rows=spacing_comparison.rows(compared, one.strategy, part, apart))
+            shown = shown._replace(
+                compared=compared, rows=spacing_comparison.rows(compared, one.strategy, part, apart)
+            )
         found.append(shown)
     return found
 
 
-def with_motion(job: Job, wall: OfFeature, results: Results, cell: Cell | None, tell: Tell) -> list[dict[str, Any]]:
+def with_motion(
+    job: Job, wall: OfFeature, results: Results, cell: Cell | None, tell: Tell
+) -> list[dict[str, Any]]:
     """The rows about the wall of a single feature, with how the robot moves where that was asked for."""
     rows: list[dict[str, Any]] = list(wall.rows)
     if rows and results.planned is not None and cell is not None:
         from . import spacing_comparison
 
         planned = results.planned
-        rows[0]["motion"] = spacing_comparison.motion_of(planned.joint_path, planned.motion, cell, job.joints)
+        rows[0]["motion"] = spacing_comparison.motion_of(
+            planned.joint_path, planned.motion, cell, job.joints
+        )
         others = spacing_comparison.motions(job, tell)
         for row in rows[1:]:
             found = others.get(row["method"])

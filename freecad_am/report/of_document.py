@@ -46,16 +46,24 @@ def reported(obj: Any) -> Callable[[], str]:
     for one in stages:
         if one.Status in (STALE, FAILED):
             why = message_of(one) or one.Status
-            raise InputError("NO_RESULT", one.Label, "no result fits its inputs ({}); recompute it first", why)
+            raise InputError(
+                "NO_RESULT", one.Label, "no result fits its inputs ({}); recompute it first", why
+            )
     settings = None if program is None else program.Proxy.parameters(program, ProgramParameters)
     read = None if program is None else preflight.read_back_of(program)
     survey = functools.cache(preflight.survey_of(toolpath, path, settings))
-    promised = preflight.prepared(toolpath, path, settings, read, () if program is None else issues_of(program), survey)
+    promised = preflight.prepared(
+        toolpath, path, settings, read, () if program is None else issues_of(program), survey
+    )
     job, folders = _job(toolpath, path), tuple(user_machines.folders())
     results = Results(
-        toolpath.Proxy.value(toolpath), None if path is None else planned_of(path, path.Label)[0],
-        0.0 if path is None else path.Seconds, _issues(features, toolpath, path, program), _files(program),
-        lambda: survey().distances, promised,
+        toolpath.Proxy.value(toolpath),
+        None if path is None else planned_of(path, path.Label)[0],
+        0.0 if path is None else path.Seconds,
+        _issues(features, toolpath, path, program),
+        _files(program),
+        lambda: survey().distances,
+        promised,
     )
     spent = {one.Proxy.kind.replace(" ", "_"): one.Seconds for one in stages}
 
@@ -74,7 +82,9 @@ def _stages(obj: Any) -> tuple[Any, Any, Any]:
     stage = stage_of(obj)
     if stage is None or stage.kind not in KINDS:
         label = getattr(obj, "Label", repr(obj))
-        raise InputError("BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program")
+        raise InputError(
+            "BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program"
+        )
     program = obj if stage.kind == "program" else None
     path = obj if stage.kind == "joint path" else None if program is None else program.JointPath
     if program is not None and path is None:
@@ -90,10 +100,15 @@ def _job(toolpath: Any, path: Any) -> Job:
     joints = JointParameters() if path is None else path.Proxy.parameters(path, JointParameters)
     features = tuple(
         Feature(
-            feature.Label, feature.Proxy.parameters(feature, strategy_of(feature.Proxy)),
-            feature.Proxy.parameters(feature, BuildDirectionParameters), process, feature.Proxy.reader(feature),
+            feature.Label,
+            feature.Proxy.parameters(feature, strategy_of(feature.Proxy)),
+            feature.Proxy.parameters(feature, BuildDirectionParameters),
+            process,
+            feature.Proxy.reader(feature),
         )
-        for feature, process in zip(features_of(toolpath), toolpath.Proxy.processes(toolpath), strict=True)
+        for feature, process in zip(
+            features_of(toolpath), toolpath.Proxy.processes(toolpath), strict=True
+        )
     )
     of_all = toolpath.Proxy.parameters(toolpath, ProcessParameters)
     looks = None if cell is None or path is None else cell.Proxy.value(cell)

@@ -18,30 +18,53 @@ from . import hub_figures, places, predicted_figures, scan_figures, view, wall_f
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
-from .tables import axis_names, classes_of, clock, figure_text, grid_of, in_units, material_row, pairs_of, table_of
+from .tables import (
+    axis_names,
+    classes_of,
+    clock,
+    figure_text,
+    grid_of,
+    in_units,
+    material_row,
+    pairs_of,
+    table_of,
+)
 from .turned import columns, element
 
 _WHOLE = (
-    ("feasible", "feasible"), ("objective_value", "objective"), ("condition_min", "smallest condition"),
+    ("feasible", "feasible"),
+    ("objective_value", "objective"),
+    ("condition_min", "smallest condition"),
     ("planning_time_s", "planning time, s"),
 )
 _PER_AXIS = (
-    ("range_per_layer_max_deg", "largest range within a layer, deg"), ("limit_margin_deg", "margin to the limit, deg"),
-    ("speed_max_deg_s", "largest speed, deg/s"), ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"),
-    ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"), ("speed_ratio_max", "largest share of the speed limit"),
+    ("range_per_layer_max_deg", "largest range within a layer, deg"),
+    ("limit_margin_deg", "margin to the limit, deg"),
+    ("speed_max_deg_s", "largest speed, deg/s"),
+    ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"),
+    ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"),
+    ("speed_ratio_max", "largest share of the speed limit"),
 )
 _SPACING = (
-    ("layers", "layers to the end"), ("min_mm", "least distance, mm"), ("mean_mm", "mean, mm"),
-    ("max_mm", "largest, mm"), ("length_mm", "length, mm"), ("turn_max_deg_mm", "sharpest turn beside corners, deg/mm"),
-    ("cornered_layers", "layers with corners"), ("corner_max_deg", "sharpest corner, deg"),
+    ("layers", "layers to the end"),
+    ("min_mm", "least distance, mm"),
+    ("mean_mm", "mean, mm"),
+    ("max_mm", "largest, mm"),
+    ("length_mm", "length, mm"),
+    ("turn_max_deg_mm", "sharpest turn beside corners, deg/mm"),
+    ("cornered_layers", "layers with corners"),
+    ("corner_max_deg", "sharpest corner, deg"),
 )
 _MOTION = (
-    ("duration_s", "time of all moves, s"), ("deposit_s", "deposit at the travel speed, s"),
-    ("axis_limited_s", "deposit as fast as the axes can, s"), ("condition_min", "smallest condition"),
+    ("duration_s", "time of all moves, s"),
+    ("deposit_s", "deposit at the travel speed, s"),
+    ("axis_limited_s", "deposit as fast as the axes can, s"),
+    ("condition_min", "smallest condition"),
 )
 _MOTION_PER_AXIS = (
     ("speed_ratio_max", "largest share of the speed limit"),
-    ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"), ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"),
+    ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"),
+    ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"),
 )
 
 
@@ -67,7 +90,9 @@ def render(content: Content) -> str:
     name, status = escape(report["name"]), report["status"]
     pictures, shown = Pictures(content.source), _shown(content)
     toolpath = content.toolpath
-    width = content.source.process.bead_width if toolpath.bead_width is None else toolpath.bead_width
+    width = (
+        content.source.process.bead_width if toolpath.bead_width is None else toolpath.bead_width
+    )
     path = element.turned(shown, toolpath, width, content.platform_diameter)
     sections = [
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
@@ -78,9 +103,12 @@ def render(content: Content) -> str:
         places.preflight(report["preflight"], shown),
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
-        "" if content.toolpath.fitted is None else scan_figures.section(content.toolpath.fitted, content.toolpath.frame),
-        "" if content.toolpath.predicted is None else predicted_figures.section(
-            content.toolpath.predicted, pictures.predicted(), shown),
+        ""
+        if content.toolpath.fitted is None
+        else scan_figures.section(content.toolpath.fitted, content.toolpath.frame),
+        ""
+        if content.toolpath.predicted is None
+        else predicted_figures.section(content.toolpath.predicted, pictures.predicted(), shown),
         _process(content, pictures),
         _on_hub(content, pictures),
         *(_spacings(one) for one in content.features if one.rows),
@@ -88,7 +116,10 @@ def render(content: Content) -> str:
         _comparison(report),
         _totals(report),
         _criteria(report),
-        pairs_of("Time taken", {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()}),
+        pairs_of(
+            "Time taken",
+            {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()},
+        ),
         _programs(report["programs"]),
     ]
     return (
@@ -96,14 +127,18 @@ def render(content: Content) -> str:
         f'<meta name="viewport" content="width=device-width,initial-scale=1">'
         f'<meta http-equiv="Content-Security-Policy" content="{element.policy()}">'
         f"<style>{STYLE}{element.style()}</style></head>"
-        f'<body><main>{"".join(sections)}</main>{path.data}</body></html>\n'
+        f"<body><main>{''.join(sections)}</main>{path.data}</body></html>\n"
     )
 
 
 def _shown(content: Content) -> columns.Shown:
     """The rows of the path to turn, with their joints where there is a machine."""
     machine = content.report["machine"] if content.source.cell is not None else None
-    return columns.shown(content.source, machine["labels"], machine["units"]) if machine else columns.shown(content.source)
+    return (
+        columns.shown(content.source, machine["labels"], machine["units"])
+        if machine
+        else columns.shown(content.source)
+    )
 
 
 def _subtitle(content: Content) -> str:
@@ -116,22 +151,39 @@ def _subtitle(content: Content) -> str:
 def _cards(report: dict[str, Any]) -> str:
     counts, spacing = report["counts"], report["spacing_mm"]
     cards = [
-        (f"{counts['layers']:,}", "layers"), (f"{counts['beads']:,}", "beads"), (f"{counts['points']:,}", "points"),
-        (f"{report['length_mm'] / 1000:.3f} m", "length of the beads"), (clock(report["duration_s"]), "time of all moves"),
+        (f"{counts['layers']:,}", "layers"),
+        (f"{counts['beads']:,}", "beads"),
+        (f"{counts['points']:,}", "points"),
+        (f"{report['length_mm'] / 1000:.3f} m", "length of the beads"),
+        (clock(report["duration_s"]), "time of all moves"),
     ]
-    cards.append((f"{report['totals']['mass_g']:,.1f} g", f"deposit, {report['totals']['volume_cm3']:,.2f} cm\u00b3"))
+    cards.append(
+        (
+            f"{report['totals']['mass_g']:,.1f} g",
+            f"deposit, {report['totals']['volume_cm3']:,.2f} cm\u00b3",
+        )
+    )
     if spacing["mean"] is not None:
-        cards.append((f"{spacing['mean']:.4f} mm", f"spacing, {spacing['min']:.4f} to {spacing['max']:.4f}"))
+        cards.append(
+            (f"{spacing['mean']:.4f} mm", f"spacing, {spacing['min']:.4f} to {spacing['max']:.4f}")
+        )
     if report["joints"] is not None and report["joints"]["condition_min"] is not None:
         cards.append((figure_text(report["joints"]["condition_min"]), "smallest condition"))
-    boxes = "".join(f'<div class="card"><b>{escape(value)}</b><span>{escape(word)}</span></div>' for value, word in cards)
+    boxes = "".join(
+        f'<div class="card"><b>{escape(value)}</b><span>{escape(word)}</span></div>'
+        for value, word in cards
+    )
     return f'<div class="cards">{boxes}</div>'
 
 
 def _joints(content: Content, pictures: Pictures) -> list[str]:
     if content.source.cell is None:
         return []
-    sections = ["<h2>Joints against their limits</h2>", grid_of(pictures.angles()), _joint_table(content)]
+    sections = [
+        "<h2>Joints against their limits</h2>",
+        grid_of(pictures.angles()),
+        _joint_table(content),
+    ]
     if content.source.motion.reachable.any():
         plots = "".join(f'<figure class="wide">{plot}</figure>' for plot in pictures.rates())
         sections.append(f"<h2>Speed and condition</h2>{plots}" if plots else "")
@@ -141,8 +193,13 @@ def _joints(content: Content, pictures: Pictures) -> list[str]:
 def _joint_table(content: Content) -> str:
     joints = content.report["joints"]
     rows = [("", axis_names(content.report))] + [
-        (in_units(word, content.report), [figure_text(value) for value in joints[key] or ()]) for key, word in (
-            ("min_deg", "smallest, deg"), ("max_deg", "largest, deg"), _PER_AXIS[0], _PER_AXIS[1], _PER_AXIS[-1],
+        (in_units(word, content.report), [figure_text(value) for value in joints[key] or ()])
+        for key, word in (
+            ("min_deg", "smallest, deg"),
+            ("max_deg", "largest, deg"),
+            _PER_AXIS[0],
+            _PER_AXIS[1],
+            _PER_AXIS[-1],
         )
     ]
     return table_of(rows)
@@ -168,21 +225,31 @@ def _spacings(of: OfFeature) -> str:
     done = [one for one in of.compared if isinstance(one, Compared)]
     height = toolpath.layer_height
     plots = wall_figures.distance_plots(done, height) if done else []
-    plots += [wall_figures.step_plot(one, height) for one in done if one.method == "constant-distance"]
+    plots += [
+        wall_figures.step_plot(one, height) for one in done if one.method == "constant-distance"
+    ]
     plots.append(wall_figures.deposit_plot(toolpath, local_distances(toolpath)))
     both = wall_figures.both_paths(done)
     if both:
-        both = (f'<figure style="margin-top:10px">{both}<figcaption>Both paths: along the lines up the wall, and at a '
-                "constant distance from the layer below.</figcaption></figure>")
+        both = (
+            f'<figure style="margin-top:10px">{both}<figcaption>Both paths: along the lines up the wall, and at a '
+            "constant distance from the layer below.</figcaption></figure>"
+        )
     cut = [row for row in rows if row["layers"] is not None]
     names = [row["method"] + (" (planned)" if row["planned"] else "") for row in cut]
     columns = [(word, key) for key, word in _SPACING if any(row[key] is not None for row in cut)]
-    table = table_of([("", names)] + [(word, [figure_text(row[key]) for row in cut]) for word, key in columns])
-    reasons = "".join(f'<p class="sub">{escape(row["method"] + ": " + row["reason"])}.</p>' for row in rows if row["reason"])
+    table = table_of(
+        [("", names)] + [(word, [figure_text(row[key]) for row in cut]) for word, key in columns]
+    )
+    reasons = "".join(
+        f'<p class="sub">{escape(row["method"] + ": " + row["reason"])}.</p>'
+        for row in rows
+        if row["reason"]
+    )
     name = f": {escape(of.name)}" if of.name else ""
     return (
         f'<h2>What spacing costs{name}</h2><p class="sub">Distance of each point to the nearest point of the layer below, '
-        f'around the wall; every curve is a layer, dark ones first.</p>{grid_of(plots)}{both}{table}{reasons}'
+        f"around the wall; every curve is a layer, dark ones first.</p>{grid_of(plots)}{both}{table}{reasons}"
     )
 
 
@@ -194,9 +261,12 @@ def _spacing_motion(report: dict[str, Any]) -> str:
         (word, [figure_text(row["motion"][key]) for row in rows]) for key, word in _MOTION
     ]
     axes = [("", ["", *axis_names(report)])] + [
-        (in_units(word, report) if number == 0 else "",
-         [row["method"], *(figure_text(value) for value in row["motion"][key] or ())])
-        for key, word in _MOTION_PER_AXIS for number, row in enumerate(rows)
+        (
+            in_units(word, report) if number == 0 else "",
+            [row["method"], *(figure_text(value) for value in row["motion"][key] or ())],
+        )
+        for key, word in _MOTION_PER_AXIS
+        for number, row in enumerate(rows)
     ]
     return f"<h2>What spacing gains in motion</h2>{table_of(whole)}{table_of(axes)}"
 
@@ -204,16 +274,23 @@ def _spacing_motion(report: dict[str, Any]) -> str:
 def _totals(report: dict[str, Any]) -> str:
     """What the job takes and deposits, and of what material."""
     sums = report["totals"]
-    return pairs_of("Time and material", {
-        "the whole job": clock(sums["time_s"]), "depositing": clock(sums["deposit_s"]),
-        "rapid moves": clock(sums["rapid_s"]), "waits and lead times": clock(sums["wait_s"]),
-        "length of the deposit": f"{sums['deposit_mm'] / 1000:.3f} m",
-        "length of rapid moves": f"{sums['rapid_mm'] / 1000:.3f} m",
-        "volume of the deposit": f"{sums['volume_cm3']:,.2f} cm\u00b3",
-        "volume of the wire fed": "unknown" if sums["fed_cm3"] is None else f"{sums['fed_cm3']:,.2f} cm\u00b3",
-        "mass of the deposit": f"{sums['mass_g']:,.1f} g",
-        **material_row(report),
-    })
+    return pairs_of(
+        "Time and material",
+        {
+            "the whole job": clock(sums["time_s"]),
+            "depositing": clock(sums["deposit_s"]),
+            "rapid moves": clock(sums["rapid_s"]),
+            "waits and lead times": clock(sums["wait_s"]),
+            "length of the deposit": f"{sums['deposit_mm'] / 1000:.3f} m",
+            "length of rapid moves": f"{sums['rapid_mm'] / 1000:.3f} m",
+            "volume of the deposit": f"{sums['volume_cm3']:,.2f} cm\u00b3",
+            "volume of the wire fed": "unknown"
+            if sums["fed_cm3"] is None
+            else f"{sums['fed_cm3']:,.2f} cm\u00b3",
+            "mass of the deposit": f"{sums['mass_g']:,.1f} g",
+            **material_row(report),
+        },
+    )
 
 
 def _criteria(report: dict[str, Any]) -> str:
@@ -222,17 +299,22 @@ def _criteria(report: dict[str, Any]) -> str:
         return ""
     methods = [report["joints"], *report["comparison"]]
     rows = [("", [entry["method"] for entry in methods])] + [
-        (name, [figure_text(entry["criteria"][name]) for entry in methods]) for name in report["joints"]["criteria"]
+        (name, [figure_text(entry["criteria"][name]) for entry in methods])
+        for name in report["joints"]["criteria"]
     ]
     text = f"Whichever was optimised; smaller is better.{_optimality(report)}"
-    return f"<h2>Criteria</h2><p class=\"sub\">{text}</p>{table_of(rows)}"
+    return f'<h2>Criteria</h2><p class="sub">{text}</p>{table_of(rows)}'
 
 
 def _optimality(report: dict[str, Any]) -> str:
     known = report["joints"].get("optimality")
     if known is None:
         return ""
-    name, value, least = escape(report["joints"]["objective"]), figure_text(known["objective"]), figure_text(known["bound"])
+    name, value, least = (
+        escape(report["joints"]["objective"]),
+        figure_text(known["objective"]),
+        figure_text(known["bound"]),
+    )
     return f" {name}, bead by bead: {value}; no rotation about the tool goes below {least}, a gap of {known['gap']:.1%}."
 
 
@@ -245,12 +327,19 @@ def _comparison(report: dict[str, Any]) -> str:
         (word, [figure_text(entry.get(key)) for entry in methods]) for key, word in _WHOLE
     ]
     axes = [("", ["", *axis_names(report)])] + [
-        (in_units(word, report) if number == 0 else "",
-         [entry["method"], *(figure_text(value) for value in entry.get(key) or ())])
-        for key, word in _PER_AXIS for number, entry in enumerate(methods)
+        (
+            in_units(word, report) if number == 0 else "",
+            [entry["method"], *(figure_text(value) for value in entry.get(key) or ())],
+        )
+        for key, word in _PER_AXIS
+        for number, entry in enumerate(methods)
     ]
     return f"<h2>Comparison of the methods</h2>{table_of(whole)}{table_of(axes)}"
 
 
 def _programs(programs: list[str]) -> str:
-    return pairs_of("Programs", {str(number): name for number, name in enumerate(programs, 1)}) if programs else ""
+    return (
+        pairs_of("Programs", {str(number): name for number, name in enumerate(programs, 1)})
+        if programs
+        else ""
+    )

@@ -49,19 +49,31 @@ class Pictures:
 
     def rates(self) -> list[str]:
         """Joint speeds as shares of the limits; accelerations and jerks, all axes in one; the condition."""
-        accelerations = together("Joint accelerations while depositing", joints.accelerations(self.source, self.rows))
+        accelerations = together(
+            "Joint accelerations while depositing", joints.accelerations(self.source, self.rows)
+        )
         jerks = together("Joint jerks while depositing", joints.jerks(self.source, self.rows))
-        charts = (*joints.shares(self.source, self.rows), accelerations, jerks, *joints.condition(self.source, self.rows))
+        charts = (
+            *joints.shares(self.source, self.rows),
+            accelerations,
+            jerks,
+            *joints.condition(self.source, self.rows),
+        )
         return self._drawn(charts, WHOLE)
 
     def process(self, features: Sequence[OfFeature]) -> list[str]:
         """Distances between the layers of each feature, speed along the path, deposit rate and mass."""
         source = self.source
         first = [
-            process.distances(np.concatenate(one.spacing), one.toolpath.layer_height, one.band, one.name)
-            for one in features if one.spacing
+            process.distances(
+                np.concatenate(one.spacing), one.toolpath.layer_height, one.band, one.name
+            )
+            for one in features
+            if one.spacing
         ]
-        return self._half((*first, *process.travel(source, self.rows), *process.deposit(source, self.rows)))
+        return self._half(
+            (*first, *process.travel(source, self.rows), *process.deposit(source, self.rows))
+        )
 
     def beads(self) -> list[str]:
         """What a bead model predicts, and its fit."""
@@ -87,4 +99,7 @@ class Pictures:
         if self.modules is None:
             return []
         draw, files = self.modules
-        return [files.inline(draw.figure([chart], PAGE, width, height)[0], chart.title) for chart in charts]
+        return [
+            files.inline(draw.figure([chart], PAGE, width, height)[0], chart.title)
+            for chart in charts
+        ]

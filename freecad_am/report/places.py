@@ -20,19 +20,29 @@ def findings(issues: list[dict[str, Any]], shown: Shown) -> str:
     if not issues:
         return ""
     rows = []
-    for issue in sorted(issues, key=lambda entry: ("error", "warning", "note").index(entry["level"]))[:_MOST_ISSUES]:
+    for issue in sorted(
+        issues, key=lambda entry: ("error", "warning", "note").index(entry["level"])
+    )[:_MOST_ISSUES]:
         place = place_of(issue, shown)
         rows.append(
             f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
             f'<td class="place">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
         )
-    more = f"<p>{len(issues) - len(rows)} more stand in report.json.</p>" if len(issues) > len(rows) else ""
-    return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}'
+    more = (
+        f"<p>{len(issues) - len(rows)} more stand in report.json.</p>"
+        if len(issues) > len(rows)
+        else ""
+    )
+    return (
+        f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}'
+    )
 
 
 def place_of(place: dict[str, Any], shown: Shown) -> str:
     """Layer, bead and point, as far as they are told; a click shows them in the path."""
-    words = " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None)
+    words = " ".join(
+        f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None
+    )
     row = shown.row_of(place["layer"], place["bead"], place["point"])
     return words if row is None else f'<button data-row="{row}">{words}</button>'
 
@@ -47,10 +57,19 @@ def preflight(promises: list[dict[str, Any]], shown: Shown) -> str:
         where = "" if one["place"] is None else place_of(one["place"], shown)
         worst = "" if one["worst"] is None else amount(one["worst"], one["unit"], figure_text)
         sign = "\u2265" if one["at_least"] else "\u2264"
-        bound = "" if one["bound"] is None else f"{sign} {amount(one['bound'], one['unit'], figure_text)}"
+        bound = (
+            ""
+            if one["bound"] is None
+            else f"{sign} {amount(one['bound'], one['unit'], figure_text)}"
+        )
         rows.append(
             f'<tr><td class="{mark}">{word}</td><td class="text">{escape(one["promise"])}</td><td>{worst}</td>'
             f'<td>{bound}</td><td class="place">{where}</td><td class="text">{escape(one["how"])}</td></tr>'
         )
-    head = "".join(f"<th>{word}</th>" for word in ("", "promise", "worst", "allowed", "place", "how it was checked"))
-    return f'<h2>Preflight</h2><div class="table"><table><tr>{head}</tr>{"".join(rows)}</table></div>'
+    head = "".join(
+        f"<th>{word}</th>"
+        for word in ("", "promise", "worst", "allowed", "place", "how it was checked")
+    )
+    return (
+        f'<h2>Preflight</h2><div class="table"><table><tr>{head}</tr>{"".join(rows)}</table></div>'
+    )

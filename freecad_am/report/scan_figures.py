@@ -25,11 +25,20 @@ DOT = 2.2
 def as_dict(fitted: Fitted) -> dict[str, Any]:
     """The key `scan` of a report."""
     return {
-        "file": fitted.file, "points": fitted.points, "left_out": fitted.left_out, "layer": fitted.layer,
+        "file": fitted.file,
+        "points": fitted.points,
+        "left_out": fitted.left_out,
+        "layer": fitted.layer,
         "layers": fitted.layers,
-        "off_mm": {"min": float(fitted.off.min()), "mean": float(fitted.off.mean()), "max": float(fitted.off.max())},
-        "left_mm": float(np.abs(fitted.left).max()), "slope_deg": math.degrees(math.atan(fitted.slope)),
-        "remains_mm": fitted.remains, "motion": fitted.motion.tolist(),
+        "off_mm": {
+            "min": float(fitted.off.min()),
+            "mean": float(fitted.off.mean()),
+            "max": float(fitted.off.max()),
+        },
+        "left_mm": float(np.abs(fitted.left).max()),
+        "slope_deg": math.degrees(math.atan(fitted.slope)),
+        "remains_mm": fitted.remains,
+        "motion": fitted.motion.tolist(),
     }
 
 
@@ -46,17 +55,28 @@ def section(fitted: Fitted, frame: Array) -> str:
 def _map(title: str, places: Array, off: Array, frame: Array) -> str:
     some = np.unique(np.linspace(0, len(places) - 1, MAX_DOTS).astype(np.intp))
     x, y = ((places[some] - frame[:3, 3]) @ frame[:3, :2]).T
-    plot = Plot(f"{title}: {off.min():.3f} to {off.max():.3f} mm", (0.0, 1.0), (0.0, 1.0), "mm", "mm", height=300)
+    plot = Plot(
+        f"{title}: {off.min():.3f} to {off.max():.3f} mm",
+        (0.0, 1.0),
+        (0.0, 1.0),
+        "mm",
+        "mm",
+        height=300,
+    )
     wide, high = plot.width - plot.left - plot.right, plot.height - plot.top - plot.bottom
     scale = 1.08 * max(float(np.ptp(x)) / wide, float(np.ptp(y)) / high, 1e-6)
     plot.x, plot.y = (
-        (0.5 * (float(values.min()) + float(values.max())) - 0.5 * scale * size,
-         0.5 * (float(values.min()) + float(values.max())) + 0.5 * scale * size)
+        (
+            0.5 * (float(values.min()) + float(values.max())) - 0.5 * scale * size,
+            0.5 * (float(values.min()) + float(values.max())) + 0.5 * scale * size,
+        )
         for values, size in ((x, wide), (y, high))
     )
     shades, number = [css(band.colour) for band in bands(TOLERANCE)], band_of(off[some], TOLERANCE)
     plot.parts += [
         f'<circle cx="{px:.1f}" cy="{py:.1f}" r="{DOT}" fill="{shades[k]}"/>'
-        for px, py, k in zip(plot.to_x(x).tolist(), plot.to_y(y).tolist(), number.tolist(), strict=True)
+        for px, py, k in zip(
+            plot.to_x(x).tolist(), plot.to_y(y).tolist(), number.tolist(), strict=True
+        )
     ]
     return plot.text()

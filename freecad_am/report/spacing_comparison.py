@@ -32,11 +32,17 @@ from . import figures as of_report
 from .asked import Job
 
 _MOTION = (
-    "condition_min", "range_per_layer_max_deg", "speed_max_deg_s", "acceleration_max_deg_s2", "jerk_max_deg_s3",
+    "condition_min",
+    "range_per_layer_max_deg",
+    "speed_max_deg_s",
+    "acceleration_max_deg_s2",
+    "jerk_max_deg_s3",
     "speed_ratio_max",
 )
 _LINES = "the wall is not one surface with one closed parameter, whose lines such layers follow"
-_FRONTS = "fronts follow no lines of the surface; leave strategy.method out to compare with such layers"
+_FRONTS = (
+    "fronts follow no lines of the surface; leave strategy.method out to compare with such layers"
+)
 _OTHER = "not planned; choose it as strategy.spacing"
 _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut so
     "iso-parameter": _LINES,
@@ -51,11 +57,16 @@ def compare(wall: Any, strategy: Any) -> tuple[Compared | Refused, ...]:
     if isinstance(wall, SurfaceWall):
         return wall_comparison.compare(wall, strategy)
     reasons = _REASONS if strategy.method != FRONTS else _REASONS | {ISO: _FRONTS, NORMAL: _FRONTS}
-    return tuple(Refused(method, reasons[method]) for method in METHODS if method != strategy.spacing)
+    return tuple(
+        Refused(method, reasons[method]) for method in METHODS if method != strategy.spacing
+    )
 
 
 def rows(
-    found: Sequence[Compared | Refused], strategy: Any, toolpath: Toolpath, distances: Sequence[Array]
+    found: Sequence[Compared | Refused],
+    strategy: Any,
+    toolpath: Toolpath,
+    distances: Sequence[Array],
 ) -> list[dict[str, Any]]:
     """The rows of report.json without motion; that of the method planned comes first."""
     if not found:
@@ -65,10 +76,17 @@ def rows(
     if own not in known:  # a wall cut by this method alone
         spread = of_report.spread(distances)
         known[own] = _empty(own) | {
-            "layers": len(toolpath.layers), "min_mm": spread["min"], "mean_mm": spread["mean"], "max_mm": spread["max"],
-            "length_mm": toolpath.length, **_corners(toolpath),
+            "layers": len(toolpath.layers),
+            "min_mm": spread["min"],
+            "mean_mm": spread["mean"],
+            "max_mm": spread["max"],
+            "length_mm": toolpath.length,
+            **_corners(toolpath),
         }
-    return [row | {"planned": method == own} for method, row in sorted(known.items(), key=lambda item: item[0] != own)]
+    return [
+        row | {"planned": method == own}
+        for method, row in sorted(known.items(), key=lambda item: item[0] != own)
+    ]
 
 
 def _corners(toolpath: Toolpath) -> dict[str, Any]:
@@ -77,15 +95,24 @@ def _corners(toolpath: Toolpath) -> dict[str, Any]:
     for layer, _, bead in toolpath:
         if bead.tangents is None:
             return {}
-        turn = np.arccos(np.clip((bead.tangents[:, 0] * bead.tangents[:, 1]).sum(axis=1), -1.0, 1.0))
+        turn = np.arccos(
+            np.clip((bead.tangents[:, 0] * bead.tangents[:, 1]).sum(axis=1), -1.0, 1.0)
+        )
         inner = turn if bead.closed else turn[1:-1]
         sharpest[layer] = max(sharpest.get(layer, 0.0), float(inner.max(initial=0.0)))
-    cornered = sum(turn > SMOOTH for layer, turn in sharpest.items() if layer)  # the first is the substrate's
+    cornered = sum(
+        turn > SMOOTH for layer, turn in sharpest.items() if layer
+    )  # the first is the substrate's
     most = max((turn for layer, turn in sharpest.items() if layer), default=0.0)
-    return {"cornered_layers": int(cornered), "corner_max_deg": float(np.degrees(most)) if most > SMOOTH else 0.0}
+    return {
+        "cornered_layers": int(cornered),
+        "corner_max_deg": float(np.degrees(most)) if most > SMOOTH else 0.0,
+    }
 
 
-def motion_of(path: JointPath, motion: Motion, cell: Cell, joints: JointParameters) -> dict[str, Any]:
+def motion_of(
+    path: JointPath, motion: Motion, cell: Cell, joints: JointParameters
+) -> dict[str, Any]:
     """How the robot moves while it deposits. axis_limited_s: the deposit's time if each step took as long as the slowest
     axis needs."""
     figures = comparison.of_path(path, cell, joints)
@@ -93,8 +120,11 @@ def motion_of(path: JointPath, motion: Motion, cell: Cell, joints: JointParamete
     share = np.nanmax(of_report.speed_ratio(motion, cell)[deposit], axis=1, initial=0.0)
     time = motion.duration[deposit]
     return {
-        "feasible": path.feasible, "duration_s": motion.total_time, "deposit_s": float(time.sum()),
-        "axis_limited_s": float((time * np.maximum(share, 1.0)).sum()), **{key: figures[key] for key in _MOTION},
+        "feasible": path.feasible,
+        "duration_s": motion.total_time,
+        "deposit_s": float(time.sum()),
+        "axis_limited_s": float((time * np.maximum(share, 1.0)).sum()),
+        **{key: figures[key] for key in _MOTION},
     }
 
 
@@ -119,7 +149,9 @@ def _planned(job: Job, spacing: str) -> dict[str, Any]:
     toolpath = planned(Given(wall.shape(), strategy, wall.build_direction, job.process, looks))
     cell = cells.resolve(looks, toolpath.frame, toolpath.family, user_machines.folders())
     path = plan_joints(toolpath, cell, replace(job.joints, compare=()))
-    motion, _ = assemble(path, cell, job.process, toolpath.surroundings, job.joints, toolpath.layer_height)
+    motion, _ = assemble(
+        path, cell, job.process, toolpath.surroundings, job.joints, toolpath.layer_height
+    )
     return motion_of(path, motion, cell, job.joints)
 
 
@@ -127,15 +159,28 @@ def _row(one: Compared | Refused) -> dict[str, Any]:
     if isinstance(one, Refused):
         return _empty(one.method) | {"reason": one.reason}
     return _empty(one.method) | {
-        "layers": one.layers, "min_mm": one.least, "mean_mm": one.mean, "max_mm": one.most, "length_mm": one.length,
-        "turn_max_deg_mm": float(np.degrees(one.turn)), "cornered_layers": one.corners,
+        "layers": one.layers,
+        "min_mm": one.least,
+        "mean_mm": one.mean,
+        "max_mm": one.most,
+        "length_mm": one.length,
+        "turn_max_deg_mm": float(np.degrees(one.turn)),
+        "cornered_layers": one.corners,
         "corner_max_deg": float(np.degrees(one.corner)),
     }
 
 
 def _empty(method: str) -> dict[str, Any]:
     keys = (
-        "layers", "min_mm", "mean_mm", "max_mm", "length_mm", "turn_max_deg_mm", "cornered_layers", "corner_max_deg",
-        "reason", "motion",
+        "layers",
+        "min_mm",
+        "mean_mm",
+        "max_mm",
+        "length_mm",
+        "turn_max_deg_mm",
+        "cornered_layers",
+        "corner_max_deg",
+        "reason",
+        "motion",
     )
     return {"method": method, **dict.fromkeys(keys)}

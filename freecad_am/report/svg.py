@@ -37,7 +37,9 @@ def thinned(x: Array, y: Array, columns: int = _MOST_COLUMNS) -> tuple[Array, Ar
         if len(finite) == 0:
             keep.append(int(part[0]))
             continue
-        keep += sorted({int(part[0]), int(finite[y[finite].argmin()]), int(finite[y[finite].argmax()])})
+        keep += sorted(
+            {int(part[0]), int(finite[y[finite].argmin()]), int(finite[y[finite].argmax()])}
+        )
     return x[keep], y[keep]
 
 
@@ -90,8 +92,12 @@ class Plot:
         if self.y[0] <= y <= self.y[1]:
             at = float(self.to_y(np.array([y]))[0])
             right = self.width - self.right
-            self.parts.append(f'<line class="asked" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>')
-            self.parts.append(f'<text class="rule" x="{right - 4}" y="{at - 4:.1f}" text-anchor="end">{escape(name)}</text>')
+            self.parts.append(
+                f'<line class="asked" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>'
+            )
+            self.parts.append(
+                f'<text class="rule" x="{right - 4}" y="{at - 4:.1f}" text-anchor="end">{escape(name)}</text>'
+            )
 
     def legend(self, names: list[tuple[str, str]]) -> None:
         """Names of curves with their colours, in the top right corner."""
@@ -118,11 +124,17 @@ class Plot:
         for value in ticks(*self.x):
             at = float(self.to_x(np.array([value]))[0])
             parts.append(f'<line class="grid" x1="{at:.1f}" x2="{at:.1f}" y1="{up}" y2="{down}"/>')
-            parts.append(f'<text class="tick" x="{at:.1f}" y="{down + 14}" text-anchor="middle">{value:g}</text>')
+            parts.append(
+                f'<text class="tick" x="{at:.1f}" y="{down + 14}" text-anchor="middle">{value:g}</text>'
+            )
         for value in ticks(*self.y, most=5):
             at = float(self.to_y(np.array([value]))[0])
-            parts.append(f'<line class="grid" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>')
-            parts.append(f'<text class="tick" x="{self.left - 6}" y="{at + 3.5:.1f}" text-anchor="end">{value:g}</text>')
+            parts.append(
+                f'<line class="grid" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>'
+            )
+            parts.append(
+                f'<text class="tick" x="{self.left - 6}" y="{at + 3.5:.1f}" text-anchor="end">{value:g}</text>'
+            )
         parts.append(
             f'<text class="label" x="{middle}" y="{self.height - 6}" text-anchor="middle">{escape(self.x_label)}</text>'
             f'<text class="label" transform="translate(13 {(up + down) / 2}) rotate(-90)" text-anchor="middle">'

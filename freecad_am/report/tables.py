@@ -44,7 +44,9 @@ def material_row(report: dict[str, Any]) -> dict[str, str]:
     material = report["process"]["material"]
     if material is None:
         return {}
-    return {"material": material["name"] + (f" ({material['source']})" if material["source"] else "")}
+    return {
+        "material": material["name"] + (f" ({material['source']})" if material["source"] else "")
+    }
 
 
 def table_of(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
@@ -81,7 +83,13 @@ def classes_of(rows: list[dict[str, Any]]) -> str:
         low, high = (figure_text(row["travel_speed_mm_s"][end]) for end in ("min", "max"))
         speed = low if low == high else f"{low} to {high}"
         length = f"{row['length_mm']:,.0f}"
-        numbers = [str(row["beads"]), length, clock(row["deposit_s"]), speed, figure_text(row["schedule"])]
+        numbers = [
+            str(row["beads"]),
+            length,
+            clock(row["deposit_s"]),
+            speed,
+            figure_text(row["schedule"]),
+        ]
         numbers += [figure_text(row["weave"]) for _ in woven]
         lines.append((row["class"].replace("_", " "), numbers))
     return f"<h2>Classes of beads</h2>{table_of(lines)}"

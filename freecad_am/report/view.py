@@ -27,8 +27,10 @@ _MOST_TRIANGLES = 6000  # of a body
 def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
     """The inline SVG of a toolpath; the axis of the feature stands upright. What a wall grows on lies behind it."""
     inverse = np.linalg.inv(toolpath.frame)
-    beads = [(layer, bead.points @ inverse[:3, :3].T + inverse[:3, 3], bead.build @ inverse[:3, :3].T)
-             for layer, _, bead in toolpath]
+    beads = [
+        (layer, bead.points @ inverse[:3, :3].T + inverse[:3, 3], bead.build @ inverse[:3, :3].T)
+        for layer, _, bead in toolpath
+    ]
     platform = _disc(platform_diameter)
     length = 0.07 * float(np.ptp(np.concatenate([points for _, points, _ in beads]), axis=0).max())
     shown = [side for _, points, build in beads for side in (points, points + length * build)]
@@ -36,21 +38,31 @@ def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
         shown.append(platform)
     scale, shift = _fit(_seen(np.concatenate(shown)))
     bodies = [body.corners() @ inverse[:3, :3].T + inverse[:3, 3] for body in toolpath.surroundings]
-    parts = [_platform(platform, scale, shift), *(_body(corners, scale, shift) for corners in bodies)]
+    parts = [
+        _platform(platform, scale, shift),
+        *(_body(corners, scale, shift) for corners in bodies),
+    ]
     step = max(1, toolpath.point_count // _MOST_POINTS)
     last = max(1, len(toolpath.layers) - 1)
     every = max(1, toolpath.point_count // _TICKS)
     facing = _facing(beads, toolpath.family)
     # what lies farther away is drawn first; the far half of each layer lies behind the near half of all others
     far, near = (
-        [_half(points, step, scale, shift, shade(layer / last), towards, side)
-         for (layer, points, _), towards in zip(beads, facing, strict=True)]
+        [
+            _half(points, step, scale, shift, shade(layer / last), towards, side)
+            for (layer, points, _), towards in zip(beads, facing, strict=True)
+        ]
         for side in (False, True)
     )
-    parts += [*far, *near, _directions(beads, facing, every, length, scale, shift), _scale_bar(last)]
+    parts += [
+        *far,
+        *near,
+        _directions(beads, facing, every, length, scale, shift),
+        _scale_bar(last),
+    ]
     return (
         f'<svg class="view" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="the path, coloured by layer">'
-        f'{"".join(parts)}</svg>'
+        f"{''.join(parts)}</svg>"
     )
 
 
@@ -63,7 +75,9 @@ def _facing(beads: list[tuple[int, Array, Array]], family: str) -> list[Array]:
         return [points[:, :2] @ eye[:2] for _, points, _ in beads]
     found = []
     middles = {
-        number: np.concatenate([points for layer, points, _ in beads if layer == number]).mean(axis=0)
+        number: np.concatenate([points for layer, points, _ in beads if layer == number]).mean(
+            axis=0
+        )
         for number in {layer for layer, _, _ in beads}
     }
     for layer, points, build in beads:
@@ -75,18 +89,28 @@ def _facing(beads: list[tuple[int, Array, Array]], family: str) -> list[Array]:
 
 def _body(corners: Array, scale: float, shift: Array) -> str:
     """The triangles (m, 3, 3) of a body that face the eye, in a few shades."""
-    corners = corners[:: max(1, len(corners) // _MOST_TRIANGLES)] if len(corners) > _MOST_TRIANGLES else corners
+    corners = (
+        corners[:: max(1, len(corners) // _MOST_TRIANGLES)]
+        if len(corners) > _MOST_TRIANGLES
+        else corners
+    )
     seen = _seen(corners.reshape(-1, 3)).reshape(-1, 3, 3)
     normal = doubled_areas(seen)
-    slant = -normal[:, 2] / np.maximum(np.linalg.norm(normal, axis=1), 1e-12)  # the picture's second axis points down
+    slant = -normal[:, 2] / np.maximum(
+        np.linalg.norm(normal, axis=1), 1e-12
+    )  # the picture's second axis points down
     at = seen[:, :, :2] * scale + shift
-    inside = ((at.max(axis=1) > 0.0) & (at.min(axis=1) < [WIDTH, HEIGHT])).all(axis=1) & (slant > 0.0)
+    inside = ((at.max(axis=1) > 0.0) & (at.min(axis=1) < [WIDTH, HEIGHT])).all(axis=1) & (
+        slant > 0.0
+    )
     order = np.argsort(seen[:, :, 2].mean(axis=1), kind="stable")
     parts = []
     for k in order[inside[order]]:
         (a, b), (c, d), (e, f) = at[k].tolist()
         shade = round(6.0 * float(slant[k]))
-        parts.append(f'<path class="body b{shade}" d="M{a:.1f} {b:.1f}L{c:.1f} {d:.1f}L{e:.1f} {f:.1f}Z"/>')
+        parts.append(
+            f'<path class="body b{shade}" d="M{a:.1f} {b:.1f}L{c:.1f} {d:.1f}L{e:.1f} {f:.1f}Z"/>'
+        )
     return "".join(parts)
 
 
@@ -97,7 +121,9 @@ def overlaid(groups: Sequence[tuple[str, str, Sequence[Array]]]) -> str:
     parts = []
     for number, (name, stroke, curves) in enumerate(groups):
         step = max(1, sum(map(len, curves)) // _MOST_OVERLAID)
-        data = "".join(svg.path_data(*(_seen(curve[::step])[:, :2] * scale + shift).T) for curve in curves)
+        data = "".join(
+            svg.path_data(*(_seen(curve[::step])[:, :2] * scale + shift).T) for curve in curves
+        )
         parts.append(f'<path class="curve" stroke="{stroke}" stroke-width="1.3" d="{data}"/>')
         at = 20 * number - 22
         parts.append(f'<circle cx="{MARGIN}" cy="{at - 4}" r="4" fill="{stroke}"/>')
@@ -133,12 +159,12 @@ def _platform(disc: Array, scale: float, shift: Array) -> str:
         return ""
     at = _seen(disc)[:, :2] * scale + shift
     below = _seen(disc - [0.0, 0.0, 0.035 * float(np.ptp(disc[:, 0]))])[:, :2] * scale + shift
-    return (
-        f'<path class="platform-side" d="{svg.path_data(*below.T)}Z"/><path class="platform" d="{svg.path_data(*at.T)}Z"/>'
-    )
+    return f'<path class="platform-side" d="{svg.path_data(*below.T)}Z"/><path class="platform" d="{svg.path_data(*at.T)}Z"/>'
 
 
-def _half(points: Array, step: int, scale: float, shift: Array, stroke: str, towards: Array, near: bool) -> str:
+def _half(
+    points: Array, step: int, scale: float, shift: Array, stroke: str, towards: Array, near: bool
+) -> str:
     """The part of a bead that faces the eye or the part that faces away."""
     kept = slice(None) if step == 1 else np.unique(np.r_[0 : len(points) : step, len(points) - 1])
     seen, towards = _seen(points[kept]), towards[kept]
@@ -146,11 +172,18 @@ def _half(points: Array, step: int, scale: float, shift: Array, stroke: str, tow
     mine |= np.roll(mine, 1) & np.r_[False, np.ones(len(mine) - 1, dtype=bool)]  # joins the halves
     at = np.where(mine[:, None], seen[:, :2] * scale + shift, np.nan)
     data = svg.path_data(*at.T)
-    return f'<path class="{"near" if near else "far"}" stroke="{stroke}" d="{data}"/>' if data else ""
+    return (
+        f'<path class="{"near" if near else "far"}" stroke="{stroke}" d="{data}"/>' if data else ""
+    )
 
 
 def _directions(
-    beads: list[tuple[int, Array, Array]], facing: list[Array], every: int, length: float, scale: float, shift: Array
+    beads: list[tuple[int, Array, Array]],
+    facing: list[Array],
+    every: int,
+    length: float,
+    scale: float,
+    shift: Array,
 ) -> str:
     points = np.concatenate([points for _, points, _ in beads])[::every]
     build = np.concatenate([build for _, _, build in beads])[::every]
@@ -165,7 +198,9 @@ def _directions(
 
 def _scale_bar(last: int) -> str:
     x, top, height = WIDTH - MARGIN - 16, 120, HEIGHT - 240
-    stops = "".join(f'<stop offset="{i * 10}%" stop-color="{shade(1 - i / 10)}"/>' for i in range(11))
+    stops = "".join(
+        f'<stop offset="{i * 10}%" stop-color="{shade(1 - i / 10)}"/>' for i in range(11)
+    )
     return (
         f'<defs><linearGradient id="layers" x1="0" y1="0" x2="0" y2="1">{stops}</linearGradient></defs>'
         f'<rect x="{x}" y="{top}" width="14" height="{height}" rx="3" fill="url(#layers)"/>'

@@ -15,7 +15,9 @@ from freecad_am.plots.look import shade
 from . import svg, view
 
 TITLES = {
-    "iso-parameter": "Iso-parameter", NORMAL: "Normal to the centreline", "constant-distance": "Constant distance",
+    "iso-parameter": "Iso-parameter",
+    NORMAL: "Normal to the centreline",
+    "constant-distance": "Constant distance",
     "smooth": "Smooth",
 }
 _MOST_LAYERS = 24  # curves in one plot
@@ -32,7 +34,10 @@ def distance_plots(compared: Sequence[Compared], asked: float) -> list[str]:
     plots = []
     for one in compared:
         plot = svg.Plot(
-            f"{TITLES[one.method]}: {one.least:.4g} to {one.most:.4g} mm", _SPAN, (low - pad, high + pad), _AROUND,
+            f"{TITLES[one.method]}: {one.least:.4g} to {one.most:.4g} mm",
+            _SPAN,
+            (low - pad, high + pad),
+            _AROUND,
             "local distance, mm",
         )
         _layers(plot, [360.0 * around for around in one.around], one.distance)
@@ -44,10 +49,16 @@ def distance_plots(compared: Sequence[Compared], asked: float) -> list[str]:
 def step_plot(one: Compared, asked: float) -> str:
     """How far each layer lies above the one below along the lines up the wall, in % of the layer height (figure 9)."""
     steps = [100.0 * step / asked for step in one.step]
-    low, high = (float(f([f(step[np.isfinite(step)]) for step in steps if np.isfinite(step).any()])) for f in (min, max))
+    low, high = (
+        float(f([f(step[np.isfinite(step)]) for step in steps if np.isfinite(step).any()]))
+        for f in (min, max)
+    )
     pad = max(0.08 * (high - low), 1.0)
     plot = svg.Plot(
-        f"\u0394 up the lines v = const: {low:.0f} to {high:.0f} %", _SPAN, (low - pad, high + pad), _AROUND,
+        f"\u0394 up the lines v = const: {low:.0f} to {high:.0f} %",
+        _SPAN,
+        (low - pad, high + pad),
+        _AROUND,
         "% of the layer height",
     )
     _layers(plot, [360.0 * around for around in one.around], steps)
@@ -61,13 +72,18 @@ def deposit_plot(toolpath: Toolpath, local: Sequence[Array]) -> str:
         run = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))]
         places.append(100.0 * run / max(run[-1], 1e-9))
         values.append(local[number])
-    finite = np.concatenate([one[np.isfinite(one)] for one in values] or [np.array([toolpath.layer_height])])
+    finite = np.concatenate(
+        [one[np.isfinite(one)] for one in values] or [np.array([toolpath.layer_height])]
+    )
     if not len(finite):
         finite = np.array([toolpath.layer_height])
     pad = max(0.1 * float(np.ptp(finite)), 0.002 * toolpath.layer_height)
     plot = svg.Plot(
-        "As deposited, along each bead", (0.0, 100.0), (float(finite.min()) - pad, float(finite.max()) + pad),
-        "% of the length of the bead", "local distance, mm",
+        "As deposited, along each bead",
+        (0.0, 100.0),
+        (float(finite.min()) - pad, float(finite.max()) + pad),
+        "% of the length of the bead",
+        "local distance, mm",
     )
     _layers(plot, places, values, names)
     plot.rule(toolpath.layer_height, f"asked: {toolpath.layer_height:g}")
@@ -82,11 +98,19 @@ def both_paths(compared: Sequence[Compared]) -> str:
     groups = []
     for method, stroke in (("iso-parameter", _BEFORE), ("constant-distance", _AFTER)):
         curves = known[method].curves
-        groups.append((f"{method}: {known[method].layers} layers", stroke, [curves[i] for i in _some(len(curves), 40)]))
+        groups.append(
+            (
+                f"{method}: {known[method].layers} layers",
+                stroke,
+                [curves[i] for i in _some(len(curves), 40)],
+            )
+        )
     return view.overlaid(groups)
 
 
-def _layers(plot: svg.Plot, x: Sequence[Array], y: Sequence[Array], layer: Sequence[int] | None = None) -> None:
+def _layers(
+    plot: svg.Plot, x: Sequence[Array], y: Sequence[Array], layer: Sequence[int] | None = None
+) -> None:
     numbers = list(range(1, len(y) + 1)) if layer is None else list(layer)
     last = max(1, max(numbers))
     kept = set(_some(len(y), _MOST_LAYERS))
@@ -94,7 +118,12 @@ def _layers(plot: svg.Plot, x: Sequence[Array], y: Sequence[Array], layer: Seque
     kept |= {int(np.argmin([np.nanmin(one, initial=np.inf) for one in y]))}
     for i in sorted(kept):
         if np.isfinite(y[i]).any():
-            plot.curve(*svg.thinned(x[i], y[i], _COLUMNS), shade(0.92 * numbers[i] / last), f"layer {numbers[i]}", 1.2)
+            plot.curve(
+                *svg.thinned(x[i], y[i], _COLUMNS),
+                shade(0.92 * numbers[i] / last),
+                f"layer {numbers[i]}",
+                1.2,
+            )
 
 
 def _some(count: int, most: int) -> list[int]:

@@ -55,16 +55,26 @@ def _of_section(section: Any) -> CellParameters:
     around = section.pop("obstacles", None)
     if around not in (None, []):
         section["obstacles"] = _obstacles(around)
-    if isinstance(section.get("nozzle"), dict) and section["nozzle"].get("shape") not in (None, {}, NO_SHAPE):
+    if isinstance(section.get("nozzle"), dict) and section["nozzle"].get("shape") not in (
+        None,
+        {},
+        NO_SHAPE,
+    ):
         section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"])}
     if section.get("touched") not in (None, []):
         section["touched"] = _touched(section["touched"])
     if isinstance(section.get("world_up"), list):
-        numbers = [quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
+        numbers = [
+            quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]
+        ]
         section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
     cell = fields.build(CellParameters, section, "cell")
     arrangement.planned_of(cell.setup)
-    return cell if section.get("deposition_point") is not None else _proposed(cell, section.get("branch") is not None)
+    return (
+        cell
+        if section.get("deposition_point") is not None
+        else _proposed(cell, section.get("branch") is not None)
+    )
 
 
 def _proposed(cell: CellParameters, own_branch: bool) -> CellParameters:
@@ -84,19 +94,32 @@ def _machine(value: Any, key: str = "cell.machine") -> Any:
     these with the calibration of a robot."""
     if isinstance(value, dict) and value:
         fields.known_keys(value, ("file", "base", "tip", "name", "calibration"), key)
-        texts = {name: fields.text(one, f"{key}.{name}").strip() for name, one in value.items() if one is not None}
+        texts = {
+            name: fields.text(one, f"{key}.{name}").strip()
+            for name, one in value.items()
+            if one is not None
+        }
         if "calibration" in texts or "name" in texts:
             if set(texts) != {"name", "calibration"}:
-                raise InputError("BAD_VALUE", "cell.machine", "a calibration is that of a machine; write machine: {name: "
-                                 "ur-ur10e, calibration: my_robot.yaml}")
+                raise InputError(
+                    "BAD_VALUE",
+                    "cell.machine",
+                    "a calibration is that of a machine; write machine: {name: "
+                    "ur-ur10e, calibration: my_robot.yaml}",
+                )
             return str(calibration.Named(texts["name"], texts["calibration"]))
         if "file" not in texts:
-            raise InputError("BAD_VALUE", f"{key}.file", "there is no file; write machine: {file: robot.urdf}")
+            raise InputError(
+                "BAD_VALUE", f"{key}.file", "there is no file; write machine: {file: robot.urdf}"
+            )
         meant = urdf_reference.reference(texts["file"])
         if meant is None or len(texts["file"]) != len(meant.file):
             raise InputError(
-                "BAD_VALUE", f"{key}.file", "{} is not a URDF, and only a URDF has links; write machine: {{file: "
-                "robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces", texts["file"],
+                "BAD_VALUE",
+                f"{key}.file",
+                "{} is not a URDF, and only a URDF has links; write machine: {{file: "
+                "robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces",
+                texts["file"],
             )
         return str(urdf_reference.Reference(meant.file, texts.get("base"), texts.get("tip")))
     return value
@@ -105,9 +128,15 @@ def _machine(value: Any, key: str = "cell.machine") -> Any:
 def _external(value: Any) -> str:
     """What `cell.external` says as the text that a cell keeps."""
     if not isinstance(value, list):
-        raise InputError("BAD_VALUE", external.WHERE, "give a list such as - {machine: motoman-motopos-d500, pose: "
-                         "[1500, 0, 0, 0, 0, 0], carries: part}")
-    return f"{external.MORE} ".join(str(_one_external(one, f"{external.WHERE}[{k}]")) for k, one in enumerate(value))
+        raise InputError(
+            "BAD_VALUE",
+            external.WHERE,
+            "give a list such as - {machine: motoman-motopos-d500, pose: "
+            "[1500, 0, 0, 0, 0, 0], carries: part}",
+        )
+    return f"{external.MORE} ".join(
+        str(_one_external(one, f"{external.WHERE}[{k}]")) for k, one in enumerate(value)
+    )
 
 
 def _one_external(value: Any, key: str) -> external.External:
@@ -129,8 +158,12 @@ def _shape(value: Any) -> str:
         value, key = value.get("file"), f"{key}.file"
     file = fields.text(value, key)
     if not is_there(file):
-        raise InputError("NO_FILE", key, "there is no file {}; check the path, relative to the file with it",
-                         file)
+        raise InputError(
+            "NO_FILE",
+            key,
+            "there is no file {}; check the path, relative to the file with it",
+            file,
+        )
     return file
 
 
@@ -139,20 +172,30 @@ def _touched(value: Any) -> str:
     if isinstance(value, str):
         return value
     if not isinstance(value, list):
-        raise InputError("BAD_VALUE", touched.WHERE, "give a list such as - {part: [0, 0, 0], robot: [900.4, 2.1, -99.7]}")
+        raise InputError(
+            "BAD_VALUE",
+            touched.WHERE,
+            "give a list such as - {part: [0, 0, 0], robot: [900.4, 2.1, -99.7]}",
+        )
     found = []
     for number, one in enumerate(value):
         key = f"{touched.WHERE}[{number}]"
         section = fields.mapping(one, key)
         fields.known_keys(section, ("part", "robot"), key)
-        found.append(touched.Touched(*(_point(section.get(name), f"{key}.{name}") for name in ("part", "robot"))))
+        found.append(
+            touched.Touched(
+                *(_point(section.get(name), f"{key}.{name}") for name in ("part", "robot"))
+            )
+        )
     return f"{touched.MORE} ".join(map(str, found))
 
 
 def _point(value: Any, key: str) -> touched.Point:
     """Three lengths of a job file."""
     if not isinstance(value, list) or len(value) != 3:
-        raise InputError("BAD_VALUE", key, "{} is not a point; give [x, y, z]", quantity.shown(value))
+        raise InputError(
+            "BAD_VALUE", key, "{} is not a point; give [x, y, z]", quantity.shown(value)
+        )
     x, y, z = (quantity.read(number, f.LENGTH, key) for number in value)
     return x, y, z
 
@@ -162,17 +205,24 @@ def _pose(value: Any, key: str) -> external.Pose:
     if (shown := fields.as_shown(value, key)) is not None:
         return shown
     if not isinstance(value, list) or len(value) != 6:
-        raise InputError("BAD_VALUE", key, "{} is not a pose; give [x, y, z, RX, RY, RZ]", quantity.shown(value))
+        raise InputError(
+            "BAD_VALUE", key, "{} is not a pose; give [x, y, z, RX, RY, RZ]", quantity.shown(value)
+        )
     kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
-    x, y, z, a, b, c = (quantity.read(number, kind, key) for number, kind in zip(value, kinds, strict=True))
+    x, y, z, a, b, c = (
+        quantity.read(number, kind, key) for number, kind in zip(value, kinds, strict=True)
+    )
     return x, y, z, a, b, c
 
 
 def _obstacles(value: Any) -> str:
     """What `cell.obstacles` says as the text that a cell keeps."""
     if not isinstance(value, list):
-        raise InputError("BAD_VALUE", obstacles.WHERE, "give a list such as - {file: table.step, pose: [0, 0, "
-                         "-200, 0, 0, 0]}")
+        raise InputError(
+            "BAD_VALUE",
+            obstacles.WHERE,
+            "give a list such as - {file: table.step, pose: [0, 0, -200, 0, 0, 0]}",
+        )
     found = [_obstacle(one, f"{obstacles.WHERE}[{k}]", k + 1) for k, one in enumerate(value)]
     return f"{obstacles.MORE} ".join(map(str, found))
 
@@ -184,16 +234,28 @@ def _obstacle(value: Any, key: str, number: int) -> obstacles.Obstacle:
     if section.get("file") is not None:
         file = fields.text(section["file"], f"{key}.file")
         if not is_there(file):
-            raise InputError("NO_FILE", f"{key}.file", "there is no file {}; check the path, relative to the file with it",
-                             file)
+            raise InputError(
+                "NO_FILE",
+                f"{key}.file",
+                "there is no file {}; check the path, relative to the file with it",
+                file,
+            )
     edges = section.get("box")
     if edges is not None:
         if not isinstance(edges, list) or len(edges) != 3:
-            raise InputError("BAD_VALUE", f"{key}.box", "{} is not a box; give its edges along x, y and z such as [1200, "
-                             "800, 30]", quantity.shown(edges))
+            raise InputError(
+                "BAD_VALUE",
+                f"{key}.box",
+                "{} is not a box; give its edges along x, y and z such as [1200, 800, 30]",
+                quantity.shown(edges),
+            )
         width, depth, height = (quantity.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
         size = (width, depth, height)
     name = section.get("name")
-    called = obstacles.usual_name(file, number) if name is None else fields.text(name, f"{key}.name").strip()
+    called = (
+        obstacles.usual_name(file, number)
+        if name is None
+        else fields.text(name, f"{key}.name").strip()
+    )
     pose = _pose(section["pose"], f"{key}.pose") if section.get("pose") is not None else (0.0,) * 6
     return obstacles.Obstacle(called, pose, file, size)

@@ -21,7 +21,9 @@ Parameters = TypeVar("Parameters")
 _BOUND = 1e9  # a quantity beyond is a slip of the pen, and its square must stay finite
 
 
-def build(factory: type[Parameters], values: Any, prefix: str, also: Iterable[str] = ()) -> Parameters:
+def build(
+    factory: type[Parameters], values: Any, prefix: str, also: Iterable[str] = ()
+) -> Parameters:
     """A `factory` from the mapping `values`; keys left out keep their default, keys in `also` are ignored.
 
     Raises InputError whose place is the dotted key: UNKNOWN_KEY, BAD_VALUE, BAD_UNIT.
@@ -31,7 +33,8 @@ def build(factory: type[Parameters], values: Any, prefix: str, also: Iterable[st
     known_keys(section, (*fields, *also), prefix)
     given = {
         name: _value(f.spec_of(field), field, section[name], f"{prefix}.{name}")
-        for name, field in fields.items() if name in section
+        for name, field in fields.items()
+        if name in section
     }
     return factory(**given)
 
@@ -39,7 +42,13 @@ def build(factory: type[Parameters], values: Any, prefix: str, also: Iterable[st
 def mapping(values: Any, prefix: str) -> dict[str, Any]:
     """`values` if it is a mapping. Raises InputError BAD_VALUE otherwise."""
     if not isinstance(values, dict):
-        raise InputError("BAD_VALUE", prefix, "{} is not a section; write keys below {}:", quantity.shown(values), prefix)
+        raise InputError(
+            "BAD_VALUE",
+            prefix,
+            "{} is not a section; write keys below {}:",
+            quantity.shown(values),
+            prefix,
+        )
     return values
 
 
@@ -63,7 +72,12 @@ def unknown_key(dotted: str, key: str, known: tuple[str, ...]) -> InputError:
 def text(value: Any, key: str) -> str:
     """`value` if it is a text that is not empty. Raises InputError BAD_VALUE otherwise."""
     if not isinstance(value, str) or not value.strip():
-        raise InputError("BAD_VALUE", key, "{} is not a text; give one, in quotes where it is a number", _shown(value))
+        raise InputError(
+            "BAD_VALUE",
+            key,
+            "{} is not a text; give one, in quotes where it is a number",
+            _shown(value),
+        )
     return value
 
 
@@ -82,7 +96,9 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
     if spec.kind == f.POSE or spec.kind in f.END_OF:
         wanted = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
         also = Text.joined("", (Text(" or {}", word) for word in spec.words))
-        raise InputError("BAD_VALUE", key, "{} is not a list; give {}{}", _shown(value), Word(wanted), also)
+        raise InputError(
+            "BAD_VALUE", key, "{} is not a list; give {}{}", _shown(value), Word(wanted), also
+        )
     if spec.kind in quantity.WANTED:
         return _number(value, spec, key)
     return _plain(spec, value, key)
@@ -95,7 +111,13 @@ def _is_pose(spec: f.Spec, field: dataclasses.Field[Any]) -> bool:
 
 def as_shown(value: Any, key: str) -> tuple[float, float, float, float, float, float] | None:
     """The pose that a text or list says as a pendant shows it, mm and rad: kuka 1000 0 300 90 0 0; None of other values."""
-    words = value.split() if isinstance(value, str) else list(map(str, value)) if isinstance(value, list) else []
+    words = (
+        value.split()
+        if isinstance(value, str)
+        else list(map(str, value))
+        if isinstance(value, list)
+        else []
+    )
     return pendants.six(words, key) if pendants.named(words) else None
 
 
@@ -103,9 +125,13 @@ def _plain(spec: f.Spec, value: Any, key: str) -> Any:
     if spec.kind == f.CHOICE and value not in spec.choices:
         raise _unknown_choice(key, value, spec.choices)
     if spec.kind == f.FLAG and not isinstance(value, bool):
-        raise InputError("BAD_VALUE", key, "{} is neither true nor false; give one of them", _shown(value))
+        raise InputError(
+            "BAD_VALUE", key, "{} is neither true nor false; give one of them", _shown(value)
+        )
     if spec.kind == f.COUNT and (isinstance(value, bool) or not isinstance(value, int)):
-        raise InputError("BAD_VALUE", key, "{} is not a whole number; give one such as 3", _shown(value))
+        raise InputError(
+            "BAD_VALUE", key, "{} is not a whole number; give one such as 3", _shown(value)
+        )
     if spec.kind == f.TEXT:
         return text(value, key)
     return value
@@ -116,20 +142,37 @@ def _unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputErro
 
     near = difflib.get_close_matches(str(value).lower().replace("_", "-"), choices, n=1)
     hint = Text("did you mean {}? ", near[0]) if near else ""
-    return InputError("BAD_VALUE", key, "{} is not known; {}use one of {}", _shown(value), Word(hint), ", ".join(choices))
+    return InputError(
+        "BAD_VALUE",
+        key,
+        "{} is not known; {}use one of {}",
+        _shown(value),
+        Word(hint),
+        ", ".join(choices),
+    )
 
 
 def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: str) -> Any:
     if _is_pose(spec, field):
         if len(value) != 6:
-            raise InputError("BAD_VALUE", key, "a pose has six numbers, not {}; give [x, y, z, RX, RY, RZ]", len(value))
+            raise InputError(
+                "BAD_VALUE",
+                key,
+                "a pose has six numbers, not {}; give [x, y, z, RX, RY, RZ]",
+                len(value),
+            )
         kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
         return tuple(_finite(number, kind, key) for number, kind in zip(value, kinds))
     if spec.kind in f.END_OF:
         if len(value) != 2:
             what = "angles" if spec.kind == f.ANGLE_RANGE else "percentages"
-            raise InputError("BAD_VALUE", key, "a range has two {}, not {}; give [smallest, largest]", Word(what),
-                             len(value))
+            raise InputError(
+                "BAD_VALUE",
+                key,
+                "a range has two {}, not {}; give [smallest, largest]",
+                Word(what),
+                len(value),
+            )
         return tuple(_finite(number, f.END_OF[spec.kind], key) for number in value)
     if spec.kind == f.TEXT and "tuple" in str(field.type):
         return tuple(text(word, key) for word in value)
@@ -138,8 +181,14 @@ def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: st
 
 def _number(value: Any, spec: f.Spec, key: str) -> float:
     if isinstance(value, str) and spec.words and not any(sign.isdigit() for sign in value):
-        raise InputError("BAD_VALUE", key, "{} is not known; give {} or {}", _shown(value), Text.joined(" or ", spec.words),
-                         quantity.WANTED[spec.kind][1])
+        raise InputError(
+            "BAD_VALUE",
+            key,
+            "{} is not known; give {} or {}",
+            _shown(value),
+            Text.joined(" or ", spec.words),
+            quantity.WANTED[spec.kind][1],
+        )
     return _finite(value, spec.kind, key)
 
 
@@ -148,7 +197,9 @@ def _finite(value: Any, kind: str, key: str) -> float:
         raise InputError("BAD_VALUE", key, "there is no value; give {}", quantity.WANTED[kind][1])
     number = quantity.read(value, kind, key)
     if abs(number) > _BOUND:
-        raise InputError("BAD_VALUE", key, "{} is too large; give {}", _shown(value), quantity.WANTED[kind][1])
+        raise InputError(
+            "BAD_VALUE", key, "{} is too large; give {}", _shown(value), quantity.WANTED[kind][1]
+        )
     return number
 
 

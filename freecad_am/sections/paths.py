@@ -19,7 +19,10 @@ from ..core.process.model import bead_table
 EACH = "[]"
 FEATURES = "features"
 OF_FEATURE = (
-    ("part", "file"), ("substrate", "file"), ("substrate", "scan"), ("fixtures", EACH, "file"),
+    ("part", "file"),
+    ("substrate", "file"),
+    ("substrate", "scan"),
+    ("fixtures", EACH, "file"),
     ("strategy", "guide", "file"),
 )
 
@@ -50,25 +53,40 @@ def of_job(values: dict[str, Any], folder: str) -> dict[str, Any]:
 
 def of_cell(section: Any, folder: str) -> Any:
     """The section `cell` of a file in `folder` with absolute names of files; where it names a cell file, that name."""
+
     def at(file: str) -> str:
         return absolute(file.strip(), folder)
 
     machine = partial(_machine, at)
     section = _changed(section, (), at)
     for keys in (("machine",), ("external", EACH, "machine")):
-        section = _changed(_changed(section, keys, machine), keys, partial(_described, at, machine), dict)
+        section = _changed(
+            _changed(section, keys, machine), keys, partial(_described, at, machine), dict
+        )
     section = _changed(section, ("obstacles", EACH, "file"), at)
-    section = _changed(section, ("nozzle", "shape"), lambda shape: shape if shape == NO_SHAPE else at(shape))
+    section = _changed(
+        section, ("nozzle", "shape"), lambda shape: shape if shape == NO_SHAPE else at(shape)
+    )
     return _changed(section, ("nozzle", "shape", "file"), at)
 
 
-def _changed(value: Any, keys: tuple[str, ...], change: Callable[[Any], Any], kind: type = str) -> Any:
+def _changed(
+    value: Any, keys: tuple[str, ...], change: Callable[[Any], Any], kind: type = str
+) -> Any:
     """A value with another one at these keys, where there is one of the kind and not empty; the value itself stays."""
     if not keys:
-        return change(value) if isinstance(value, kind) and (value.strip() if isinstance(value, str) else value) else value
+        return (
+            change(value)
+            if isinstance(value, kind) and (value.strip() if isinstance(value, str) else value)
+            else value
+        )
     key, rest = keys[0], keys[1:]
     if key == EACH:
-        return [_changed(one, rest, change, kind) for one in value] if isinstance(value, list) else value
+        return (
+            [_changed(one, rest, change, kind) for one in value]
+            if isinstance(value, list)
+            else value
+        )
     if not isinstance(value, dict) or key not in value:
         return value
     return {**value, key: _changed(value[key], rest, change, kind)}
@@ -96,7 +114,9 @@ def _machine(at: Callable[[str], str], text: str) -> str:
     return at(text) if os.sep in text or text.lower().endswith(".json") else text
 
 
-def _described(at: Callable[[str], str], machine: Callable[[str], str], section: dict[str, Any]) -> dict[str, Any]:
+def _described(
+    at: Callable[[str], str], machine: Callable[[str], str], section: dict[str, Any]
+) -> dict[str, Any]:
     """The same of a machine that is a section of its own."""
     section = _changed(_changed(section, ("name",), machine), ("calibration",), at)
     return _changed(section, ("file",), partial(_urdf, at))

@@ -19,12 +19,30 @@ Dimension = tuple[int, int, int]  # powers of length, time and angle
 
 LENGTH, TIME, ANGLE, NONE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
 UNITS: dict[str, tuple[float, Dimension]] = {
-    "nm": (1e-6, LENGTH), "um": (1e-3, LENGTH), "\u00b5m": (1e-3, LENGTH), "\u03bcm": (1e-3, LENGTH),
-    "mm": (1.0, LENGTH), "cm": (10.0, LENGTH), "dm": (100.0, LENGTH), "m": (1e3, LENGTH), "km": (1e6, LENGTH),
-    "in": (25.4, LENGTH), '"': (25.4, LENGTH), "ft": (304.8, LENGTH), "'": (304.8, LENGTH), "yd": (914.4, LENGTH),
-    "thou": (0.0254, LENGTH), "mil": (0.0254, LENGTH),
-    "ms": (1e-3, TIME), "s": (1.0, TIME), "min": (60.0, TIME), "h": (3600.0, TIME),
-    "deg": (1.0, ANGLE), "\u00b0": (1.0, ANGLE), "rad": (180.0 / math.pi, ANGLE), "gon": (0.9, ANGLE),
+    "nm": (1e-6, LENGTH),
+    "um": (1e-3, LENGTH),
+    "\u00b5m": (1e-3, LENGTH),
+    "\u03bcm": (1e-3, LENGTH),
+    "mm": (1.0, LENGTH),
+    "cm": (10.0, LENGTH),
+    "dm": (100.0, LENGTH),
+    "m": (1e3, LENGTH),
+    "km": (1e6, LENGTH),
+    "in": (25.4, LENGTH),
+    '"': (25.4, LENGTH),
+    "ft": (304.8, LENGTH),
+    "'": (304.8, LENGTH),
+    "yd": (914.4, LENGTH),
+    "thou": (0.0254, LENGTH),
+    "mil": (0.0254, LENGTH),
+    "ms": (1e-3, TIME),
+    "s": (1.0, TIME),
+    "min": (60.0, TIME),
+    "h": (3600.0, TIME),
+    "deg": (1.0, ANGLE),
+    "\u00b0": (1.0, ANGLE),
+    "rad": (180.0 / math.pi, ANGLE),
+    "gon": (0.9, ANGLE),
 }
 WANTED: dict[str, tuple[Dimension, str]] = {
     f.LENGTH: (LENGTH, "a length such as 1 mm"),
@@ -36,12 +54,17 @@ WANTED: dict[str, tuple[Dimension, str]] = {
     f.NUMBER: (NONE, "a number without a unit such as 0.1"),
 }
 DIMENSION_NAMES = {
-    LENGTH: "is a length", TIME: "is a time", ANGLE: "is an angle", (1, -1, 0): "is a speed",
-    (-1, 0, 1): "is a turn per length", NONE: "is without unit",
+    LENGTH: "is a length",
+    TIME: "is a time",
+    ANGLE: "is an angle",
+    (1, -1, 0): "is a speed",
+    (-1, 0, 1): "is a turn per length",
+    NONE: "is without unit",
 }
 _UNIT = "[^\\s\\d/*^+().,%-]+"
 _SIMPLE = re.compile(
-    rf"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?:({_UNIT})(?:\s*/\s*({_UNIT}))?|(%))?", re.ASCII
+    rf"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?:({_UNIT})(?:\s*/\s*({_UNIT}))?|(%))?",
+    re.ASCII,
 )
 _FOREIGN = re.compile("[^A-Za-z0-9\\s.+*/^()'\"\u00b5\u00b0\u2032\u2033-]")
 _INFINITE = re.compile(r"([+-]?)\.?inf(?:\s*[a-z/\u00b0]+)?", re.IGNORECASE)
@@ -82,7 +105,11 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
     text = text.strip()
     if "," in text:
         raise InputError(
-            "BAD_VALUE", key, "{} has a comma; write decimals with a point, such as {}", shown(text), text.replace(",", ".")
+            "BAD_VALUE",
+            key,
+            "{} has a comma; write decimals with a point, such as {}",
+            shown(text),
+            text.replace(",", "."),
         )
     infinite = _INFINITE.fullmatch(text)
     if infinite:
@@ -111,10 +138,14 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
 
 def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimension | None]:
     """The same by FreeCAD's own parser, for expressions and rare units."""
-    wrong = InputError("BAD_UNIT", key, "{} is not a quantity with a known unit; give {}", shown(text), example)
+    wrong = InputError(
+        "BAD_UNIT", key, "{} is not a quantity with a known unit; give {}", shown(text), example
+    )
     if not text:
         raise InputError("BAD_VALUE", key, "there is no value; give {}", example)
-    if _FOREIGN.search(text):  # FreeCAD passes over signs it does not know, which changes the meaning
+    if _FOREIGN.search(
+        text
+    ):  # FreeCAD passes over signs it does not know, which changes the meaning
         raise wrong
     try:
         import FreeCAD
@@ -123,9 +154,17 @@ def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimens
     try:
         quantity = FreeCAD.Units.Quantity(text)
         length, _, time, _, _, _, _, angle = quantity.Unit.Signature
-    except (ValueError, ArithmeticError, RuntimeError):  # FreeCAD's versions differ in what they raise
+    except (
+        ValueError,
+        ArithmeticError,
+        RuntimeError,
+    ):  # FreeCAD's versions differ in what they raise
         raise wrong from None
-    if not math.isfinite(quantity.Value) or quantity.Unit.Signature[1] or any(quantity.Unit.Signature[3:7]):
+    if (
+        not math.isfinite(quantity.Value)
+        or quantity.Unit.Signature[1]
+        or any(quantity.Unit.Signature[3:7])
+    ):
         raise wrong
     dimension = (length, time, angle)
     return quantity.Value, None if dimension == NONE else dimension

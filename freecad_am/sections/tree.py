@@ -43,7 +43,9 @@ class Tree:
 
     def placed(self, error: InputError) -> InputError:
         """An error about a dotted key as one about this file."""
-        return InputError(error.code, self.where(error.where), self.with_line(error.where, error.message))
+        return InputError(
+            error.code, self.where(error.where), self.with_line(error.where, error.message)
+        )
 
 
 def read(path: str, least: str = "part: {file: ...}", keys: str = "part and strategy") -> Tree:
@@ -56,14 +58,20 @@ def read(path: str, least: str = "part: {file: ...}", keys: str = "part and stra
     try:
         import yaml
     except ImportError:
-        raise InputError("BAD_FILE", label, "this Python cannot read YAML; install PyYAML into it") from None
+        raise InputError(
+            "BAD_FILE", label, "this Python cannot read YAML; install PyYAML into it"
+        ) from None
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         node = yaml.compose(text, Loader=loader)
     except yaml.YAMLError as error:
-        raise InputError("BAD_FILE", label, "this is not YAML: {}; mend that place", _one_line(error)) from None
+        raise InputError(
+            "BAD_FILE", label, "this is not YAML: {}; mend that place", _one_line(error)
+        ) from None
     except RecursionError:
-        raise InputError("BAD_FILE", label, "this is nested too deeply; give keys such as {}", keys) from None
+        raise InputError(
+            "BAD_FILE", label, "this is nested too deeply; give keys such as {}", keys
+        ) from None
     if node is None:
         raise InputError("EMPTY_FILE", label, "the file is empty; give at least {}", least)
     tree = Tree(label, {})
@@ -81,8 +89,13 @@ def scalar(text: str, where: str) -> Any:
     try:
         node = yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.YAMLError as error:
-        raise InputError("BAD_VALUE", where, "{!r} is not understood: {}; write it as in a job file", text,
-                         _one_line(error)) from None
+        raise InputError(
+            "BAD_VALUE",
+            where,
+            "{!r} is not understood: {}; write it as in a job file",
+            text,
+            _one_line(error),
+        ) from None
     return None if node is None else _Reader(yaml, tree).value(node, "")
 
 
@@ -93,18 +106,28 @@ def text_of(path: str, label: str) -> str:
     except FileNotFoundError:
         raise InputError("NO_FILE", path, "there is no such file; check the path") from None
     except OSError as error:
-        raise InputError("NO_FILE", path, "the file cannot be read: {}; choose one that can", error.strerror) from None
+        raise InputError(
+            "NO_FILE", path, "the file cannot be read: {}; choose one that can", error.strerror
+        ) from None
     except UnicodeDecodeError as error:
         line = error.object[: error.start].count(b"\n") + 1
-        raise InputError("BAD_FILE", label, "the text is not UTF-8 (line {}); save it as UTF-8", line) from None
+        raise InputError(
+            "BAD_FILE", label, "the text is not UTF-8 (line {}); save it as UTF-8", line
+        ) from None
     except ValueError as error:
-        raise InputError("NO_FILE", path, "there can be no such file ({}); check the path", error) from None
+        raise InputError(
+            "NO_FILE", path, "there can be no such file ({}); check the path", error
+        ) from None
 
 
 def _one_line(error: Any) -> str:
     problem = getattr(error, "problem", None) or str(error).splitlines()[0]
     mark = getattr(error, "problem_mark", None)
-    return problem if mark is None else Text("{} (line {}, column {})", problem, mark.line + 1, mark.column + 1)
+    return (
+        problem
+        if mark is None
+        else Text("{} (line {}, column {})", problem, mark.line + 1, mark.column + 1)
+    )
 
 
 class _Reader:
@@ -121,15 +144,22 @@ class _Reader:
         for key_node, value_node in node.value:
             line = key_node.start_mark.line + 1
             if not isinstance(key_node, self.yaml.ScalarNode):
-                raise InputError("BAD_FILE", self.tree.where(prefix), "a key must be a word (line {}); write one before the "
-                                 "colon", line)
+                raise InputError(
+                    "BAD_FILE",
+                    self.tree.where(prefix),
+                    "a key must be a word (line {}); write one before the colon",
+                    line,
+                )
             key = key_node.value
             dotted = f"{prefix}.{key}" if prefix else key
             if key in values:
                 first = self.tree.lines[dotted]
                 raise InputError(
-                    "DUPLICATE_KEY", self.tree.where(dotted),
-                    "the key stands twice (lines {} and {}); remove one", first, line,
+                    "DUPLICATE_KEY",
+                    self.tree.where(dotted),
+                    "the key stands twice (lines {} and {}); remove one",
+                    first,
+                    line,
                 )
             self.tree.lines[dotted] = line
             values[key] = self.value(value_node, dotted)
@@ -139,13 +169,20 @@ class _Reader:
     def value(self, node: Any, key: str) -> Any:
         self.count += 1
         if self.count > _MOST_VALUES:
-            raise InputError("BAD_FILE", self.tree.where(key), "there are too many values; give at most {:,}", _MOST_VALUES)
+            raise InputError(
+                "BAD_FILE",
+                self.tree.where(key),
+                "there are too many values; give at most {:,}",
+                _MOST_VALUES,
+            )
         if isinstance(node, self.yaml.MappingNode):
             return self.mapping(node, key)
         if isinstance(node, self.yaml.SequenceNode):
             self._enter(node, key)
             values = [
-                self.value(item, f"{key}[{number}]" if isinstance(item, self.yaml.MappingNode) else key)
+                self.value(
+                    item, f"{key}[{number}]" if isinstance(item, self.yaml.MappingNode) else key
+                )
                 for number, item in enumerate(node.value)
             ]
             self.open.pop()
@@ -156,16 +193,26 @@ class _Reader:
         if node.tag not in (_TAG + "map", _TAG + "seq"):
             raise self._foreign_tag(node, key)
         if any(node is other for other in self.open):
-            raise InputError("BAD_FILE", self.tree.where(key), "an alias here stands for itself; write the value out")
+            raise InputError(
+                "BAD_FILE",
+                self.tree.where(key),
+                "an alias here stands for itself; write the value out",
+            )
         if len(self.open) >= _MOST_LEVELS:
-            raise InputError("BAD_FILE", self.tree.where(key), "this is nested too deeply; give at most {} levels",
-                             _MOST_LEVELS)
+            raise InputError(
+                "BAD_FILE",
+                self.tree.where(key),
+                "this is nested too deeply; give at most {} levels",
+                _MOST_LEVELS,
+            )
         self.open.append(node)
 
     def _scalar(self, node: Any, key: str) -> Any:
         tag, text = node.tag.replace(_TAG, ""), node.value
         if tag == "null":
-            return {} if text == "" else None  # "program:" is a section with its defaults, "program: null" is none
+            return (
+                {} if text == "" else None
+            )  # "program:" is a section with its defaults, "program: null" is none
         if tag == "bool":
             return text.lower() in ("true", "yes", "on")
         if tag == "int" and _INTEGER.fullmatch(text):

@@ -23,7 +23,11 @@ def pipe_bend() -> Any:
         circle = Part.Face(Part.Wire(Part.makeCircle(radius)))
         straight = circle.extrude(Vector(0, 0, STRAIGHT))
         circle.translate(Vector(0, 0, STRAIGHT))
-        found.append(straight.fuse(circle.revolve(Vector(BEND, 0, STRAIGHT), Vector(0, 1, 0), TURN)).removeSplitter())
+        found.append(
+            straight.fuse(
+                circle.revolve(Vector(BEND, 0, STRAIGHT), Vector(0, 1, 0), TURN)
+            ).removeSplitter()
+        )
     return found[0].cut(found[1]).Solids[0]
 
 
@@ -32,7 +36,10 @@ def rosette() -> str:
     angle = np.linspace(0.0, 2.0 * np.pi, POINTS + 1)
     angle[-1] = 0.0
     lines = ["x,y,z,bead"]
-    for bead, radius in ((1, ROSE + DEPTH * np.cos(LEAVES * angle)), (2, np.full(POINTS + 1, RING))):
+    for bead, radius in (
+        (1, ROSE + DEPTH * np.cos(LEAVES * angle)),
+        (2, np.full(POINTS + 1, RING)),
+    ):
         for x, y in np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1) + 0.0:
             lines.append(f"{x:.4f},{y:.4f},0,{bead}")
     return "\n".join(lines) + "\n"

@@ -48,12 +48,17 @@ def text() -> str:
     normal = np.column_stack([flat * np.cos(azimuth), flat * np.sin(azimuth), height]) / R0
     balls = normal * (R0 + deviations(height, azimuth, rng) + BALL)[:, None]
     tilt, turn = np.radians(0.4), np.radians(25.0)
-    about_x = np.array([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]])
-    about_z = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    about_x = np.array(
+        [[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]]
+    )
+    about_z = np.array(
+        [[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]
+    )
     seen = balls @ (about_z @ about_x).T + [2.4, -1.7, 0.9]
     lines = [
         "# SYNTHETIC: no part was measured. Made by inspection_points.py in the pattern of Chalvin 2020, section 6.2.",
-        "# centres of a ball of 1.5 mm radius; unit: mm", "x;y;z",
+        "# centres of a ball of 1.5 mm radius; unit: mm",
+        "x;y;z",
         *(";".join(f"{number:.4f}" for number in point) for point in seen),
     ]
     return "\n".join(lines) + "\n"

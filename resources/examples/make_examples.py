@@ -25,9 +25,16 @@ WALLS = step_files.HERE / "walls"
 THRUSTER = step_files.HERE / "thruster"
 ROTOR = step_files.HERE / "rotor"
 PLAIN = (
-    parts_of_revolution.hemisphere, parts_of_revolution.laval_nozzle, parts_of_revolution.intake_funnel,
-    tubes_on_pipes.tube_on_pipe, tubes_on_pipes.pipe, bracket_part.bracket,
-    wye_part.wye, finned_hub_part.finned_hub, curves_parts.pipe_bend, die_part.die,
+    parts_of_revolution.hemisphere,
+    parts_of_revolution.laval_nozzle,
+    parts_of_revolution.intake_funnel,
+    tubes_on_pipes.tube_on_pipe,
+    tubes_on_pipes.pipe,
+    bracket_part.bracket,
+    wye_part.wye,
+    finned_hub_part.finned_hub,
+    curves_parts.pipe_bend,
+    die_part.die,
 )
 ON_PARTS = {
     "wide-tube-on-pipe": tubes_on_pipes.wide_tube_on_pipe,

@@ -31,10 +31,13 @@ def laval_nozzle() -> Any:
         return Vector(math.sqrt(2.0 * rho * (z - theta)), 0, z)
 
     throat, step = x(-10.0, 100.0, 96.5), x(3.0, 85.0, 96.5)
-    return _turned([
-        _between(below, x(-10.0, 100.0, 0.0), throat), Part.makeLine(throat, step),
-        _between(above, step, x(3.0, 85.0, 128.0)),
-    ])
+    return _turned(
+        [
+            _between(below, x(-10.0, 100.0, 0.0), throat),
+            Part.makeLine(throat, step),
+            _between(above, step, x(3.0, 85.0, 128.0)),
+        ]
+    )
 
 
 def intake_funnel() -> Any:

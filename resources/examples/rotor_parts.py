@@ -25,7 +25,11 @@ def hub() -> Any:
 def blades() -> Any:
     """Three solids that stand on it."""
     around = Part.makeCylinder(TIP, 2 * TALL, Vector(0, 0, -0.5 * TALL))
-    bare = Part.makeLoft([_section(*section) for section in SECTIONS], True, True).common(around).cut(hub())
+    bare = (
+        Part.makeLoft([_section(*section) for section in SECTIONS], True, True)
+        .common(around)
+        .cut(hub())
+    )
     blade = max(bare.Solids, key=lambda solid: solid.Volume)
     turns = (Placement(Vector(), Rotation(UP, number * 360.0 / BLADES)) for number in range(BLADES))
     return Part.Compound([blade.transformed(turn.toMatrix(), False) for turn in turns])
@@ -35,5 +39,7 @@ def _section(x: float, chord: float, thick: float, stagger: float) -> Any:
     outline = Part.Ellipse(Vector(), 0.5 * chord, 0.5 * thick).toShape()
     lean = Rotation(Vector(1, 0, 0), stagger)
     along, across = lean.multVec(UP), lean.multVec(Vector(0, 1, 0))
-    outline.Placement = Placement(Vector(x, 0, MIDDLE), Rotation(along, across, along.cross(across), "XYZ"))
+    outline.Placement = Placement(
+        Vector(x, 0, MIDDLE), Rotation(along, across, along.cross(across), "XYZ")
+    )
     return Part.Wire([outline])

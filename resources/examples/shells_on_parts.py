@@ -26,7 +26,9 @@ def flared_shell() -> Any:
     middle = Part.makeCircle(17.0, Vector(0, 1, 46), Vector(0, -0.1, 1))
     high = Part.Ellipse(Vector(), 28.0, 18.0).toShape()
     high.Placement = Placement(Vector(4, 6, 74), Rotation(Vector(1, 0, 0), -15.0))
-    return _moved(Part.makeLoft([Part.Wire([edge]) for edge in (low, middle, high)], False, False), DOME_AT)
+    return _moved(
+        Part.makeLoft([Part.Wire([edge]) for edge in (low, middle, high)], False, False), DOME_AT
+    )
 
 
 def dome() -> Any:
@@ -37,7 +39,12 @@ def dome() -> Any:
 def spatial_pipe() -> Any:
     """A tube along a B-spline that is not plane."""
     spine = Part.BSplineCurve()
-    spine.interpolate([Vector(*point) for point in ((14, 0, 24), (30, 0, 40), (40, 8, 62), (38, 26, 80), (24, 44, 90))])
+    spine.interpolate(
+        [
+            Vector(*point)
+            for point in ((14, 0, 24), (30, 0, 40), (40, 8, 62), (38, 26, 80), (24, 44, 90))
+        ]
+    )
     start, tangent = spine.value(spine.FirstParameter), spine.tangent(spine.FirstParameter)[0]
     profile = Part.Wire([Part.makeCircle(10.0, start, tangent)])
     return Part.Wire([spine.toShape()]).makePipeShell([profile], False, False)
@@ -55,7 +62,8 @@ def elbow() -> Any:
     end = centre + Vector(radius * math.cos(angle), 0, radius * math.sin(angle))
     along = Vector(-math.sin(angle), 0, math.cos(angle))
     faces = [
-        _tube(tube, Vector(0, 0, -4), UP, height + 4.0), bend(radius, tube, 60.0, Vector(0, 0, height)),
+        _tube(tube, Vector(0, 0, -4), UP, height + 4.0),
+        bend(radius, tube, 60.0, Vector(0, 0, height)),
         _tube(tube, end, along, 15.0),
     ]
     shell = Part.makeShell(faces)
@@ -65,8 +73,17 @@ def elbow() -> Any:
 
 def elbow_block() -> Any:
     """The block it stands on, its top sloping."""
-    corners = [Vector(-30, -30, -20), Vector(30, -30, -20), Vector(30, -30, 3), Vector(-30, -30, -3)]
-    return _moved(Part.Face(Part.makePolygon([*corners, corners[0]])).extrude(Vector(0, 60, 0)), ELBOW_AT, ELBOW_TURNED)
+    corners = [
+        Vector(-30, -30, -20),
+        Vector(30, -30, -20),
+        Vector(30, -30, 3),
+        Vector(-30, -30, -3),
+    ]
+    return _moved(
+        Part.Face(Part.makePolygon([*corners, corners[0]])).extrude(Vector(0, 60, 0)),
+        ELBOW_AT,
+        ELBOW_TURNED,
+    )
 
 
 def half_shell() -> Any:
@@ -86,10 +103,16 @@ def branched_tube() -> Any:
     """A tube and a branch that leaves it at 50 deg, rounded where they meet: the skin of both, without its ends."""
     angle = math.radians(50.0)
     along = Vector(math.sin(angle), 0, math.cos(angle))
-    both = Part.makeCylinder(18.0, 86.0, Vector(0, 0, -4)).fuse(Part.makeCylinder(12.0, 84.0, Vector(0, 0, 22), along))
+    both = Part.makeCylinder(18.0, 86.0, Vector(0, 0, -4)).fuse(
+        Part.makeCylinder(12.0, 84.0, Vector(0, 0, 22), along)
+    )
     both = both.removeSplitter()
     meeting = [edge for edge in both.Edges if edge.Curve.TypeId == "Part::GeomBSplineCurve"]
-    faces = [face for face in both.makeFillet(8.0, meeting).Faces if face.Surface.TypeId != "Part::GeomPlane"]
+    faces = [
+        face
+        for face in both.makeFillet(8.0, meeting).Faces
+        if face.Surface.TypeId != "Part::GeomPlane"
+    ]
     return _moved(Part.Shell(faces), BRANCH_AT)
 
 

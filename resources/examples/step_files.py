@@ -22,9 +22,13 @@ Triangle = tuple[tuple[float, float, float], ...]
 def write_step(path: Path, shape: Any) -> None:
     """Write one part under the file's own name, which FreeCAD shows."""
     shape.exportStep(str(path))
-    text = path.read_text(encoding="latin-1")  # the exporter writes the path in the system's own way
+    text = path.read_text(
+        encoding="latin-1"
+    )  # the exporter writes the path in the system's own way
     name = _escaped(path.stem)
-    text = re.sub(r"FILE_NAME\('[^']*','[^']*'", lambda _: f"FILE_NAME('{name}','2020-01-01T00:00:00'", text)
+    text = re.sub(
+        r"FILE_NAME\('[^']*','[^']*'", lambda _: f"FILE_NAME('{name}','2020-01-01T00:00:00'", text
+    )
     text = re.sub(r"PRODUCT\('[^']*',\s*'[^']*'", lambda _: f"PRODUCT('{name}','{name}'", text)
     path.write_text(text, encoding="ascii")
 
@@ -32,9 +36,12 @@ def write_step(path: Path, shape: Any) -> None:
 def write_stl(path: Path, triangles: list[Triangle]) -> None:
     """Write triangles as a binary STL file, outside where they turn counter-clockwise."""
     records = [
-        struct.pack("<12fH", 0.0, 0.0, 0.0, *(number for point in triangle for number in point), 0) for triangle in triangles
+        struct.pack("<12fH", 0.0, 0.0, 0.0, *(number for point in triangle for number in point), 0)
+        for triangle in triangles
     ]
-    path.write_bytes(b"part of an example".ljust(80) + struct.pack("<I", len(triangles)) + b"".join(records))
+    path.write_bytes(
+        b"part of an example".ljust(80) + struct.pack("<I", len(triangles)) + b"".join(records)
+    )
 
 
 def _escaped(name: str) -> str:

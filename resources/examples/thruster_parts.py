@@ -42,7 +42,10 @@ GROUPS = (
 
 def spindle() -> Any:
     """Two cylinders and a truncated cone."""
-    low, middle = Part.makeCylinder(75.0, 140.0), Part.makeCylinder(CONE_RADIUS, 140.0, Vector(0, 0, 140))
+    low, middle = (
+        Part.makeCylinder(75.0, 140.0),
+        Part.makeCylinder(CONE_RADIUS, 140.0, Vector(0, 0, 140)),
+    )
     end = CONE_RADIUS * (1.0 - CONE_LENGTH / CONE_HEIGHT)
     cone = Part.makeCone(CONE_RADIUS, end, CONE_LENGTH, Vector(0, 0, CONE_AT))
     return low.fuse([middle, cone]).removeSplitter()
@@ -61,7 +64,9 @@ def _group(group: Blades, hub: Any) -> list[Any]:
     made = []
     for number in range(BLADES):
         turn = Placement(Vector(), Rotation(UP, number * 360.0 / BLADES))
-        made.append(outer.transformed(turn.toMatrix(), False))  # one shape, six times: a BREP file keeps it so
+        made.append(
+            outer.transformed(turn.toMatrix(), False)
+        )  # one shape, six times: a BREP file keeps it so
     return made
 
 

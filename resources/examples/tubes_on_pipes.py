@@ -11,7 +11,12 @@ from FreeCAD import Placement, Rotation, Vector
 
 import Part  # isort: skip  (after FreeCAD, it crashes before)
 
-BEND, TUBE, WIDE_TUBE, PIPE = 60.0, 15.0, 25.0, 32.0  # mm; bend radius, radii of the tubes, radius of the pipe below
+BEND, TUBE, WIDE_TUBE, PIPE = (
+    60.0,
+    15.0,
+    25.0,
+    32.0,
+)  # mm; bend radius, radii of the tubes, radius of the pipe below
 PIPE_LENGTH, PIPE_WALL = 120.0, 3.0  # mm
 SIDES = 240  # of the pipe as a mesh: its flats are 3 um inside of the cylinder
 SKEWED_AT = Vector(200, -120, 75)
@@ -38,12 +43,18 @@ def pipe() -> Any:
 
 def pipe_mesh() -> list[step_files.Triangle]:
     """The pipe as a poor export has it: closed, long thin triangles, and some that have no area."""
+
     def ring(radius: float, y: float) -> list[tuple[float, float, float]]:
         angles = [2.0 * math.pi * k / SIDES for k in range(SIDES)]
         return [(radius * math.sin(angle), y, radius * math.cos(angle)) for angle in angles]
 
     low, high = -0.5 * PIPE_LENGTH, 0.5 * PIPE_LENGTH
-    corners = [ring(PIPE, low), ring(PIPE, high), ring(PIPE - PIPE_WALL, high), ring(PIPE - PIPE_WALL, low)]
+    corners = [
+        ring(PIPE, low),
+        ring(PIPE, high),
+        ring(PIPE - PIPE_WALL, high),
+        ring(PIPE - PIPE_WALL, low),
+    ]
     triangles = []
     for here, there in zip(corners, [*corners[1:], corners[0]], strict=True):
         for k in range(SIDES):

@@ -46,13 +46,34 @@ from freecad_am.objects.toolpath import Toolpath  # noqa: E402
 LANGUAGES = ("fr",)
 WINDOW, PROPERTY, COMMAND = "RoboticAM", "App::Property", "RoboticAM_{}"
 STAGES = (
-    Cell, RevolutionFeature, SurfaceFeature, DevelopableFeature, SolidFeature, CladdingFeature, CurvesFeature, Toolpath,
-    JointPath, Program, Inspection,
+    Cell,
+    RevolutionFeature,
+    SurfaceFeature,
+    DevelopableFeature,
+    SolidFeature,
+    CladdingFeature,
+    CurvesFeature,
+    Toolpath,
+    JointPath,
+    Program,
+    Inspection,
 )
 # where messages come from that reach the window; `batch` speaks to a terminal alone
 SPEAKING = (
-    "core", "objects", "brep", "posts", "interop", "plots", "report/of_document.py", "gui", "api.py", "macro", "kdl",
-    "read_back", "verify.py", "sections",
+    "core",
+    "objects",
+    "brep",
+    "posts",
+    "interop",
+    "plots",
+    "report/of_document.py",
+    "gui",
+    "api.py",
+    "macro",
+    "kdl",
+    "read_back",
+    "verify.py",
+    "sections",
 )
 TITLES = ("core/inspection/table.py",)  # where single words are told too
 
@@ -76,10 +97,18 @@ class Collected:
             self._of_words(row, "freecad_am/core/parameters/place.py")
         for word in (*staleness.STATUSES, issues.ERROR, issues.WARNING, issues.NOTE):
             self.messages.setdefault(word, "freecad_am/objects/staleness.py")
-        for text in ("layer {0}", "layer {0} bead {1}", "layer {0} bead {1} point {2}", "layer {0} point {1}", "{0}: {1}"):
+        for text in (
+            "layer {0}",
+            "layer {0} bead {1}",
+            "layer {0} bead {1} point {2}",
+            "layer {0} point {1}",
+            "{0}: {1}",
+        ):
             self.messages.setdefault(text, "freecad_am/core/issues.py")
         for row in preferences.process_rows():
-            self.messages.setdefault(preferences.label(row), "freecad_am/objects/fields/preferences.py")
+            self.messages.setdefault(
+                preferences.label(row), "freecad_am/objects/fields/preferences.py"
+            )
         templates = Templates(self.code, TITLES)
         self.lost = templates.lost
         for template, place in templates.found.items():
@@ -88,23 +117,49 @@ class Collected:
     def _of_window(self, module: Module, place: str) -> None:
         """What is called `tr` or `marked`; texts of commands under the name of the command too, as FreeCAD wants them."""
         for call in calls_in(module.tree):
-            if called(call) in ("tr", "marked") and call.args and isinstance(call.args[0], ast.Constant):
+            if (
+                called(call) in ("tr", "marked")
+                and call.args
+                and isinstance(call.args[0], ast.Constant)
+            ):
                 text = call.args[0].value
                 self.window.setdefault(text, place)
                 if called(call) == "marked":
                     self.messages.setdefault(text, place)
         for table in (node for node in walked(module.tree) if isinstance(node, ast.Dict)):
             for key, tool in zip(table.keys, table.values, strict=True):
-                if isinstance(tool, ast.Call) and called(tool) == "Tool" and isinstance(key, ast.Constant):
-                    calls = (node for node in ast.walk(tool) if isinstance(node, ast.Call) and called(node) == "marked")
-                    texts = [call.args[0].value for call in calls if isinstance(call.args[0], ast.Constant)]
+                if (
+                    isinstance(tool, ast.Call)
+                    and called(tool) == "Tool"
+                    and isinstance(key, ast.Constant)
+                ):
+                    calls = (
+                        node
+                        for node in ast.walk(tool)
+                        if isinstance(node, ast.Call) and called(node) == "marked"
+                    )
+                    texts = [
+                        call.args[0].value
+                        for call in calls
+                        if isinstance(call.args[0], ast.Constant)
+                    ]
                     self.commands[COMMAND.format(key.value)] = dict.fromkeys(texts, place)
 
     def _of_properties(self, module: Module, place: str) -> None:
         """Helps beside a type of property: of `addProperty`, of figures, of options of views."""
         for node in walked(module.tree):
-            parts = node.args if isinstance(node, ast.Call) else node.elts if isinstance(node, ast.Tuple) else []
-            texts = [part.value for part in parts if isinstance(part, ast.Constant) and isinstance(part.value, str)]
+            parts = (
+                node.args
+                if isinstance(node, ast.Call)
+                else node.elts
+                if isinstance(node, ast.Tuple)
+                else []
+            )
+            texts = [
+                part.value
+                for part in parts
+                if isinstance(part, ast.Constant) and isinstance(part.value, str)
+            ]
             if any(text.startswith("App::Property") for text in texts):
                 for text in texts:
                     if " " in text:
@@ -146,7 +201,9 @@ class Collected:
 def release(language: str) -> None:
     """Have lrelease make the .qm of a language."""
     source = HERE / f"RoboticAM_{language}.ts"
-    subprocess.run(["lrelease", "-silent", str(source), "-qm", str(source.with_suffix(".qm"))], check=True)
+    subprocess.run(
+        ["lrelease", "-silent", str(source), "-qm", str(source.with_suffix(".qm"))], check=True
+    )
 
 
 def main() -> int:

@@ -65,7 +65,10 @@ class Code:
         for module in self.modules:
             for function in module.functions:
                 self.functions[function.name].append((module, function))
-            for holder in [module.tree, *(node for node in module.tree.body if isinstance(node, ast.ClassDef))]:
+            for holder in [
+                module.tree,
+                *(node for node in module.tree.body if isinstance(node, ast.ClassDef)),
+            ]:
                 for statement in holder.body:
                     for name, value in assigned(statement):
                         self.constants[name].append((module, value))
@@ -83,8 +86,16 @@ def assigned(statement: ast.stmt) -> Iterator[tuple[str, ast.expr]]:
             elif isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name):
                 yield target.value.id, ast.Dict([target.slice], [statement.value])
             elif isinstance(target, ast.Tuple):
-                values = statement.value.elts if isinstance(statement.value, ast.Tuple) else [statement.value]
-                values = values if len(values) == len(target.elts) else [statement.value] * len(target.elts)
+                values = (
+                    statement.value.elts
+                    if isinstance(statement.value, ast.Tuple)
+                    else [statement.value]
+                )
+                values = (
+                    values
+                    if len(values) == len(target.elts)
+                    else [statement.value] * len(target.elts)
+                )
                 for one, value in zip(target.elts, values, strict=True):
                     if isinstance(one, ast.Name):
                         yield one.id, value

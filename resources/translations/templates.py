@@ -20,10 +20,23 @@ from sources import ROOT, Code, Function, Module, assigned, called, calls_in, wa
 
 # what of a call is told to the user: positions of its arguments
 MAKERS: dict[str, set[int]] = {
-    "AmError": {1, 2}, "InputError": {1, 2}, "InfeasibleError": {1, 2}, "Issue": {2}, "report": {1}, "progress": {1},
-    "Band": {0}, "Row": {0, 3},
-    "Patch": {3}, "Chart": {0}, "Quantity": {0}, "Curve": {0}, "Entry": {0},
-    "Promise": {0, 1}, "Proposal": {2}, "carry_out": {2}, "on_controller": set(range(8)),
+    "AmError": {1, 2},
+    "InputError": {1, 2},
+    "InfeasibleError": {1, 2},
+    "Issue": {2},
+    "report": {1},
+    "progress": {1},
+    "Band": {0},
+    "Row": {0, 3},
+    "Patch": {3},
+    "Chart": {0},
+    "Quantity": {0},
+    "Curve": {0},
+    "Entry": {0},
+    "Promise": {0, 1},
+    "Proposal": {2},
+    "carry_out": {2},
+    "on_controller": set(range(8)),
 }
 PROPERTY = "Message"  # of stages: what it is set to is told
 KEYWORDS = {"message", "where", "lacking", "text", "label", "short", "name"}
@@ -34,7 +47,21 @@ UNITS = {"mm", "deg", "mm2", "cm3", "min", "kg"}
 _FORM = re.compile(r"\{\d*(![rs])?(:[^{} ]*)?\}")  # of a place in a template
 _WORD = re.compile(r"[^\W\d_]{2,}")
 # neither a text nor what holds some
-_OPAQUE = {"len", "round", "float", "int", "sum", "max", "min", "abs", "degrees", "repr", "type", "set", "range"}
+_OPAQUE = {
+    "len",
+    "round",
+    "float",
+    "int",
+    "sum",
+    "max",
+    "min",
+    "abs",
+    "degrees",
+    "repr",
+    "type",
+    "set",
+    "range",
+}
 
 Case = list[str | None]  # parts of a text, None for each place
 
@@ -47,9 +74,13 @@ class Templates:
         self.code, self.titles = code, titles
         self.makers = {name: set(positions) for name, positions in MAKERS.items()}
         self.found: dict[str, str] = {}  # template: where it is first made
-        self.lost: set[str] = set()  # f-strings that reach a message, which forget what they were made of
+        self.lost: set[str] = (
+            set()
+        )  # f-strings that reach a message, which forget what they were made of
         self._seen: set[tuple[int, int]] = set()
-        self._inlined: set[int] = set()  # texts that are words of others, and those that are told by themselves
+        self._inlined: set[int] = (
+            set()
+        )  # texts that are words of others, and those that are told by themselves
         self._told_by_flow: set[int] = set()
         while self._learn():
             pass
@@ -57,8 +88,12 @@ class Templates:
             for node, texts in self._telling(module):
                 for text in texts:
                     self._collect(text, module, module.around[id(node)], _DEPTH)
-        made = [(case, module, call) for module in code.modules for call in calls_in(module.tree)
-                for case in self._made(call, module)]
+        made = [
+            (case, module, call)
+            for module in code.modules
+            for call in calls_in(module.tree)
+            for case in self._made(call, module)
+        ]
         for case, module, call in made:
             if id(call) in self._told_by_flow or id(call) not in self._inlined:
                 self._add(case, module, made=True)
@@ -76,9 +111,11 @@ class Templates:
     def _told(self, call: ast.Call) -> list[ast.expr]:
         """The arguments of a call that are told."""
         if called(call) in ERRORS:  # with the values of the message
-            told = call.args[1:2] + call.args[3 if len(call.args) > 3 else 2:]
+            told = call.args[1:2] + call.args[3 if len(call.args) > 3 else 2 :]
         else:
-            told = [argument for at, argument in enumerate(call.args) if at in self.makers[called(call)]]
+            told = [
+                argument for at, argument in enumerate(call.args) if at in self.makers[called(call)]
+            ]
         return told + [keyword.value for keyword in call.keywords if keyword.arg in KEYWORDS]
 
     def _learn(self) -> bool:
@@ -91,7 +128,12 @@ class Templates:
                     continue
                 names = [one.arg for one in function.args.args]
                 names = names[1:] if names[:1] in (["self"], ["cls"]) else names
-                used = {node.id for text in texts for node in ast.walk(text) if isinstance(node, ast.Name)}
+                used = {
+                    node.id
+                    for text in texts
+                    for node in ast.walk(text)
+                    if isinstance(node, ast.Name)
+                }
                 for at, name in enumerate(names):
                     if name in used and (self._is_text(function, name) or _is_list(function, name)):
                         self.makers.setdefault(function.name, set()).add(at)
@@ -104,7 +146,9 @@ class Templates:
 
     # ---- what a told expression can be
 
-    def _collect(self, node: ast.AST | None, module: Module, function: Function | None, depth: int) -> None:
+    def _collect(
+        self, node: ast.AST | None, module: Module, function: Function | None, depth: int
+    ) -> None:
         if node is None or depth == 0 or (id(node), depth) in self._seen:
             return
         self._seen.add((id(node), depth))
@@ -113,7 +157,9 @@ class Templates:
                 parts = _parts(node.value) if _FORM.search(node.value) else [node.value]
                 self._add([part if isinstance(part, str) else None for part in parts], module)
         elif isinstance(node, ast.JoinedStr):
-            literal = "".join(part.value if isinstance(part, ast.Constant) else "{0}" for part in node.values)
+            literal = "".join(
+                part.value if isinstance(part, ast.Constant) else "{0}" for part in node.values
+            )
             if says_something(literal):
                 self.lost.add(f"{module.path.relative_to(ROOT)}:{node.lineno} {literal}")
         elif isinstance(node, ast.BinOp):
@@ -142,28 +188,37 @@ class Templates:
             for child in ast.iter_child_nodes(node):
                 self._collect(child, module, function, depth - 1)
 
-    def _collect_call(self, node: ast.Call, module: Module, function: Function | None, depth: int) -> None:
+    def _collect_call(
+        self, node: ast.Call, module: Module, function: Function | None, depth: int
+    ) -> None:
         name = called(node)
         if name == "Word":  # a part of a template
             return
         if name in ("Text", "joined"):
             self._told_by_flow.add(id(node))
-            for argument in node.args[_is_made(node):]:  # that is found where it stands
+            for argument in node.args[_is_made(node) :]:  # that is found where it stands
                 self._collect(argument, module, function, depth - 1)
             return
         if name in _OPAQUE or name in self.makers:
             return
         if isinstance(node.func, ast.Attribute):
-            self._collect(node.func.value, module, function, depth - 1)  # text.strip(), names.get(key)
+            self._collect(
+                node.func.value, module, function, depth - 1
+            )  # text.strip(), names.get(key)
             if name in ("join", "get"):
                 for argument in node.args:
                     self._collect(argument, module, function, depth - 1)
         for where, made in self.code.functions.get(name, []):
             for statement in walked(made):
-                if isinstance(statement, (ast.Return, ast.Yield)) and where.around.get(id(statement)) is made:
+                if (
+                    isinstance(statement, (ast.Return, ast.Yield))
+                    and where.around.get(id(statement)) is made
+                ):
                     self._collect(statement.value, where, made, depth - 1)
 
-    def _collect_name(self, name: str, module: Module, function: Function | None, depth: int) -> None:
+    def _collect_name(
+        self, name: str, module: Module, function: Function | None, depth: int
+    ) -> None:
         own = [] if function is None else _values(name, function)
         for value in own:
             self._collect(value, module, function, depth - 1)
@@ -188,14 +243,22 @@ class Templates:
 
     def _made(self, call: ast.Call, module: Module) -> list[Case]:
         """What a call makes, where it is written there: a Text, an error with a message, texts that are joined."""
-        texts = call.args[2:] if called(call) in ERRORS else call.args if called(call) == "Text" else []
+        texts = (
+            call.args[2:] if called(call) in ERRORS else call.args if called(call) == "Text" else []
+        )
         if called(call) == "joined" and isinstance(call.args[0], ast.Constant):
             return [[None, call.args[0].value, None]]
         first = texts[:1] if len(texts) > 1 or called(call) == "Text" else []
-        return [
-            case for text in ast.walk(first[0]) if isinstance(text, ast.Constant) and isinstance(text.value, str)
-            for case in self._cases(text.value, texts[1:], module.around[id(call)])
-        ] if first else []
+        return (
+            [
+                case
+                for text in ast.walk(first[0])
+                if isinstance(text, ast.Constant) and isinstance(text.value, str)
+                for case in self._cases(text.value, texts[1:], module.around[id(call)])
+            ]
+            if first
+            else []
+        )
 
     def _cases(self, text: str, values: list[ast.expr], function: Function | None) -> list[Case]:
         """What a template can be, one for each choice of its words."""
@@ -215,7 +278,11 @@ class Templates:
         """What a chosen word can be."""
         if isinstance(node, ast.Constant):
             return [[node.value]]
-        if isinstance(node, ast.Call) and called(node) == "Text" and isinstance(node.args[0], ast.Constant):
+        if (
+            isinstance(node, ast.Call)
+            and called(node) == "Text"
+            and isinstance(node.args[0], ast.Constant)
+        ):
             self._inlined.add(id(node))
             return self._cases(node.args[0].value, node.args[1:], function)
         if isinstance(node, ast.IfExp):
@@ -223,13 +290,20 @@ class Templates:
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
             return [*self._words(node.left, function), [""]]
         if isinstance(node, ast.Name) and function is not None and _values(node.id, function):
-            return [case for value in _values(node.id, function) for case in self._words(value, function)]
-        raise ValueError(f"{ast.unparse(node)} is not a choice of words: pass it as a value, without Word")
+            return [
+                case
+                for value in _values(node.id, function)
+                for case in self._words(value, function)
+            ]
+        raise ValueError(
+            f"{ast.unparse(node)} is not a choice of words: pass it as a value, without Word"
+        )
 
     def _add(self, case: Case, module: Module, made: bool = False) -> None:
         numbers = count()
         template = "".join(
-            f"{{{next(numbers)}}}" if part is None else part.replace("{", "{{").replace("}", "}}") for part in case
+            f"{{{next(numbers)}}}" if part is None else part.replace("{", "{{").replace("}", "}}")
+            for part in case
         ).strip()
         title = str(module.path).endswith(self.titles) and template.isalpha()
         if title or says_something(template, made):
@@ -245,8 +319,13 @@ def _is_made(call: ast.Call) -> bool:
 def _tellers(tree: ast.AST) -> tuple[ast.Call | ast.Assign, ...]:
     """What may tell something: all calls, and settings of a stage's message."""
     return tuple(
-        node for node in walked(tree) if isinstance(node, ast.Call)
-        or (isinstance(node, ast.Assign) and any(getattr(target, "attr", "") == PROPERTY for target in node.targets))
+        node
+        for node in walked(tree)
+        if isinstance(node, ast.Call)
+        or (
+            isinstance(node, ast.Assign)
+            and any(getattr(target, "attr", "") == PROPERTY for target in node.targets)
+        )
     )
 
 
@@ -277,7 +356,11 @@ def _given(function: Function) -> dict[str, list[ast.expr]]:
         if isinstance(node, (ast.For, ast.comprehension)):
             for name in {one.id for one in ast.walk(node.target) if isinstance(one, ast.Name)}:
                 found.setdefault(name, []).append(node.iter)
-        elif isinstance(node, ast.Call) and node.args and called(node) in ("append", "insert", "extend"):
+        elif (
+            isinstance(node, ast.Call)
+            and node.args
+            and called(node) in ("append", "insert", "extend")
+        ):
             holder = getattr(node.func, "value", None)
             if isinstance(holder, ast.Name):
                 found.setdefault(holder.id, []).append(node.args[-1])
@@ -297,5 +380,7 @@ def says_something(template: str, made: bool = False) -> bool:
     words = _WORD.findall(literal)
     if made:
         rest = re.sub(r"`[^`]*`|\b[a-z_]+(?:\.[a-z_]+)+", " ", literal)  # without what is typed
-        return bool(set(_WORD.findall(rest)) - UNITS) or re.search(r"[:;?](?= |$)", rest) is not None
+        return (
+            bool(set(_WORD.findall(rest)) - UNITS) or re.search(r"[:;?](?= |$)", rest) is not None
+        )
     return len(words) >= 2 and " " in template.strip()

@@ -28,23 +28,32 @@ def contexts(path: Path) -> dict[str, dict[str, str]]:
     """All translations by context and source; '' for those that are missing."""
     return {
         context.findtext("name", ""): {
-            message.findtext("source", ""): message.findtext("translation", "") for message in context.iter("message")
-        } for context in ET.parse(path).getroot().iter("context")
+            message.findtext("source", ""): message.findtext("translation", "")
+            for message in context.iter("message")
+        }
+        for context in ET.parse(path).getroot().iter("context")
     }
 
 
 def written(texts: Texts, translations: dict[str, str], language: str) -> str:
     """The file, contexts and sources in their order; a source without a translation is marked as unfinished."""
-    lines = ['<?xml version="1.0" encoding="utf-8"?>', "<!DOCTYPE TS>", f'<TS version="2.1" language="{language}">']
+    lines = [
+        '<?xml version="1.0" encoding="utf-8"?>',
+        "<!DOCTYPE TS>",
+        f'<TS version="2.1" language="{language}">',
+    ]
     for context, sources in texts.items():
         lines += ["<context>", f"    <name>{escape(context)}</name>"]
         for source, place in sources.items():
             told = translations.get(source, "")
             lines += [
-                "    <message>", f'        <location filename="../../{escape(place)}"/>',
+                "    <message>",
+                f'        <location filename="../../{escape(place)}"/>',
                 f"        <source>{_text(source)}</source>",
-                f"        <translation>{_text(told)}</translation>" if told else
-                '        <translation type="unfinished"></translation>', "    </message>",
+                f"        <translation>{_text(told)}</translation>"
+                if told
+                else '        <translation type="unfinished"></translation>',
+                "    </message>",
             ]
         lines.append("</context>")
     return "\n".join([*lines, "</TS>", ""])

@@ -26,7 +26,10 @@ from freecad_am.batch import allocation, cli, host
 
 # what a command imports beside our own modules; a part of it may not be there
 BESIDE = ("Part", "Mesh", "MeshPart", "PyKDL", "yaml", "shapely", "matplotlib.backends.backend_svg")
-NOT_OF_COMMANDS = ("freecad_am.gui", "freecad_am.batch.boot")  # a window's, and what starts a command
+NOT_OF_COMMANDS = (
+    "freecad_am.gui",
+    "freecad_am.batch.boot",
+)  # a window's, and what starts a command
 
 
 def load_all():
@@ -83,7 +86,9 @@ def main():
         os.write(answer, f"{process}\n".encode())
         _, status, used = os.wait4(process, 0)
         seconds, memory = used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3
-        os.write(answer, f"{os.waitstatus_to_exitcode(status)} {seconds:.3f} {memory:.1f}\n".encode())
+        os.write(
+            answer, f"{os.waitstatus_to_exitcode(status)} {seconds:.3f} {memory:.1f}\n".encode()
+        )
 
 
 if __name__ == "__main__":

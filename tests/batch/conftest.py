@@ -44,7 +44,12 @@ def used_by(process: int) -> tuple[float, bool]:
     while waiting:
         place = Path("/proc", waiting.pop())
         with contextlib.suppress(OSError):  # it has just ended
-            told = (place / "stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
+            told = (
+                (place / "stat")
+                .read_text(encoding="utf-8", errors="replace")
+                .rpartition(")")[2]
+                .split()
+            )
             ticks += sum(map(int, told[11:15]))
             wants = wants or told[0] in "RD"
             for thread in (place / "task").iterdir():
@@ -84,14 +89,21 @@ class Commands:
         self.copy = 0  # the number of the one at work
 
     def run(
-        self, folder: Path, words: list[str], most_seconds: int = 0, most_bytes: int = 0, patience: int = PATIENCE
+        self,
+        folder: Path,
+        words: list[str],
+        most_seconds: int = 0,
+        most_bytes: int = 0,
+        patience: int = PATIENCE,
     ) -> Ended:
         """Limits of 0 are none. TimeoutError where the command does not end: after `patience` s in which it did not even
         wait for the processor, or computed where there is no limit to that. A machine that is busy is none of its."""
         with tempfile.TemporaryDirectory() as place:
             out, err = Path(place) / "out", Path(place) / "err"
             self._ask(folder, out, err, words, most_seconds, most_bytes)
-            status, seconds, memory = self._answered(" ".join(words), patience, computes=not most_seconds)
+            status, seconds, memory = self._answered(
+                " ".join(words), patience, computes=not most_seconds
+            )
             told = (stream.read_text(encoding="utf-8") for stream in (out, err))
             return Ended(status, *told, seconds, memory)
 
@@ -120,7 +132,15 @@ class Commands:
         status, seconds, memory = self.answer.readline().split()
         return int(status), float(seconds), float(memory)
 
-    def _ask(self, folder: Path, out: Path, err: Path, words: list[str], *limits: int, apart: bool = False) -> None:
+    def _ask(
+        self,
+        folder: Path,
+        out: Path,
+        err: Path,
+        words: list[str],
+        *limits: int,
+        apart: bool = False,
+    ) -> None:
         if self.process is None:
             self._start()
         environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
@@ -132,7 +152,10 @@ class Commands:
     def _start(self, script: Path = SERVER) -> None:
         ours, theirs = os.pipe()
         self.process = subprocess.Popen(
-            [sys.executable, str(script), str(theirs)], stdin=subprocess.PIPE, pass_fds=[theirs], start_new_session=True,
+            [sys.executable, str(script), str(theirs)],
+            stdin=subprocess.PIPE,
+            pass_fds=[theirs],
+            start_new_session=True,
             env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
         )
         os.close(theirs)
@@ -185,8 +208,15 @@ class Workshop:
     def launch(self, *words: object) -> Ended:
         """A command as its users give it, by the launcher."""
         done = subprocess.run(
-            [str(self.launcher), *map(str, words)], cwd=self.folder, env=self.environment(), capture_output=True,
-            text=True, encoding="utf-8", timeout=PATIENCE, check=False, stdin=subprocess.DEVNULL,
+            [str(self.launcher), *map(str, words)],
+            cwd=self.folder,
+            env=self.environment(),
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            timeout=PATIENCE,
+            check=False,
+            stdin=subprocess.DEVNULL,
         )
         return Ended(done.returncode, done.stdout, done.stderr)
 
@@ -198,12 +228,18 @@ class Workshop:
     def files(self, folder: str = "out/cup") -> dict[str, bytes]:
         """Every file below a folder, hidden ones too, by its name relative to it."""
         top = self.folder / folder
-        return {str(path.relative_to(top)): path.read_bytes() for path in sorted(top.rglob("*")) if path.is_file()}
+        return {
+            str(path.relative_to(top)): path.read_bytes()
+            for path in sorted(top.rglob("*"))
+            if path.is_file()
+        }
 
 
 def make_cup(folder: Path) -> None:
     """A hemisphere of 40 mm radius as STEP."""
-    Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 90, 360).exportStep(str(folder / "cup.step"))
+    Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 90, 360).exportStep(
+        str(folder / "cup.step")
+    )
 
 
 @pytest.fixture

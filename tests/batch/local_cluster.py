@@ -29,13 +29,24 @@ def main():
 
 async def serve(folder, distributed):
     async with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, asynchronous=True,
-        local_directory=folder, host="127.0.0.1",
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        asynchronous=True,
+        local_directory=folder,
+        host="127.0.0.1",
     ) as cluster:
         told(cluster.scheduler.address)
         loop = asyncio.get_running_loop()
         while await loop.run_in_executor(None, sys.stdin.readline):
-            told([worker.process.pid for worker in cluster.workers.values() if worker.process is not None])
+            told(
+                [
+                    worker.process.pid
+                    for worker in cluster.workers.values()
+                    if worker.process is not None
+                ]
+            )
 
 
 def told(what):

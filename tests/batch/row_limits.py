@@ -22,10 +22,19 @@ def _told(machine, limits):
 
 def most_beyond(joints, told):
     """By how much, at the most, joints (n, axes) are beyond limits as a machine file tells them; NaN is not told."""
-    ranges = [(values, ends) for values, ends in zip(joints.T, told["axes"], strict=True) if ends is not None]
-    ranges += [(joints @ np.array(one["coefficients"], dtype=float), one["range"]) for one in told.get("coupled", ())]
+    ranges = [
+        (values, ends)
+        for values, ends in zip(joints.T, told["axes"], strict=True)
+        if ends is not None
+    ]
+    ranges += [
+        (joints @ np.array(one["coefficients"], dtype=float), one["range"])
+        for one in told.get("coupled", ())
+    ]
     known = [(values[~np.isnan(values)], ends) for values, ends in ranges]
-    return max(max(ends[0] - values.min(), values.max() - ends[1]) for values, ends in known if len(values))
+    return max(
+        max(ends[0] - values.min(), values.max() - ends[1]) for values, ends in known if len(values)
+    )
 
 
 def beyond(waypoints, machine, limits):
@@ -33,7 +42,10 @@ def beyond(waypoints, machine, limits):
     told, ranges = _told(machine, limits)
     with open(waypoints, encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
-    names = [f"{one['name']}_{'mm' if one.get('type') == 'prismatic' else 'deg'}" for one in told["joints"]]
+    names = [
+        f"{one['name']}_{'mm' if one.get('type') == 'prismatic' else 'deg'}"
+        for one in told["joints"]
+    ]
     names = names if names[0] in rows[0] else [f"q{axis}_deg" for axis in range(1, 7)]
     return most_beyond(np.array([[float(row[name]) for name in names] for row in rows]), ranges)
 
@@ -45,16 +57,26 @@ def told_joints(files, machine):
     if axes == 6:
         ends = {Path(name).suffix for name in files}
         pattern = FANUC if ".LS" in ends else KRL if ".src" in ends else VAL3
-        shown = np.array([re.findall(pattern.format(axis), text) for axis in range(1, 7)], dtype=float).T
+        shown = np.array(
+            [re.findall(pattern.format(axis), text) for axis in range(1, 7)], dtype=float
+        ).T
     else:  # the last word of each axis holds; where positions are told these are the tip's, and rotary words alone count
         bare = not re.search(r"TRAORI|M428|[ABC]3=", text)
         words = [
-            one["name"][-1].upper() if bare or one.get("type") != "prismatic" else "no word" for one in told["joints"]]
+            one["name"][-1].upper() if bare or one.get("type") != "prismatic" else "no word"
+            for one in told["joints"]
+        ]
         rows = [line for line in text.splitlines() if re.search(r"\bG1 ", line)]
-        found = [[re.findall(rf"{word}=?(?:DC\()?(-?\d+\.\d+)", line) for word in words] for line in rows]
+        found = [
+            [re.findall(rf"{word}=?(?:DC\()?(-?\d+\.\d+)", line) for word in words] for line in rows
+        ]
         shown = np.array([[float(one[-1]) if one else np.nan for one in line] for line in found])
-    matrix, offset = (np.array(told["controller"][key], dtype=float) for key in ("matrix", "offset"))
-    return np.where(np.isnan(shown), np.nan, np.nan_to_num(shown - offset) @ np.linalg.inv(matrix).T)
+    matrix, offset = (
+        np.array(told["controller"][key], dtype=float) for key in ("matrix", "offset")
+    )
+    return np.where(
+        np.isnan(shown), np.nan, np.nan_to_num(shown - offset) @ np.linalg.inv(matrix).T
+    )
 
 
 def beyond_in_text(files, machine, limits):
@@ -64,9 +86,16 @@ def beyond_in_text(files, machine, limits):
 
 def text_of(folder):
     """The files of a program below a folder."""
-    return {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.rglob("*")) if path.is_file()}
+    return {
+        path.name: path.read_text(encoding="utf-8")
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
 
 
 def over_all(out, machine, limits):
     """The same of waypoints.csv and of the program in a folder of outputs."""
-    return max(beyond(out / "waypoints.csv", machine, limits), beyond_in_text(text_of(out / "program"), machine, limits))
+    return max(
+        beyond(out / "waypoints.csv", machine, limits),
+        beyond_in_text(text_of(out / "program"), machine, limits),
+    )

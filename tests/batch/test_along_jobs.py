@@ -29,9 +29,15 @@ build_direction: {{clearance: none{mode}}}
 def arc(start, way, normal, angle, radius=RADIUS):
     """An arc from a place on, turning about a normal by an angle, deg; and where and which way it ends."""
     side = normal.cross(way)
-    middle, end = (start + way * (radius * np.sin(t)) + side * (radius * (1 - np.cos(t)))
-                   for t in np.radians([0.5 * angle, angle]))
-    return Part.Arc(start, middle, end).toShape(), end, way * np.cos(np.radians(angle)) + side * np.sin(np.radians(angle))
+    middle, end = (
+        start + way * (radius * np.sin(t)) + side * (radius * (1 - np.cos(t)))
+        for t in np.radians([0.5 * angle, angle])
+    )
+    return (
+        Part.Arc(start, middle, end).toShape(),
+        end,
+        way * np.cos(np.radians(angle)) + side * np.sin(np.radians(angle)),
+    )
 
 
 def spine(angle=90, straight=15.0):
@@ -91,10 +97,14 @@ def test_beads_of_layers_along_a_guide_have_one_speed_in_planes(workshop, planne
     _, report, rows = planned(elbow(spine(30, 5.0)), band="35 %")
     (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "SPEED_VARIES"]
     assert "as high as their layer" in told
-    assert told.endswith("; for one speed give strategy.layers: planes and strategy.narrowest: 100 %")
+    assert told.endswith(
+        "; for one speed give strategy.layers: planes and strategy.narrowest: 100 %"
+    )
     assert len(set(column(rows, "speed_mm_s").ravel())) > 1
     text = workshop.job.read_text(encoding="utf-8")
-    text = text.replace("layers: along, guide: auto,", "layers: planes, narrowest: 100 %,").replace("band: 35 %, ", "")
+    text = text.replace("layers: along, guide: auto,", "layers: planes, narrowest: 100 %,").replace(
+        "band: 35 %, ", ""
+    )
     workshop.run("plan", workshop.write_job(text).name, "-o", "again", "--no-page")
     again = workshop.folder / "again"
     issues = json.loads(next(again.rglob("report.json")).read_text(encoding="utf-8"))["issues"]
@@ -104,9 +114,13 @@ def test_beads_of_layers_along_a_guide_have_one_speed_in_planes(workshop, planne
     assert len(set(column(rows, "speed_mm_s").ravel())) == 1
 
 
-@pytest.mark.parametrize(("make", "guide", "spare"), [
-    pytest.param(elbow, "{file: spine.brep}", 1e-4, marks=pytest.mark.long), (beam, "auto", 0.15),
-])
+@pytest.mark.parametrize(
+    ("make", "guide", "spare"),
+    [
+        pytest.param(elbow, "{file: spine.brep}", 1e-4, marks=pytest.mark.long),
+        (beam, "auto", 0.15),
+    ],
+)
 def test_a_bent_part_is_filled_by_planes_normal_to_its_spine(planned, make, guide, spare):
     part = make()
     done, report, rows = planned(part, guide, spine(), band="35 %")
@@ -114,10 +128,15 @@ def test_a_bent_part_is_filled_by_planes_normal_to_its_spine(planned, make, guid
     points, build = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "bx", "by", "bz")
     layer = np.array([int(row["layer"]) for row in rows])
     solid = part.Solids[0]
-    off = [part.distToShape(Part.Vertex(*point))[0] for point in points.tolist()
-           if not solid.isInside(V(*point), 1e-3, True)]
+    off = [
+        part.distToShape(Part.Vertex(*point))[0]
+        for point in points.tolist()
+        if not solid.isInside(V(*point), 1e-3, True)
+    ]
     assert max(off, default=0.0) < 0.05  # half of the chord error
-    assert {"OFF_PART", "UNSUPPORTED", "OPEN_GAP"}.isdisjoint(issue["code"] for issue in report["issues"])
+    assert {"OFF_PART", "UNSUPPORTED", "OPEN_GAP"}.isdisjoint(
+        issue["code"] for issue in report["issues"]
+    )
     # planes: all of a layer lies in one, the next one stands a layer height on along the spine
     for number in range(layer.max() + 1):
         here = layer == number
@@ -153,27 +172,42 @@ def test_a_plane_that_meets_the_part_twice_cuts_what_belongs_to_it_alone(planned
     part = elbow(wire, 6.0)
     done, _, rows = planned(part, "{file: spine.brep}", wire)
     assert done.status == 0, done.err
-    points, layer = column(rows, "x_mm", "y_mm", "z_mm"), np.array([int(row["layer"]) for row in rows])
+    points, layer = (
+        column(rows, "x_mm", "y_mm", "z_mm"),
+        np.array([int(row["layer"]) for row in rows]),
+    )
     for number in range(layer.max() + 1):
         assert np.ptp(points[layer == number], axis=0).max() < 12.0
     assert layer.max() + 1 == int((30.0 + np.pi * RADIUS) / HEIGHT)
-    middle = np.array([0.5 * (points[layer == number].min(axis=0) + points[layer == number].max(axis=0))
-                       for number in range(layer.max() + 1)])
+    middle = np.array(
+        [
+            0.5 * (points[layer == number].min(axis=0) + points[layer == number].max(axis=0))
+            for number in range(layer.max() + 1)
+        ]
+    )
     assert (np.diff(middle[:, 0]) > -0.05).all() and middle[-1, 0] > 2.0 * RADIUS - 1.0
 
 
 def test_an_edge_of_the_part_guides_too_and_the_same_job_gives_the_same_bytes(planned, workshop):
     beam().exportStep(str(workshop.folder / "part.step"))
     part = Part.read(str(workshop.folder / "part.step"))  # its edges have other numbers in the file
-    number = next(k for k, edge in enumerate(part.Edges) if edge.Curve.TypeId == "Part::GeomCircle"
-                  and abs(edge.Curve.Radius - RADIUS - 3.0) < 1e-6)
+    number = next(
+        k
+        for k, edge in enumerate(part.Edges)
+        if edge.Curve.TypeId == "Part::GeomCircle" and abs(edge.Curve.Radius - RADIUS - 3.0) < 1e-6
+    )
     for again in ("", "2"):
         done, report, _ = planned(part, f"{{edges: [Edge{number + 1}]}}", band="40 %", again=again)
         assert done.status == 0, done.err
-    first, second = (next((workshop.folder / name).rglob("waypoints.csv")).read_bytes() for name in ("out", "out2"))
+    first, second = (
+        next((workshop.folder / name).rglob("waypoints.csv")).read_bytes()
+        for name in ("out", "out2")
+    )
     assert first == second
     largest = max(row["largest_mm"] for row in report["layer_heights"])
-    assert largest == pytest.approx(HEIGHT * (RADIUS + 9.0) / (RADIUS + 3.0), abs=0.02)  # a layer height on the edge
+    assert largest == pytest.approx(
+        HEIGHT * (RADIUS + 9.0) / (RADIUS + 3.0), abs=0.02
+    )  # a layer height on the edge
 
 
 BESIDE = Part.makeLine(V(30, 0, 0), V(30, 0, 60))
@@ -181,47 +215,77 @@ BACK = Part.Wire([Part.makeLine(V(0, 0, 0), V(0, 0, 40)), Part.makeLine(V(0, 0, 
 CORNER = Part.Wire([Part.makeLine(V(), V(0, 0, 30)), Part.makeLine(V(0, 0, 30), V(10, 0, 60))])
 APART = Part.Compound([Part.makeLine(V(), V(0, 0, 20)), Part.makeLine(V(0, 0, 30), V(0, 0, 60))])
 RING = Part.Wire(Part.makeCircle(20, V(), V(0, 1, 0)))
-TIGHT = Part.Wire([Part.makeLine(V(), V(0, 0, 30)), arc(V(0, 0, 30), V(0, 0, 1), V(0, 1, 0), 90, 6.0)[0]])
+TIGHT = Part.Wire(
+    [Part.makeLine(V(), V(0, 0, 30)), arc(V(0, 0, 30), V(0, 0, 1), V(0, 1, 0), 90, 6.0)[0]]
+)
 
 
-@pytest.mark.parametrize(("wire", "code", "words"), [
-    (BESIDE, "GUIDE_OUTSIDE", "(30, 0, "), (BACK, "GUIDE_DOUBLES_BACK", "(0, 0, 40)"), (CORNER, "GUIDE_CORNER", "18.4 deg"),
-    (APART, "GUIDE_OPEN", "10 mm off"), (RING, "GUIDE_CLOSED", "leave an edge"), (TIGHT, "GUIDE_TIGHT", "larger radius"),
-])
+@pytest.mark.parametrize(
+    ("wire", "code", "words"),
+    [
+        (BESIDE, "GUIDE_OUTSIDE", "(30, 0, "),
+        (BACK, "GUIDE_DOUBLES_BACK", "(0, 0, 40)"),
+        (CORNER, "GUIDE_CORNER", "18.4 deg"),
+        (APART, "GUIDE_OPEN", "10 mm off"),
+        (RING, "GUIDE_CLOSED", "leave an edge"),
+        (TIGHT, "GUIDE_TIGHT", "larger radius"),
+    ],
+)
 def test_guides_that_cannot_lead_are_told(planned, wire, code, words):
     done, _, _ = planned(Part.makeBox(20, 20, 60, V(-10, -10, 0)), "{file: spine.brep}", wire)
     assert done.status == 2
-    assert f"error[{code}]" in done.err and words in done.err and done.err.count("error[") == 1, done.err
+    assert f"error[{code}]" in done.err and words in done.err and done.err.count("error[") == 1, (
+        done.err
+    )
 
 
-@pytest.mark.parametrize(("shape", "guide", "more", "mode", "code", "words"), [
-    (Part.makeSphere(20), "auto", "", "", "GUIDE_NOT_FOUND", "edge, a wire or a sketch"),
-    (Part.Compound([Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, V(20, 0, 0))]), "auto", "", "", "GUIDE_NOT_FOUND",
-     "several solids"),
-    (Part.makeBox(20, 20, 60), "{edges: [Edge99]}", "", "", "UNKNOWN_EDGE", "Edge1 to Edge12"),
-    (Part.makeBox(20, 20, 60), "{object: Spine}", "", "", "BAD_VALUE", "FCStd"),
-    (Part.makeBox(20, 20, 60), "upwards", "", "", "BAD_VALUE", "{edges: [Edge1]}"),
-    (Part.makeBox(20, 20, 1), "{edges: [Edge1]}", "", "", "TOO_LOW", "give at most"),
-    (Part.makeBox(20, 20, 60), "auto", "", ", mode: fixed", "NOT_FOR_FAMILY", "use local"),
-])
+@pytest.mark.parametrize(
+    ("shape", "guide", "more", "mode", "code", "words"),
+    [
+        (Part.makeSphere(20), "auto", "", "", "GUIDE_NOT_FOUND", "edge, a wire or a sketch"),
+        (
+            Part.Compound([Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, V(20, 0, 0))]),
+            "auto",
+            "",
+            "",
+            "GUIDE_NOT_FOUND",
+            "several solids",
+        ),
+        (Part.makeBox(20, 20, 60), "{edges: [Edge99]}", "", "", "UNKNOWN_EDGE", "Edge1 to Edge12"),
+        (Part.makeBox(20, 20, 60), "{object: Spine}", "", "", "BAD_VALUE", "FCStd"),
+        (Part.makeBox(20, 20, 60), "upwards", "", "", "BAD_VALUE", "{edges: [Edge1]}"),
+        (Part.makeBox(20, 20, 1), "{edges: [Edge1]}", "", "", "TOO_LOW", "give at most"),
+        (Part.makeBox(20, 20, 60), "auto", "", ", mode: fixed", "NOT_FOR_FAMILY", "use local"),
+    ],
+)
 def test_what_cannot_be_cut_is_told(planned, shape, guide, more, mode, code, words):
     done, _, _ = planned(shape, guide, more=more, mode=mode)
     assert done.status == 2
-    assert f"error[{code}]" in done.err and words in done.err and done.err.count("error[") == 1, done.err
+    assert f"error[{code}]" in done.err and words in done.err and done.err.count("error[") == 1, (
+        done.err
+    )
 
 
 def test_layers_beyond_the_band_are_refused_with_layer_and_place(planned):
     done, _, _ = planned(elbow(), "{file: spine.brep}", spine(), band="10 %")
-    assert done.status in (2, 3) and "LAYER_HEIGHT" in done.err and "22.5 % would be needed" in done.err, done.err
+    assert (
+        done.status in (2, 3)
+        and "LAYER_HEIGHT" in done.err
+        and "22.5 % would be needed" in done.err
+    ), done.err
     assert "layer " in done.err and "strategy.band" in done.err
 
 
 @pytest.mark.parametrize("layers", ["planes", "geodesic"])
 def test_only_layers_along_have_a_guide(workshop, layers):
     Part.makeBox(20, 20, 20).exportStep(str(workshop.folder / "part.step"))
-    job = JOB.format(guide="{edges: [Edge1]}", band="20 %", more="", mode="").replace("along", layers)
+    job = JOB.format(guide="{edges: [Edge1]}", band="20 %", more="", mode="").replace(
+        "along", layers
+    )
     done = workshop.run("plan", workshop.write_job(job).name, "-o", "out", "--no-page")
-    assert done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and "strategy.guide" in done.err, done.err
+    assert (
+        done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and "strategy.guide" in done.err
+    ), done.err
 
 
 def test_the_example_is_planned_and_its_report_shows_layers_in_their_planes(workshop, root):
@@ -238,5 +302,7 @@ def test_the_example_is_planned_and_its_report_shows_layers_in_their_planes(work
     pictures = [part for part in page.split("<svg") if ", laid flat</" in part]
     assert len(pictures) == 2
     for picture in pictures:
-        width, height = (float(re.search(rf'[ "]{name}="([\d.]+)"', picture)[1]) for name in ("width", "height"))
+        width, height = (
+            float(re.search(rf'[ "]{name}="([\d.]+)"', picture)[1]) for name in ("width", "height")
+        )
         assert 0.9 < height / width < 1.25  # as wide as high, with the frame

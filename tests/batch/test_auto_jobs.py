@@ -25,7 +25,9 @@ def tube(outer, inner, height):
 
 
 def tee():
-    return Part.makeBox(20, 20, 40).fuse(Part.makeBox(90, 20, 12, Vector(-35, 0, 40))).removeSplitter()
+    return (
+        Part.makeBox(20, 20, 40).fuse(Part.makeBox(90, 20, 12, Vector(-35, 0, 40))).removeSplitter()
+    )
 
 
 def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True, **more):
@@ -33,16 +35,34 @@ def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True, *
     return proposed(Taken("part", shape), faces, under, edges, width, tilts, **more)
 
 
-@pytest.mark.parametrize(("shape", "kind", "layers", "why"), [
-    (lambda: Part.makeSphere(45, Vector(), UP, 0, 90, 360).Faces[0], "revolution", "", "skin that turns about one axis"),
-    (lambda: tube(40, 32, 50), "revolution", "", "its wall is one bead of 8 mm"),
-    (lambda: Part.makeCylinder(30, 20), "solid", "planes", "would leave out"),
-    (lambda: Part.makeBox(60, 40, 10).fuse(Part.makeBox(10, 40, 40)), "solid", "planes",
-     "a solid, and less than 1% of its surface hangs"),
-    (tee, "solid", "geodesic", "hangs over by more than 45 deg"),
-    (lambda: Part.makeCompound([Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, Vector(20, 0, 0))]), "solid", "planes",
-     "holds 2 solids"),
-])
+@pytest.mark.parametrize(
+    ("shape", "kind", "layers", "why"),
+    [
+        (
+            lambda: Part.makeSphere(45, Vector(), UP, 0, 90, 360).Faces[0],
+            "revolution",
+            "",
+            "skin that turns about one axis",
+        ),
+        (lambda: tube(40, 32, 50), "revolution", "", "its wall is one bead of 8 mm"),
+        (lambda: Part.makeCylinder(30, 20), "solid", "planes", "would leave out"),
+        (
+            lambda: Part.makeBox(60, 40, 10).fuse(Part.makeBox(10, 40, 40)),
+            "solid",
+            "planes",
+            "a solid, and less than 1% of its surface hangs",
+        ),
+        (tee, "solid", "geodesic", "hangs over by more than 45 deg"),
+        (
+            lambda: Part.makeCompound(
+                [Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, Vector(20, 0, 0))]
+            ),
+            "solid",
+            "planes",
+            "holds 2 solids",
+        ),
+    ],
+)
 def test_a_part_alone(shape, kind, layers, why):
     found = of(shape())
     assert (found.kind, found.layers) == (kind, layers) and why in found.text(), found
@@ -64,7 +84,10 @@ def test_a_part_on_another():
     hub = Part.makeCylinder(25, 80)
     fin = Part.makeBox(24, 30, 30, Vector(10, -15, 20)).cut(hub)
     assert of(fin, hub).kind == "developable" and "of ground" in of(fin, hub).reason
-    assert of(Part.makeCylinder(12, 40).Faces[0], Part.makeBox(40, 40, 10, Vector(-20, -20, -10))).kind == "surface"
+    assert (
+        of(Part.makeCylinder(12, 40).Faces[0], Part.makeBox(40, 40, 10, Vector(-20, -20, -10))).kind
+        == "surface"
+    )
     assert of(Part.makeBox(9, 9, 9), Part.makeBox(40, 40, 10, Vector(0, 0, -10))).kind == "solid"
     assert of(Part.makeCylinder(12, 40).Faces[0], edges=True).kind == "surface"
     whole = of(Part.makeCompound([hub, fin, fin.rotated(Vector(), UP, 180.0)]))
@@ -75,19 +98,29 @@ def test_what_stands_on_something_bent_gets_layers_of_its_shape():
     """A blade on a hub that is neither cylinder nor cone, a round boss on a ball; where nothing tilts they get planes, as
     what stands on the flat end of the hub does, or touches it from beside."""
     arc = Part.Arc(Vector(20, 0, 0), Vector(30, 0, 30), Vector(20, 0, 60)).toShape()
-    ends = Part.makePolygon([Vector(20, 0, 60), Vector(0, 0, 60), Vector(0, 0, 0), Vector(20, 0, 0)]).Edges
+    ends = Part.makePolygon(
+        [Vector(20, 0, 60), Vector(0, 0, 60), Vector(0, 0, 0), Vector(20, 0, 0)]
+    ).Edges
     hub, ball = Part.Face(Part.Wire([arc, *ends])).revolve(Vector(), UP, 360), Part.makeSphere(40)
     blade = Part.makeBox(40, 20, 24, Vector(5, -10, 18)).cut(hub)
     for part, ground in ((blade, hub), (Part.makeCylinder(12, 60).cut(ball), ball)):
         found = of(part, ground, width=4.0)
-        assert (found.kind, found.layers) == ("solid", "geodesic") and "the bend of ground where it stands" in found.reason
+        assert (found.kind, found.layers) == (
+            "solid",
+            "geodesic",
+        ) and "the bend of ground where it stands" in found.reason
         assert of(part, ground, width=4.0, tilts=False).layers == "planes"
     assert of(Part.makeCylinder(12, 20, Vector(0, 0, 60)), hub).layers == "planes"
     blades = [blade.rotated(Vector(), UP, angle) for angle in (0, 120, 240)]
     assert of(Part.makeCompound(blades), hub, width=4.0).layers == "geodesic"
     together = of(Part.makeCompound([blades[0], hub, *blades[1:]]), width=4.0)
-    assert together.layers == "planes" and "others stand on the bend of Solid2: as the substrate" in together.reason
-    apart = of(Part.makeCompound([hub, *(one.translated(Vector(0, 0, 200)) for one in blades)]), width=4.0)
+    assert (
+        together.layers == "planes"
+        and "others stand on the bend of Solid2: as the substrate" in together.reason
+    )
+    apart = of(
+        Part.makeCompound([hub, *(one.translated(Vector(0, 0, 200)) for one in blades)]), width=4.0
+    )
     assert "others stand" not in apart.reason
     assert of(Part.makeBox(20, 20, 20, Vector(30, -10, 20)), hub).layers == "planes"
 
@@ -101,14 +134,19 @@ def test_a_round_boss_is_filled_and_a_shell_is_a_wall():
     assert of(Part.makeCone(5, 3, 30), plate, width=4.0).kind == "solid"
     cut = Part.makeBox(80, 40, 80, Vector(-40, -40, -20))
     half = tube(20, 16, 40).cut(cut)
-    outer = max((face.Surface.Radius, f"Face{k}") for k, face in enumerate(half.Faces, 1)
-                if face.Surface.TypeId == "Part::GeomCylinder")[1]
+    outer = max(
+        (face.Surface.Radius, f"Face{k}")
+        for k, face in enumerate(half.Faces, 1)
+        if face.Surface.TypeId == "Part::GeomCylinder"
+    )[1]
     assert of(half, plate, faces=(outer,), width=4.0).kind == "surface"
 
 
 def test_what_nothing_serves_gets_the_nearest():
     bent = Part.makeSphere(30).Faces[0].toNurbs().Faces[0].Surface.toShape(0.1, 2.0, 0.1, 0.9)
-    bent = bent.transformGeometry(FreeCAD.Matrix(1, 0.3, 0, 0, 0, 0.7, 0.2, 0, 0, 0, 1, 0, 0, 0, 0, 1))
+    bent = bent.transformGeometry(
+        FreeCAD.Matrix(1, 0.3, 0, 0, 0, 0.7, 0.2, 0, 0, 0, 1, 0, 0, 0, 0, 1)
+    )
     found = of(bent.rotated(Vector(), Vector(1, 0, 0), 20.0))  # else it stands on its lower edge
     assert found.kind == "surface" and "needs a substrate, or edges to start from" in found.reason
 
@@ -121,8 +159,14 @@ def test_overhang_counts_along_the_stacking_direction():
     assert "; stacked along (0, 1, 0) it would be 0%" in upright.reason
     for direction in ((0, 1, 0), (0.0, -3.0, 0.0), None):
         lying = of(tee(), direction=direction)
-        assert (lying.kind, lying.layers) == ("solid", "planes") and "less than 1% of its surface hangs over" in lying.reason
-    assert of(tee().rotated(Vector(), Vector(1, 0, 0), 90.0), direction=(0, -1, 0)).layers == "geodesic"
+        assert (lying.kind, lying.layers) == (
+            "solid",
+            "planes",
+        ) and "less than 1% of its surface hangs over" in lying.reason
+    assert (
+        of(tee().rotated(Vector(), Vector(1, 0, 0), 90.0), direction=(0, -1, 0)).layers
+        == "geodesic"
+    )
 
 
 def test_what_stands_within_half_a_layer_is_that_of_the_layers_of_the_job(workshop):
@@ -131,12 +175,19 @@ def test_what_stands_within_half_a_layer_is_that_of_the_layers_of_the_job(worksh
     assert "stacked along" in of(pin, direction=None, width=0.6, layer_height=0.25).reason
     standing = of(Part.makeCylinder(1, 8), direction=None, width=0.6, layer_height=0.25)
     assert standing.layers == "planes" and "stacked along" not in standing.reason
-    assert "stacked along" in of(Part.makeCylinder(1, 8), direction=None, width=0.6, layer_height=4.0).reason
+    assert (
+        "stacked along"
+        in of(Part.makeCylinder(1, 8), direction=None, width=0.6, layer_height=4.0).reason
+    )
     Part.makeCylinder(1, 8).exportStep(str(workshop.folder / "part.step"))
-    job = AUTO.replace("kind: auto", "kind: auto, direction: auto, bead_spacing: 0.6 mm").replace("5 mm", "0.25 mm")
+    job = AUTO.replace("kind: auto", "kind: auto, direction: auto, bead_spacing: 0.6 mm").replace(
+        "5 mm", "0.25 mm"
+    )
     job += "process: {bead_width: 0.6 mm}\n"
     told = {issue["code"]: issue["message"] for issue in planned(workshop, job)[0]["issues"]}
-    assert "stacked along (0, 0, 1)" in told["DIRECTION"] and told["PROPOSED"].startswith("kind: solid, layers: planes: ")
+    assert "stacked along (0, 0, 1)" in told["DIRECTION"] and told["PROPOSED"].startswith(
+        "kind: solid, layers: planes: "
+    )
 
 
 def test_what_stands_on_no_face_gets_planes():
@@ -151,8 +202,15 @@ def test_what_stands_on_no_face_gets_planes():
 
 
 def test_edges_and_what_has_no_faces_are_curves():
-    box, bent = Part.makeBox(9, 9, 9), Part.makePolygon([Vector(0, 0, 0), Vector(9, 0, 0), Vector(9, 9, 0)])
-    assert (of(bent).kind, of(box, faces=("Edge1", "Edge2")).kind, of(box).kind) == ("curves", "curves", "solid")
+    box, bent = (
+        Part.makeBox(9, 9, 9),
+        Part.makePolygon([Vector(0, 0, 0), Vector(9, 0, 0), Vector(9, 9, 0)]),
+    )
+    assert (of(bent).kind, of(box, faces=("Edge1", "Edge2")).kind, of(box).kind) == (
+        "curves",
+        "curves",
+        "solid",
+    )
 
 
 def test_faces_that_are_chosen_are_not_the_whole():
@@ -161,44 +219,89 @@ def test_faces_that_are_chosen_are_not_the_whole():
     hub = Part.makeCylinder(25, 80)
     fin = Part.makeBox(24, 30, 30, Vector(10, -15, 20))
     whole = hub.fuse(fin)
-    side = next(f"Face{k}" for k, face in enumerate(whole.Faces, 1) if face.Surface.TypeId == "Part::GeomCylinder")
+    side = next(
+        f"Face{k}"
+        for k, face in enumerate(whole.Faces, 1)
+        if face.Surface.TypeId == "Part::GeomCylinder"
+    )
     assert of(Part.makeCylinder(30, 20), faces=("Face1",)).kind == "revolution"
-    assert of(Part.makeBox(9, 9, 9), faces=("Face1", "Face2")).kind == "surface", "a wall that is about one bead"
+    assert of(Part.makeBox(9, 9, 9), faces=("Face1", "Face2")).kind == "surface", (
+        "a wall that is about one bead"
+    )
     assert of(Part.makeBox(30, 30, 30), faces=("Face1", "Face2")).kind == "cladding"
-    assert of(Part.makeBox(9, 9, 9), Part.makeBox(40, 40, 10, Vector(0, 0, -10)), faces=("Face1",)).kind == "surface"
-    flat = next(f"Face{k}" for k, face in enumerate(whole.Faces, 1) if face.Surface.TypeId == "Part::GeomPlane")
+    assert (
+        of(
+            Part.makeBox(9, 9, 9), Part.makeBox(40, 40, 10, Vector(0, 0, -10)), faces=("Face1",)
+        ).kind
+        == "surface"
+    )
+    flat = next(
+        f"Face{k}"
+        for k, face in enumerate(whole.Faces, 1)
+        if face.Surface.TypeId == "Part::GeomPlane"
+    )
     kinds = [of(whole, clicked=clicked).kind for clicked in ((), (flat,), (side,))]
-    assert kinds == ["solid", "solid", "developable"] and of(whole, faces=(side,)).kind == "revolution"
+    assert (
+        kinds == ["solid", "solid", "developable"] and of(whole, faces=(side,)).kind == "revolution"
+    )
     drilled = Part.makeBox(60, 40, 10).cut(Part.makeCylinder(6, 10, Vector(20, 20, 0)))
-    bore = next(f"Face{k}" for k, face in enumerate(drilled.Faces, 1) if face.Surface.TypeId == "Part::GeomCylinder")
+    bore = next(
+        f"Face{k}"
+        for k, face in enumerate(drilled.Faces, 1)
+        if face.Surface.TypeId == "Part::GeomCylinder"
+    )
     assert of(drilled, clicked=(bore,)).kind == "solid"
 
 
 @pytest.mark.parametrize("turned", [False, True], ids=["as it is", "with facets turned"])
 def test_an_open_mesh_is_a_wall_and_one_with_a_small_hole_is_filled(turned):
-    whole = MeshPart.meshFromShape(Shape=Part.makeCylinder(20, 60), LinearDeflection=0.2, AngularDeflection=0.2)
+    whole = MeshPart.meshFromShape(
+        Shape=Part.makeCylinder(20, 60), LinearDeflection=0.2, AngularDeflection=0.2
+    )
     points, facets = (np.array(some) for some in whole.Topology)
     high = points[facets][..., 2]
-    vase, nick = facets[(high < 59.9).any(axis=1)], np.delete(facets, np.flatnonzero((high > 59.9).all(axis=1))[5], axis=0)
+    vase, nick = (
+        facets[(high < 59.9).any(axis=1)],
+        np.delete(facets, np.flatnonzero((high > 59.9).all(axis=1))[5], axis=0),
+    )
     for some, kind in ((vase, "surface"), (nick, "solid")):
         if turned:
             some = some.copy()
             some[: len(some) // 3] = some[: len(some) // 3, ::-1]
-        found = proposed(Taken("scan", None, Mesh.Mesh(points[some].tolist()), np.eye(4)), (), None, False, 8.0, True)
+        found = proposed(
+            Taken("scan", None, Mesh.Mesh(points[some].tolist()), np.eye(4)),
+            (),
+            None,
+            False,
+            8.0,
+            True,
+        )
         assert found.kind == kind, found
-    assert "open mesh" in of_mesh(points[vase]).reason and "starts on the platform" in of_mesh(points[vase]).reason
+    assert (
+        "open mesh" in of_mesh(points[vase]).reason
+        and "starts on the platform" in of_mesh(points[vase]).reason
+    )
 
 
 def test_an_open_mesh_that_lies_is_covered_and_one_that_stands_is_a_wall():
     """A shallow cap, and a cup of 30 deg from upright, both without a bottom."""
-    cap, cup = Part.makeSphere(60, Vector(), UP, 60, 90, 360).Faces[0], Part.makeCone(20, 40, 35).Faces[0]
+    cap, cup = (
+        Part.makeSphere(60, Vector(), UP, 60, 90, 360).Faces[0],
+        Part.makeCone(20, 40, 35).Faces[0],
+    )
     kinds = []
     for face in (cap, cup):
         mesh = Mesh.Mesh(face.tessellate(0.2))
-        kinds.append([
-            proposed(Taken("scan", None, mesh, np.eye(4)), (), under, edges, 8.0, True).kind
-            for under, edges in ((None, False), (None, True), (Taken("ground", Part.makeBox(9, 9, 9)), False))
-        ])
+        kinds.append(
+            [
+                proposed(Taken("scan", None, mesh, np.eye(4)), (), under, edges, 8.0, True).kind
+                for under, edges in (
+                    (None, False),
+                    (None, True),
+                    (Taken("ground", Part.makeBox(9, 9, 9)), False),
+                )
+            ]
+        )
     assert kinds == [["cladding", "surface", "surface"], ["surface", "surface", "surface"]]
 
 
@@ -210,15 +313,33 @@ def test_an_open_skin_lies_or_stands_as_a_mesh_does(workshop):
     turned = cup.rotated(Vector(), Vector(1, 0, 0), 20.0)
     found = [of(one) for one in (lid.transformGeometry(squeezed), cup, turned)]
     assert [one.kind for one in found] == ["cladding", "surface", "surface"]
-    assert [one.stands for one in found] == [False, True, False] and "starts on the platform" in found[1].reason
+    assert [one.stands for one in found] == [
+        False,
+        True,
+        False,
+    ] and "starts on the platform" in found[1].reason
     cup.exportStep(str(workshop.folder / "part.step"))
     report, rows = planned(workshop, AUTO.replace("0.1 mm", "0.1 mm, end: whole"))
     told = {issue["code"]: issue["message"] for issue in report["issues"]}
-    assert told["PROPOSED"].startswith("kind: surface: ") and "stands on the platform" in told["FIRST_LAYER"]
+    assert (
+        told["PROPOSED"].startswith("kind: surface: ")
+        and "stands on the platform" in told["FIRST_LAYER"]
+    )
     laid = [dict(zip(rows[0], row)) for row in rows[1:]]
-    points = np.array([[float(row[key]) for key in ("x_mm", "y_mm", "z_mm")] for row in laid if row["kind"] == "deposit"])
-    assert np.hypot(points[:, 0], points[:, 1] / 0.7) == pytest.approx(20.0 + 0.4 * points[:, 2], abs=0.1)
-    assert points[0, 2] == pytest.approx(0.0, abs=1e-6) and len({row["layer"] for row in laid if row["layer"]}) == 6
+    points = np.array(
+        [
+            [float(row[key]) for key in ("x_mm", "y_mm", "z_mm")]
+            for row in laid
+            if row["kind"] == "deposit"
+        ]
+    )
+    assert np.hypot(points[:, 0], points[:, 1] / 0.7) == pytest.approx(
+        20.0 + 0.4 * points[:, 2], abs=0.1
+    )
+    assert (
+        points[0, 2] == pytest.approx(0.0, abs=1e-6)
+        and len({row["layer"] for row in laid if row["layer"]}) == 6
+    )
 
 
 def open_tube(radius, first, last, sides=24):
@@ -229,7 +350,12 @@ def open_tube(radius, first, last, sides=24):
     ring = radius * (np.cos(turn) * across[0] + np.sin(turn) * across[1])
     low, high = first + ring, last + ring
     after = np.roll(np.arange(sides), -1)
-    return np.concatenate([np.stack([low, low[after], high[after]], axis=1), np.stack([low, high[after], high], axis=1)])
+    return np.concatenate(
+        [
+            np.stack([low, low[after], high[after]], axis=1),
+            np.stack([low, high[after], high], axis=1),
+        ]
+    )
 
 
 def test_an_open_mesh_that_cuts_itself_is_filled(workshop):
@@ -241,17 +367,33 @@ def test_an_open_mesh_that_cuts_itself_is_filled(workshop):
     text = AUTO.replace("part.step", "part.stl")
     report, rows = planned(workshop, text)
     told = {issue["code"]: issue["message"] for issue in report["issues"]}
-    assert told["PROPOSED"].startswith("kind: solid, layers: planes: ") and "with its 4 holes of up to 7" in told["PROPOSED"]
+    assert (
+        told["PROPOSED"].startswith("kind: solid, layers: planes: ")
+        and "with its 4 holes of up to 7" in told["PROPOSED"]
+    )
     assert "4 holes were closed, the largest 70.7 mm across" in told["MENDED"]
     way = Vector(40, 0, 10)
     whole = Part.makeCylinder(25, 40).fuse(Part.makeCylinder(9, way.Length, Vector(10, 0, 20), way))
     assert report["deposit"]["deposited_cm3"] == pytest.approx(whole.Volume / 1000.0, rel=0.04)
     laid = [dict(zip(rows[0], row)) for row in rows[1:]]
-    points = np.array([[float(row[key]) for key in ("x_mm", "y_mm", "z_mm")] for row in laid if row["kind"] == "deposit"])
-    assert points[:, 0].max() > 45.0 and np.hypot(*points[points[:, 2] > 34.0, :2].T).min() < 4.0, "the spout, the lid"
-    outside = [whole.distToShape(Part.Vertex(Vector(*point)))[0] for point in points[::20]
-               if not whole.isInside(Vector(*point), 0.3, True)]
-    assert max(outside, default=0.0) < 2.6, "half a layer, by which the ends of a leaning spout differ"
+    points = np.array(
+        [
+            [float(row[key]) for key in ("x_mm", "y_mm", "z_mm")]
+            for row in laid
+            if row["kind"] == "deposit"
+        ]
+    )
+    assert points[:, 0].max() > 45.0 and np.hypot(*points[points[:, 2] > 34.0, :2].T).min() < 4.0, (
+        "the spout, the lid"
+    )
+    outside = [
+        whole.distToShape(Part.Vertex(Vector(*point)))[0]
+        for point in points[::20]
+        if not whole.isInside(Vector(*point), 0.3, True)
+    ]
+    assert max(outside, default=0.0) < 2.6, (
+        "half a layer, by which the ends of a leaning spout differ"
+    )
     small = text.replace("chord_error: 0.1 mm", "chord_error: 0.1 mm, mend: 20 mm")
     (workshop.folder / "job.yaml").write_text(small, encoding="utf-8")
     refused = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
@@ -259,11 +401,15 @@ def test_an_open_mesh_that_cuts_itself_is_filled(workshop):
 
 
 def of_mesh(corners):
-    return proposed(Taken("scan", None, Mesh.Mesh(corners.tolist()), np.eye(4)), (), None, False, 8.0, True)
+    return proposed(
+        Taken("scan", None, Mesh.Mesh(corners.tolist()), np.eye(4)), (), None, False, 8.0, True
+    )
 
 
 def test_a_mesh_is_filled():
-    mesh = MeshPart.meshFromShape(Shape=Part.makeBox(20, 20, 20), LinearDeflection=1, AngularDeflection=1)
+    mesh = MeshPart.meshFromShape(
+        Shape=Part.makeBox(20, 20, 20), LinearDeflection=1, AngularDeflection=1
+    )
     found = proposed(Taken("scan", None, mesh, np.eye(4)), (), None, False, 8.0, True)
     assert (found.kind, found.layers) == ("solid", "planes") and "is a mesh" in found.reason
     assert isinstance(mesh, Mesh.Mesh)
@@ -287,7 +433,9 @@ def test_the_job_is_that_of_what_is_proposed(workshop):
     (issue,) = [issue for issue in report["issues"] if issue["code"] == "PROPOSED"]
     assert issue["level"] == "note" and issue["message"].startswith("kind: solid, layers: planes: ")
     assert planned(workshop, AUTO.replace("auto", "solid"))[1] == rows
-    several = AUTO.replace("part:", "features:\n  - {name: a, part:").replace("part.step}", "part.step}}")
+    several = AUTO.replace("part:", "features:\n  - {name: a, part:").replace(
+        "part.step}", "part.step}}"
+    )
     assert planned(workshop, several)[1] == rows
 
 
@@ -307,13 +455,27 @@ def test_where_curved_layers_cannot_be_carried_out_there_are_planes(workshop):
         "cell: {machine: abb-irb4600-40-255, setup: tool-on-robot, mount: feature, platform_diameter: 150 mm, "
         "nozzle: {diameter: 12 mm, half_angle: 70, length: 60 mm}}\nprogram: {post: abb}\n"
     )
-    coarse = AUTO.replace("layer_height: 5 mm, chord_error: 0.1 mm", "layer_height: 8 mm, chord_error: 0.4 mm")
-    text = coarse.replace("auto,", "auto, bead_spacing: 6 mm,") + "process: {bead_width: 6 mm}\n" + cell
+    coarse = AUTO.replace(
+        "layer_height: 5 mm, chord_error: 0.1 mm", "layer_height: 8 mm, chord_error: 0.4 mm"
+    )
+    text = (
+        coarse.replace("auto,", "auto, bead_spacing: 6 mm,")
+        + "process: {bead_width: 6 mm}\n"
+        + cell
+    )
     report, rows = planned(workshop, text)
     (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "PROPOSED"]
-    assert told.startswith("kind: solid, layers: planes: ") and "these end with SINGULAR, so planes are laid" in told
-    assert not [issue for issue in report["issues"] if issue["level"] == "error"] and report["programs"]
+    assert (
+        told.startswith("kind: solid, layers: planes: ")
+        and "these end with SINGULAR, so planes are laid" in told
+    )
+    assert (
+        not [issue for issue in report["issues"] if issue["level"] == "error"]
+        and report["programs"]
+    )
     assert rows == planned(workshop, text.replace("auto,", "solid, layers: planes,"))[1]
-    (workshop.folder / "job.yaml").write_text(text.replace("auto,", "auto, layers: geodesic,"), encoding="utf-8")
+    (workshop.folder / "job.yaml").write_text(
+        text.replace("auto,", "auto, layers: geodesic,"), encoding="utf-8"
+    )
     refused = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
     assert refused.status == 3 and "SINGULAR" in refused.err

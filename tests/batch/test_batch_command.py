@@ -22,7 +22,9 @@ def summary(done):
 def test_one_plan_per_row(workshop, processes):
     (workshop.folder / "rows.csv").write_text(
         "strategy.layer_height,cell.branch,process.travel_speed\n"
-        '4 mm,"[front, up, flip]",6 mm/s\n8,,360 mm/min\n10 mm,auto,\n', encoding="utf-8")
+        '4 mm,"[front, up, flip]",6 mm/s\n8,,360 mm/min\n10 mm,auto,\n',
+        encoding="utf-8",
+    )
     done = workshop.launch("batch", "rows.csv", "--job", "cup.yaml", "-o", "all", "-j", processes)
     assert done.status == 0, done.err
     rows = summary(done)
@@ -43,7 +45,11 @@ def test_a_row_is_what_plan_makes_of_it(workshop):
     assert workshop.launch("plan", "cup.yaml", "-o", "plan").status == 0
     row, plan = workshop.files("rows/row-001"), workshop.files("plan")
     assert set(row) == set(plan)
-    assert all(row[name] == plan[name] for name in row if name.startswith("program/") or name == "waypoints.csv")
+    assert all(
+        row[name] == plan[name]
+        for name in row
+        if name.startswith("program/") or name == "waypoints.csv"
+    )
 
 
 @pytest.mark.parametrize(
@@ -55,7 +61,9 @@ def test_a_row_is_what_plan_makes_of_it(workshop):
 )
 @pytest.mark.always("ends1-statuses1-2")
 def test_ends_with_the_worst_row(workshop, ends, statuses, worst):
-    workshop.change("limits: paper", "limits: paper\n  deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]")
+    workshop.change(
+        "limits: paper", "limits: paper\n  deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]"
+    )
     table = ["strategy.layer_height,cell.deposition_point"]
     for row in ends:
         height, shift = row.split(",")
@@ -69,18 +77,40 @@ def test_ends_with_the_worst_row(workshop, ends, statuses, worst):
     assert all("row" in line for line in done.err.splitlines())
 
 
-@pytest.mark.parametrize(("ends", "worst"), [
-    ((130, 0), 130), ((130, 130), 130), ((3, 130), 130), ((2, 130), 130), ((130, 1), 1), ((0, 3), 3), ((0, 0), 0),
-])
+@pytest.mark.parametrize(
+    ("ends", "worst"),
+    [
+        ((130, 0), 130),
+        ((130, 130), 130),
+        ((3, 130), 130),
+        ((2, 130), 130),
+        ((130, 1), 1),
+        ((0, 3), 3),
+        ((0, 0), 0),
+    ],
+)
 def test_rows_that_were_interrupted_count(workshop, monkeypatch, ends, worst):
     """Those whose process was asked to end: a batch of them came back with 0, or with an internal error."""
     (workshop.folder / "rows.csv").write_text("process.travel_speed\n5 mm/s\n6 mm/s\n")
-    monkeypatch.setattr(rows, "_planned", lambda waiting, *_: (
-        (row, {"exit": end, "message": ""}) for row, end in zip(waiting, ends, strict=True)
-    ))
+    monkeypatch.setattr(
+        rows,
+        "_planned",
+        lambda waiting, *_: (
+            (row, {"exit": end, "message": ""}) for row, end in zip(waiting, ends, strict=True)
+        ),
+    )
     told = []
     session = SimpleNamespace(outcome="", say=told.append, progress=told.append, out=told.append)
-    assert rows.run(str(workshop.folder / "rows.csv"), str(workshop.job), None, rows.How(processes=2), session) == worst
+    assert (
+        rows.run(
+            str(workshop.folder / "rows.csv"),
+            str(workshop.job),
+            None,
+            rows.How(processes=2),
+            session,
+        )
+        == worst
+    )
     assert [line.split(",")[0] for line in told[-1].splitlines()[1:]] == ["1", "2"]
 
 
@@ -101,8 +131,11 @@ def test_sets_properties_of_a_document(workshop):
     assert [int(row["layers"]) for row in rows] == [8, 16, 12]
     assert (workshop.folder / "model.FCStd").read_bytes() == before
     for column, cell, says in (
-        ("part.set.Bowl.Radius", "20 mm", "Bowl"), ("part.set.Ball.Size", "20 mm", "no property 'Size'"),
-        (SPHERE, "20 s", "does not fit"), (SPHERE, "-5 mm", "Ball"), ("part.set.Ball", "1", "object"),
+        ("part.set.Bowl.Radius", "20 mm", "Bowl"),
+        ("part.set.Ball.Size", "20 mm", "no property 'Size'"),
+        (SPHERE, "20 s", "does not fit"),
+        (SPHERE, "-5 mm", "Ball"),
+        ("part.set.Ball", "1", "object"),
     ):
         (workshop.folder / "bad.csv").write_text(f"{column}\n{cell}\n")
         done = workshop.run("batch", "bad.csv", "--job", "cup.yaml")
@@ -113,11 +146,19 @@ def test_sets_properties_of_a_document(workshop):
 @pytest.mark.parametrize(
     ("table", "says"),
     [
-        ("", "no rows"), ("strategy.layer_height\n", "no rows"), ("strategy.hight\n1\n", "layer_height"),
-        ("tragedy.layer_height\n1\n", "tragedy"), ("name,name\na,b\n", "twice"), ("name,\na,b\n", "empty"),
-        ("strategy.layer_height\n1,5 mm\n", "2 cells for 1"), ("strategy.layer_height;name\n1 mm;a\n", "commas"),
-        ('strategy.layer_height\n"1,5 mm"\n', "point"), ('name\n"a\n', "table"), ("name\na\nb,c\n", "row 2"),
-        ("strategy.layer_height\n[1\n", "not understood"), ("part.set.Ball.Radius\n1 mm\n", "FCStd"),
+        ("", "no rows"),
+        ("strategy.layer_height\n", "no rows"),
+        ("strategy.hight\n1\n", "layer_height"),
+        ("tragedy.layer_height\n1\n", "tragedy"),
+        ("name,name\na,b\n", "twice"),
+        ("name,\na,b\n", "empty"),
+        ("strategy.layer_height\n1,5 mm\n", "2 cells for 1"),
+        ("strategy.layer_height;name\n1 mm;a\n", "commas"),
+        ('strategy.layer_height\n"1,5 mm"\n', "point"),
+        ('name\n"a\n', "table"),
+        ("name\na\nb,c\n", "row 2"),
+        ("strategy.layer_height\n[1\n", "not understood"),
+        ("part.set.Ball.Radius\n1 mm\n", "FCStd"),
     ],
 )
 def test_tables_that_are_wrong(workshop, table, says):

@@ -45,7 +45,9 @@ def fin(workshop):
         out = workshop.folder / "out"
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream))
-        texts = {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
+        texts = {
+            path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()
+        }
         return done, json.loads((out / "report.json").read_text(encoding="utf-8")), rows, texts
 
     return run
@@ -57,20 +59,26 @@ def test_wire_in_proportion_from_the_job_to_the_program(fin):
     assert list(rows[0])[-2] == "wire_feed_mm_s"
     assert {row["wire_feed_mm_s"] for row in rows if row["kind"] == "rapid"} == {""}
     deposit = [row for row in rows if row["kind"] == "deposit"]
-    speed, wire = (np.array([float(row[name]) for row in deposit]) for name in ("speed_mm_s", "wire_feed_mm_s"))
+    speed, wire = (
+        np.array([float(row[name]) for row in deposit]) for name in ("speed_mm_s", "wire_feed_mm_s")
+    )
     assert speed.max() > 1.3 * speed.min()
     straight = (85.55 / (9.5 + 1.7542)) ** 3 / 60.0  # where the wire runs at 6.5 m/min
     np.testing.assert_allclose(wire / speed, 6500.0 / 60.0 / straight, rtol=2e-4)
     told = "".join(texts[name] for name in sorted(texts) if name.endswith(".SPF"))
     values = np.array([float(value) for value in re.findall(r"A_OUTA\[1\]=(\S+)", told)])
-    np.testing.assert_allclose([values.min(), values.max()], 0.06 * np.array([wire.min(), wire.max()]), rtol=6e-5)
+    np.testing.assert_allclose(
+        [values.min(), values.max()], 0.06 * np.array([wire.min(), wire.max()]), rtol=6e-5
+    )
     main = texts["FIN.MPF"]
     low, high = re.search(r"; Travel speed (\S+) to (\S+) mm/s\n", main).groups()
     first = [row["point"] == "0" for row in deposit]
     moved = speed[~np.array(first)]
     np.testing.assert_allclose([float(low), float(high)], [moved.min(), moved.max()], rtol=5.1e-4)
     assert "; Wire in proportion to it" in main
-    assert len(texts) == 1 + report["counts"]["beads"]  # every bead is longer than max_points: a part of its own
+    assert (
+        len(texts) == 1 + report["counts"]["beads"]
+    )  # every bead is longer than max_points: a part of its own
     heights = [issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT"]
     assert "in proportion to the speed, at" in heights[0]
 
@@ -78,12 +86,18 @@ def test_wire_in_proportion_from_the_job_to_the_program(fin):
 def test_layers_far_higher_than_beads_are_planned_and_told(fin):
     done, report, rows, texts = fin("20 mm")
     assert done.status == 0, done.err
-    assert report["counts"]["layers"] == 2 and {int(row["layer"]) for row in rows} == {0, 1} and len(texts) > 2
+    assert (
+        report["counts"]["layers"] == 2
+        and {int(row["layer"]) for row in rows} == {0, 1}
+        and len(texts) > 2
+    )
     (told,) = [issue for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT"]
     assert told["level"] == "warning" and "at layers of 20 mm" in told["message"]
 
 
-@pytest.mark.parametrize(("post", "motion"), [("siemens", "joint"), ("linuxcnc", "joint"), ("linuxcnc", "cartesian")])
+@pytest.mark.parametrize(
+    ("post", "motion"), [("siemens", "joint"), ("linuxcnc", "joint"), ("linuxcnc", "cartesian")]
+)
 @pytest.mark.parametrize("fill", ["contours", "zigzag"])
 @pytest.mark.always
 def test_feeds_of_a_program_change_no_faster_than_asked_for(fin, post, motion, fill):
@@ -91,7 +105,8 @@ def test_feeds_of_a_program_change_no_faster_than_asked_for(fin, post, motion, f
     that a controller could not take it in time, and from block to block the speed changes by no more than the
     acceleration asked for."""
     done, _, rows, texts = fin(
-        "10 mm", ("siemens, motion: cartesian, max_points: 10", f"{post}, motion: {motion}"),
+        "10 mm",
+        ("siemens, motion: cartesian, max_points: 10", f"{post}, motion: {motion}"),
         ("chord_error", f"fill: {fill}, chord_error"),
     )
     assert done.status == 0, done.err
@@ -116,10 +131,15 @@ def mean_heights(rows, height):
     found = {}
     for before, row in zip(rows, rows[1:]):
         if row["kind"] == "deposit" and row["point"] != "0":
-            way = math.dist(*([float(one[name]) for name in ("x_mm", "y_mm", "z_mm")] for one in (before, row)))
+            way = math.dist(
+                *([float(one[name]) for name in ("x_mm", "y_mm", "z_mm")] for one in (before, row))
+            )
             pair = [height(one) for one in (before, row)]
             found.setdefault(int(row["layer"]), []).append((way, sum(pair) / 2.0))
-    return [sum(way * value for way, value in some) / sum(way for way, _ in some) for _, some in sorted(found.items())]
+    return [
+        sum(way * value for way, value in some) / sum(way for way, _ in some)
+        for _, some in sorted(found.items())
+    ]
 
 
 def test_predicted_heights_are_reported_and_drawn(fin, workshop):
@@ -130,72 +150,134 @@ def test_predicted_heights_are_reported_and_drawn(fin, workshop):
     assert told["layer_height_mm"] == 10.0 and told["wire_feed_mm_s"]["mean"] > 6500.0 / 60.0
     section = told["height_mm"]["max"] * 9.5  # where it is as narrow as asked for
     wanted = mean_heights(rows, lambda row: section / float(row["width_mm"]))
-    np.testing.assert_allclose([row["height_mm"]["mean"] for row in told["layers"]], wanted, rtol=1e-5)
-    np.testing.assert_allclose([row["drift_mm"] for row in told["layers"]], np.cumsum(np.array(wanted) - 10.0), rtol=1e-5)
+    np.testing.assert_allclose(
+        [row["height_mm"]["mean"] for row in told["layers"]], wanted, rtol=1e-5
+    )
+    np.testing.assert_allclose(
+        [row["drift_mm"] for row in told["layers"]], np.cumsum(np.array(wanted) - 10.0), rtol=1e-5
+    )
     m, _, t = _fitted("height_mm")
-    assert told["height_mm"]["max"] == pytest.approx(m * (60.0 * straight) ** (-1.0 / 3.0) + t, rel=1e-4)
+    assert told["height_mm"]["max"] == pytest.approx(
+        m * (60.0 * straight) ** (-1.0 / 3.0) + t, rel=1e-4
+    )
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
-    assert page.count("Predicted height by layer</text>") == 1 and "Predicted height of the bead" in page
+    assert (
+        page.count("Predicted height by layer</text>") == 1
+        and "Predicted height of the bead" in page
+    )
     _, plain, rows, _ = fin("30 mm", ("feed_mode: proportional", "feed_mode: constant"))
     constant = plain["beads"]
-    assert constant["wire_feed_mm_s"] is None and constant["height_mm"]["max"] > constant["height_mm"]["min"] + 0.02
+    assert (
+        constant["wire_feed_mm_s"] is None
+        and constant["height_mm"]["max"] > constant["height_mm"]["min"] + 0.02
+    )
     assert len(constant["layers"]) == plain["counts"]["layers"]
-    assert fin("30 mm", ("bead_model: csw, ", ""), (", feed_mode: proportional", ""))[1]["beads"] is None
+    assert (
+        fin("30 mm", ("bead_model: csw, ", ""), (", feed_mode: proportional", ""))[1]["beads"]
+        is None
+    )
 
 
 def test_heights_where_axes_cannot_follow_are_those_of_the_speed_as_run(fin):
     """The message tells what the report's figures do, which are of the waypoints' speeds."""
-    fast = ("strategy:", "build_direction: {max_turn: inf}\nstrategy:"), ("chord_error", "deflection: 20 deg, chord_error")
+    fast = (
+        ("strategy:", "build_direction: {max_turn: inf}\nstrategy:"),
+        ("chord_error", "deflection: 20 deg, chord_error"),
+    )
     _, report, rows, _ = fin("10 mm", *fast, ("proportional", "constant"))
     assert "SLOWED" in {issue["code"] for issue in report["issues"]}
     (told,) = (issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT")
-    low, high, mean = (float(value) for value in re.search(r"predicted (\S+) to (\S+) mm high, (\S+) mm", told).groups())
+    low, high, mean = (
+        float(value)
+        for value in re.search(r"predicted (\S+) to (\S+) mm high, (\S+) mm", told).groups()
+    )
     figures = report["beads"]["height_mm"]
-    assert (low, high, mean) == tuple(pytest.approx(figures[key], rel=6e-3) for key in ("min", "max", "mean"))
-    speed = min(float(row["speed_mm_s"]) for row in rows if row["kind"] == "deposit" and row["point"] != "0")
+    assert (low, high, mean) == tuple(
+        pytest.approx(figures[key], rel=6e-3) for key in ("min", "max", "mean")
+    )
+    speed = min(
+        float(row["speed_mm_s"]) for row in rows if row["kind"] == "deposit" and row["point"] != "0"
+    )
     m, _, t = _fitted("height_mm")
-    assert speed < 4.0 and high > 1.05 * (m * (60.0 * 5.0) ** (-1.0 / 3.0) + t)  # slower than the table knows
+    assert speed < 4.0 and high > 1.05 * (
+        m * (60.0 * 5.0) ** (-1.0 / 3.0) + t
+    )  # slower than the table knows
     assert told.startswith("run as fast as the axes can follow, ")
 
 
 def _fitted(column):
     """Coefficients of a column of the built-in table, by the normal equations."""
     path = bead_table.FOLDER / bead_table.BUILT_IN["csw"]
-    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    lines = [
+        line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")
+    ]
     rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(lines)]
-    terms = np.array([[row["travel_speed_mm_min"] ** (-1.0 / 3.0), 1.0 / row["radius_mm"], 1.0] for row in rows])
+    terms = np.array(
+        [[row["travel_speed_mm_min"] ** (-1.0 / 3.0), 1.0 / row["radius_mm"], 1.0] for row in rows]
+    )
     return np.linalg.solve(terms.T @ terms, terms.T @ np.array([row[column] for row in rows]))
 
 
 def test_what_cannot_follow_the_wire(fin):
     plain = ("feed_mode: proportional", "feed_mode: constant")
-    done, report, rows, texts = fin("30 mm", plain, ("post: siemens", "post: linuxcnc"), ("setup", "limits: maker, setup"))
-    assert done.status == 0 and "wire_feed_mm_s" not in rows[0] and not re.search(r"M6[78]", "".join(texts.values()))
+    done, report, rows, texts = fin(
+        "30 mm", plain, ("post: siemens", "post: linuxcnc"), ("setup", "limits: maker, setup")
+    )
+    assert (
+        done.status == 0
+        and "wire_feed_mm_s" not in rows[0]
+        and not re.search(r"M6[78]", "".join(texts.values()))
+    )
     heights = [issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT"]
     assert "process.wire.feed_mode: proportional would keep the section" in heights[0]
-    robot = ("machine: table-xyzac, setup: rotary-table", "machine: fanuc-arcmate120ic, setup: tool-on-robot")
+    robot = (
+        "machine: table-xyzac, setup: rotary-table",
+        "machine: fanuc-arcmate120ic, setup: tool-on-robot",
+    )
     done, *_ = fin("30 mm", robot, ("siemens, motion: cartesian", "fanuc"))
-    assert done.status == 2 and done.err.startswith("error[NO_WIRE_OUTPUT] fin.yaml: process.wire.feed_mode: AO[]"), done.err
+    assert done.status == 2 and done.err.startswith(
+        "error[NO_WIRE_OUTPUT] fin.yaml: process.wire.feed_mode: AO[]"
+    ), done.err
     done, *_ = fin("30 mm", ("bead_model: csw, ", ""))
-    assert done.status == 2 and done.err.startswith("error[NOT_FOR_FAMILY] fin.yaml: process.wire.feed_mode: "), done.err
+    assert done.status == 2 and done.err.startswith(
+        "error[NOT_FOR_FAMILY] fin.yaml: process.wire.feed_mode: "
+    ), done.err
 
 
 def test_messages_name_the_keys_of_the_job(fin):
     for changes, told in (
-        ((("hub.step}", "hub.step, faces: [Face99]}"),), "error[BAD_FACES] fin.yaml: substrate.faces: Face99 is not a face"),
-        ((("hub.step}", "ball.step}"),), "error[NO_BASE] ball: the hub has no cylinder and no cone"),
-        ((("substrate: {file: hub.step}\n", ""),), "error[NO_HUB] fin.yaml: substrate: the hub, a cylinder or cone"),
+        (
+            (("hub.step}", "hub.step, faces: [Face99]}"),),
+            "error[BAD_FACES] fin.yaml: substrate.faces: Face99 is not a face",
+        ),
+        (
+            (("hub.step}", "ball.step}"),),
+            "error[NO_BASE] ball: the hub has no cylinder and no cone",
+        ),
+        (
+            (("substrate: {file: hub.step}\n", ""),),
+            "error[NO_HUB] fin.yaml: substrate: the hub, a cylinder or cone",
+        ),
     ):
         done, *_ = fin("10 mm", *changes)
         assert done.status == 2 and done.err.startswith(told), done.err
 
 
 def test_notes_of_single_layers_and_of_what_a_table_does_not_use(fin):
-    _, report, *_ = fin("500 mm", (
-        "cell: {", "joints: {method: constant, compare: point-by-point}\ncell: {arm_clearance: 5 mm, "))
-    notes = {issue["code"]: issue["message"] for issue in report["issues"] if issue["level"] == "note"}
+    _, report, *_ = fin(
+        "500 mm",
+        (
+            "cell: {",
+            "joints: {method: constant, compare: point-by-point}\ncell: {arm_clearance: 5 mm, ",
+        ),
+    )
+    notes = {
+        issue["code"]: issue["message"] for issue in report["issues"] if issue["level"] == "note"
+    }
     assert notes["SINGLE_LAYER"].startswith("1 of 1 solids") and "500 mm" in notes["SINGLE_LAYER"]
-    assert notes["NOT_USED"].startswith("joints.method, joints.compare, cell.arm_clearance: of no effect")
+    assert notes["NOT_USED"].startswith(
+        "joints.method, joints.compare, cell.arm_clearance: of no effect"
+    )
     _, report, *_ = fin("10 mm")
     assert not {"SINGLE_LAYER", "NOT_USED"} & {issue["code"] for issue in report["issues"]}
 
@@ -205,18 +287,36 @@ def test_widths_outside_of_the_table_are_told_with_their_number_and_the_worst(fi
     _, report, rows, _ = fin("20 mm", ("bead_width: 9.5 mm", "bead_width: 12.7 mm"), lines)
     (told,) = (issue["message"] for issue in report["issues"] if issue["code"] == "OUTSIDE_TABLE")
     deposit = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
-    speed, width = (np.array([float(row[name]) for row in deposit]) for name in ("speed_mm_s", "width_mm"))
+    speed, width = (
+        np.array([float(row[name]) for row in deposit]) for name in ("speed_mm_s", "width_mm")
+    )
     # beads of the model at 300 mm/min, the slowest of the table: narrower than asked for, straight ones most
     straight = 85.55 / 300.0 ** (1.0 / 3.0) - 1.7542
-    assert straight <= width.min() < straight + 0.1 and speed.min() * 60.0 == pytest.approx(300.0, rel=1e-6)
-    beads, of, segments, worst = re.search(r"in (\d+) of (\d+) beads and (\d+) segments.*it is (\S+) mm at", told).groups()
-    assert (int(of), float(worst)) == (report["counts"]["beads"], pytest.approx(width.min(), abs=0.05))
+    assert straight <= width.min() < straight + 0.1 and speed.min() * 60.0 == pytest.approx(
+        300.0, rel=1e-6
+    )
+    beads, of, segments, worst = re.search(
+        r"in (\d+) of (\d+) beads and (\d+) segments.*it is (\S+) mm at", told
+    ).groups()
+    assert (int(of), float(worst)) == (
+        report["counts"]["beads"],
+        pytest.approx(width.min(), abs=0.05),
+    )
     assert 0 < int(beads) <= int(of) and 0 < int(segments) <= len(deposit)
     # the table's speeds, what is as wide at them, and what to do
     least, most = (
-        float(text) for text in re.search(r"are (\S+) to (\S+) mm wide: ask for a process.bead_width", told).groups())
-    slow, fast = (float(text) for text in re.search(r"the table's (\S+) to (\S+) mm/min", told).groups())
-    assert (slow, "or measure beads at other speeds" in told) == (300.0, True) and least < most < 12.7
+        float(text)
+        for text in re.search(
+            r"are (\S+) to (\S+) mm wide: ask for a process.bead_width", told
+        ).groups()
+    )
+    slow, fast = (
+        float(text) for text in re.search(r"the table's (\S+) to (\S+) mm/min", told).groups()
+    )
+    assert (slow, "or measure beads at other speeds" in told) == (
+        300.0,
+        True,
+    ) and least < most < 12.7
     widths = [85.55 / at ** (1.0 / 3.0) - 1.7542 for at in (fast, slow)]
     assert [least, most] == pytest.approx(widths, abs=5e-3)  # told with four digits
 
@@ -226,7 +326,8 @@ def test_walls_and_parts_of_revolution_hold_their_width(workshop):
     Part.makeCylinder(60.0, 9.0).exportStep(str(workshop.folder / "tube.step"))
     (workshop.folder / "tube.yaml").write_text(
         "part: {file: tube.step, faces: [Face1]}\nstrategy: {layer_height: 3 mm, chord_error: 0.002 mm}\n"
-        "process: {bead_model: csw, bead_width: 9.5 mm}\n", encoding="utf-8",
+        "process: {bead_model: csw, bead_width: 9.5 mm}\n",
+        encoding="utf-8",
     )
     done = workshop.run("plan", "tube.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err

@@ -26,7 +26,9 @@ def sound(workshop):
     folder.mkdir()
     for name, data in files.items():
         (folder / name).write_bytes(data)
-    (workshop.folder / "cell.yaml").write_text(cell_file.text(SETUPS[WAY[3]].cell, str(workshop.folder)), encoding="utf-8")
+    (workshop.folder / "cell.yaml").write_text(
+        cell_file.text(SETUPS[WAY[3]].cell, str(workshop.folder)), encoding="utf-8"
+    )
     return folder, motion
 
 
@@ -49,7 +51,11 @@ def told_line(workshop, done, code):
     (issue,) = [one for one in report(workshop)["issues"] if one["code"] == code]
     assert issue["message"].endswith(f"; {issue['file']} line {issue['line']}")
     assert f"; {issue['file']} line {issue['line']}\n" in done.err
-    return (workshop.folder / "edited" / issue["file"]).read_text(encoding="ascii").splitlines()[issue["line"] - 1]
+    return (
+        (workshop.folder / "edited" / issue["file"])
+        .read_text(encoding="ascii")
+        .splitlines()[issue["line"] - 1]
+    )
 
 
 def run(workshop, *words, cell="cell.yaml"):
@@ -60,8 +66,14 @@ def test_a_sound_program_does_what_was_planned(workshop, sound):
     _, motion = sound
     done = run(workshop)
     assert (done.status, done.err) == (0, ""), done.err
-    assert done.out.split() == [str(workshop.folder / "out" / name) for name in ("report.json", "waypoints.csv")]
-    rows = list(csv.DictReader(io.StringIO((workshop.folder / "out" / "waypoints.csv").read_text(encoding="ascii"))))
+    assert done.out.split() == [
+        str(workshop.folder / "out" / name) for name in ("report.json", "waypoints.csv")
+    ]
+    rows = list(
+        csv.DictReader(
+            io.StringIO((workshop.folder / "out" / "waypoints.csv").read_text(encoding="ascii"))
+        )
+    )
     for column, values in zip(("x_mm", "y_mm", "z_mm"), motion.position.T, strict=True):
         np.testing.assert_allclose([float(row[column]) for row in rows], values, atol=0.03)
     assert [row["kind"] == "deposit" for row in rows] == motion.deposit.tolist()
@@ -76,7 +88,9 @@ def test_a_job_tells_how_wide_the_beads_are(workshop, sound):
     (workshop.folder / "part.step").write_text("not looked at", encoding="utf-8")
     (workshop.folder / "job.yaml").write_text(
         "part: {file: part.step}\nstrategy: {layer_height: 3 mm}\ncell: cell.yaml\nprocess: {bead_width: 8 mm}\n"
-        "program: {post: fanuc}\n", encoding="utf-8")
+        "program: {post: fanuc}\n",
+        encoding="utf-8",
+    )
     done = run(workshop, cell="job.yaml")
     assert (done.status, done.err) == (0, ""), done.err
     rapids = report(workshop)["preflight"][-1]
@@ -106,7 +120,11 @@ def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, co
         assert " 1msec " in line
     else:  # the move to the record that was changed
         texts = [path.read_text(encoding="ascii") for path in sound[0].iterdir()]
-        (record,) = [found[1] for text in texts if (found := re.search(r"P\[(\d+)\]\{[^}]*J3=   300.000", text))]
+        (record,) = [
+            found[1]
+            for text in texts
+            if (found := re.search(r"P\[(\d+)\]\{[^}]*J3=   300.000", text))
+        ]
         assert re.match(rf" *\d+:[JL] P\[{record}\] ", line)
 
 
@@ -118,7 +136,9 @@ def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, co
         (r"(?s)(FINE {4};.*?)FINE {4};", r"\1FINE TB  29.00sec,DO[1]=OFF    ;", "TRIGGER_LEAD", "less than the 29 s that"),
     ],
 )  # fmt: skip
-def test_a_deposit_that_is_switched_as_no_program_does_is_told(workshop, sound, pattern, by, code, words):
+def test_a_deposit_that_is_switched_as_no_program_does_is_told(
+    workshop, sound, pattern, by, code, words
+):
     changed(sound[0], pattern, by)
     done = run(workshop)
     assert done.status == 3 and f"error[{code}] layer " in done.err and words in done.err, done.err
@@ -135,7 +155,9 @@ def test_a_nozzle_that_deposits_below_the_platform_is_told(workshop, sound, dept
     rows = motion.deposit & (np.hypot(*motion.position[:, :2].T) < 0.5 * cell.platform_diameter)
     thicker = float(motion.position[rows, 2].min()) + depth
     other = dataclasses.replace(cell, platform=cell.platform + thicker)
-    (workshop.folder / "cell.yaml").write_text(cell_file.text(other, str(workshop.folder)), encoding="utf-8")
+    (workshop.folder / "cell.yaml").write_text(
+        cell_file.text(other, str(workshop.folder)), encoding="utf-8"
+    )
     done = run(workshop)
     assert done.err.count("error[INTO_PLATFORM]") == told, done.err
     if told:
@@ -144,12 +166,19 @@ def test_a_nozzle_that_deposits_below_the_platform_is_told(workshop, sound, dept
         assert re.match(r" *\d+:[JL] P\[", told_line(workshop, done, "INTO_PLATFORM"))
 
 
-@pytest.mark.parametrize(("below", "words"), [(1, "at 1 point below the platform, by 2 mm; correct its height,"),
-                                              (2, "at 2 points below the platform, here 2 mm; correct their heights,")])
+@pytest.mark.parametrize(
+    ("below", "words"),
+    [
+        (1, "at 1 point below the platform, by 2 mm; correct its height,"),
+        (2, "at 2 points below the platform, here 2 mm; correct their heights,"),
+    ],
+)
 def test_one_point_below_the_platform_is_not_called_points(sound, below, words):
     _, motion = sound
     settings = SETUPS[WAY[3]].cell
-    cell = cells.resolve(dataclasses.replace(settings, platform=-1e3), np.eye(4))  # of which all of the job is clear
+    cell = cells.resolve(
+        dataclasses.replace(settings, platform=-1e3), np.eye(4)
+    )  # of which all of the job is clear
     position, up = motion.position.copy(), cell.mount[:3, 2]
     rows = np.flatnonzero(motion.deposit)[:below]
     position[rows] = cell.mount[:3, 3] - 2.0 * up
@@ -157,7 +186,9 @@ def test_one_point_below_the_platform_is_not_called_points(sound, below, words):
     assert words in found.issue.message and found.row == rows[0]
 
 
-@pytest.mark.parametrize("controller", ["abb", "kuka", "linuxcnc", "siemens", "ur", "val3", "yaskawa"])
+@pytest.mark.parametrize(
+    "controller", ["abb", "kuka", "linuxcnc", "siemens", "ur", "val3", "yaskawa"]
+)
 def test_a_program_of_another_controller_is_refused_in_its_name(workshop, sound, root, controller):
     """Whatever the cell's robot reads: golden programs of all other controllers."""
     folder, _ = sound
@@ -168,7 +199,9 @@ def test_a_program_of_another_controller_is_refused_in_its_name(workshop, sound,
         if path.is_file():
             (folder / path.name).write_bytes(path.read_bytes())
     done = run(workshop)
-    assert done.status == 2 and re.match(r"error\[(UNREADABLE_PROGRAM|NO_FILE)\]", done.err), done.err
+    assert done.status == 2 and re.match(r"error\[(UNREADABLE_PROGRAM|NO_FILE)\]", done.err), (
+        done.err
+    )
     assert "Traceback" not in done.err and not (workshop.folder / "out").exists()
 
 
@@ -189,7 +222,10 @@ def test_programs_that_cannot_be_read_are_refused(workshop, sound):
     for number in range(2001):
         (folder / str(number)).touch()
     done = run(workshop)
-    assert done.status == 2 and "error[BAD_FILE] edited: the folder holds more than 2000 files" in done.err
+    assert (
+        done.status == 2
+        and "error[BAD_FILE] edited: the folder holds more than 2000 files" in done.err
+    )
     for path in folder.iterdir():
         path.unlink()
     done = run(workshop)

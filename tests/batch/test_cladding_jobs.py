@@ -53,7 +53,10 @@ def named(shape, wanted):
 
 def die():
     """A block with a top that is bent both ways, and a bore through it."""
-    poles = [[V(x, y, 20 + 4 * np.cos(x / 20) * np.cos(y / 25)) for y in range(-10, 61, 10)] for x in range(-10, 81, 10)]
+    poles = [
+        [V(x, y, 20 + 4 * np.cos(x / 20) * np.cos(y / 25)) for y in range(-10, 61, 10)]
+        for x in range(-10, 81, 10)
+    ]
     top = Part.BSplineSurface()
     top.interpolate(poles)
     block = Part.makeBox(70, 50, 40).cut(Part.makeCylinder(8, 60, V(45, 25, -5)))
@@ -77,18 +80,32 @@ def covered(rows, points, layer, half):
 def test_a_scan_of_a_top_gets_layers_on_the_side_it_looks_to(workshop):
     """An open mesh of a bent top, with triangles that look down: two layers hang below the exact face, their heights off it.
     A closed one has no faces to cover."""
-    poles = [[V(x, y, 20 + 4 * np.cos(x / 20) * np.cos(y / 25)) for y in range(0, 41, 10)] for x in range(0, 41, 10)]
+    poles = [
+        [V(x, y, 20 + 4 * np.cos(x / 20) * np.cos(y / 25)) for y in range(0, 41, 10)]
+        for x in range(0, 41, 10)
+    ]
     top = Part.BSplineSurface()
     top.interpolate(poles)
     face = top.toShape()
-    corners = np.array([[tuple(point) for point in one.Points] for one in Mesh.Mesh(face.tessellate(0.02)).Facets])
-    down = np.where((np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0.0)[:, None, None],
-                    corners[:, ::-1], corners)
+    corners = np.array(
+        [[tuple(point) for point in one.Points] for one in Mesh.Mesh(face.tessellate(0.02)).Facets]
+    )
+    down = np.where(
+        (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0.0)[
+            :, None, None
+        ],
+        corners[:, ::-1],
+        corners,
+    )
     Mesh.Mesh(down.tolist()).write(str(workshop.folder / "scan.stl"))
-    text = JOB.format(faces="", more=", layers: 2", clearance="none").replace("part.step", "scan.stl")
+    text = JOB.format(faces="", more=", layers: 2", clearance="none").replace(
+        "part.step", "scan.stl"
+    )
     done = workshop.run("plan", workshop.write_job(text).name, "-o", "out", "--no-page")
     assert done.status == 0, done.err
-    with open(next((workshop.folder / "out").rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
+    with open(
+        next((workshop.folder / "out").rglob("waypoints.csv")), encoding="utf-8", newline=""
+    ) as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     xyz, layer = column(rows, "x_mm", "y_mm", "z_mm")[::5], column(rows, "layer")[::5, 0]
     assert set(layer) == {0.0, 1.0} and (column(rows, "bz") < -0.8).all()
@@ -103,11 +120,19 @@ def test_a_scan_of_a_top_gets_layers_on_the_side_it_looks_to(workshop):
 
 def test_chosen_faces_of_a_solid_are_covered_by_themselves(workshop):
     """kind: auto on a face of a thick block, at x = 30; one layer is what is asked for, not what a low part gets."""
-    job = JOB.replace("kind: cladding", "kind: auto").format(faces=", faces: [Face2]", more="", clearance="none")
+    job = JOB.replace("kind: cladding", "kind: auto").format(
+        faces=", faces: [Face2]", more="", clearance="none"
+    )
     Part.makeBox(30, 20, 25).exportStep(str(workshop.folder / "part.step"))
     done = workshop.run("plan", workshop.write_job(job).name, "-o", "out", "--no-page")
-    assert done.status == 0 and "kind: cladding: faces of" in done.err and "SINGLE_LAYER" not in done.err
-    with open(next((workshop.folder / "out").rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
+    assert (
+        done.status == 0
+        and "kind: cladding: faces of" in done.err
+        and "SINGLE_LAYER" not in done.err
+    )
+    with open(
+        next((workshop.folder / "out").rglob("waypoints.csv")), encoding="utf-8", newline=""
+    ) as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     xyz = column(rows, "x_mm", "y_mm", "z_mm")
     np.testing.assert_allclose(xyz[:, 0], 30.0, atol=1e-6)
@@ -118,21 +143,29 @@ def test_a_bent_top_gets_layers_above_it_and_the_program_has_them(planned, works
     shape = die()
     is_top = lambda face: face.Surface.TypeId == "Part::GeomBSplineSurface"  # noqa: E731
     top = next(face for face in shape.Faces if is_top(face))
-    done, report, rows = planned(shape, named(shape, is_top), ", layers: 2, fill: zigzag", CELL, "nozzle")
+    done, report, rows = planned(
+        shape, named(shape, is_top), ", layers: 2, fill: zigzag", CELL, "nozzle"
+    )
     assert done.status == 0, done.err
     assert report["counts"]["layers"] == 2 and report["unsupported_mm"] == 0.0
     points, layer = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "layer")[:, 0]
     away = np.array([top.distToShape(Part.Vertex(*point))[0] for point in points[::7]])
-    np.testing.assert_allclose(away, HEIGHT * layer[::7], atol=0.1)  # the chord error: planning adds points between
+    np.testing.assert_allclose(
+        away, HEIGHT * layer[::7], atol=0.1
+    )  # the chord error: planning adds points between
     # beads stay half of their width inside of the face, but for the bow of chords
     lowest = [Part.Vertex(*point) for point in points[layer == 0][::11]]
     rim = np.array([min(edge.distToShape(point)[0] for edge in top.Edges) for point in lowest])
     assert rim.min() > 0.5 * SPACING - 0.25
     low_u, high_u, low_v, high_v = top.ParameterRange
-    places = [(u, v) for u in np.linspace(low_u, high_u, 60) for v in np.linspace(low_v, high_v, 45)]
+    places = [
+        (u, v) for u in np.linspace(low_u, high_u, 60) for v in np.linspace(low_v, high_v, 45)
+    ]
     grid = [place for place in places if top.isPartOfDomain(*place)]
     for number in (0, 1):
-        above = np.array([tuple(top.valueAt(u, v) + HEIGHT * number * top.normalAt(u, v)) for u, v in grid])
+        above = np.array(
+            [tuple(top.valueAt(u, v) + HEIGHT * number * top.normalAt(u, v)) for u, v in grid]
+        )
         assert covered(rows, above, number, 0.5 * SPACING * 1.03) > 0.985
     deposit = report["deposit"]
     assert deposit["part_cm3"] == pytest.approx(2 * HEIGHT * top.Area / 1000.0, rel=0.01)
@@ -145,10 +178,14 @@ def test_a_bent_top_gets_layers_above_it_and_the_program_has_them(planned, works
     form = re.compile(f"G1 X{number} Y{number} Z{number} A3={number} B3={number} C3={number}")
     laid = [form.findall(part.split("H1=0")[0]) for part in text.split("H1=1")[1:]]
     found = np.array([[float(cell) for cell in hit] for hits in laid for hit in hits])
-    assert len(found) == len(rows) - report["counts"]["beads"]  # a bead begins where the torch has come to
+    assert (
+        len(found) == len(rows) - report["counts"]["beads"]
+    )  # a bead begins where the torch has come to
     above = np.array([top.distToShape(Part.Vertex(*point))[0] for point in found[::9, :3]])
     assert (np.minimum(above, np.abs(above - HEIGHT)) < 0.1).all() and above.max() > 1.9
-    foot = found[::9, :3] - above[:, None] * found[::9, 3:]  # down the tool, which is the normal where nothing is in its way
+    foot = (
+        found[::9, :3] - above[:, None] * found[::9, 3:]
+    )  # down the tool, which is the normal where nothing is in its way
     assert max(top.distToShape(Part.Vertex(*point))[0] for point in foot) < 0.1
 
 
@@ -156,7 +193,8 @@ def test_layers_on_a_shaft_and_in_a_bore_keep_their_spacing_where_they_lie(plann
     """The second layer is 8 % farther round than the shaft, and less far round than the bore: along and across, beads are as
     far apart on each as on the first. They begin and end half a bead from the one seam."""
     for shape, radius, sign, angle in (
-        (Part.makeCylinder(25, 40), 25.0, 1.0, 90), (Part.makeCylinder(30, 40).cut(Part.makeCylinder(22, 40)), 22.0, -1.0, 0)
+        (Part.makeCylinder(25, 40), 25.0, 1.0, 90),
+        (Part.makeCylinder(30, 40).cut(Part.makeCylinder(22, 40)), 22.0, -1.0, 0),
     ):
         faces = named(shape, lambda face, r=radius: getattr(face.Surface, "Radius", 0.0) == r)
         more = f", layers: 2, fill: lines, fill_angle: {angle} deg, fill_angle_step: 0 deg, contour: false"
@@ -172,9 +210,17 @@ def test_layers_on_a_shaft_and_in_a_bore_keep_their_spacing_where_they_lie(plann
         for number in (0, 1):
             own = [row for row in rows if int(row["layer"]) == number]
             bead, round_ = column(own, "bead")[:, 0], radius + sign * HEIGHT * number
-            azimuth, z = np.arctan2(column(own, "y_mm")[:, 0], column(own, "x_mm")[:, 0]), column(own, "z_mm")[:, 0]
-            size = {k: np.hypot(round_ * np.ptp(np.unwrap(azimuth[bead == k])), np.ptp(z[bead == k])) for k in set(bead)}
-            long = [k for k in size if size[k] > 0.9 * max(size.values())]  # others close gaps at the ends of these
+            azimuth, z = (
+                np.arctan2(column(own, "y_mm")[:, 0], column(own, "x_mm")[:, 0]),
+                column(own, "z_mm")[:, 0],
+            )
+            size = {
+                k: np.hypot(round_ * np.ptp(np.unwrap(azimuth[bead == k])), np.ptp(z[bead == k]))
+                for k in set(bead)
+            }
+            long = [
+                k for k in size if size[k] > 0.9 * max(size.values())
+            ]  # others close gaps at the ends of these
             if angle == 90:
                 along = [np.exp(1j * azimuth[bead == k]) for k in long]
                 assert max(np.ptp(np.angle(one / one[0])) for one in along) < 0.02
@@ -182,33 +228,52 @@ def test_layers_on_a_shaft_and_in_a_bore_keep_their_spacing_where_they_lie(plann
                 apart = round_ * np.diff(np.r_[place, place[0] + 2.0 * np.pi])
                 assert len(along) * SPACING > 2.0 * np.pi * round_ - SPACING
             else:
-                assert sorted(np.ptp(z[bead == k]) for k in long)[-3] < 0.02  # two close what is left over
+                assert (
+                    sorted(np.ptp(z[bead == k]) for k in long)[-3] < 0.02
+                )  # two close what is left over
                 apart = np.diff(np.sort([z[bead == k].mean() for k in long]))
-            usual = np.sort(np.abs(apart - SPACING))  # but for what is left over, and beside the seam
+            usual = np.sort(
+                np.abs(apart - SPACING)
+            )  # but for what is left over, and beside the seam
             assert usual[: len(usual) - (5 if angle == 90 else 4)].max() < 0.01 * SPACING, apart
             assert apart.max() < 1.03 * SPACING
 
 
-def test_a_shaft_is_laid_flat_as_it_is_wherever_the_vertices_of_its_mesh_lie_beside_the_seam(planned):
+def test_a_shaft_is_laid_flat_as_it_is_wherever_the_vertices_of_its_mesh_lie_beside_the_seam(
+    planned,
+):
     """Two of them, one on either side of the seam and joined by an edge, were both moved onto it and met there."""
     shape = Part.makeCylinder(36, 60)
     faces = named(shape, lambda face: getattr(face.Surface, "Radius", 0.0) == 36.0)
     done, report, rows = planned(shape, faces, ", fill: zigzag")
     assert done.status == 0, done.err
-    assert [issue["message"] for issue in report["issues"] if issue["code"] in ("DISTORTED", "DEPOSITED_TWICE")] == []
+    assert [
+        issue["message"]
+        for issue in report["issues"]
+        if issue["code"] in ("DISTORTED", "DEPOSITED_TWICE")
+    ] == []
     points = column(rows, "x_mm", "y_mm", "z_mm")
     np.testing.assert_allclose(np.hypot(points[:, 0], points[:, 1]), 36.0, atol=1e-5)
     assert report["length_mm"] == pytest.approx(2.0 * np.pi * 36.0 * 60.0 / SPACING, rel=0.1)
 
 
 def test_a_ball_is_covered_in_pieces_within_the_distortion_told(planned):
-    done, report, rows = planned(Part.makeSphere(20), ", faces: [Face1]", ", fill: contours, distortion: 8 %")
+    done, report, rows = planned(
+        Part.makeSphere(20), ", faces: [Face1]", ", fill: contours, distortion: 8 %"
+    )
     assert done.status == 0, done.err
     told = [issue["message"] for issue in report["issues"] if issue["code"] == "DISTORTED"]
     assert len(told) == 1 and float(re.search(r"up to ([\d.]+) %", told[0])[1]) <= 8.0
-    np.testing.assert_allclose(np.linalg.norm(column(rows, "x_mm", "y_mm", "z_mm"), axis=1), 20.0, atol=1e-5)
-    turn, up = 2.0 * np.pi * ((np.arange(4000) / 1.618033988749895) % 1.0), 1.0 - 2.0 * (np.arange(4000) + 0.5) / 4000
-    grid = 20.0 * np.column_stack([np.sqrt(1.0 - up**2) * np.cos(turn), np.sqrt(1.0 - up**2) * np.sin(turn), up])
+    np.testing.assert_allclose(
+        np.linalg.norm(column(rows, "x_mm", "y_mm", "z_mm"), axis=1), 20.0, atol=1e-5
+    )
+    turn, up = (
+        2.0 * np.pi * ((np.arange(4000) / 1.618033988749895) % 1.0),
+        1.0 - 2.0 * (np.arange(4000) + 0.5) / 4000,
+    )
+    grid = 20.0 * np.column_stack(
+        [np.sqrt(1.0 - up**2) * np.cos(turn), np.sqrt(1.0 - up**2) * np.sin(turn), up]
+    )
     assert covered(rows, grid, 0, 0.5 * SPACING * 1.08) > 0.98
 
 
@@ -217,12 +282,23 @@ def test_faces_that_are_no_neighbours_are_regions_and_creases_are_told(planned):
     ends = lambda face: abs(face.CenterOfMass.x - 30.0) > 29.0  # noqa: E731
     done, report, rows = planned(box, named(box, ends), ", layers: 2, fill: spiral")
     assert done.status == 0 and "CREASE" not in done.err, done.err
-    build, x, layer = column(rows, "bx")[:, 0], column(rows, "x_mm")[:, 0], column(rows, "layer")[:, 0]
-    np.testing.assert_allclose(x, np.where(build > 0.0, 60.0 + HEIGHT * layer, -HEIGHT * layer), atol=1e-9)
+    build, x, layer = (
+        column(rows, "bx")[:, 0],
+        column(rows, "x_mm")[:, 0],
+        column(rows, "layer")[:, 0],
+    )
+    np.testing.assert_allclose(
+        x, np.where(build > 0.0, 60.0 + HEIGHT * layer, -HEIGHT * layer), atol=1e-9
+    )
     assert report["counts"]["layers"] == 2 and (build > 0.0).mean() == 0.5
     beside = named(box, lambda face: face.CenterOfMass.x + face.CenterOfMass.z > 50.0)
     done, report, rows = planned(box, beside, ", layers: 2")
-    assert done.status == 0 and "warning[CREASE]" in done.err and "90 deg" in done.err and "2 mm" in done.err, done.err
+    assert (
+        done.status == 0
+        and "warning[CREASE]" in done.err
+        and "90 deg" in done.err
+        and "2 mm" in done.err
+    ), done.err
 
 
 def test_the_other_side_of_a_skin(planned):
@@ -238,17 +314,43 @@ def two_boxes():
     return Part.makeCompound([Part.makeBox(20, 20, 20), Part.makeBox(20, 20, 20, V(40, 0, 0))])
 
 
-@pytest.mark.parametrize(("shape", "faces", "more", "code", "words"), [
-    (Part.makeBox(20, 20, 20), ", edges: [Edge1]", "", "NOT_FOR_FAMILY", "part.edges"),
-    (Part.makeBox(20, 20, 20), "", "", "NO_FACES", "none is chosen"),
-    (Part.makeBox(20, 20, 20), ", faces: [Face7]", "", "UNKNOWN_FACE", "no Face7"),
-    (two_boxes(), ", faces: [Face1, Face8]", "", "SEVERAL_BODIES", "Face1 and Face8"),
-    (Part.makeBox(20, 20, 20), ", faces: [Face1]", ", side: back", "BACK_OF_SOLID", "strategy.side"),
-    (Part.makeBox(20, 20, 20), ", faces: [Face1]", ", layers: 0", "BAD_VALUE", "strategy.layers"),
-    (Part.makeBox(20, 20, 20), ", faces: [Face1]", ", margin: 1 mm", "NOT_FOR_FAMILY", "strategy.margin"),
-    (Part.makeBox(40, 40, 10).cut(Part.makeCylinder(6, 40, V(-1, 20, 10), V(1, 0, 0))),
-     ", faces: [Face5]", ", layers: 4", "FOLDED", "most 3 layer"),
-])
+@pytest.mark.parametrize(
+    ("shape", "faces", "more", "code", "words"),
+    [
+        (Part.makeBox(20, 20, 20), ", edges: [Edge1]", "", "NOT_FOR_FAMILY", "part.edges"),
+        (Part.makeBox(20, 20, 20), "", "", "NO_FACES", "none is chosen"),
+        (Part.makeBox(20, 20, 20), ", faces: [Face7]", "", "UNKNOWN_FACE", "no Face7"),
+        (two_boxes(), ", faces: [Face1, Face8]", "", "SEVERAL_BODIES", "Face1 and Face8"),
+        (
+            Part.makeBox(20, 20, 20),
+            ", faces: [Face1]",
+            ", side: back",
+            "BACK_OF_SOLID",
+            "strategy.side",
+        ),
+        (
+            Part.makeBox(20, 20, 20),
+            ", faces: [Face1]",
+            ", layers: 0",
+            "BAD_VALUE",
+            "strategy.layers",
+        ),
+        (
+            Part.makeBox(20, 20, 20),
+            ", faces: [Face1]",
+            ", margin: 1 mm",
+            "NOT_FOR_FAMILY",
+            "strategy.margin",
+        ),
+        (
+            Part.makeBox(40, 40, 10).cut(Part.makeCylinder(6, 40, V(-1, 20, 10), V(1, 0, 0))),
+            ", faces: [Face5]",
+            ", layers: 4",
+            "FOLDED",
+            "most 3 layer",
+        ),
+    ],
+)
 def test_what_cannot_be_covered_is_told(planned, shape, faces, more, code, words):
     if code == "FOLDED":
         faces = named(shape, lambda face: face.Surface.TypeId == "Part::GeomCylinder")
@@ -260,7 +362,11 @@ def test_what_cannot_be_covered_is_told(planned, shape, faces, more, code, words
 def test_a_worn_die_in_joint_motion_is_read_back_on_its_beads(workshop, root):
     """Between two points the axes bend the way most at no quarter of it: points are added where any place is too far off."""
     examples = root / "resources" / "examples"
-    job = (examples / "die.yaml").read_text(encoding="utf-8").replace("motion: cartesian", "motion: joint")
+    job = (
+        (examples / "die.yaml")
+        .read_text(encoding="utf-8")
+        .replace("motion: cartesian", "motion: joint")
+    )
     job = workshop.write_job(job.replace("die.step", str(examples / "die.step")))
     done = workshop.run("plan", job.name, "-o", "out", "--no-page")
     assert done.status == 0, done.err

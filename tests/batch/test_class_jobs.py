@@ -43,13 +43,19 @@ CLASSES = """\
 def planned(workshop, more, program=""):
     if not (workshop.folder / "bar.step").exists():
         Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
-    (workshop.folder / "bar.yaml").write_text(JOB.replace("CLASSES\n", more).replace("program: {", "program: {" + program))
+    (workshop.folder / "bar.yaml").write_text(
+        JOB.replace("CLASSES\n", more).replace("program: {", "program: {" + program)
+    )
     done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     out = workshop.folder / "out"
     with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
-    return rows, json.loads((out / "report.json").read_text()), (out / "program" / "BAR.LS").read_bytes().decode()
+    return (
+        rows,
+        json.loads((out / "report.json").read_text()),
+        (out / "program" / "BAR.LS").read_bytes().decode(),
+    )
 
 
 def numbers(rows, *names):
@@ -64,7 +70,13 @@ def test_classes_of_a_filled_bar(workshop):
     place, layer = numbers(deposit, "x_mm", "y_mm", "z_mm"), numbers(deposit, "layer")[:, 0]
     bead = numbers(deposit, "bead")[:, 0]
     edge = np.minimum(place[:, :2], SIDE - place[:, :2]).min(axis=1)
-    assert np.ptp(np.bincount(layer.astype(int), place[:, 2]) / np.bincount(layer.astype(int)) - LAYER * np.arange(3)) < 1e-9
+    assert (
+        np.ptp(
+            np.bincount(layer.astype(int), place[:, 2]) / np.bincount(layer.astype(int))
+            - LAYER * np.arange(3)
+        )
+        < 1e-9
+    )
     for key in sorted(set(zip(layer.tolist(), bead.tolist()))):
         mine = (layer == key[0]) & (bead == key[1])
         along = np.abs(edge[mine] - 0.5 * WIDTH).max() < 0.02
@@ -79,14 +91,21 @@ def test_classes_of_a_filled_bar(workshop):
     tool, build = numbers(deposit, "tx", "ty", "tz"), numbers(deposit, "bx", "by", "bz")
     angle = np.degrees(np.arccos(np.clip((tool * build).sum(axis=1), -1.0, 1.0)))
     leant = np.degrees(np.arccos(np.cos(np.radians(10.0)) * np.cos(np.radians(5.0))))
-    assert np.abs(angle[name != "contour"]).max() < 1e-6 and abs(np.median(angle[name == "contour"]) - leant) < 1e-4
+    assert (
+        np.abs(angle[name != "contour"]).max() < 1e-6
+        and abs(np.median(angle[name == "contour"]) - leant) < 1e-4
+    )
     _figures(report, rows)
     _program(text, deposit)
 
 
 def fed(report):
     """The line of the preflight about the wire."""
-    (line,) = [line for line in report["preflight"] if line["promise"] == "The wire feeds what the beads take"]
+    (line,) = [
+        line
+        for line in report["preflight"]
+        if line["promise"] == "The wire feeds what the beads take"
+    ]
     return line
 
 
@@ -101,48 +120,97 @@ def _figures(report, rows):
         mine = moves & np.array([row["class"] == told["class"] for row in rows])
         assert told["length_mm"] == pytest.approx(way[mine].sum(), abs=1e-3)
         assert told["deposit_s"] == pytest.approx((way[mine] / speed[mine]).sum(), abs=1e-3)
-        begins = {(row["layer"], row["bead"]) for row in rows if row["kind"] == "deposit" and row["class"] == told["class"]}
+        begins = {
+            (row["layer"], row["bead"])
+            for row in rows
+            if row["kind"] == "deposit" and row["class"] == told["class"]
+        }
         assert told["beads"] == len(begins)
     assert [row["schedule"] for row in report["classes"]] == [1, 3, 9]
-    assert fed(report)["ok"] is None and fed(report)["how"].endswith("the feed of contour, first_layer")
+    assert fed(report)["ok"] is None and fed(report)["how"].endswith(
+        "the feed of contour, first_layer"
+    )
     count = {row["class"]: row["beads"] for row in report["classes"]}
-    assert report["totals"]["wait_s"] == pytest.approx(0.8 * count["contour"] + 1.5 * count["fill"], abs=1e-9)
+    assert report["totals"]["wait_s"] == pytest.approx(
+        0.8 * count["contour"] + 1.5 * count["fill"], abs=1e-9
+    )
 
 
 def _program(text, deposit):
     """What is told before each bead, and how long the robot stands at its ends."""
     begins = [row["class"] for row in deposit if row["point"] == "0"]
-    told = re.findall(r"GO\[5\]=(\d+) ;\r\n *\d+:  DO\[1\]=ON ;\r\n *\d+:(?:  WAIT +([.\d]+)\(sec\))?", text)
+    told = re.findall(
+        r"GO\[5\]=(\d+) ;\r\n *\d+:  DO\[1\]=ON ;\r\n *\d+:(?:  WAIT +([.\d]+)\(sec\))?", text
+    )
     ends = re.findall(r":(?:  WAIT +([.\d]+)\(sec\))? ?;?\r?\n? *\d*:? *DO\[1\]=OFF", text)
-    assert [int(number) for number, _ in told] == [{"first_layer": 1, "contour": 3, "fill": 9}[name] for name in begins]
+    assert [int(number) for number, _ in told] == [
+        {"first_layer": 1, "contour": 3, "fill": 9}[name] for name in begins
+    ]
     assert [wait for _, wait in told] == [".80" if name == "contour" else "" for name in begins]
-    assert len(ends) == len(begins) and ends == ["1.50" if name == "fill" else "" for name in begins]
+    assert len(ends) == len(begins) and ends == [
+        "1.50" if name == "fill" else "" for name in begins
+    ]
 
 
 def test_a_job_without_classes_keeps_its_program(workshop):
     _, plain, before = planned(workshop, "")
-    _, told, after = planned(workshop, "  classes: {wall: {travel_speed: 20 mm/s}, closing: {lead: 5 deg}}\n")
+    _, told, after = planned(
+        workshop, "  classes: {wall: {travel_speed: 20 mm/s}, closing: {lead: 5 deg}}\n"
+    )
     assert before == after and "GO[" not in before
-    assert plain["classes"] == told["classes"] and [row["schedule"] for row in plain["classes"]] == [None] * 3
+    assert (
+        plain["classes"] == told["classes"]
+        and [row["schedule"] for row in plain["classes"]] == [None] * 3
+    )
 
 
-@pytest.mark.parametrize(("process", "code", "where", "words"), [
-    ("{classes: {outer: {}}}", "UNKNOWN_KEY", "process.classes.outer", "use one of"),
-    ("{classes: {contour: {speed: 8}}}", "UNKNOWN_KEY", "process.classes.contour.speed", "travel_speed"),
-    ("{classes: {contour: {travel_speed: 8 mm}}}", "BAD_UNIT", "process.classes.contour.travel_speed", "speed"),
-    ("{classes: {contour: {travel_speed: 0}}}", "BAD_VALUE", "process.classes.contour.travel_speed", "more than 0"),
-    ("{classes: {fill: {schedule: 2.5}}}", "BAD_VALUE", "process.classes.fill.schedule", "whole number"),
-    ("{classes: {fill: {schedule: 0}}}", "BAD_VALUE", "process.classes.fill.schedule", "at least 1"),
-    ("{classes: [contour]}", "BAD_VALUE", "process.classes", "write classes below it"),
-    ("{classes: {wall: 5}}", "BAD_VALUE", "process.classes.wall", "is not a section"),
-    ("{schedule: -1}", "BAD_VALUE", "process.schedule", "at least 1"),
-])
+@pytest.mark.parametrize(
+    ("process", "code", "where", "words"),
+    [
+        ("{classes: {outer: {}}}", "UNKNOWN_KEY", "process.classes.outer", "use one of"),
+        (
+            "{classes: {contour: {speed: 8}}}",
+            "UNKNOWN_KEY",
+            "process.classes.contour.speed",
+            "travel_speed",
+        ),
+        (
+            "{classes: {contour: {travel_speed: 8 mm}}}",
+            "BAD_UNIT",
+            "process.classes.contour.travel_speed",
+            "speed",
+        ),
+        (
+            "{classes: {contour: {travel_speed: 0}}}",
+            "BAD_VALUE",
+            "process.classes.contour.travel_speed",
+            "more than 0",
+        ),
+        (
+            "{classes: {fill: {schedule: 2.5}}}",
+            "BAD_VALUE",
+            "process.classes.fill.schedule",
+            "whole number",
+        ),
+        (
+            "{classes: {fill: {schedule: 0}}}",
+            "BAD_VALUE",
+            "process.classes.fill.schedule",
+            "at least 1",
+        ),
+        ("{classes: [contour]}", "BAD_VALUE", "process.classes", "write classes below it"),
+        ("{classes: {wall: 5}}", "BAD_VALUE", "process.classes.wall", "is not a section"),
+        ("{schedule: -1}", "BAD_VALUE", "process.schedule", "at least 1"),
+    ],
+)
 def test_what_is_wrong_is_named(tmp_path, process, code, where, words):
     (tmp_path / "part.step").write_text("")
     (tmp_path / "job.yaml").write_text(f"part: {{file: part.step}}\nprocess: {process}\n")
     with pytest.raises(InputError) as caught:
         jobs.read_job(str(tmp_path / "job.yaml"))
-    assert caught.value.code == code and where in caught.value.where and words in caught.value.message
+    assert (
+        caught.value.code == code and where in caught.value.where and words in caught.value.message
+    )
 
 
 PHASES = """\
@@ -170,9 +238,13 @@ def test_starts_and_ends_of_beads_have_speeds_of_their_own(workshop):
     plain, _, _ = planned(workshop, "  classes: {contour: {travel_speed: 8 mm/s}}\n")
     rows, report, text = planned(workshop, PHASES)
     assert report["status"] == "ok" and fed(report)["ok"] is False
-    assert fed(report)["worst"] == pytest.approx(200.0, rel=0.02)  # ends of contours at 2 mm/s, the wire feeds for 6
+    assert fed(report)["worst"] == pytest.approx(
+        200.0, rel=0.02
+    )  # ends of contours at 2 mm/s, the wire feeds for 6
     (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "FEED_BALANCE"]
-    assert "contour 64, contour.end 16" in told and "fill.start 24" in told and "fill.end 96" in told
+    assert (
+        "contour 64, contour.end 16" in told and "fill.start 24" in told and "fill.end 96" in told
+    )
     for (mine, along), (before, whole) in zip(beads_of(rows), beads_of(plain), strict=True):
         contour = mine[0]["class"] == "contour"
         first, last, speed = (0.0, 4.0, 8.0) if contour else (5.0, 2.5, 6.0)
@@ -180,7 +252,11 @@ def test_starts_and_ends_of_beads_have_speeds_of_their_own(workshop):
         for border in (first, along[-1] - last):
             assert np.abs(along - border).min() < 2e-3
         middle = 0.5 * (along[1:] + along[:-1])
-        wanted = np.where(middle < first, 3.0, np.where(middle > along[-1] - last, 2.0 if contour else 12.0, speed))
+        wanted = np.where(
+            middle < first,
+            3.0,
+            np.where(middle > along[-1] - last, 2.0 if contour else 12.0, speed),
+        )
         assert np.abs(numbers(mine[1:], "speed_mm_s")[:, 0] - wanted).max() < 1e-6
     moves = re.findall(r"J P\[\d+\] (\d+)msec (FINE|CNT)", text)
     assert moves  # nothing stops within a bead: as many stops as without phases
@@ -190,7 +266,9 @@ def test_starts_and_ends_of_beads_have_speeds_of_their_own(workshop):
 def test_schedules_change_within_a_bead_without_a_stop(workshop):
     more = PHASES + "  schedule: 9\n"
     for speed, schedule in ((3, 4), (2, 5)):
-        more = more.replace(f"speed: {speed} mm/s}}", f"speed: {speed} mm/s, schedule: {schedule}}}")
+        more = more.replace(
+            f"speed: {speed} mm/s}}", f"speed: {speed} mm/s, schedule: {schedule}}}"
+        )
     job = JOB.replace("CLASSES\n", more)
     job = job[: job.index("cell:")] + job[job.index("process:") : job.index("program:")] + TABLE
     Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
@@ -201,7 +279,10 @@ def test_schedules_change_within_a_bead_without_a_stop(workshop):
         rows = list(csv.DictReader(stream))
     lines = (workshop.folder / "out" / "program" / "bar.ngc").read_text().splitlines()
     beads = list(beads_of(rows))
-    on, off = ([k for k, line in enumerate(lines) if line.startswith(word)] for word in ("M64 P0", "M65 P0"))
+    on, off = (
+        [k for k, line in enumerate(lines) if line.startswith(word)]
+        for word in ("M64 P0", "M65 P0")
+    )
     assert len(on) == len(off) == len(beads)
     for (mine, along), first, end in zip(beads, on, off, strict=True):
         contour = mine[0]["class"] == "contour"
@@ -209,7 +290,9 @@ def test_schedules_change_within_a_bead_without_a_stop(workshop):
         assert not any(line.startswith(("M68", "G4", "G61", "M6 ")) for line in inside)
         told = [line for line in inside if line.startswith("M67")]
         ahead = [line for line in lines[:first] if line.startswith("M68")][-1]
-        assert (ahead, told) == (("M68 E2 Q9", ["M67 E2 Q5"]) if contour else ("M68 E2 Q4", ["M67 E2 Q9"]))
+        assert (ahead, told) == (
+            ("M68 E2 Q9", ["M67 E2 Q5"]) if contour else ("M68 E2 Q4", ["M67 E2 Q9"])
+        )
         moves = [line for line in inside[: inside.index(told[0])] if re.search(r"\bX", line)]
         border = along[-1] - 4.0 if contour else 5.0
         assert abs(along[len(moves)] - border) < 2e-3  # the next move begins there
@@ -218,34 +301,53 @@ def test_schedules_change_within_a_bead_without_a_stop(workshop):
 def test_points_put_in_look_where_the_machine_looks_there(workshop):
     """Between tilted tools of coarse pieces: the text, driven through the joint frames, and the trunnion of a table."""
     Part.makeCylinder(12.0, 40.0).Faces[0].exportBrep(str(workshop.folder / "tube.brep"))
-    Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStep(str(workshop.folder / "block.step"))
+    Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStep(
+        str(workshop.folder / "block.step")
+    )
     (workshop.folder / "bar.yaml").write_text(
         "part: {file: tube.brep}\nsubstrate: {file: block.step}\n"
         "strategy: {kind: surface, layer_height: 10 mm, chord_error: 0.5 mm}\nbuild_direction: {tilt: 30 deg}\n"
         "process: {start: {length: 2 mm, travel_speed: 5 mm/s}, end: {length: 3 mm, travel_speed: 8 mm/s}}\n"
-        "cell: {machine: table-xyzac, setup: rotary-table, platform: 60 mm}\nprogram: {post: siemens}\n")
+        "cell: {machine: table-xyzac, setup: rotary-table, platform: 60 mm}\nprogram: {post: siemens}\n"
+    )
     done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
-    assert done.status == 0 and (workshop.folder / "out" / "program" / "BAR.MPF").is_file(), done.err
+    assert done.status == 0 and (workshop.folder / "out" / "program" / "BAR.MPF").is_file(), (
+        done.err
+    )
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
-    tool, tilt = numbers(rows, "tx", "ty", "tz"), numbers(rows, "a_deg")[:, 0]  # the trunnion of the table
+    tool, tilt = (
+        numbers(rows, "tx", "ty", "tz"),
+        numbers(rows, "a_deg")[:, 0],
+    )  # the trunnion of the table
     assert len(rows) > 20 and np.abs(np.degrees(np.arccos(tool[:, 2])) - np.abs(tilt)).max() < 1e-5
 
 
-@pytest.mark.parametrize(("more", "status", "words"), [
-    ("  schedule: 2\n  start: {length: 5 mm, schedule: 3}\n", 2, "error[SCHEDULE]"),
-    ("  end: {length: 30 mm, travel_speed: 3 mm/s}\n", 2, "error[PHASE_LENGTH]"),
-    ("  start: {length: 5 mm, travel_speed: 0}\n", 2, "process.start.travel_speed"),
-    ("  classes: {fill: {start: {long: 5 mm}}}\n", 2, "process.classes.fill.start.long"),
-    ("  classes: {fill: {end: 5 mm}}\n", 2, "process.classes.fill.end"),
-    ("  bead_model: csw\n  start: {length: 5 mm, travel_speed: 5 mm/s}\n", 2, "process.start.travel_speed"),
-])
+@pytest.mark.parametrize(
+    ("more", "status", "words"),
+    [
+        ("  schedule: 2\n  start: {length: 5 mm, schedule: 3}\n", 2, "error[SCHEDULE]"),
+        ("  end: {length: 30 mm, travel_speed: 3 mm/s}\n", 2, "error[PHASE_LENGTH]"),
+        ("  start: {length: 5 mm, travel_speed: 0}\n", 2, "process.start.travel_speed"),
+        ("  classes: {fill: {start: {long: 5 mm}}}\n", 2, "process.classes.fill.start.long"),
+        ("  classes: {fill: {end: 5 mm}}\n", 2, "process.classes.fill.end"),
+        (
+            "  bead_model: csw\n  start: {length: 5 mm, travel_speed: 5 mm/s}\n",
+            2,
+            "process.start.travel_speed",
+        ),
+    ],
+)
 def test_phases_that_cannot_be(workshop, more, status, words):
     Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
     (workshop.folder / "bar.yaml").write_text(JOB.replace("CLASSES\n", more))
     done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
     assert done.status == status and words in done.err, done.err
-    assert not list((workshop.folder / "out").glob("program/*")) if (workshop.folder / "out").exists() else True
+    assert (
+        not list((workshop.folder / "out").glob("program/*"))
+        if (workshop.folder / "out").exists()
+        else True
+    )
 
 
 WEAVE = "  classes:\n    first_layer: {weave: 0}\n    contour: {weave: 3}\n  weave: 7\n"
@@ -254,16 +356,28 @@ WEAVE = "  classes:\n    first_layer: {weave: 0}\n    contour: {weave: 3}\n  wea
 def test_beads_are_woven_as_their_class_says(workshop):
     """From the job to the text: first layers straight, contours by 3, lines by 7."""
     rows, report, text = planned(workshop, WEAVE, "motion: cartesian, ")
-    found = re.findall(r"Weave Sine\[(\d+)\] ;\r\n((?: *\d+:L P\[\d+\][^\n]*\n)+) *\d+:  Weave End ;", text)
+    found = re.findall(
+        r"Weave Sine\[(\d+)\] ;\r\n((?: *\d+:L P\[\d+\][^\n]*\n)+) *\d+:  Weave End ;", text
+    )
     beads = {}
     for row in rows:
         if row["kind"] == "deposit":
             beads.setdefault((int(row["layer"]), int(row["bead"])), row["class"])
-    wanted = [{"contour": "3", "fill": "7"}[name] for name in beads.values() if name != "first_layer"]
+    wanted = [
+        {"contour": "3", "fill": "7"}[name] for name in beads.values() if name != "first_layer"
+    ]
     assert [number for number, _ in found] == wanted and set(wanted) == {"3", "7"}
     straight = re.sub(r"Weave Sine.*?Weave End", "", text, flags=re.DOTALL)
-    assert len(re.findall(r"DO\[1\]=ON ;\r\n *\d+:L", straight)) == list(beads.values()).count("first_layer") > 0
-    assert {row["class"]: row["weave"] for row in report["classes"]} == {"first_layer": None, "contour": 3, "fill": 7}
+    assert (
+        len(re.findall(r"DO\[1\]=ON ;\r\n *\d+:L", straight))
+        == list(beads.values()).count("first_layer")
+        > 0
+    )
+    assert {row["class"]: row["weave"] for row in report["classes"]} == {
+        "first_layer": None,
+        "contour": 3,
+        "fill": 7,
+    }
 
 
 def test_a_weave_that_cannot_be_told_is_named_before_planning(workshop):
@@ -271,7 +385,11 @@ def test_a_weave_that_cannot_be_told_is_named_before_planning(workshop):
     job = (workshop.folder / "bar.yaml").read_text()
     (workshop.folder / "joint.yaml").write_text(job.replace("process:\n", "process:\n  weave: 2\n"))
     done = workshop.run("plan", "joint.yaml", "-o", "joint")
-    assert done.status == 2 and "error[WEAVE]" in done.err and "program.motion to cartesian" in done.err
+    assert (
+        done.status == 2
+        and "error[WEAVE]" in done.err
+        and "program.motion to cartesian" in done.err
+    )
     assert not list((workshop.folder / "joint").glob("program/*"))
 
 
@@ -286,9 +404,14 @@ def test_speed_and_feed_of_a_ramp_are_in_the_text(workshop):
     """A text of LinuxCNC has the speed of every move, and that of the wire before it; both rise along the ramp in small
     steps, from what they are at the start to what they are in the bead, and go on to what they are at the end."""
     job = JOB.replace("CLASSES\n", RAMPED)
-    job = job[: job.index("cell:")] + job[job.index("process:") : job.index("program:")] + (
-        "cell: {machine: table-xyzac, setup: rotary-table, platform: 30 mm}\n"
-        "program: {post: linuxcnc, nc: {feed: path, wire_output: 2, wire_gain: 1}}\n")
+    job = (
+        job[: job.index("cell:")]
+        + job[job.index("process:") : job.index("program:")]
+        + (
+            "cell: {machine: table-xyzac, setup: rotary-table, platform: 30 mm}\n"
+            "program: {post: linuxcnc, nc: {feed: path, wire_output: 2, wire_gain: 1}}\n"
+        )
+    )
     Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
     (workshop.folder / "bar.yaml").write_text(job)
     done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
@@ -314,20 +437,35 @@ def test_speed_and_feed_of_a_ramp_are_in_the_text(workshop):
         end = np.cumsum(length)
         middle = end - 0.5 * length
         total = end[-1]
-        wanted = np.interp(middle, [0.0, 4.0, 9.0, total - 5.0, total - 2.0, total], [3.0, 3.0, 6.0, 6.0, 9.0, 9.0])
+        wanted = np.interp(
+            middle, [0.0, 4.0, 9.0, total - 5.0, total - 2.0, total], [3.0, 3.0, 6.0, 6.0, 9.0, 9.0]
+        )
         assert np.abs(speeds - wanted).max() <= 0.1 * 9.0 / 2.0 + 0.01
-        assert np.abs(np.diff(speeds)).max() <= 0.1 * 9.0 + 0.01 and {3.0, 6.0, 9.0} <= set(np.round(speeds, 2))
+        assert np.abs(np.diff(speeds)).max() <= 0.1 * 9.0 + 0.01 and {3.0, 6.0, 9.0} <= set(
+            np.round(speeds, 2)
+        )
         # 30 mm of wire a second where the torch has 6 mm/s, as much to a mm everywhere; the output is m/min
         np.testing.assert_allclose(wires / 0.06 / speeds, 30.0 / 6.0, rtol=1e-3)
 
 
-@pytest.mark.parametrize(("more", "words"), [
-    ("  end: {length: 8 mm, travel_speed: 3 mm/s, ramp: 21 mm}\n",
-     ["error[PHASE_LENGTH]", "29 mm with their ramps", "is 20 mm long", "make them shorter"]),
-    ("  start: {length: 5 mm, ramp: 5 mm}\n", ["error[BAD_VALUE]", "process.start.ramp", "there is none; give it"]),
-    ("  classes: {fill: {end: {ramp: 5 mm}}}\n", ["error[BAD_VALUE]", "process.classes.fill.end.ramp", "give it"]),
-    (RAMPED, ["error[NO_WIRE_OUTPUT]"]),
-])
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (
+            "  end: {length: 8 mm, travel_speed: 3 mm/s, ramp: 21 mm}\n",
+            ["error[PHASE_LENGTH]", "29 mm with their ramps", "is 20 mm long", "make them shorter"],
+        ),
+        (
+            "  start: {length: 5 mm, ramp: 5 mm}\n",
+            ["error[BAD_VALUE]", "process.start.ramp", "there is none; give it"],
+        ),
+        (
+            "  classes: {fill: {end: {ramp: 5 mm}}}\n",
+            ["error[BAD_VALUE]", "process.classes.fill.end.ramp", "give it"],
+        ),
+        (RAMPED, ["error[NO_WIRE_OUTPUT]"]),
+    ],
+)
 def test_ramps_that_cannot_be(workshop, more, words):
     Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
     (workshop.folder / "bar.yaml").write_text(JOB.replace("CLASSES\n", more))

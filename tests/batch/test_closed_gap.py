@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 # strokes of the axes, one over each of which is its weight in eq. 17: of the maker, and of the paper, whose last has no end
-MAKER_DEG, PAPER_DEG = [340.0, 260.0, 310.0, 400.0, 280.0, 540.0], [370.0, 320.0, 546.0, 400.0, 270.0, 360e6]
+MAKER_DEG, PAPER_DEG = (
+    [340.0, 260.0, 310.0, 400.0, 280.0, 540.0],
+    [370.0, 320.0, 546.0, 400.0, 270.0, 360e6],
+)
 
 
 def _planned(workshop, text, strokes, close):
@@ -17,12 +20,18 @@ def _planned(workshop, text, strokes, close):
     workshop.write_job(f"{text}joints: {{certificate: true, close_gap: {close}}}\n")
     assert workshop.run("plan", "cup.yaml", "--no-page", "-o", close).status == 0
     folder = workshop.folder / close
-    proved = json.loads((folder / "report.json").read_text(encoding="utf-8"))["joints"]["optimality"]
+    proved = json.loads((folder / "report.json").read_text(encoding="utf-8"))["joints"][
+        "optimality"
+    ]
     with (folder / "waypoints.csv").open(encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     joints = np.radians([[float(row[f"q{k}_deg"]) for k in range(1, 7)] for row in rows])
     places = [(row["layer"], row["bead"]) for row in rows]
-    moved = [after - before for before, after, a, b in zip(joints, joints[1:], places, places[1:]) if a == b]
+    moved = [
+        after - before
+        for before, after, a, b in zip(joints, joints[1:], places, places[1:])
+        if a == b
+    ]
     taken = float((np.square(moved) @ (1.0 / np.radians(strokes))).sum())
     assert proved["objective"] == pytest.approx(taken, rel=1e-4)
     return proved

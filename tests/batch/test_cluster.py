@@ -26,21 +26,38 @@ from freecad_am.batch import freecad_am_row_worker, versions
 from freecad_am.batch.rows import rows, table
 from freecad_am.core.issues import InputError
 
-dask = pytest.mark.skipif(importlib.util.find_spec("distributed") is None,
-                          reason="needs Dask: apt install python3-distributed")
+dask = pytest.mark.skipif(
+    importlib.util.find_spec("distributed") is None,
+    reason="needs Dask: apt install python3-distributed",
+)
 HEIGHTS = (13, 15, 18, 20)
-WRITTEN = ("CreationDate", "LastModifiedDate", "Uid")  # of a document, another one each time it is saved
+WRITTEN = (
+    "CreationDate",
+    "LastModifiedDate",
+    "Uid",
+)  # of a document, another one each time it is saved
 
 
 class Cluster:
     """Two workers in a folder of their own."""
 
     def __init__(self, *words):
-        self.folder = Path(tempfile.mkdtemp(prefix="cluster-"))  # not in a folder of pytest's, which are closed to others
+        self.folder = Path(
+            tempfile.mkdtemp(prefix="cluster-")
+        )  # not in a folder of pytest's, which are closed to others
         self.folder.chmod(0o777)
         self.process = subprocess.Popen(
-            [sys.executable, str(Path(__file__).with_name("local_cluster.py")), str(self.folder), *words],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True,
+            [
+                sys.executable,
+                str(Path(__file__).with_name("local_cluster.py")),
+                str(self.folder),
+                *words,
+            ],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
             env={**os.environ, "HOME": str(self.folder), "FREECAD_USER_HOME": str(self.folder)},
         )
         self.address = json.loads(self.process.stdout.readline())
@@ -65,8 +82,13 @@ def cluster():
 
 def started(workshop, *words):
     return subprocess.Popen(
-        [str(workshop.launcher), "batch", "rows.csv", "--job", "cup.yaml", *words], cwd=workshop.folder, text=True,
-        env=workshop.environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        [str(workshop.launcher), "batch", "rows.csv", "--job", "cup.yaml", *words],
+        cwd=workshop.folder,
+        text=True,
+        env=workshop.environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
     )
 
 
@@ -103,7 +125,9 @@ def compared(content, name):
             parts = {entry: archive.read(entry) for entry in archive.namelist()}
         text = parts.pop("Document.xml").decode()
         for key in WRITTEN:
-            text, count = re.subn(rf'(<Property name="{key}"[^>]*>\s*<\w+ value=")[^"]*', r"\1", text)
+            text, count = re.subn(
+                rf'(<Property name="{key}"[^>]*>\s*<\w+ value=")[^"]*', r"\1", text
+            )
             assert count == 1, key
         text = re.sub(r'(<Object type=[^>]* id=")\d+', r"\1", text)
         text = re.sub(r'(<Property name="Seconds"[^>]*>\s*<Float value=")[^"]*', r"\1", text)
@@ -122,12 +146,17 @@ def same(one, other):
 
 
 def write_rows(workshop, heights=HEIGHTS):
-    (workshop.folder / "rows.csv").write_text("strategy.layer_height\n" + "".join(f"{h} mm\n" for h in heights))
+    (workshop.folder / "rows.csv").write_text(
+        "strategy.layer_height\n" + "".join(f"{h} mm\n" for h in heights)
+    )
 
 
 @dask
-@pytest.mark.parametrize("heights", [HEIGHTS, pytest.param([10 + k / 20 for k in range(200)], marks=pytest.mark.long)],
-                         ids=["a few rows", "200 rows"])
+@pytest.mark.parametrize(
+    "heights",
+    [HEIGHTS, pytest.param([10 + k / 20 for k in range(200)], marks=pytest.mark.long)],
+    ids=["a few rows", "200 rows"],
+)
 def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster, heights):
     """The workers see none of the files: they run as another user, and the folder is closed."""
     write_rows(workshop, heights)
@@ -140,7 +169,14 @@ def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster
     assert process.returncode == 0, err
     assert [row["exit"] for row in csv.DictReader(io.StringIO(out))] == ["0"] * len(heights)
     assert set(cluster.workers()) != set(before)
-    assert len(re.findall(r"^note\[WORKER\] tcp://\S+: FreeCAD [\d.]+, OpenCASCADE [\d.]+, ", err, re.M)) >= 2
+    assert (
+        len(
+            re.findall(
+                r"^note\[WORKER\] tcp://\S+: FreeCAD [\d.]+, OpenCASCADE [\d.]+, ", err, re.M
+            )
+        )
+        >= 2
+    )
     assert "VERSIONS" not in err
     here = started(workshop, "-o", "here", "-j", "2")
     assert here.communicate(timeout=1800)[0] == out  # many rows take longer than `run` waits
@@ -163,11 +199,18 @@ def test_interrupted_and_resumed(workshop, cluster):
     assert 2 <= len(kept) < len(HEIGHTS)
     assert not list(top.rglob(".unfinished*"))
     assert nothing_left(cluster)
-    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2")
+    done = workshop.run(
+        "batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2"
+    )
     assert done.status == 0 and f"{len(kept)} of {len(HEIGHTS)} rows" in done.err
     assert len(done_rows(top)) == len(HEIGHTS)
-    assert [row["strategy.layer_height"] for row in csv.DictReader(io.StringIO(done.out))] == [f"{h} mm" for h in HEIGHTS]
-    assert all(int(row["layers"]) > 2 and row["exit"] == "0" for row in csv.DictReader(io.StringIO(done.out)))
+    assert [row["strategy.layer_height"] for row in csv.DictReader(io.StringIO(done.out))] == [
+        f"{h} mm" for h in HEIGHTS
+    ]
+    assert all(
+        int(row["layers"]) > 2 and row["exit"] == "0"
+        for row in csv.DictReader(io.StringIO(done.out))
+    )
     for name, when in kept.items():
         assert (top / name / "report.json").stat().st_mtime_ns == when
 
@@ -180,7 +223,9 @@ def test_a_cluster_of_another_version_or_none(workshop):
         nobody = f"tcp://127.0.0.1:{free.getsockname()[1]}"
     for address in (nobody, "no such address", "tcp://nowhere.invalid:8786"):
         done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", address)
-        assert done.status == 2 and done.err.startswith("error[SCHEDULER] --scheduler: no scheduler answers"), done.err
+        assert done.status == 2 and done.err.startswith(
+            "error[SCHEDULER] --scheduler: no scheduler answers"
+        ), done.err
         assert "Traceback" not in done.err
     other = Cluster("1999.1.0")
     try:
@@ -188,7 +233,10 @@ def test_a_cluster_of_another_version_or_none(workshop):
     finally:
         other.end()
     assert done.status == 2
-    assert re.search(r"error\[SCHEDULER\] --scheduler: \S+ scheduler has distributed 1999.1.0, this command \d", done.err)
+    assert re.search(
+        r"error\[SCHEDULER\] --scheduler: \S+ scheduler has distributed 1999.1.0, this command \d",
+        done.err,
+    )
     assert not (workshop.folder / "out").exists()
 
 
@@ -207,14 +255,22 @@ def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluste
     with zipfile.ZipFile(broken, "w") as archive:
         archive.writestr("freecad-am", "echo no FreeCAD here >&2; exit 2")
     monkeypatch.setattr(versions, "package", broken.getvalue)
-    with pytest.raises(InputError, match="this worker cannot plan: no FreeCAD here; install FreeCAD there"):
+    with pytest.raises(
+        InputError, match="this worker cannot plan: no FreeCAD here; install FreeCAD there"
+    ):
         module.Cluster(cluster.address, session)
     monkeypatch.undo()
     monkeypatch.setattr(versions, "found_versions", lambda: {"FreeCAD": "9.9.9"})
     with module.Cluster(cluster.address, session):
         pass
     assert sum("note[WORKER]" in line for line in session.lines) == 2
-    assert sum(bool(re.match(r"warning\[VERSIONS\] tcp://\S+: here is FreeCAD 9.9.9", line)) for line in session.lines) == 2
+    assert (
+        sum(
+            bool(re.match(r"warning\[VERSIONS\] tcp://\S+: here is FreeCAD 9.9.9", line))
+            for line in session.lines
+        )
+        == 2
+    )
 
 
 class Told:
@@ -233,7 +289,10 @@ def test_a_result_that_was_lost_with_its_worker_is_waited_for(monkeypatch):
     from freecad_am.batch import cluster as module
 
     monkeypatch.setattr("distributed.wait", lambda *_, **__: None)
-    futures = [types.SimpleNamespace(status=status) for status in ("pending", "lost", "finished", "error", "cancelled")]
+    futures = [
+        types.SimpleNamespace(status=status)
+        for status in ("pending", "lost", "finished", "error", "cancelled")
+    ]
     assert module._first_done(futures) == futures[2:]
 
 
@@ -268,20 +327,27 @@ def test_files_travel_with_a_job(workshop, tmp_path):
     for name in ("cell", "meshes", "around", "tables"):
         (home / name).mkdir(parents=True)
     Mesh.createBox(9.0, 9.0, 9.0).write(str(home / "around" / "post.stl"))
-    machine = json.loads((Path(versions.ROOT) / "freecad_am/machines/fanuc-arcmate120ic.json").read_text())
+    machine = json.loads(
+        (Path(versions.ROOT) / "freecad_am/machines/fanuc-arcmate120ic.json").read_text()
+    )
     machine["id"], machine["shapes"] = "mine", {"base": {"file": "../meshes/base.stl"}}
     (home / "cell" / "mine.json").write_text(json.dumps(machine))
     (home / "meshes" / "base.stl").write_bytes((home / "around" / "post.stl").read_bytes())
     (home / "cell" / "cell.yaml").write_text(
         "machine: ./mine.json\nlimits: paper\nplatform_diameter: 100 mm\nobstacles: [{file: ../around/post.stl, pose: "
-        "[3000, 0, 0, 0, 0, 0]}]\n")
-    text = workshop.text.replace("cell:\n  limits: paper\n  platform_diameter: 100 mm", "cell: home/cell/cell.yaml")
+        "[3000, 0, 0, 0, 0, 0]}]\n"
+    )
+    text = workshop.text.replace(
+        "cell:\n  limits: paper\n  platform_diameter: 100 mm", "cell: home/cell/cell.yaml"
+    )
     workshop.write_job(text.replace("layer_height: 4 mm", "layer_height: 20 mm"))
     write_rows(workshop, (20,))
     assert workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "out").status == 0
     before = workshop.files("out/row-001")
     _, (row,) = table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
-    named = {str(Path(name).relative_to(workshop.folder)) for name in row.files if os.path.isfile(name)}
+    named = {
+        str(Path(name).relative_to(workshop.folder)) for name in row.files if os.path.isfile(name)
+    }
     inside = {"cell/cell.yaml", "cell/mine.json", "around/post.stl", "meshes/base.stl"}
     assert named == {"cup.step", *(f"home/{name}" for name in inside)}
     files = [(name, Path(name).read_bytes()) for name in row.files if os.path.isfile(name)]
@@ -291,13 +357,25 @@ def test_files_travel_with_a_job(workshop, tmp_path):
     workshop.folder.rename(apart / "away")
     try:
         worker.unpacked(versions.package(), files, [])
-        result = worker.ask({"label": row.label, "values": row.tree().values, "path": row.path, "dry": False,
-                             "folder": str(apart / "row")})
+        result = worker.ask(
+            {
+                "label": row.label,
+                "values": row.tree().values,
+                "path": row.path,
+                "dry": False,
+                "folder": str(apart / "row"),
+            }
+        )
         assert result["exit"] == 0, result
-        found = {str(path.relative_to(apart / "row")): path.read_bytes() for path in (apart / "row").rglob("*")
-                 if path.is_file()}
+        found = {
+            str(path.relative_to(apart / "row")): path.read_bytes()
+            for path in (apart / "row").rglob("*")
+            if path.is_file()
+        }
         assert same(before, found)
-        assert b"/nowhere" not in b"".join(found.values()) and str(apart).encode() not in b"".join(found.values())
+        assert b"/nowhere" not in b"".join(found.values()) and str(apart).encode() not in b"".join(
+            found.values()
+        )
     finally:
         worker.stop()
         (apart / "away").rename(workshop.folder)
@@ -316,15 +394,20 @@ def test_what_a_lost_worker_leaves_removes_itself(tmp_path):
 
 def test_what_has_changed_is_planned_again(workshop):
     """Of rows that were done: one whose cells differ, one whose outputs are gone, all where the part differs."""
+
     def batch(*heights):
         write_rows(workshop, heights)
-        done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2")
+        done = workshop.run(
+            "batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2"
+        )
         assert done.status == 0, done.err
         kept = int(re.search(r"note\[RESUMED\] batch: (\d) of \d rows", done.err)[1])
         told = [int(row["layers"]) for row in csv.DictReader(io.StringIO(done.out))]
         return kept, told
 
-    workshop.write_job(workshop.text.split("cell:")[0])  # rows without a robot are planned in half of the time
+    workshop.write_job(
+        workshop.text.split("cell:")[0]
+    )  # rows without a robot are planned in half of the time
     kept, layers = batch(20, 25)
     assert kept == 0 and layers[0] > layers[1]
     assert batch(20, 25) == (2, layers)
@@ -332,7 +415,9 @@ def test_what_has_changed_is_planned_again(workshop):
     (workshop.folder / "rows" / "row-001" / "report.json").write_text("{}")
     assert batch(20, 30)[0] == 1
     journal = workshop.folder / "rows" / ".rows.jsonl"
-    journal.write_text(journal.read_text()[:-20] + "\nnonsense\n[]\n{}\n")  # as a kill and an editor leave it
+    journal.write_text(
+        journal.read_text()[:-20] + "\nnonsense\n[]\n{}\n"
+    )  # as a kill and an editor leave it
     assert batch(20, 30)[0] == 1
     Part.makeSphere(45.0).exportStep(str(workshop.folder / "cup.step"))
     assert batch(20, 30)[0] == 0
@@ -340,17 +425,29 @@ def test_what_has_changed_is_planned_again(workshop):
 
 def test_a_dry_run_refuses_and_plans_nothing(workshop):
     (workshop.folder / "rows.csv").write_text(
-        "strategy.layer_height,program.post,name\n20 mm,,fine\n1 kg,,heavy\n20 mm,siemens,other\n")
-    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--dry-run", "-o", "dry", "-j", "2")
+        "strategy.layer_height,program.post,name\n20 mm,,fine\n1 kg,,heavy\n20 mm,siemens,other\n"
+    )
+    done = workshop.run(
+        "batch", "rows.csv", "--job", "cup.yaml", "--dry-run", "-o", "dry", "-j", "2"
+    )
     assert done.status == 2
-    assert [row["status"] for row in csv.DictReader(io.StringIO(done.out))] == ["checked", "failed", "failed"]
+    assert [row["status"] for row in csv.DictReader(io.StringIO(done.out))] == [
+        "checked",
+        "failed",
+        "failed",
+    ]
     assert [path.name for path in (workshop.folder / "dry").rglob("*")] == [".rows.jsonl"]
 
 
-@pytest.mark.parametrize(("done", "now", "seconds", "says"), [
-    (3, 3, 30.0, "3 of 10 rows done, about 70 s left"), (5, 2, 600.0, "5 of 10 rows done, about 25 min left"),
-    (1, 1, 3600.0, "1 of 10 rows done, about 9.0 h left"), (10, 4, 8.0, "10 of 10 rows done"),
-])
+@pytest.mark.parametrize(
+    ("done", "now", "seconds", "says"),
+    [
+        (3, 3, 30.0, "3 of 10 rows done, about 70 s left"),
+        (5, 2, 600.0, "5 of 10 rows done, about 25 min left"),
+        (1, 1, 3600.0, "1 of 10 rows done, about 9.0 h left"),
+        (10, 4, 8.0, "10 of 10 rows done"),
+    ],
+)
 def test_time_left(done, now, seconds, says):
     """Rows that were kept count as done, but not for the pace."""
     assert rows._progress(done, 10, now, seconds) == says
@@ -358,13 +455,20 @@ def test_time_left(done, now, seconds, says):
 
 def test_files_of_jobs_are_opened_by_where_they_are():
     """Nothing of core opens a file, or looks whether it is there, by its name alone: it would not be found on a worker."""
-    looks = re.compile(r"\.is_file\(|\.exists\(|(?<![\w.])open\(|\.read_text\(|\.read_bytes\(|isfile\(|\.stat\(")
+    looks = re.compile(
+        r"\.is_file\(|\.exists\(|(?<![\w.])open\(|\.read_text\(|\.read_bytes\(|isfile\(|\.stat\("
+    )
     core = Path(versions.ROOT) / "freecad_am" / "core"
     found = {
-        f"{path.relative_to(core)}: {line.strip()}" for path in core.rglob("*.py")
-        for line in path.read_text(encoding="utf-8").splitlines() if looks.search(line) and "located(" not in line
+        f"{path.relative_to(core)}: {line.strip()}"
+        for path in core.rglob("*.py")
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if looks.search(line) and "located(" not in line
     }
-    assert found == {
-        "geometry/file_content.py: with open(descriptor, \"rb\") as stream:",  # of what is located
-        "one_thread.py: return [file for file in files if os.path.exists(file)]",  # libraries of this machine
-    }
+    assert (
+        found
+        == {
+            'geometry/file_content.py: with open(descriptor, "rb") as stream:',  # of what is located
+            "one_thread.py: return [file for file in files if os.path.exists(file)]",  # libraries of this machine
+        }
+    )

@@ -39,7 +39,9 @@ def told(workshop):
 def test_a_copy_does_what_the_launcher_does(workshop, words, status):
     coarse = workshop.text.replace("layer_height: 4 mm", "layer_height: 9 mm")
     workshop.write_job(coarse)
-    far = coarse.replace("limits: paper", "limits: paper\n  deposition_point: [0, 0, 9000, 0, 0, 0]")
+    far = coarse.replace(
+        "limits: paper", "limits: paper\n  deposition_point: [0, 0, 9000, 0, 0, 0]"
+    )
     (workshop.folder / "far.yaml").write_text(far)
     (workshop.folder / "wrong.yaml").write_text(coarse.replace("9 mm", "9 kg"))
     launched, written = workshop.launch(*words), told(workshop)
@@ -52,7 +54,9 @@ def test_a_copy_does_what_the_launcher_does(workshop, words, status):
 @pytest.mark.parametrize(("computes", "sleeps", "most_seconds", "ends"), [
     (2.5, 0, 60, True), (0, 60, 60, False), (60, 0, 0, False),
 ])  # fmt: skip
-def test_what_waits_for_a_busy_processor_does_not_hang(tmp_path, computes, sleeps, most_seconds, ends):
+def test_what_waits_for_a_busy_processor_does_not_hang(
+    tmp_path, computes, sleeps, most_seconds, ends
+):
     """Patience is s that a command sleeps, or computes without a limit; the clock alone says nothing."""
     script = tmp_path / "server.py"
     script.write_text(SERVER.format(computes=computes, sleeps=sleeps))

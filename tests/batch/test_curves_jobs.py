@@ -60,31 +60,58 @@ def test_a_table_is_laid_as_it_is_and_over_itself(planned):
     np.testing.assert_allclose(column(rows, "x_mm", "y_mm", "z_mm"), expected, atol=2e-6)
     np.testing.assert_allclose(column(rows, "bx", "by", "bz"), np.tile(away, (3, 1)), atol=1e-8)
     assert [(row["layer"], row["bead"]) for row in rows[:5]] == [("0", "0")] * 3 + [("0", "1")] * 2
-    assert report["counts"] == {"layers": 3, "beads": 6, "points": 15} and report["unsupported_mm"] == 0.0
+    assert (
+        report["counts"] == {"layers": 3, "beads": 6, "points": 15}
+        and report["unsupported_mm"] == 0.0
+    )
 
 
-@pytest.mark.parametrize("text", [
-    "0;0;0\n10;0;0\n10;10;0\n", "X_mm,Y_mm,Z_mm\n0,0,0\n10,0,0\n10,10,0\n\n", "﻿x,y,z,bead\n0,0,0,7\n10,0,0,7\n10,10,0,7\n",
-])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "0;0;0\n10;0;0\n10;10;0\n",
+        "X_mm,Y_mm,Z_mm\n0,0,0\n10,0,0\n10,10,0\n\n",
+        "﻿x,y,z,bead\n0,0,0,7\n10,0,0,7\n10,10,0,7\n",
+    ],
+)
 def test_forms_of_a_table(planned, text):
     done, _, rows = planned(text=text, more=", direction: [0, 1, 1]")
     assert done.status == 0, done.err
-    np.testing.assert_allclose(column(rows, "x_mm", "y_mm", "z_mm"), [[0, 0, 0], [10, 0, 0], [10, 10, 0]], atol=1e-9)
-    np.testing.assert_allclose(column(rows, "bx", "by", "bz"), np.tile([0, 0.5**0.5, 0.5**0.5], (3, 1)), atol=1e-8)
+    np.testing.assert_allclose(
+        column(rows, "x_mm", "y_mm", "z_mm"), [[0, 0, 0], [10, 0, 0], [10, 10, 0]], atol=1e-9
+    )
+    np.testing.assert_allclose(
+        column(rows, "bx", "by", "bz"), np.tile([0, 0.5**0.5, 0.5**0.5], (3, 1)), atol=1e-8
+    )
 
 
-@pytest.mark.parametrize(("text", "line", "words"), [
-    ("x,y,z\n0,0,0\n1,,0\n2,0,0\n", "line 3", "2 numbers in place of 3"), ("0,0,0\n\n1,0,0\n", "line 2", "it is empty"),
-    ("0,0,0\n1,nan,0\n", "line 2", "y is nan"), ("0,0,0\n1,inf,0\n", "line 2", "y is inf"),
-    ("0,0,0\n1,0,0\n1,0,0\n", "line 3", "leave it out"), ("0,0,0\n", "line 1", "one point"),
-    ("0,0,0,1\n1,0,0,1\n2,0,0,2\n", "line 3", "one point"), ("0,0,0\n1,0,zero\n", "line 2", "'zero' is not a number"),
-    ("0,0,0,1\n1,0,0,1\n0,1,0,2\n1,1,0,2\n5,0,0,1\n6,0,0,1\n", "line 5", "begins again"), ("", "beads.csv", "no points"),
-    ("x,y\n0,0\n", "line 1", "columns"), ("x,y,w\n0,0,0\n1,0,0\n", "line 1", "columns"),
-    ("0,0,0,0,0,0\n1,0,0,0,0,1\n", "line 1", "give a direction"), (b"\xff\xfe\x00", "beads.csv", "not text"),
-])
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("x,y,z\n0,0,0\n1,,0\n2,0,0\n", "line 3", "2 numbers in place of 3"),
+        ("0,0,0\n\n1,0,0\n", "line 2", "it is empty"),
+        ("0,0,0\n1,nan,0\n", "line 2", "y is nan"),
+        ("0,0,0\n1,inf,0\n", "line 2", "y is inf"),
+        ("0,0,0\n1,0,0\n1,0,0\n", "line 3", "leave it out"),
+        ("0,0,0\n", "line 1", "one point"),
+        ("0,0,0,1\n1,0,0,1\n2,0,0,2\n", "line 3", "one point"),
+        ("0,0,0\n1,0,zero\n", "line 2", "'zero' is not a number"),
+        ("0,0,0,1\n1,0,0,1\n0,1,0,2\n1,1,0,2\n5,0,0,1\n6,0,0,1\n", "line 5", "begins again"),
+        ("", "beads.csv", "no points"),
+        ("x,y\n0,0\n", "line 1", "columns"),
+        ("x,y,w\n0,0,0\n1,0,0\n", "line 1", "columns"),
+        ("0,0,0,0,0,0\n1,0,0,0,0,1\n", "line 1", "give a direction"),
+        (b"\xff\xfe\x00", "beads.csv", "not text"),
+    ],
+)
 def test_bad_tables_are_told_with_their_line(planned, text, line, words):
     done, _, _ = planned(text=text)
-    assert done.status == 2 and line in done.err and words in done.err and done.err.count("error[") == 1, done.err
+    assert (
+        done.status == 2
+        and line in done.err
+        and words in done.err
+        and done.err.count("error[") == 1
+    ), done.err
 
 
 def test_curves_that_lie_on_one_another_are_told(planned):
@@ -96,14 +123,23 @@ def test_curves_that_lie_on_one_another_are_told(planned):
     (told,) = [issue for issue in report["issues"] if issue["code"] == "DEPOSITED_TWICE"]
     assert told["level"] == "warning" and "32 % of those of beads" in told["message"]
     promises = {one["promise"]: one for one in report["preflight"]}
-    assert promises["Little is deposited twice"]["ok"] is False and promises["All of the part is deposited"]["ok"] is None
+    assert (
+        promises["Little is deposited twice"]["ok"] is False
+        and promises["All of the part is deposited"]["ok"] is None
+    )
 
 
-@pytest.mark.parametrize(("part", "more", "mode", "code"), [
-    (", edges: [Edge1]", "", "", "NOT_FOR_FAMILY"), (", faces: [Face1]", "", "", "NOT_FOR_FAMILY"),
-    ("", ", repeat: 0", "", "BAD_VALUE"), ("", ", direction: [0, 0, 0]", "", "BAD_VALUE"),
-    ("", "", ", mode: symmetry-plane", "NOT_FOR_FAMILY"), ("", ", fill: lines", "", "UNKNOWN_KEY"),
-])
+@pytest.mark.parametrize(
+    ("part", "more", "mode", "code"),
+    [
+        (", edges: [Edge1]", "", "", "NOT_FOR_FAMILY"),
+        (", faces: [Face1]", "", "", "NOT_FOR_FAMILY"),
+        ("", ", repeat: 0", "", "BAD_VALUE"),
+        ("", ", direction: [0, 0, 0]", "", "BAD_VALUE"),
+        ("", "", ", mode: symmetry-plane", "NOT_FOR_FAMILY"),
+        ("", ", fill: lines", "", "UNKNOWN_KEY"),
+    ],
+)
 def test_keys_that_do_not_fit_are_told(planned, part, more, mode, code):
     done, _, _ = planned(part=part, more=more, mode=mode)
     assert done.status == 2 and f"error[{code}]" in done.err, done.err
@@ -119,7 +155,11 @@ def test_edges_lie_on_their_shape_with_the_normals_of_its_faces(planned, worksho
     Part.makeCylinder(20, 60, V(), V(1, 0, 0)).exportStep(str(workshop.folder / "rod.step"))
     part = Part.read(str(workshop.folder / "rod.step"))
     round_ones = [f"Edge{k}" for k, edge in enumerate(part.Edges, 1) if edge.Closed]
-    side = next(f"Face{k}" for k, face in enumerate(part.Faces, 1) if face.Surface.TypeId == "Part::GeomCylinder")
+    side = next(
+        f"Face{k}"
+        for k, face in enumerate(part.Faces, 1)
+        if face.Surface.TypeId == "Part::GeomCylinder"
+    )
     more = f", edges: [{', '.join(round_ones)}], faces: [{side}]"
     done, report, rows = planned("rod.step", part=more, more=", repeat: 2")
     assert done.status == 0, done.err
@@ -130,15 +170,22 @@ def test_edges_lie_on_their_shape_with_the_normals_of_its_faces(planned, worksho
     np.testing.assert_allclose(build[:, 1:], points[:, 1:] / radius[:, None], atol=1e-6)
     assert report["counts"]["beads"] == 4
     looked = report["on_part"]
-    assert 0.0 < looked["worst_mm"] < looked["allowed_mm"] == pytest.approx(0.07) and looked["places"] > 100
+    assert (
+        0.0 < looked["worst_mm"] < looked["allowed_mm"] == pytest.approx(0.07)
+        and looked["places"] > 100
+    )
     chord = np.linalg.norm(np.diff(points[:10], axis=0), axis=1).max()
-    assert chord**2 / (8.0 * 20.0) < 0.06  # within the chord error, or as near as directions ask for
+    assert (
+        chord**2 / (8.0 * 20.0) < 0.06
+    )  # within the chord error, or as near as directions ask for
 
 
 def test_edges_off_the_faces_are_refused(planned, workshop):
     Part.makeBox(20, 20, 20).exportStep(str(workshop.folder / "box.step"))
     part = Part.read(str(workshop.folder / "box.step"))
-    top = next(f"Face{k}" for k, face in enumerate(part.Faces, 1) if abs(face.CenterOfMass.z - 20) < 1e-6)
+    top = next(
+        f"Face{k}" for k, face in enumerate(part.Faces, 1) if abs(face.CenterOfMass.z - 20) < 1e-6
+    )
     low = next(f"Edge{k}" for k, edge in enumerate(part.Edges, 1) if edge.BoundBox.ZMax < 1e-6)
     done, _, _ = planned("box.step", part=f", edges: [{low}], faces: [{top}]")
     assert done.status == 2 and "error[OFF_FACE]" in done.err and "20 mm off" in done.err, done.err
@@ -149,7 +196,9 @@ def test_the_example_lays_the_points_of_its_table(workshop, root):
     for name in ("rosette.csv", "rosette.yaml"):
         shutil.copy(root / "resources" / "examples" / name, workshop.folder)
     path = workshop.folder / "rosette.yaml"
-    path.write_text(path.read_text(encoding="utf-8").replace("repeat: 8", "repeat: 2"), encoding="utf-8")
+    path.write_text(
+        path.read_text(encoding="utf-8").replace("repeat: 8", "repeat: 2"), encoding="utf-8"
+    )
     done = workshop.run("plan", path.name, "-o", "out", "--no-page")
     assert done.status == 0, done.err
     cell = read_job(str(path)).cell
@@ -159,20 +208,31 @@ def test_the_example_lays_the_points_of_its_table(workshop, root):
     places = column(rows, "x_mm", "y_mm", "z_mm")
     radius, angle = np.hypot(places[:, 0], places[:, 1]), np.arctan2(places[:, 1], places[:, 0])
     rose = np.array([int(row["bead"]) == 0 for row in rows])
-    assert np.abs(radius[rose] - 34.0 - 5.0 * np.cos(6.0 * angle[rose])).max() < 0.2  # chords of the table
+    assert (
+        np.abs(radius[rose] - 34.0 - 5.0 * np.cos(6.0 * angle[rose])).max() < 0.2
+    )  # chords of the table
     assert np.abs(radius[~rose] - 18.0).max() < 0.01 and set(places[:, 2].round(6)) == {0.0, 2.0}
 
 
 def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
-    text = "".join(f";LAYER:{k}\nG0 X0 Y0 Z{2 * k + 2}\nG1 X30 E1\nG3 X30 Y20 I0 J10 E1\n" for k in range(2))
+    text = "".join(
+        f";LAYER:{k}\nG0 X0 Y0 Z{2 * k + 2}\nG1 X30 E1\nG3 X30 Y20 I0 J10 E1\n" for k in range(2)
+    )
     done, report, rows = planned("slicer.gcode", "G21\nM83\n" + text)
     assert done.status == 0, done.err
-    assert report["counts"]["layers"] == report["counts"]["beads"] == 2 and report["unsupported_mm"] == 0.0
+    assert (
+        report["counts"]["layers"] == report["counts"]["beads"] == 2
+        and report["unsupported_mm"] == 0.0
+    )
     points = column(rows, "x_mm", "y_mm", "z_mm")
     np.testing.assert_allclose(points[:, 2], 2.0 + 2.0 * column(rows, "layer")[:, 0], atol=1e-9)
     straight = points[:, 0] <= 30.0
-    np.testing.assert_allclose(np.hypot(points[~straight, 0] - 30.0, points[~straight, 1] - 10.0), 10.0, atol=1e-6)
-    np.testing.assert_allclose(column(rows, "bx", "by", "bz"), np.tile([0, 0, 1], (len(rows), 1)), atol=1e-12)
+    np.testing.assert_allclose(
+        np.hypot(points[~straight, 0] - 30.0, points[~straight, 1] - 10.0), 10.0, atol=1e-6
+    )
+    np.testing.assert_allclose(
+        column(rows, "bx", "by", "bz"), np.tile([0, 0, 1], (len(rows), 1)), atol=1e-12
+    )
     for part, words in (("G20\n", "inches"), ("G0 X1\n", "no move of it extrudes")):
         done, _, _ = planned("slicer.gcode", part)
         assert done.status == 2 and "error[BAD_GCODE]" in done.err and words in done.err, done.err
@@ -180,14 +240,22 @@ def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
 
 def test_beads_that_begin_beside_the_end_of_others_have_a_kuka_program(workshop):
     """The way over is so short that the axes would need less than the least share of their speeds that KRL is told."""
-    (workshop.folder / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n30.4,0,0,2\n60,0,0,2\n")
-    job = workshop.write_job(JOB.format(file="beads.csv", part="", more="", mode="") + """\
+    (workshop.folder / "beads.csv").write_text(
+        "x,y,z,bead\n0,0,0,1\n30,0,0,1\n30.4,0,0,2\n60,0,0,2\n"
+    )
+    job = workshop.write_job(
+        JOB.format(file="beads.csv", part="", more="", mode="")
+        + """\
 cell: {machine: kuka-kr8-r2100-2-arc-hw, setup: tool-on-robot, branch: auto, nozzle: {tool: [0, 0, 300, 0, 0, 0]}}
 program: {post: kuka, motion: cartesian}
-""")
+"""
+    )
     done = workshop.run("plan", job.name, "-o", "out", "--no-page")
     assert done.status == 0, done.err
-    assert next(workshop.folder.rglob("*.src")).read_text(encoding="ascii").count("BAS(#VEL_PTP,1)") == 1
+    assert (
+        next(workshop.folder.rglob("*.src")).read_text(encoding="ascii").count("BAS(#VEL_PTP,1)")
+        == 1
+    )
 
 
 def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
@@ -196,8 +264,14 @@ def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
     document = FreeCAD.newDocument("Drawn")
     try:
         sketch = document.addObject("Sketcher::SketchObject", "Path")
-        sketch.addGeometry([Part.LineSegment(V(0, 0, 0), V(30, 0, 0)), Part.LineSegment(V(30, 20, 0), V(0, 20, 0)),
-                            Part.ArcOfCircle(Part.Circle(V(30, 10, 0), V(0, 0, 1), 10), -np.pi / 2, np.pi / 2)], False)
+        sketch.addGeometry(
+            [
+                Part.LineSegment(V(0, 0, 0), V(30, 0, 0)),
+                Part.LineSegment(V(30, 20, 0), V(0, 20, 0)),
+                Part.ArcOfCircle(Part.Circle(V(30, 10, 0), V(0, 0, 1), 10), -np.pi / 2, np.pi / 2),
+            ],
+            False,
+        )
         sketch.Placement = placement
         document.recompute()
         document.saveAs(str(workshop.folder / "drawn.FCStd"))
@@ -206,9 +280,13 @@ def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
     content = (workshop.folder / "drawn.FCStd").read_bytes()
     done, report, rows = planned("drawn.FCStd", content, part=", object: Path")
     assert done.status == 0, done.err
-    back = np.array([placement.inverse().multVec(V(*point)) for point in column(rows, "x_mm", "y_mm", "z_mm")])
+    back = np.array(
+        [placement.inverse().multVec(V(*point)) for point in column(rows, "x_mm", "y_mm", "z_mm")]
+    )
     assert np.abs(back[:, 2]).max() < 1e-5 and report["counts"]["beads"] == 1
-    on_lines = (np.abs(back[:, 1] - np.where(back[:, 1] < 10.0, 0.0, 20.0)) < 1e-5) & (back[:, 0] < 30.0 + 1e-5)
+    on_lines = (np.abs(back[:, 1] - np.where(back[:, 1] < 10.0, 0.0, 20.0)) < 1e-5) & (
+        back[:, 0] < 30.0 + 1e-5
+    )
     on_arc = np.abs(np.hypot(back[:, 0] - 30.0, back[:, 1] - 10.0) - 10.0) < 1e-5
     assert (on_lines | on_arc).all() and on_arc.sum() > 10
     ways = np.linalg.norm(np.diff(back, axis=0), axis=1).sum()

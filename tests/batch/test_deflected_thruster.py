@@ -51,4 +51,6 @@ def test_the_thruster_is_laid_by_a_deflected_torch(workshop, root):
             assert ((torch - up) * out).sum(axis=1)[np.linalg.norm(out, axis=1) > 10.0].mean() > 0.0
             turn = angle(torch[1:], torch[:-1]) / np.linalg.norm(np.diff(points, axis=0), axis=1)
             assert turn.max() < 1.01 * MOST
-    assert leaning == 6 * len(set(layer.tolist()))  # one outline of each of six blades in each layer
+    assert leaning == 6 * len(
+        set(layer.tolist())
+    )  # one outline of each of six blades in each layer

@@ -17,16 +17,28 @@ from freecad_am.batch.job.job import read_job
 from tests.batch import row_limits
 
 EXAMPLES = Path(__file__).parents[2] / "resources" / "examples"
-WITH_A_CELL = [path for path in sorted(EXAMPLES.glob("**/*.yaml")) if "cell:" in path.read_text(encoding="utf-8")]
+WITH_A_CELL = [
+    path
+    for path in sorted(EXAMPLES.glob("**/*.yaml"))
+    if "cell:" in path.read_text(encoding="utf-8")
+]
 ON_SUBSTRATES = [
-    path for path in WITH_A_CELL if "substrate:" in (text := path.read_text(encoding="utf-8")) and "kind: surface" in text
+    path
+    for path in WITH_A_CELL
+    if "substrate:" in (text := path.read_text(encoding="utf-8")) and "kind: surface" in text
 ]
 
 
-@pytest.fixture(params=[
-    ("hemisphere", 71),
-    *(pytest.param(one, marks=pytest.mark.long) for one in (("laval-nozzle", 137), ("intake-funnel", 71))),
-], ids=lambda p: p[0])
+@pytest.fixture(
+    params=[
+        ("hemisphere", 71),
+        *(
+            pytest.param(one, marks=pytest.mark.long)
+            for one in (("laval-nozzle", 137), ("intake-funnel", 71))
+        ),
+    ],
+    ids=lambda p: p[0],
+)
 def example(request, workshop, root):
     """Report, rows and number of layers of an example, run in a folder of its own."""
     name, layers = request.param
@@ -56,12 +68,17 @@ def test_shows_what_the_paper_shows(example):
     np.testing.assert_allclose(ranges[:, 5], 360.0, atol=1e-3)
     assert report["programs"]
     told = [json.dumps(issue) for issue in report["issues"]]
-    assert len(told) == len(set(told)), told  # the nozzle has a step, which feature and toolpath both know
+    assert len(told) == len(set(told)), (
+        told
+    )  # the nozzle has a step, which feature and toolpath both know
     if name == "hemisphere":
         points = np.array([[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows])
         np.testing.assert_allclose(np.linalg.norm(points, axis=1), 45.0, atol=1e-3)
         chord = 90.0 * np.sin(0.5 / 45.0)
-        assert abs(report["spacing_mm"]["min"] - chord) < 1e-3 and abs(report["spacing_mm"]["max"] - chord) < 1e-3
+        assert (
+            abs(report["spacing_mm"]["min"] - chord) < 1e-3
+            and abs(report["spacing_mm"]["max"] - chord) < 1e-3
+        )
 
 
 @pytest.mark.long
@@ -69,8 +86,13 @@ def test_shows_what_the_paper_shows(example):
 def test_no_row_of_a_shipped_example_is_beyond_a_limit(path, root, tmp_path):
     """As it is shipped, in waypoints and in the text; those planned coarser elsewhere are looked at there."""
     done = subprocess.run(
-        [str(root / "freecad-am"), "plan", str(path), "-o", str(tmp_path / "out"), "--no-page"], cwd=tmp_path,
-        capture_output=True, env={**os.environ, "FREECAD_USER_HOME": str(tmp_path)}, text=True, check=False, timeout=3600,
+        [str(root / "freecad-am"), "plan", str(path), "-o", str(tmp_path / "out"), "--no-page"],
+        cwd=tmp_path,
+        capture_output=True,
+        env={**os.environ, "FREECAD_USER_HOME": str(tmp_path)},
+        text=True,
+        check=False,
+        timeout=3600,
     )
     assert done.returncode == 0, done.stderr
     cell = read_job(str(path)).cell
@@ -86,12 +108,17 @@ def test_layers_of_the_bend_are_evenly_spaced(workshop, root):
     for name in ("tube-on-pipe.step", "pipe.step"):
         shutil.copy(folder / name, workshop.folder)
     text = (folder / "tube-on-pipe.yaml").read_text(encoding="utf-8").split("cell:")[0]
-    (workshop.folder / "bend.yaml").write_text(text.replace("end: trim", "end: whole"), encoding="utf-8")
+    (workshop.folder / "bend.yaml").write_text(
+        text.replace("end: trim", "end: whole"), encoding="utf-8"
+    )
     done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["counts"]["layers"] == report["counts"]["beads"] == 10
-    assert abs(report["spacing_mm"]["min"] - 5.0) < 1e-3 and abs(report["spacing_mm"]["max"] - 5.0) < 1e-3
+    assert (
+        abs(report["spacing_mm"]["min"] - 5.0) < 1e-3
+        and abs(report["spacing_mm"]["max"] - 5.0) < 1e-3
+    )
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     x, y, z = np.array([[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows]).T
@@ -106,7 +133,9 @@ def test_a_bend_cannot_grow_on_a_surface(workshop, root):
     Part.read(str(folder / "pipe.step")).Faces[0].exportStep(str(workshop.folder / "surface.step"))
     text = (folder / "tube-on-pipe.yaml").read_text(encoding="utf-8")
     for substrate, code in (("surface", "NO_SOLID"), ("tube-on-pipe", "OWN_SUBSTRATE")):
-        (workshop.folder / "bend.yaml").write_text(text.replace(" pipe.step", f" {substrate}.step"), encoding="utf-8")
+        (workshop.folder / "bend.yaml").write_text(
+            text.replace(" pipe.step", f" {substrate}.step"), encoding="utf-8"
+        )
         done = workshop.run("plan", "bend.yaml")
         assert (done.status, done.err.count(f"error[{code}]")) == (2, 1), done.err
 
@@ -116,7 +145,9 @@ def test_no_platform_goes_through_what_stands_on_it(path):
     job = read_job(str(path))
     if job.cell.platform_diameter == 0.0:
         return
-    plate = Part.Face(Part.Wire(Part.makeCircle(0.5 * job.cell.platform_diameter)))  # in the plane of the part's frame
+    plate = Part.Face(
+        Part.Wire(Part.makeCircle(0.5 * job.cell.platform_diameter))
+    )  # in the plane of the part's frame
     solid = Part.Shape()
     solid.read(str(path.parent / job.substrate.file))
     assert plate.common(solid).Area == 0.0

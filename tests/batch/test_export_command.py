@@ -42,6 +42,7 @@ def saved(workshop, two_cups):
 @pytest.fixture
 def script_of_another_freecad(tmp_path):
     """run(*lines): the lines run in a new process that finds FreeCAD but not this package."""
+
     def run(*lines):
         path = tmp_path / "script.py"
         found = f"import sys; sys.path.append({os.path.dirname(FreeCAD.__file__)!r})"
@@ -50,7 +51,11 @@ def script_of_another_freecad(tmp_path):
         home = tmp_path / "another home"
         home.mkdir(exist_ok=True)
         done = subprocess.run(
-            [sys.executable, str(path)], cwd=tmp_path, capture_output=True, text=True, check=False,
+            [sys.executable, str(path)],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
             env={**os.environ, "FREECAD_USER_HOME": str(home), "PYTHONPATH": ""},
         )
         assert done.returncode == 0, done.stderr
@@ -64,7 +69,9 @@ def test_writes_all_programs(workshop, saved):
     assert done.status == 0, done.err
     files = workshop.files("out/Two Cups")
     assert set(files) == {"program/FIRST.LS", "program/SECOND.LS"}
-    assert done.out.splitlines() == [str(workshop.folder / "out" / "Two Cups" / name) for name in sorted(files)]
+    assert done.out.splitlines() == [
+        str(workshop.folder / "out" / "Two Cups" / name) for name in sorted(files)
+    ]
     assert files["program/FIRST.LS"] != files["program/SECOND.LS"]
     assert saved.read_bytes() == before
     again = workshop.launch("export", saved, "-o", "again")
@@ -80,7 +87,9 @@ def test_findings_of_all_stages_are_told_once(workshop, saved):
     assert any(issue.level == "warning" for issue in found)
     said = workshop.run("export", saved).err.splitlines()
     for issue in found:
-        line = f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}"
+        line = (
+            f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}"
+        )
         assert said.count(line) == 1
 
 
@@ -98,11 +107,16 @@ def test_recomputes(workshop, saved):
     document.save()
     FreeCAD.closeDocument(document.Name)
     assert workshop.run("export", saved, "-o", "after").status == 0
-    before, after = workshop.files("before")["program/FIRST.LS"], workshop.files("after")["program/FIRST.LS"]
+    before, after = (
+        workshop.files("before")["program/FIRST.LS"],
+        workshop.files("after")["program/FIRST.LS"],
+    )
     assert after.count(b"J P[") > 1.6 * before.count(b"J P[") > 0
 
 
-def test_a_document_saved_where_the_workbench_is_not_installed(workshop, saved, script_of_another_freecad):
+def test_a_document_saved_where_the_workbench_is_not_installed(
+    workshop, saved, script_of_another_freecad
+):
     """A FreeCAD that does not know the workbench saves plain objects; they are stages again for us."""
     assert workshop.run("export", saved, "-o", "before").status == 0
     script_of_another_freecad(
@@ -114,7 +128,10 @@ def test_a_document_saved_where_the_workbench_is_not_installed(workshop, saved, 
     )
     done = workshop.run("export", saved, "-o", "after")
     assert done.status == 0, done.err
-    before, after = workshop.files("before")["program/FIRST.LS"], workshop.files("after")["program/FIRST.LS"]
+    before, after = (
+        workshop.files("before")["program/FIRST.LS"],
+        workshop.files("after")["program/FIRST.LS"],
+    )
     assert after.count(b"J P[") > 1.6 * before.count(b"J P[") > 0
 
 
@@ -141,9 +158,11 @@ def test_what_an_earlier_longer_export_left_is_removed_and_nothing_else(workshop
     longer = workshop.files("out")
     assert "program/first/first02/first02.pjx" in longer
     theirs = {
-        "program/first/notes.txt": b"mine", "program/first/first02/more.pgx": b"mine",
+        "program/first/notes.txt": b"mine",
+        "program/first/first02/more.pgx": b"mine",
         "program/other/other.pjx": b"<Project/>",
-        "program/other/start.pgx": b"begin\n// Limits: none\nend", "program/first/firstly/start.pgx": b"mine",
+        "program/other/start.pgx": b"begin\n// Limits: none\nend",
+        "program/first/firstly/start.pgx": b"mine",
     }
     for name, content in theirs.items():
         path = workshop.folder / "out" / name
@@ -171,7 +190,9 @@ def test_what_cannot_be_carried_out_is_status_3(workshop, saved):
     done = workshop.run("export", saved)
     assert done.status == 3, done.err
     assert done.err.splitlines()[-1].startswith("error[")
-    assert any(line.startswith("note[REMEDY]") for line in done.err.splitlines())  # what would help is told first
+    assert any(
+        line.startswith("note[REMEDY]") for line in done.err.splitlines()
+    )  # what would help is told first
     assert not (workshop.folder / "out").exists()
 
 
@@ -183,13 +204,22 @@ def test_writes_paths_as_wires(workshop, saved, kind):
     assert set(files) == {f"wires/Joint path.{kind}"}
     assert done.out.strip() == str(workshop.folder / "wires of it" / "wires" / f"Joint path.{kind}")
     if kind == "dxf":
-        assert files["wires/Joint path.dxf"].startswith(b"  0\r\nSECTION") and b"RAPID" in files["wires/Joint path.dxf"]
-    done = workshop.run("export", saved, "-o", "some", "--wires", kind, "--object", "Toolpath", "Second")
+        assert (
+            files["wires/Joint path.dxf"].startswith(b"  0\r\nSECTION")
+            and b"RAPID" in files["wires/Joint path.dxf"]
+        )
+    done = workshop.run(
+        "export", saved, "-o", "some", "--wires", kind, "--object", "Toolpath", "Second"
+    )
     assert set(workshop.files("some")) == {f"wires/Toolpath.{kind}", f"wires/Second.{kind}"}
     done = workshop.run("export", saved, "-o", "none", "--wires", "iges")
     assert done.status == 2 and "error[USAGE]" in done.err
     done = workshop.run("export", saved, "-o", "none", "--wires", kind, "--object", "Cell")
-    assert done.status == 2 and "error[NO_OBJECT]" in done.err and "Joint path, Toolpath, First one, Second" in done.err
+    assert (
+        done.status == 2
+        and "error[NO_OBJECT]" in done.err
+        and "Joint path, Toolpath, First one, Second" in done.err
+    )
     assert not (workshop.folder / "none").exists()
 
 

@@ -39,8 +39,12 @@ def written(workshop, root):
 def from_vertical(row):
     """How far, deg, the row's tool axis is from the vertical: the D500 tilts about -Y, then turns about -Z (its file)."""
     tilt, turn = (-math.radians(float(row[name])) for name in ("e1_deg", "e2_deg"))
-    about_y = np.array([[math.cos(tilt), 0, math.sin(tilt)], [0, 1, 0], [-math.sin(tilt), 0, math.cos(tilt)]])
-    about_z = np.array([[math.cos(turn), -math.sin(turn), 0], [math.sin(turn), math.cos(turn), 0], [0, 0, 1]])
+    about_y = np.array(
+        [[math.cos(tilt), 0, math.sin(tilt)], [0, 1, 0], [-math.sin(tilt), 0, math.cos(tilt)]]
+    )
+    about_z = np.array(
+        [[math.cos(turn), -math.sin(turn), 0], [math.sin(turn), math.cos(turn), 0], [0, 0, 1]]
+    )
     x, y, z = about_y @ about_z @ [float(row[name]) for name in ("tx", "ty", "tz")]
     return math.degrees(math.atan2(math.hypot(x, y), z))
 
@@ -54,14 +58,19 @@ def test_rows_and_report_say_where_the_positioner_is(workshop, written):
     assert list(rows[0])[-4:] == ["q6_deg", "e1_deg", "e2_deg", "class"]
     leaning = max(from_vertical(row) for row in rows if row["kind"] == "deposit")
     assert leaning <= MOST + 1e-4
-    assert all(abs(float(row["e1_deg"])) <= 134.9946 and abs(float(row["e2_deg"])) <= 199.9966 for row in rows)
+    assert all(
+        abs(float(row["e1_deg"])) <= 134.9946 and abs(float(row["e2_deg"])) <= 199.9966
+        for row in rows
+    )
 
     told = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     axes = told["joints"]["external"]
     assert axes["from_vertical_max_deg"] == pytest.approx(leaning, abs=1e-3)
     turned = sum(
-        abs(float(other["e2_deg"]) - float(one["e2_deg"])) for one, other in zip(rows, rows[1:])
-        if one["kind"] == other["kind"] == "deposit" and (one["layer"], one["bead"]) == (other["layer"], other["bead"])
+        abs(float(other["e2_deg"]) - float(one["e2_deg"]))
+        for one, other in zip(rows, rows[1:])
+        if one["kind"] == other["kind"] == "deposit"
+        and (one["layer"], one["bead"]) == (other["layer"], other["bead"])
     )
     assert axes["turned_deg"]["e2"] == pytest.approx(turned, abs=1.0)
     assert len(told["joints"]["min_deg"]) == 8 and told["machine"]["axes"][-2:] == ["e1", "e2"]
@@ -76,13 +85,26 @@ def test_the_program_takes_the_positioner_along(workshop, written):
     text = program.read_text(encoding="ascii")
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    told = re.findall(r"LIN \{X ([-.\d]+),Y ([-.\d]+),Z ([-.\d]+),.*,E1 ([-.\d]+),E2 ([-.\d]+)\}", text)
+    told = re.findall(
+        r"LIN \{X ([-.\d]+),Y ([-.\d]+),Z ([-.\d]+),.*,E1 ([-.\d]+),E2 ([-.\d]+)\}", text
+    )
     # a bead begins where the rapid before it ended
     alike = ("kind", "layer", "bead")
-    deposit = [row for one, row in zip(rows, rows[1:]) if row["kind"] == "deposit" and all(one[k] == row[k] for k in alike)]
-    due = np.array([[float(row[name]) for name in ("x_mm", "y_mm", "z_mm", "e1_deg", "e2_deg")] for row in deposit])
+    deposit = [
+        row
+        for one, row in zip(rows, rows[1:])
+        if row["kind"] == "deposit" and all(one[k] == row[k] for k in alike)
+    ]
+    due = np.array(
+        [
+            [float(row[name]) for name in ("x_mm", "y_mm", "z_mm", "e1_deg", "e2_deg")]
+            for row in deposit
+        ]
+    )
     apart = np.array(told, dtype=float) - due
-    assert np.ptp(apart[:, :3], axis=0).max() <= 1.1e-3  # the part's file may have its zero elsewhere
+    assert (
+        np.ptp(apart[:, :3], axis=0).max() <= 1.1e-3
+    )  # the part's file may have its zero elsewhere
     assert np.abs(apart[:, 3:]).max() <= 5.1e-5 and np.ptp(due[:, 4]) > 300.0
     assert text.count("$BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,BASE_DATA[1])") == 1
 
@@ -94,10 +116,16 @@ def columns(workshop, first):
     return np.array([[float(word) for word in line.split(",")[at:-1]] for line in lines[1:]])
 
 
-@pytest.mark.parametrize(("mechanism", "untold"), [
-    ("motoman-motopos-d500", ""), ("kuka-kp2-hv500", "no file says what KUKA KP2-HV500 is made of"),
-])
-def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(workshop, written, mechanism, untold):
+@pytest.mark.parametrize(
+    ("mechanism", "untold"),
+    [
+        ("motoman-motopos-d500", ""),
+        ("kuka-kp2-hv500", "no file says what KUKA KP2-HV500 is made of"),
+    ],
+)
+def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(
+    workshop, written, mechanism, untold
+):
     def change(job):
         job["strategy"]["layer_height"] = "15 mm"
         job["cell"]["external"][0].update(machine=mechanism, pose=[1400, 0, -500, 0, 0, 0])
@@ -106,10 +134,18 @@ def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(
     written(change)
     done = workshop.run("plan", "dome.yaml", "-o", "out", "--no-page")
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
-    found = [(one["level"], one["message"]) for one in report["issues"] if one["code"] == "BODIES_NOT_KNOWN"]
+    found = [
+        (one["level"], one["message"])
+        for one in report["issues"]
+        if one["code"] == "BODIES_NOT_KNOWN"
+    ]
     assert len(found) == done.err.count("note[BODIES_NOT_KNOWN] job: ") == bool(untold), done.err
     assert all(level == "note" and message.startswith(untold) for level, message in found)
-    (line,) = [one["how"] for one in report["preflight"] if one["promise"].startswith("Positioner and track")]
+    (line,) = [
+        one["how"]
+        for one in report["preflight"]
+        if one["promise"].startswith("Positioner and track")
+    ]
     assert ("not checked: no file says" in line) == bool(untold)
 
 
@@ -124,7 +160,11 @@ def test_one_urdf_of_a_whole_cell_moves_as_its_mechanisms_named_one_by_one(works
     def by_hand(job):
         job["cell"]["external"] = [
             {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"},
-            {"machine": "motoman-motopos-d500", "pose": [1400, 50, -56, 0, 0, "0.4 rad"], "carries": "part"},
+            {
+                "machine": "motoman-motopos-d500",
+                "pose": [1400, 50, -56, 0, 0, "0.4 rad"],
+                "carries": "part",
+            },
         ]
         job["program"] = {"post": "none"}
 
@@ -147,7 +187,9 @@ def test_one_urdf_of_a_whole_cell_moves_as_its_mechanisms_named_one_by_one(works
 
 
 def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
-    told = json.loads((external.MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8"))
+    told = json.loads(
+        (external.MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8")
+    )
     told["payload"] = {"kg": 0.5, "source": "the plate"}
     (workshop.folder / "light.json").write_text(json.dumps(told), encoding="utf-8")
     written(lambda job: job["cell"]["external"][0].update(machine="light.json"))
@@ -156,18 +198,41 @@ def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
     report = json.loads(workshop.files("out")["report.json"])
     assert report["status"] == "infeasible" and report["programs"] == []
     assert report["totals"]["mass_g"] > 500.0
-    written(lambda job: (job["cell"]["external"][0].update(machine="light.json"), job["process"].update(density=2.7)))
+    written(
+        lambda job: (
+            job["cell"]["external"][0].update(machine="light.json"),
+            job["process"].update(density=2.7),
+        )
+    )
     done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
-    assert done.status == 0 and json.loads(workshop.files("out")["report.json"])["totals"]["mass_g"] < 500.0
+    assert (
+        done.status == 0
+        and json.loads(workshop.files("out")["report.json"])["totals"]["mass_g"] < 500.0
+    )
 
 
-@pytest.mark.parametrize(("change", "code", "where"), [
-    (lambda job: job.update(program={"post": "fanuc"}), "WRONG_CONTROLLER", "program.post"),
-    (lambda job: job["cell"]["external"][0].update(machine="kuka-kr8-r2100-2-arc-hw"), "BAD_VALUE", "cannot carry itself"),
-    (lambda job: job["cell"]["external"].append(job["cell"]["external"][0]), "BAD_VALUE", "stands there twice"),
-    (lambda job: job["cell"]["external"][0].update(carries="robot"), "NOT_YET", "cell.external"),
-    (lambda job: job["cell"].update(setup="part-on-robot"), "WRONG_SETUP", "cell.external"),
-])
+@pytest.mark.parametrize(
+    ("change", "code", "where"),
+    [
+        (lambda job: job.update(program={"post": "fanuc"}), "WRONG_CONTROLLER", "program.post"),
+        (
+            lambda job: job["cell"]["external"][0].update(machine="kuka-kr8-r2100-2-arc-hw"),
+            "BAD_VALUE",
+            "cannot carry itself",
+        ),
+        (
+            lambda job: job["cell"]["external"].append(job["cell"]["external"][0]),
+            "BAD_VALUE",
+            "stands there twice",
+        ),
+        (
+            lambda job: job["cell"]["external"][0].update(carries="robot"),
+            "NOT_YET",
+            "cell.external",
+        ),
+        (lambda job: job["cell"].update(setup="part-on-robot"), "WRONG_SETUP", "cell.external"),
+    ],
+)
 def test_refused_when_it_is_planned(workshop, written, change, code, where):
     written(change)
     done = workshop.run("plan", "dome.yaml", "-o", "out")
@@ -175,17 +240,48 @@ def test_refused_when_it_is_planned(workshop, written, change, code, where):
     assert not (workshop.folder / "out").exists()
 
 
-@pytest.mark.parametrize(("change", "code", "where"), [
-    (lambda job: job["cell"].update(external="motoman-motopos-d500"), "BAD_VALUE", "cell.external"),
-    (lambda job: job["cell"].update(external="urdf"), "BAD_VALUE", "cell.external"),
-    (lambda job: job["cell"]["external"][0].update(machine={"base": "here"}), "BAD_VALUE", "cell.external[0].machine.file"),
-    (lambda job: job["cell"]["external"][0].update(pose=[1, 2, 3]), "BAD_VALUE", "cell.external[0].pose"),
-    (lambda job: job["cell"]["external"][0].update(pose=[1, 2, 3, 4, 5, "6 kg"]), "BAD_UNIT", "cell.external[0].pose"),
-    (lambda job: job["cell"]["external"][0].pop("machine"), "BAD_VALUE", "cell.external[0].machine"),
-    (lambda job: job["cell"]["external"][0].update(carry="part"), "UNKNOWN_KEY", "cell.external[0].carry"),
-    (lambda job: job["cell"].update(world_up=[0, 0, 0]), "BAD_VALUE", "cell.world_up"),
-    (lambda job: job["build_direction"].update(max_from_vertical="190 deg"), "BAD_VALUE", "build_direction.max_from"),
-])
+@pytest.mark.parametrize(
+    ("change", "code", "where"),
+    [
+        (
+            lambda job: job["cell"].update(external="motoman-motopos-d500"),
+            "BAD_VALUE",
+            "cell.external",
+        ),
+        (lambda job: job["cell"].update(external="urdf"), "BAD_VALUE", "cell.external"),
+        (
+            lambda job: job["cell"]["external"][0].update(machine={"base": "here"}),
+            "BAD_VALUE",
+            "cell.external[0].machine.file",
+        ),
+        (
+            lambda job: job["cell"]["external"][0].update(pose=[1, 2, 3]),
+            "BAD_VALUE",
+            "cell.external[0].pose",
+        ),
+        (
+            lambda job: job["cell"]["external"][0].update(pose=[1, 2, 3, 4, 5, "6 kg"]),
+            "BAD_UNIT",
+            "cell.external[0].pose",
+        ),
+        (
+            lambda job: job["cell"]["external"][0].pop("machine"),
+            "BAD_VALUE",
+            "cell.external[0].machine",
+        ),
+        (
+            lambda job: job["cell"]["external"][0].update(carry="part"),
+            "UNKNOWN_KEY",
+            "cell.external[0].carry",
+        ),
+        (lambda job: job["cell"].update(world_up=[0, 0, 0]), "BAD_VALUE", "cell.world_up"),
+        (
+            lambda job: job["build_direction"].update(max_from_vertical="190 deg"),
+            "BAD_VALUE",
+            "build_direction.max_from",
+        ),
+    ],
+)
 def test_refused_when_it_is_read(written, change, code, where):
     path = written(change)
     with pytest.raises(InputError) as error:
@@ -203,7 +299,9 @@ def test_the_rotor_moves_less_with_its_axes_optimised(workshop, root):
     (workshop.folder / "rotor.yaml").write_text(yaml.safe_dump(job), encoding="utf-8")
     done = workshop.run("plan", "rotor.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
-    told = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))["joints"]["external"]
+    told = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))[
+        "joints"
+    ]["external"]
     level = told["level"]
     assert told["rule"] == "optimised" and told["objective_value"] < 0.7 * level["objective_value"]
     assert told["least_margin"] > 1.1 * level["least_margin"] > 0.0
@@ -211,9 +309,23 @@ def test_the_rotor_moves_less_with_its_axes_optimised(workshop, root):
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = [row for row in csv.DictReader(file) if row["kind"] == "deposit"]
     assert max(map(from_vertical, rows)) <= 30.0 + 1e-4
-    machine = json.loads((root / "freecad_am" / "machines" / "kuka-kr8-r2100-2-arc-hw.json").read_text(encoding="utf-8"))
-    stroke = [np.diff(ends)[0] for ends in machine["limits"]["maker"]["axes"]] + [2 * 134.9946, 2 * 199.9966]
+    machine = json.loads(
+        (root / "freecad_am" / "machines" / "kuka-kr8-r2100-2-arc-hw.json").read_text(
+            encoding="utf-8"
+        )
+    )
+    stroke = [np.diff(ends)[0] for ends in machine["limits"]["maker"]["axes"]] + [
+        2 * 134.9946,
+        2 * 199.9966,
+    ]
     angles = np.array([[float(row[name]) for name in list(row)[-9:-1]] for row in rows])
-    same = np.array([(one["layer"], one["bead"]) == (row["layer"], row["bead"]) for one, row in zip(rows, rows[1:])])
+    same = np.array(
+        [
+            (one["layer"], one["bead"]) == (row["layer"], row["bead"])
+            for one, row in zip(rows, rows[1:])
+        ]
+    )
     moved = float(np.radians(np.diff(angles, axis=0)[same] ** 2 / np.array(stroke)).sum())
-    assert moved == pytest.approx(told["objective_value"], rel=0.05)  # points added in between make less of it
+    assert moved == pytest.approx(
+        told["objective_value"], rel=0.05
+    )  # points added in between make less of it

@@ -38,43 +38,93 @@ def read(tmp_path):
 
 
 def test_what_stands_at_the_top_is_the_default_of_all(read):
-    job = read(START + """\
+    job = read(
+        START
+        + """\
   - {name: post, part: {file: post.step}, strategy: {layer_height: 2 mm}, process: {seam: {angle: 90 deg}}}
   - {part: {file: post.step}, strategy: {kind: revolution}, process: {travel_speed: 9 mm/s}}
 sequence: height
-""")
-    assert [one.name for one in job.features] == ["plate", "post", "feature 3"] and job.sequence == "height"
+"""
+    )
+    assert [one.name for one in job.features] == [
+        "plate",
+        "post",
+        "feature 3",
+    ] and job.sequence == "height"
     assert [one.strategy.layer_height for one in job.features] == [5.0, 2.0, 5.0]
     assert [one.process.travel_speed for one in job.features] == [6.0, 6.0, 9.0]
-    assert job.features[1].process.seam.angle == pytest.approx(math.pi / 2) and job.process.seam.angle == 0.0
+    assert (
+        job.features[1].process.seam.angle == pytest.approx(math.pi / 2)
+        and job.process.seam.angle == 0.0
+    )
     assert job.part.file.endswith("plate.step") and read(START).features[0].name == "plate"
 
 
 def test_defaults_that_a_family_does_not_have_are_left_out(read):
-    job = read("part: {file: plate.step, solids: [Solid1]}\nsubstrate: {file: post.step}\nprocess: {bead_model: csw}\n"
-               "strategy: {kind: solid, fill: zigzag, layer_height: 2 mm}\nbuild_direction: {mode: fixed}\nfeatures:\n"
-               "  - {name: a}\n  - {name: b, part: {solids: [Solid2]}, strategy: {kind: revolution}}\n"
-               "  - {name: c, strategy: {kind: developable}}\n  - {name: d, part: {file: wall.stl}}\n")
+    job = read(
+        "part: {file: plate.step, solids: [Solid1]}\nsubstrate: {file: post.step}\nprocess: {bead_model: csw}\n"
+        "strategy: {kind: solid, fill: zigzag, layer_height: 2 mm}\nbuild_direction: {mode: fixed}\nfeatures:\n"
+        "  - {name: a}\n  - {name: b, part: {solids: [Solid2]}, strategy: {kind: revolution}}\n"
+        "  - {name: c, strategy: {kind: developable}}\n  - {name: d, part: {file: wall.stl}}\n"
+    )
     first, second, third, fourth = job.features
-    assert (first.part.solids, second.part.solids, fourth.part.solids) == (("Solid1",), ("Solid2",), ())
+    assert (first.part.solids, second.part.solids, fourth.part.solids) == (
+        ("Solid1",),
+        ("Solid2",),
+        (),
+    )
     assert first.substrate.file.endswith("post.step") and second.substrate is None
-    assert (second.strategy.layer_height, second.process.bead_model, third.process.bead_model) == (2.0, "none", "csw")
+    assert (second.strategy.layer_height, second.process.bead_model, third.process.bead_model) == (
+        2.0,
+        "none",
+        "csw",
+    )
     assert (second.build_direction.mode, third.build_direction.mode) == ("fixed", "local")
 
 
-@pytest.mark.parametrize(("more", "code", "told"), [
-    ("  - {name: post, part: {file: missing.step}}\n", "NO_FILE", ["features[1].part.file", "feature post", "line 5"]),
-    ("  - {name: post, part: {file: post.step}, strategy: {layer_height: 0 mm}}\n", "BAD_VALUE",
-     ["features[1].strategy.layer_height", "feature post"]),
-    ("  - {name: post, part: {file: post.step}, strategy: {wall: inner}}\n", "UNKNOWN_KEY", ["features[1].strategy.wall"]),
-    ("  - {name: post, part: {file: post.step}, cell: {}}\n", "UNKNOWN_KEY", ["features[1].cell"]),
-    ("  - {name: plate, part: {file: post.step}}\n", "BAD_VALUE", ["features[1].name", "'plate' is the name of another"]),
-    ("  - {name: post}\n", "NO_PART", ["features[1].part", "feature post"]),
-    ("  - post.step\n", "BAD_VALUE", ["features[1]", "not a section"]),
-    ("  - {name: post, part: {file: post.step, solids: [Face1]}}\n", "BAD_VALUE", ["features[1].part.solids"]),
-    ("  - {name: post, part: {file: wall.stl, solids: [Solid1]}}\n", "BAD_VALUE", ["features[1].part.solids", "mesh"]),
-    (POST + "sequence: random\n", "BAD_VALUE", ["sequence", "feature, height"]),
-])
+@pytest.mark.parametrize(
+    ("more", "code", "told"),
+    [
+        (
+            "  - {name: post, part: {file: missing.step}}\n",
+            "NO_FILE",
+            ["features[1].part.file", "feature post", "line 5"],
+        ),
+        (
+            "  - {name: post, part: {file: post.step}, strategy: {layer_height: 0 mm}}\n",
+            "BAD_VALUE",
+            ["features[1].strategy.layer_height", "feature post"],
+        ),
+        (
+            "  - {name: post, part: {file: post.step}, strategy: {wall: inner}}\n",
+            "UNKNOWN_KEY",
+            ["features[1].strategy.wall"],
+        ),
+        (
+            "  - {name: post, part: {file: post.step}, cell: {}}\n",
+            "UNKNOWN_KEY",
+            ["features[1].cell"],
+        ),
+        (
+            "  - {name: plate, part: {file: post.step}}\n",
+            "BAD_VALUE",
+            ["features[1].name", "'plate' is the name of another"],
+        ),
+        ("  - {name: post}\n", "NO_PART", ["features[1].part", "feature post"]),
+        ("  - post.step\n", "BAD_VALUE", ["features[1]", "not a section"]),
+        (
+            "  - {name: post, part: {file: post.step, solids: [Face1]}}\n",
+            "BAD_VALUE",
+            ["features[1].part.solids"],
+        ),
+        (
+            "  - {name: post, part: {file: wall.stl, solids: [Solid1]}}\n",
+            "BAD_VALUE",
+            ["features[1].part.solids", "mesh"],
+        ),
+        (POST + "sequence: random\n", "BAD_VALUE", ["sequence", "feature, height"]),
+    ],
+)
 def test_what_is_refused_names_feature_and_key(read, more, code, told):
     with pytest.raises(InputError) as caught:
         read(START + more)
@@ -82,9 +132,15 @@ def test_what_is_refused_names_feature_and_key(read, more, code, told):
     assert caught.value.code == code and all(text in line for text in told), line
 
 
-@pytest.mark.parametrize("features", [
-    "features: []", "features: {}", "features: hub", "part: {file: plate.step}\nsequence: height",
-])
+@pytest.mark.parametrize(
+    "features",
+    [
+        "features: []",
+        "features: {}",
+        "features: hub",
+        "part: {file: plate.step}\nsequence: height",
+    ],
+)
 def test_a_list_that_is_none(read, features):
     with pytest.raises(InputError) as caught:
         read(features + "\n")
@@ -116,13 +172,26 @@ JOB = START + POST
 
 
 def test_a_feature_that_floats_or_overlaps_is_refused(workshop):
-    done, report, _ = planned(workshop, JOB, plate=PLATE, post=Part.makeBox(10, 10, 10, Vector(100, 0, 30)))
+    done, report, _ = planned(
+        workshop, JOB, plate=PLATE, post=Part.makeBox(10, 10, 10, Vector(100, 0, 30))
+    )
     assert done.status == 2 and report is None and "error[FLOATS] post:" in done.err
-    done, report, _ = planned(workshop, JOB, plate=PLATE, post=Part.makeCylinder(12, 30, Vector(20, 20, 15)))
-    assert done.status == 2 and report is None and "error[OVERLAP] post:" in done.err and "within plate" in done.err
+    done, report, _ = planned(
+        workshop, JOB, plate=PLATE, post=Part.makeCylinder(12, 30, Vector(20, 20, 15))
+    )
+    assert (
+        done.status == 2
+        and report is None
+        and "error[OVERLAP] post:" in done.err
+        and "within plate" in done.err
+    )
     assert f"{math.pi * 12**2 * 5 / 1000:.4g} cm3" in done.err
-    upside = START.replace("plate", "post") + POST.replace("post", "plate")  # what carries it comes later
-    done, report, _ = planned(workshop, upside, plate=PLATE, post=Part.makeCylinder(12, 30, Vector(20, 20, 20)))
+    upside = START.replace("plate", "post") + POST.replace(
+        "post", "plate"
+    )  # what carries it comes later
+    done, report, _ = planned(
+        workshop, upside, plate=PLATE, post=Part.makeCylinder(12, 30, Vector(20, 20, 20))
+    )
     assert done.status == 2 and "error[FLOATS] post:" in done.err
 
 
@@ -149,7 +218,9 @@ features:
 GAP, TALL = 4.0, 36.0
 LEFT = Part.makeBox(16, 20, TALL, Vector(0, 0, 8))
 TOWER_PARTS = {
-    "plate": Part.makeBox(36, 20, 8), "left": LEFT, "right": Part.makeBox(16, 20, TALL, Vector(16 + GAP, 0, 8)),
+    "plate": Part.makeBox(36, 20, 8),
+    "left": LEFT,
+    "right": Part.makeBox(16, 20, TALL, Vector(16 + GAP, 0, 8)),
 }
 
 
@@ -160,7 +231,9 @@ SLOPE, LENGTH = math.tan(math.radians(20.0)), 60.0
 def nozzle(point, tool, clear=4.5):
     """The usual nozzle from a little above the tip on, as a solid."""
     foot = Vector(*(point + clear * tool))
-    return Part.makeCone(0.5 + clear * SLOPE, 0.5 + LENGTH * SLOPE, LENGTH - clear, foot, Vector(*tool))
+    return Part.makeCone(
+        0.5 + clear * SLOPE, 0.5 + LENGTH * SLOPE, LENGTH - clear, foot, Vector(*tool)
+    )
 
 
 def test_later_features_keep_clear_of_earlier_ones(workshop):
@@ -169,11 +242,23 @@ def test_later_features_keep_clear_of_earlier_ones(workshop):
     assert done.status == 0, done.err
     layer, speed = of(rows, "layer").ravel(), of(rows, "speed_mm_s").ravel()
     assert sorted(set(layer)) == list(range(2 + 9 + 12)) and (np.diff(layer) >= 0).all()
-    assert [one["layers"] for one in report["features"]] == [[0, 1], list(range(2, 11)), list(range(11, 23))]
-    points, build, tool = of(rows, "x_mm", "y_mm", "z_mm"), of(rows, "bx", "by", "bz"), of(rows, "tx", "ty", "tz")
+    assert [one["layers"] for one in report["features"]] == [
+        [0, 1],
+        list(range(2, 11)),
+        list(range(11, 23)),
+    ]
+    points, build, tool = (
+        of(rows, "x_mm", "y_mm", "z_mm"),
+        of(rows, "bx", "by", "bz"),
+        of(rows, "tx", "ty", "tz"),
+    )
     # layers are numbered through, and lie on their planes
-    np.testing.assert_allclose(points[:, 2], np.where(layer < 11, 4.0 * layer, 8.0 + 3.0 * (layer - 11)), atol=1e-6)
-    assert set(np.round(speed[layer >= 11], 6)) == {9.0} and set(np.round(speed[layer < 11], 6)) == {6.0}
+    np.testing.assert_allclose(
+        points[:, 2], np.where(layer < 11, 4.0 * layer, 8.0 + 3.0 * (layer - 11)), atol=1e-6
+    )
+    assert set(np.round(speed[layer >= 11], 6)) == {9.0} and set(
+        np.round(speed[layer < 11], 6)
+    ) == {6.0}
     np.testing.assert_allclose(tool[layer < 11], build[layer < 11], atol=1e-9)
     near = np.flatnonzero((layer == 13) & (points[:, 0] < 16 + GAP + 5.0))
     assert len(near) and any(nozzle(points[k], build[k]).common(SURE).Volume > 1.0 for k in near)
@@ -202,13 +287,18 @@ def test_a_part_of_revolution_keeps_clear_of_the_flank_of_a_wider_bead_that_stan
     assert done.status == 0, done.err
     assert [len(one["layers"]) for one in report["features"]] == [9, 9]
     layer = of(rows, "layer").ravel()
-    points, build, tool = of(rows, "x_mm", "y_mm", "z_mm"), of(rows, "bx", "by", "bz"), of(rows, "tx", "ty", "tz")
+    points, build, tool = (
+        of(rows, "x_mm", "y_mm", "z_mm"),
+        of(rows, "bx", "by", "bz"),
+        of(rows, "tx", "ty", "tz"),
+    )
     radius = np.hypot(points[:, 0], points[:, 1])
     np.testing.assert_allclose(radius, np.where(layer < 9, 40.0, 25.0), atol=1e-6)
     np.testing.assert_allclose(tool[layer < 9], build[layer < 9], atol=1e-9)
     # beads are round beside: of each the half that is as wide is left
     line, ring = (
-        Part.makeCylinder(outer, 32).cut(Part.makeCylinder(inner, 32)) for outer, inner in ((40.1, 39.9), (46.0, 34.0))
+        Part.makeCylinder(outer, 32).cut(Part.makeCylinder(inner, 32))
+        for outer, inner in ((40.1, 39.9), (46.0, 34.0))
     )
     first = np.flatnonzero(layer == 9)
     for k in first[:: len(first) // 8]:
@@ -238,16 +328,22 @@ def test_the_shipped_hub_with_fins_and_branch(workshop, root):
     for name in ("finned-hub.step", "finned-hub.yaml"):
         shutil.copy(root / "resources" / "examples" / name, workshop.folder)
     text = (workshop.folder / "finned-hub.yaml").read_text(encoding="utf-8")
-    text = text.replace("layer_height: 2 mm", "layer_height: 5 mm").replace("chord_error: 0.02 mm", "chord_error: 0.1 mm")
+    text = text.replace("layer_height: 2 mm", "layer_height: 5 mm").replace(
+        "chord_error: 0.02 mm", "chord_error: 0.1 mm"
+    )
     (workshop.folder / "job.yaml").write_text(text, encoding="utf-8")
     done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     rows = waypoints(workshop.folder)
-    assert [one["name"] for one in report["features"]] == ["hub", "fins", "branch"] and report["status"] == "ok"
+    assert [one["name"] for one in report["features"]] == ["hub", "fins", "branch"] and report[
+        "status"
+    ] == "ok"
     layer, points = of(rows, "layer").ravel(), of(rows, "x_mm", "y_mm", "z_mm")
     build, tool = of(rows, "bx", "by", "bz"), of(rows, "tx", "ty", "tz")
-    assert (np.diff(layer) >= 0).all() and sorted(set(layer)) == list(range(report["counts"]["layers"]))
+    assert (np.diff(layer) >= 0).all() and sorted(set(layer)) == list(
+        range(report["counts"]["layers"])
+    )
     whole = Part.Shape()
     whole.read(str(workshop.folder / "finned-hub.step"))
     hub, *fins = whole.Solids
@@ -257,8 +353,13 @@ def test_the_shipped_hub_with_fins_and_branch(workshop, root):
         some = mine[:: max(1, len(mine) // 60)]
         # a line of fill may run in the middle of the first layer's bead: on the surface of the hub
         part = meant[one["name"]]
-        off = max(0.0 if part.Solids and any(solid.isInside(Vector(*points[k]), 1e-6, True) for solid in part.Solids)
-                  else Part.Vertex(*points[k]).distToShape(part)[0] for k in some)
+        off = max(
+            0.0
+            if part.Solids
+            and any(solid.isInside(Vector(*points[k]), 1e-6, True) for solid in part.Solids)
+            else Part.Vertex(*points[k]).distToShape(part)[0]
+            for k in some
+        )
         assert len(some) > 20 and off < 0.1 + 0.02, (one["name"], off)
         if one["name"] != "hub":
             assert all(nozzle(points[k], tool[k], 7.0).common(hub).Volume < 1e-6 for k in some)
@@ -266,17 +367,25 @@ def test_the_shipped_hub_with_fins_and_branch(workshop, root):
     assert set(np.sign(radial[:, 0])) == {-1.0, 1.0}
     assert report["unsupported_mm"] == 0.0 and (np.einsum("ij,ij->i", build, tool) > 0.5).all()
     (program,) = (workshop.folder / "out" / "program").iterdir()
-    assert program.read_text(encoding="ascii").count("\nP[") >= len(rows) - report["counts"]["beads"]
+    assert (
+        program.read_text(encoding="ascii").count("\nP[") >= len(rows) - report["counts"]["beads"]
+    )
 
 
 def test_a_wall_in_the_middle_lies_on_its_part(workshop):
     """It was refused as off the part, being measured from faces that it is halfway between."""
     tube = Part.makeCylinder(30, 20).cut(Part.makeCylinder(24, 20))
     done, report, rows = planned(
-        workshop, "part: {file: tube.step}\nstrategy: {wall: middle, layer_height: 5 mm, chord_error: 0.1 mm}\n"
-        "process: {bead_width: 6 mm}\n", tube=tube)
+        workshop,
+        "part: {file: tube.step}\nstrategy: {wall: middle, layer_height: 5 mm, chord_error: 0.1 mm}\n"
+        "process: {bead_width: 6 mm}\n",
+        tube=tube,
+    )
     assert done.status == 0, done.err
-    assert np.abs(np.hypot(*of(rows, "x_mm", "y_mm").T) - 27.0).max() < 1e-6 and report["on_part"]["worst_mm"] < 1e-6
+    assert (
+        np.abs(np.hypot(*of(rows, "x_mm", "y_mm").T) - 27.0).max() < 1e-6
+        and report["on_part"]["worst_mm"] < 1e-6
+    )
 
 
 FIGURES = """\
@@ -311,10 +420,18 @@ def test_each_feature_has_the_figures_of_a_job_of_its_own(workshop):
     elbow = report(ELBOW.replace("MORE", ", substrate: {file: block.step}"))
     both = report(BLOCK, ELBOW.replace("MORE", ""), page="")
     first, second = both["features"]
-    assert first["beads"] == block["beads"] and len(first["beads"]["layers"]) == 3 and first["spacing_comparison"] == []
+    assert (
+        first["beads"] == block["beads"]
+        and len(first["beads"]["layers"]) == 3
+        and first["spacing_comparison"] == []
+    )
     assert second["spacing_comparison"] == elbow["spacing_comparison"] and second["beads"] is None
     assert sum(row["layers"] is not None for row in second["spacing_comparison"]) > 2
     assert both["spacing_comparison"] == [] and both["beads"] is None
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
-    for title in ("What spacing costs: elbow", "block: distance to the layer before", "elbow: distance to the layer before"):
+    for title in (
+        "What spacing costs: elbow",
+        "block: distance to the layer before",
+        "elbow: distance to the layer before",
+    ):
         assert title in page

@@ -16,7 +16,9 @@ def test_a_closed_home_folder_is_replaced(monkeypatch, tmp_path, closed):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr(host.tempfile, "tempdir", None)
     monkeypatch.delenv("FREECAD_USER_HOME", raising=False)
-    monkeypatch.setattr(host.os, "access", lambda path, mode: not (closed and path == str(tmp_path)))
+    monkeypatch.setattr(
+        host.os, "access", lambda path, mode: not (closed and path == str(tmp_path))
+    )
     host.provide_home()
     given = os.environ.get("FREECAD_USER_HOME")
     monkeypatch.delenv("FREECAD_USER_HOME", raising=False)
@@ -52,7 +54,9 @@ def test_a_folder_that_another_may_have_made_is_not_taken_for_home(monkeypatch, 
     monkeypatch.setattr(host.tempfile, "tempdir", str(top))
     monkeypatch.setattr(host.os, "access", lambda path, mode: path != str(home))
     user = os.getuid()
-    if kind == "another's":  # to make what belongs to another takes root: this user is another instead
+    if (
+        kind == "another's"
+    ):  # to make what belongs to another takes root: this user is another instead
         user += 1
         monkeypatch.setattr(host.os, "getuid", lambda: user)
     there = top / f"freecad-am-{user}"
@@ -63,7 +67,9 @@ def test_a_folder_that_another_may_have_made_is_not_taken_for_home(monkeypatch, 
         host.provide_home()
         given.append(os.environ["FREECAD_USER_HOME"])
     monkeypatch.delenv("FREECAD_USER_HOME", raising=False)
-    assert all(os.path.dirname(path) == str(top) and os.path.basename(path) != there.name for path in given)
+    assert all(
+        os.path.dirname(path) == str(top) and os.path.basename(path) != there.name for path in given
+    )
     for path in given:
         found = os.lstat(path)
         assert stat.S_ISDIR(found.st_mode) and stat.S_IMODE(found.st_mode) == 0o700

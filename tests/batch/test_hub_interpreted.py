@@ -29,8 +29,12 @@ PLATFORM = 60.0
 # what the text rounds, what rs274 prints and the single precision of nc-gcode-interpreter 0.1.9, at levers of up to 150 mm
 NEAR, NEAR_AXIS = 1e-3, 3e-6
 
-linuxcnc_is_here = pytest.mark.skipif(rs274() is None, reason="no rs274 of LinuxCNC: `./freecad-am test` fetches it")
-sinumerik_is_here = pytest.mark.skipif(nc_python() is None, reason="no nc-gcode-interpreter: `./freecad-am test` fetches it")
+linuxcnc_is_here = pytest.mark.skipif(
+    rs274() is None, reason="no rs274 of LinuxCNC: `./freecad-am test` fetches it"
+)
+sinumerik_is_here = pytest.mark.skipif(
+    nc_python() is None, reason="no nc-gcode-interpreter: `./freecad-am test` fetches it"
+)
 
 
 def blade():
@@ -38,7 +42,9 @@ def blade():
 
 
 def collar():
-    outer, inner = (Part.makeCylinder(radius, 24.0, FreeCAD.Vector(0, 0, 20)) for radius in (46.0, 20.0))
+    outer, inner = (
+        Part.makeCylinder(radius, 24.0, FreeCAD.Vector(0, 0, 20)) for radius in (46.0, 20.0)
+    )
     return outer.cut(inner)
 
 
@@ -49,18 +55,35 @@ def planned(workshop):
     def run(part, height, fill, machine, post, motion):
         part.exportStep(str(workshop.folder / "part.step"))
         text = JOB
-        for old, new in (("HEIGHT", height), ("FILL", fill), ("MACHINE", machine), ("POST", post), ("MOTION", motion)):
+        for old, new in (
+            ("HEIGHT", height),
+            ("FILL", fill),
+            ("MACHINE", machine),
+            ("POST", post),
+            ("MOTION", motion),
+        ):
             text = text.replace(old, new)
         (workshop.folder / "hub.yaml").write_text(text, encoding="utf-8")
         done = workshop.run("plan", "hub.yaml", "-o", "out", "--no-page")
         assert done.status == 0, done.err
         out = workshop.folder / "out"
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
-            rows = [row for row in csv.DictReader(stream) if row["kind"] == "rapid" or row["point"] != "0"]
+            rows = [
+                row
+                for row in csv.DictReader(stream)
+                if row["kind"] == "rapid" or row["point"] != "0"
+            ]
         deposit = np.array([row["kind"] == "deposit" for row in rows])
-        places, tools = (np.array([[float(row[name]) for name in names] for row in rows])
-                         for names in (("x_mm", "y_mm", "z_mm"), ("tx", "ty", "tz")))
-        return places, tools, deposit, {path.name: path.read_bytes() for path in (out / "program").iterdir()}
+        places, tools = (
+            np.array([[float(row[name]) for name in names] for row in rows])
+            for names in (("x_mm", "y_mm", "z_mm"), ("tx", "ty", "tz"))
+        )
+        return (
+            places,
+            tools,
+            deposit,
+            {path.name: path.read_bytes() for path in (out / "program").iterdir()},
+        )
 
     return run
 
@@ -80,19 +103,24 @@ def in_part(machine, at):
         level = np.stack([up * v - side * w + 20.0, y, side * v + up * w + 10.0])
         axis = np.stack([-side, zero, up])
     cos, sin = np.cos(turn), np.sin(turn)
-    tip, tool = (np.stack([cos * u + sin * v, -sin * u + cos * v, w], axis=1) for u, v, w in (level, axis))
+    tip, tool = (
+        np.stack([cos * u + sin * v, -sin * u + cos * v, w], axis=1) for u, v, w in (level, axis)
+    )
     return tip - [0.0, 0.0, PLATFORM], tool
 
 
 CASES = [
-    ("zigzag", blade, "inf", "joint"), ("contours", blade, "200 mm", "cartesian"), ("spiral", blade, "200 mm", "joint"),
+    ("zigzag", blade, "inf", "joint"),
+    ("contours", blade, "200 mm", "cartesian"),
+    ("spiral", blade, "200 mm", "joint"),
     ("contours", collar, "inf", "cartesian"),
 ]
 
 
 TABLES = [
     *((*case, "table-xyzac" if case[1] is blade else "table-xyzbc") for case in CASES),
-    ("contours", blade, "200 mm", "joint", "table-xyzbc"), ("lines", collar, "inf", "joint", "table-xyzbc"),
+    ("contours", blade, "200 mm", "joint", "table-xyzbc"),
+    ("lines", collar, "inf", "joint", "table-xyzbc"),
 ]
 
 
@@ -108,7 +136,9 @@ def test_linuxcnc_lays_the_beads(planned, tmp_path, fill, part, height, motion, 
     columns = [0, 1, 2, 3 if machine == "table-xyzac" else 4, 5]
     at = np.array([move["at"] for move in moves])[:, columns]
     tip, tool = in_part(machine, at)
-    told = deposit & (motion == "cartesian")  # with the kinematics on, positions are those of the tip in the part
+    told = deposit & (
+        motion == "cartesian"
+    )  # with the kinematics on, positions are those of the tip in the part
     assert [move["kinematics"] for move in moves] == [428 if on else 429 for on in told]
     tip[told] = at[told, :3]
     assert np.abs(tip - places).max() < NEAR

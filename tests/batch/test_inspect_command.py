@@ -29,30 +29,72 @@ def spheres(examples, tmp_path):
     return found
 
 
-def test_several_parts_have_a_table_with_mean_and_standard_deviation(examples, spheres, tmp_path, capfd):
+def test_several_parts_have_a_table_with_mean_and_standard_deviation(
+    examples, spheres, tmp_path, capfd
+):
     out = tmp_path / "out"
-    assert cli.main(["inspect", str(examples / "hemisphere.yaml"), "--measured", *spheres, *SETTINGS, "-o", str(out)]) == 0
+    assert (
+        cli.main(
+            [
+                "inspect",
+                str(examples / "hemisphere.yaml"),
+                "--measured",
+                *spheres,
+                *SETTINGS,
+                "-o",
+                str(out),
+            ]
+        )
+        == 0
+    )
     printed = capfd.readouterr().out.split("\n")
     assert printed[:-1] == sorted(str(path) for path in out.iterdir())
     assert {path.name for path in out.iterdir()} == {
-        "inspection.csv", "inspection.json", "inspection.html", "inspection.FCStd", "sphere 1-deviations.csv",
+        "inspection.csv",
+        "inspection.json",
+        "inspection.html",
+        "inspection.FCStd",
+        "sphere 1-deviations.csv",
         "sphere 2-deviations.csv",
     }
-    rows = {row[0]: row[1:] for row in csv.reader((out / "inspection.csv").read_text().splitlines())}
+    rows = {
+        row[0]: row[1:] for row in csv.reader((out / "inspection.csv").read_text().splitlines())
+    }
     assert rows["figure"] == ["unit", "sphere 1", "sphere 2", "mean", "standard deviation"]
     unit, one, other, mean, deviation = rows["Spherical defect"]
-    assert unit == "mm" and float(mean) == pytest.approx(0.5 * (float(one) + float(other)), abs=2e-6)
+    assert unit == "mm" and float(mean) == pytest.approx(
+        0.5 * (float(one) + float(other)), abs=2e-6
+    )
     assert float(deviation) == pytest.approx(abs(float(one) - float(other)) / 2**0.5, abs=2e-6)
     data = json.loads((out / "inspection.json").read_text())
     assert data["version"] == 1 and [len(one["circles"]) for one in data["inspections"]] == [3, 3]
-    assert data["inspections"][0]["sphericity_mm"]["minimum_zone"] == pytest.approx(float(one), abs=1e-6)
+    assert data["inspections"][0]["sphericity_mm"]["minimum_zone"] == pytest.approx(
+        float(one), abs=1e-6
+    )
     page = (out / "inspection.html").read_text()
-    xml.dom.minidom.parseString(page[page.index("<body>") : page.index("</html>")].replace("&ensp;", ""))
-    assert page.count("<svg") == 4 and "sphere 2" in page and "src=" not in page and "href=" not in page
+    xml.dom.minidom.parseString(
+        page[page.index("<body>") : page.index("</html>")].replace("&ensp;", "")
+    )
+    assert (
+        page.count("<svg") == 4
+        and "sphere 2" in page
+        and "src=" not in page
+        and "href=" not in page
+    )
 
     saved = str(out / "inspection.FCStd")
     again = tmp_path / "again"
-    command = ["inspect", saved, "--measured", spheres[0], *SETTINGS, "-o", str(again), "--object", "Feature"]
+    command = [
+        "inspect",
+        saved,
+        "--measured",
+        spheres[0],
+        *SETTINGS,
+        "-o",
+        str(again),
+        "--object",
+        "Feature",
+    ]
     assert cli.main(command) == 0
     repeated = json.loads((again / "inspection.json").read_text())["inspections"][0]
     assert repeated["deviation_mm"] == pytest.approx(data["inspections"][0]["deviation_mm"])
@@ -72,7 +114,9 @@ POINTS = "inspection/hemisphere-synthetic.csv"
         (["nowhere.FCStd", "--measured", POINTS], "no such file"),
     ],
 )
-def test_bad_input_is_told_and_nothing_is_written(examples, tmp_path, capfd, monkeypatch, words, told):
+def test_bad_input_is_told_and_nothing_is_written(
+    examples, tmp_path, capfd, monkeypatch, words, told
+):
     monkeypatch.chdir(examples)
     assert cli.main(["inspect", *words, "-o", str(tmp_path / "out")]) == 2
     message = capfd.readouterr().err

@@ -13,8 +13,14 @@ import pytest
 def interrupted(workshop, words, after, whom=os.kill):
     """Start a command, interrupt it after some seconds; its end."""
     process = subprocess.Popen(
-        [str(workshop.launcher), *words], cwd=workshop.folder, env=workshop.environment(), start_new_session=True,
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [str(workshop.launcher), *words],
+        cwd=workshop.folder,
+        env=workshop.environment(),
+        start_new_session=True,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     time.sleep(after)
     if process.poll() is None:
@@ -24,7 +30,9 @@ def interrupted(workshop, words, after, whom=os.kill):
 
 
 def slow_job(workshop):
-    return workshop.change("layer_height: 4 mm\n  chord_error: 0.1 mm", "layer_height: 0.2 mm\n  chord_error: 0.001 mm")
+    return workshop.change(
+        "layer_height: 4 mm\n  chord_error: 0.1 mm", "layer_height: 0.2 mm\n  chord_error: 0.001 mm"
+    )
 
 
 @pytest.mark.parametrize("whom", [os.kill, os.killpg], ids=["the command", "its whole group"])
@@ -48,8 +56,12 @@ def test_earlier_outputs_stay_whole(workshop):
 
 def test_a_batch_stops_with_its_rows(workshop):
     slow_job(workshop)
-    (workshop.folder / "rows.csv").write_text("process.travel_speed\n" + "".join(f"{k} mm/s\n" for k in range(4, 10)))
-    status, _, err = interrupted(workshop, ["batch", "rows.csv", "--job", "cup.yaml", "-j", "2", "-o", "rows"], 2.0)
+    (workshop.folder / "rows.csv").write_text(
+        "process.travel_speed\n" + "".join(f"{k} mm/s\n" for k in range(4, 10))
+    )
+    status, _, err = interrupted(
+        workshop, ["batch", "rows.csv", "--job", "cup.yaml", "-j", "2", "-o", "rows"], 2.0
+    )
     assert status == 130
     assert "Traceback" not in err
     top = workshop.folder / "rows"
@@ -64,8 +76,17 @@ def test_a_batch_stops_with_its_rows(workshop):
 def test_signals_left_ignored_by_a_shell_in_the_background_are_heard(workshop):
     slow_job(workshop)
     done = subprocess.run(
-        ["sh", "-c", f"'{workshop.launcher}' plan cup.yaml & pid=$!; sleep 1; kill -INT $pid; wait $pid; echo $?"],
-        cwd=workshop.folder, env=workshop.environment(), capture_output=True, text=True, timeout=60, check=False,
+        [
+            "sh",
+            "-c",
+            f"'{workshop.launcher}' plan cup.yaml & pid=$!; sleep 1; kill -INT $pid; wait $pid; echo $?",
+        ],
+        cwd=workshop.folder,
+        env=workshop.environment(),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
     assert done.stdout.strip() == "130"
     assert not (workshop.folder / "out").exists()

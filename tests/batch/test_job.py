@@ -101,7 +101,9 @@ def test_the_documented_job_is_all_defaults(read):
     assert job.build_direction == BuildDirectionParameters()
     assert job.cell == dataclasses.replace(CellParameters(), mount="feature")
     assert job.joints == JointParameters()
-    assert job.process == ProcessParameters(wire=WireParameters(feed=10.0))  # auto where it is left out
+    assert job.process == ProcessParameters(
+        wire=WireParameters(feed=10.0)
+    )  # auto where it is left out
     assert job.program == ProgramParameters()
 
 
@@ -114,25 +116,38 @@ def test_what_is_left_out(read):
     assert read("part: {file: part.step}\ncell: null\nprogram: {post: none}\n").program is None
 
 
-@pytest.mark.parametrize("cell, wanted", [
-    ("{machine: kuka-kr16-2}", cell_of("kuka-kr16-2")),
-    ("{branch: auto}", dataclasses.replace(cell_of(""), branch="auto")),
-    ("{limits: paper}", CellParameters(limits="paper")),
-    ("{branch: [front, up, flip], deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]}", CellParameters()),
-    ("{deposition_point: [500, 0, 700, 0, 0, 0]}", CellParameters(deposition_point=(500.0, 0.0, 700.0, 0.0, 0.0, 0.0))),
-    ("{machine: no-such-robot}", CellParameters(machine="no-such-robot")),
-])
+@pytest.mark.parametrize(
+    "cell, wanted",
+    [
+        ("{machine: kuka-kr16-2}", cell_of("kuka-kr16-2")),
+        ("{branch: auto}", dataclasses.replace(cell_of(""), branch="auto")),
+        ("{limits: paper}", CellParameters(limits="paper")),
+        (
+            "{branch: [front, up, flip], deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]}",
+            CellParameters(),
+        ),
+        (
+            "{deposition_point: [500, 0, 700, 0, 0, 0]}",
+            CellParameters(deposition_point=(500.0, 0.0, 700.0, 0.0, 0.0, 0.0)),
+        ),
+        ("{machine: no-such-robot}", CellParameters(machine="no-such-robot")),
+    ],
+)
 def test_where_it_deposits_is_proposed_where_it_is_left_out(read, cell, wanted):
     """And the branch with it; as in the papers within their limits. Who plans tells that a machine is not known."""
     assert read(f"part: {{file: part.step}}\ncell: {cell}\n").cell == wanted
 
 
 def test_values_reach_the_parameters(read):
-    job = read(WHOLE.replace("platform: 5 mm", "platform: [1, 2 cm, 3, 0, 90 deg, 1 rad]").replace(
-        "[front, up, flip]", "auto").replace("rz: auto", "rz: 45").replace(
-        "start_at: null", "start_at: {layer: 12}").replace(
-        "input: null", "input: 3").replace("layer_height: 1 mm", "layer_height: 1/16 in").replace(
-        "degree: 1", "degree: 1\n  compare: [constant, point-by-point]"))
+    job = read(
+        WHOLE.replace("platform: 5 mm", "platform: [1, 2 cm, 3, 0, 90 deg, 1 rad]")
+        .replace("[front, up, flip]", "auto")
+        .replace("rz: auto", "rz: 45")
+        .replace("start_at: null", "start_at: {layer: 12}")
+        .replace("input: null", "input: 3")
+        .replace("layer_height: 1 mm", "layer_height: 1/16 in")
+        .replace("degree: 1", "degree: 1\n  compare: [constant, point-by-point]")
+    )
     assert job.cell.platform == pytest.approx((1, 20, 3, 0, math.pi / 2, 1))
     assert job.cell.branch == "auto"
     assert job.joints.rz == pytest.approx(math.pi / 4)
@@ -148,7 +163,10 @@ def test_paths_are_relative_to_the_job(read, tmp_path, monkeypatch):
     job = read(WHOLE.replace("machine: fanuc-arcmate120ic", "machine: my/robot.json"))
     assert job.cell.machine == str(tmp_path / "my" / "robot.json")
     for written, links in (
-        ("arm.urdf", ""), ("my/arm.URDF", ""), ("{file: my/arm.urdf}", ""), ("{file: arm.urdf, tip: tool0}", " tip=tool0"),
+        ("arm.urdf", ""),
+        ("my/arm.URDF", ""),
+        ("{file: my/arm.urdf}", ""),
+        ("{file: arm.urdf, tip: tool0}", " tip=tool0"),
         ("{file: my/arm.urdf, base: base_link, tip: tool0}", " base=base_link tip=tool0"),
         ("arm.urdf base=base_link tip=tool0", " base=base_link tip=tool0"),
     ):
@@ -159,22 +177,34 @@ def test_paths_are_relative_to_the_job(read, tmp_path, monkeypatch):
 
 def test_a_calibration_is_beside_the_job(read, tmp_path):
     for written, named in (
-        ("{name: ur-ur10e, calibration: my/robot.yaml}", "ur-ur10e"), ("ur-ur10e calibration=my/robot.yaml", "ur-ur10e"),
+        ("{name: ur-ur10e, calibration: my/robot.yaml}", "ur-ur10e"),
+        ("ur-ur10e calibration=my/robot.yaml", "ur-ur10e"),
         ("{name: my/arm.json, calibration: my/robot.yaml}", f"{tmp_path}/my/arm.json"),
     ):
         job = read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
         assert job.cell.machine == f"{named} calibration={tmp_path}/my/robot.yaml"
 
 
-@pytest.mark.parametrize("written,where,words", [
-    ("{calibration: my.yaml}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
-    ("{name: ur-ur10e}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
-    ("{file: arm.urdf, calibration: my.yaml}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
-    ("{base: base_link}", "cell.machine.file", "write machine: {file: robot.urdf}"),
-    ("{file: arm.json}", "cell.machine.file", "arm.json is not a URDF"),
-    ("{file: arm.urdf, top: tool0}", "cell.machine.top", "there is no key 'top'; did you mean tip"),
-    ("{file: arm.urdf, tip: 3}", "cell.machine.tip", "3 is not a text"),
-])
+@pytest.mark.parametrize(
+    "written,where,words",
+    [
+        ("{calibration: my.yaml}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
+        ("{name: ur-ur10e}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
+        (
+            "{file: arm.urdf, calibration: my.yaml}",
+            "cell.machine",
+            "write machine: {name: ur-ur10e, calibration",
+        ),
+        ("{base: base_link}", "cell.machine.file", "write machine: {file: robot.urdf}"),
+        ("{file: arm.json}", "cell.machine.file", "arm.json is not a URDF"),
+        (
+            "{file: arm.urdf, top: tool0}",
+            "cell.machine.top",
+            "there is no key 'top'; did you mean tip",
+        ),
+        ("{file: arm.urdf, tip: 3}", "cell.machine.tip", "3 is not a text"),
+    ],
+)
 def test_a_urdf_is_named_with_file_and_links_alone(read, written, where, words):
     with pytest.raises(InputError) as found:
         read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
@@ -186,18 +216,28 @@ def test_a_cell_is_a_file_of_its_own(read, tmp_path):
     section = WHOLE[WHOLE.index("cell:") :]
     section = section[: section.index("joints:")]
     (tmp_path / "hall").mkdir()
-    lines = textwrap.dedent(section.split("\n", 1)[1]).replace("machine: fanuc-arcmate120ic", "machine: my/robot.json")
+    lines = textwrap.dedent(section.split("\n", 1)[1]).replace(
+        "machine: fanuc-arcmate120ic", "machine: my/robot.json"
+    )
     (tmp_path / "hall" / "cell 3.yaml").write_text(lines, encoding="utf-8")
     assert read(WHOLE.replace(section, "cell: hall/cell 3.yaml\n")).cell == whole
 
 
-@pytest.mark.parametrize(("text", "code", "where", "says"), [
-    ("", "EMPTY_FILE", "mine.yaml", "give at least machine:"),
-    ("- 1", "BAD_FILE", "mine.yaml", "give keys such as machine and setup"),
-    ("limits: maker\nplatform: 5 kg", "BAD_UNIT", "mine.yaml: cell.platform", "(line 2)"),
-    ("part: {file: part.step}", "UNKNOWN_KEY", "mine.yaml: cell.part", "there is no key 'part'"),
-    (None, "NO_FILE", "mine.yaml", "there is no such file"),
-])
+@pytest.mark.parametrize(
+    ("text", "code", "where", "says"),
+    [
+        ("", "EMPTY_FILE", "mine.yaml", "give at least machine:"),
+        ("- 1", "BAD_FILE", "mine.yaml", "give keys such as machine and setup"),
+        ("limits: maker\nplatform: 5 kg", "BAD_UNIT", "mine.yaml: cell.platform", "(line 2)"),
+        (
+            "part: {file: part.step}",
+            "UNKNOWN_KEY",
+            "mine.yaml: cell.part",
+            "there is no key 'part'",
+        ),
+        (None, "NO_FILE", "mine.yaml", "there is no such file"),
+    ],
+)
 def test_a_broken_cell_file_is_told_by_its_own_place(read, tmp_path, text, code, where, says):
     if text is not None:
         (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
@@ -205,50 +245,144 @@ def test_a_broken_cell_file_is_told_by_its_own_place(read, tmp_path, text, code,
     assert error.code == code and error.where.endswith(where) and says in error.message
 
 
-LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key in [line.split(":")[0].strip()]}
+LINE = {
+    key: number
+    for number, line in enumerate(WHOLE.splitlines(), 1)
+    for key in [line.split(":")[0].strip()]
+}
 
 
 @pytest.mark.parametrize(
     ("old", "new", "code", "where", "says"),
     [
-        ("layer_height: 1 mm", "layer_heigth: 1 mm", "UNKNOWN_KEY", "strategy.layer_heigth", "did you mean layer_height"),
+        (
+            "layer_height: 1 mm",
+            "layer_heigth: 1 mm",
+            "UNKNOWN_KEY",
+            "strategy.layer_heigth",
+            "did you mean layer_height",
+        ),
         ("half_angle: 20 deg", "angle: 20 deg", "UNKNOWN_KEY", "cell.nozzle.angle", "half_angle"),
         ("version: 1", "version: 2", "BAD_VERSION", "version", "write version: 1"),
         ("version: 1", "version: true", "BAD_VERSION", "version", "true"),
-        ("layer_height: 1 mm", "layer_height: 0 mm", "BAD_VALUE", "strategy.layer_height", "more than 0 mm"),
-        ("layer_height: 1 mm", "layer_height: -1 mm", "BAD_VALUE", "strategy.layer_height", "-1 mm"),
-        ("layer_height: 1 mm", "layer_height: 1,5 mm", "BAD_VALUE", "strategy.layer_height", "1.5 mm"),
-        ("layer_height: 1 mm", "layer_height: 1 deg", "BAD_UNIT", "strategy.layer_height", "length such as 1 mm"),
+        (
+            "layer_height: 1 mm",
+            "layer_height: 0 mm",
+            "BAD_VALUE",
+            "strategy.layer_height",
+            "more than 0 mm",
+        ),
+        (
+            "layer_height: 1 mm",
+            "layer_height: -1 mm",
+            "BAD_VALUE",
+            "strategy.layer_height",
+            "-1 mm",
+        ),
+        (
+            "layer_height: 1 mm",
+            "layer_height: 1,5 mm",
+            "BAD_VALUE",
+            "strategy.layer_height",
+            "1.5 mm",
+        ),
+        (
+            "layer_height: 1 mm",
+            "layer_height: 1 deg",
+            "BAD_UNIT",
+            "strategy.layer_height",
+            "length such as 1 mm",
+        ),
         ("layer_height: 1 mm", "layer_height: yes", "BAD_VALUE", "strategy.layer_height", "true"),
         ("layer_height: 1 mm", "layer_height: null", "BAD_VALUE", "strategy.layer_height", "null"),
         ("layer_height: 1 mm", "layer_height:", "BAD_VALUE", "strategy.layer_height", "no value"),
         ("layer_height: 1 mm", "layer_height: .inf", "BAD_VALUE", "strategy.layer_height", "inf"),
         ("layer_height: 1 mm", "layer_height: .nan", "BAD_UNIT", "strategy.layer_height", "nan"),
         ("layer_height: 1 mm", "layer_height: 1:30", "BAD_UNIT", "strategy.layer_height", "1:30"),
-        ("layer_height: 1 mm", "layer_height: [1 mm]", "BAD_VALUE", "strategy.layer_height", "list"),
-        ("layer_height: 1 mm", "layer_height: 1 mm\n  layer_height: 2", "DUPLICATE_KEY", "strategy.layer_height", "8 and 9"),
-        ("kind: revolution", "kind: torus", "BAD_VALUE", "strategy.kind", "revolution, surface, developable"),
-        ("setup: part-on-robot", "setup: tool-on-robot+positioner", "NOT_YET", "cell.setup", "part-on-robot"),
+        (
+            "layer_height: 1 mm",
+            "layer_height: [1 mm]",
+            "BAD_VALUE",
+            "strategy.layer_height",
+            "list",
+        ),
+        (
+            "layer_height: 1 mm",
+            "layer_height: 1 mm\n  layer_height: 2",
+            "DUPLICATE_KEY",
+            "strategy.layer_height",
+            "8 and 9",
+        ),
+        (
+            "kind: revolution",
+            "kind: torus",
+            "BAD_VALUE",
+            "strategy.kind",
+            "revolution, surface, developable",
+        ),
+        (
+            "setup: part-on-robot",
+            "setup: tool-on-robot+positioner",
+            "NOT_YET",
+            "cell.setup",
+            "part-on-robot",
+        ),
         ("mode: local", "mode: symmetry-plane", "NOT_FOR_FAMILY", "build_direction.mode", "local"),
-        ("setup: part-on-robot", "setup: part_on_robot", "BAD_VALUE", "cell.setup", "did you mean part-on-robot"),
+        (
+            "setup: part-on-robot",
+            "setup: part_on_robot",
+            "BAD_VALUE",
+            "cell.setup",
+            "did you mean part-on-robot",
+        ),
         ("[front, up, flip]", "[front, flip]", "BAD_VALUE", "cell.branch", "up|down"),
         ("653.167, 0, 0, 0]", "653.167]", "BAD_VALUE", "cell.deposition_point", "six"),
         ("653.167, 0, 0, 0]", "653.167, 0, 0, 5 mm]", "BAD_UNIT", "cell.deposition_point", "angle"),
         ("degree: 1", "degree: 1.5", "BAD_VALUE", "joints.degree", "whole number"),
-        ("degree: 1", "degree: 1\n  compare: [best]", "BAD_VALUE", "joints.compare", "point-by-point"),
+        (
+            "degree: 1",
+            "degree: 1\n  compare: [best]",
+            "BAD_VALUE",
+            "joints.compare",
+            "point-by-point",
+        ),
         ("dry_run: false", "dry_run: 'no'", "BAD_VALUE", "program.dry_run", "true nor false"),
         ("min_condition: auto", "min_condition: some", "BAD_VALUE", "joints.min_condition", "auto"),
-        ("min_condition: auto", "min_condition: 1.5", "BAD_VALUE", "joints.min_condition", "at most 1"),
-        ("[-180 deg, 180 deg]", "[180 deg, -180 deg]", "BAD_VALUE", "joints.rotation_range", "smaller first"),
+        (
+            "min_condition: auto",
+            "min_condition: 1.5",
+            "BAD_VALUE",
+            "joints.min_condition",
+            "at most 1",
+        ),
+        (
+            "[-180 deg, 180 deg]",
+            "[180 deg, -180 deg]",
+            "BAD_VALUE",
+            "joints.rotation_range",
+            "smaller first",
+        ),
         ("name: hemisphere", "name: a/b", "BAD_NAME", "name", "slash"),
         ("name: hemisphere", "name: .hidden", "BAD_NAME", "name", "dot"),
         ("name: hemisphere", f"name: {'x' * 300}", "BAD_NAME", "name", "too long"),
         ("file: part.step", "file: other.step", "NO_FILE", "part.file", "other.step"),
         ("file: part.step", "object: Revolve", "NO_PART", "part.file", "shape.step"),
-        ("file: part.step", "file: part.step\n  object: Revolve", "BAD_VALUE", "part.object", "FCStd"),
+        (
+            "file: part.step",
+            "file: part.step\n  object: Revolve",
+            "BAD_VALUE",
+            "part.object",
+            "FCStd",
+        ),
         ("faces: [Face1, Face2]", "faces: [Edge1]", "BAD_VALUE", "part.faces", "Face1"),
         ("post: fanuc", "post: !!python/name:os.system fanuc", "BAD_VALUE", "program.post", "tag"),
-        ("strategy:\n", "substrate: {file: part.step}\nstrategy:\n", "NOT_FOR_FAMILY", "substrate", "leave it out"),
+        (
+            "strategy:\n",
+            "substrate: {file: part.step}\nstrategy:\n",
+            "NOT_FOR_FAMILY",
+            "substrate",
+            "leave it out",
+        ),
     ],
 )
 def test_refusals_name_file_key_line_and_remedy(read, old, new, code, where, says):
@@ -264,15 +398,25 @@ def test_refusals_name_file_key_line_and_remedy(read, old, new, code, where, say
 @pytest.mark.parametrize(
     ("text", "code", "says"),
     [
-        ("", "EMPTY_FILE", "empty"), ("# only a remark\n", "EMPTY_FILE", "empty"), ("- 1\n- 2\n", "BAD_FILE", "mapping"),
-        ("just words", "BAD_FILE", "mapping"), ("part: {file: [", "BAD_FILE", "not YAML"),
+        ("", "EMPTY_FILE", "empty"),
+        ("# only a remark\n", "EMPTY_FILE", "empty"),
+        ("- 1\n- 2\n", "BAD_FILE", "mapping"),
+        ("just words", "BAD_FILE", "mapping"),
+        ("part: {file: [", "BAD_FILE", "not YAML"),
         ("a:\n\t- b", "BAD_FILE", "line 2"),
-        ("version: 1", "NO_PART", "part: {file"), ("a: &a [*a]", "BAD_FILE", "alias"), ("[" * 3000, "BAD_FILE", ""),
-        ("{1: 2, [3]: 4}: 5", "BAD_FILE", "word"), ("part: 5", "BAD_VALUE", "section"),
+        ("version: 1", "NO_PART", "part: {file"),
+        ("a: &a [*a]", "BAD_FILE", "alias"),
+        ("[" * 3000, "BAD_FILE", ""),
+        ("{1: 2, [3]: 4}: 5", "BAD_FILE", "word"),
+        ("part: 5", "BAD_VALUE", "section"),
         ("part: &a\n  file: *b", "BAD_FILE", ""),
         ("---\npart: {file: part.step}\n---\npart: 1", "BAD_FILE", "document"),
-        ("a0: &a0 [1,1,1,1,1,1,1,1,1]\n" + "".join(f"a{i}: &a{i} [{','.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 9)),
-         "BAD_FILE", "too many"),
+        (
+            "a0: &a0 [1,1,1,1,1,1,1,1,1]\n"
+            + "".join(f"a{i}: &a{i} [{','.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 9)),
+            "BAD_FILE",
+            "too many",
+        ),
     ],
 )
 def test_files_that_are_no_jobs(read, text, code, says):
@@ -329,7 +473,11 @@ def test_fixtures(read):
     for entry, code, where in (
         ("{file: part.step}", "BAD_VALUE", "fixtures"),
         ("[{file: none.step}]", "NO_FILE", "fixtures[0].file"),
-        ("[{file: part.step}, {file: part.step, faces: [Face1]}]", "BAD_VALUE", "fixtures[1].faces"),
+        (
+            "[{file: part.step}, {file: part.step, faces: [Face1]}]",
+            "BAD_VALUE",
+            "fixtures[1].faces",
+        ),
         ("[{file: part.step}, part.step]", "BAD_VALUE", "fixtures[1]"),
         ("[{name: part.step}]", "UNKNOWN_KEY", "fixtures[0].name"),
     ):
@@ -347,9 +495,27 @@ def test_a_wall_on_a_substrate(read):
 @pytest.mark.parametrize(
     ("old", "new", "code", "where", "says"),
     [
-        ("substrate: {file: part.step}", "substrate: {file: none.step}", "NO_FILE", "substrate.file", "none.step"),
-        ("step}\nstrategy", "step, faces: [Face1]}\nstrategy", "NOT_YET", "substrate.faces", "whole"),
-        ("substrate: {file: part.step}", "substrate: {object: A}", "NO_PART", "substrate.file", "write substrate"),
+        (
+            "substrate: {file: part.step}",
+            "substrate: {file: none.step}",
+            "NO_FILE",
+            "substrate.file",
+            "none.step",
+        ),
+        (
+            "step}\nstrategy",
+            "step, faces: [Face1]}\nstrategy",
+            "NOT_YET",
+            "substrate.faces",
+            "whole",
+        ),
+        (
+            "substrate: {file: part.step}",
+            "substrate: {object: A}",
+            "NO_PART",
+            "substrate.file",
+            "write substrate",
+        ),
         ("end: whole", "spacing: arc-length", "BAD_VALUE", "strategy.spacing", "constant-distance"),
         ("end: whole", "wall: outer", "UNKNOWN_KEY", "strategy.wall", "band"),
         ("band: 10 %", "band: 110 %", "BAD_VALUE", "strategy.band", "100 %"),
@@ -363,16 +529,23 @@ def test_refusals_of_walls_on_a_substrate(read, old, new, code, where, says):
     assert where in error.where
 
 
-@pytest.mark.parametrize(("part", "substrate", "same"), [
-    ("file: part.step, faces: [Face1]", "file: ./part.step", True), ("file: part.step", "file: part.step", True),
-    ("file: part.step, solids: [Solid1]", "file: part.step, solids: [Solid2]", False),
-    ("file: part.step, start_edges: [Edge1]", "file: part.step", False),
-])
+@pytest.mark.parametrize(
+    ("part", "substrate", "same"),
+    [
+        ("file: part.step, faces: [Face1]", "file: ./part.step", True),
+        ("file: part.step", "file: part.step", True),
+        ("file: part.step, solids: [Solid1]", "file: part.step, solids: [Solid2]", False),
+        ("file: part.step, start_edges: [Edge1]", "file: part.step", False),
+    ],
+)
 def test_a_wall_on_itself_is_refused_at_the_substrate(read, part, substrate, same):
     text = f"part: {{{part}}}\nsubstrate: {{{substrate}}}\nstrategy: {{kind: surface}}\n"
     if not same:
         assert read(text).substrate.file.endswith("part.step")
         return
     error = refused(read, text)
-    assert (error.code, error.where.split(": ")[-1]) == ("OWN_SUBSTRATE", "substrate") and "part.step" in error.message
+    assert (error.code, error.where.split(": ")[-1]) == (
+        "OWN_SUBSTRATE",
+        "substrate",
+    ) and "part.step" in error.message
     assert error.message.endswith("(line 2)")

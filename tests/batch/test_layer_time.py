@@ -22,14 +22,23 @@ WALL = """part: {{file: {0}/tube-on-pipe.step}}
 substrate: {{file: {0}/pipe.step}}
 strategy: {{kind: surface, layer_height: 8 mm, chord_error: 0.5 mm{1}}}"""
 CURVES = "part: {{file: ring.csv}}\nstrategy: {{kind: curves, layer_height: 2 mm, chord_error: 0.1 mm, repeat: 3{1}}}"
-KINDS = pytest.mark.parametrize(("part", "branch"), [
-    (REVOLUTION, "[front, up, flip]"), (WALL, "auto"), (CURVES, "[front, up, flip]"),
-], ids=["revolution", "wall", "curves"])
+KINDS = pytest.mark.parametrize(
+    ("part", "branch"),
+    [
+        (REVOLUTION, "[front, up, flip]"),
+        (WALL, "auto"),
+        (CURVES, "[front, up, flip]"),
+    ],
+    ids=["revolution", "wall", "curves"],
+)
 
 
 def planned(workshop, part, branch, more):
     """Rows of the waypoints, lines of the program, and what was told."""
-    ring = [(30.0 * math.cos(k / 20 * math.tau), 30.0 * math.sin(k / 20 * math.tau), 5.0) for k in range(21)]
+    ring = [
+        (30.0 * math.cos(k / 20 * math.tau), 30.0 * math.sin(k / 20 * math.tau), 5.0)
+        for k in range(21)
+    ]
     table = "x,y,z\n" + "\n".join(",".join(f"{value:.6f}" for value in one) for one in ring) + "\n"
     (workshop.folder / "ring.csv").write_text(table, encoding="utf-8")
     text = part.format(EXAMPLES, more) + CELL.replace("BRANCH", branch)
@@ -57,7 +66,9 @@ def times_of_layers(rows, lines):
     starts, now, moves = [], 0.0, 1
     for k, row in enumerate(rows):
         # where the approach ends the bead begins: one move of the program, two rows
-        if k and not (row["kind"] == "deposit" and row["point"] == "0" and places[k] == places[k - 1]):
+        if k and not (
+            row["kind"] == "deposit" and row["point"] == "0" and places[k] == places[k - 1]
+        ):
             now += math.dist(places[k - 1], places[k]) / float(row["speed_mm_s"]) + waits[moves]
             moves += 1
         if row["kind"] == "deposit" and int(row["layer"]) == len(starts):
@@ -85,5 +96,10 @@ def test_no_layer_takes_less(workshop, part, branch):
 
 
 def test_a_spiral_has_no_layers_to_wait_between(workshop):
-    done, _, _ = planned(workshop, REVOLUTION, "[front, up, flip]", ", path: spiral, min_layer_time: 5 s")
-    assert done.status == 2 and "strategy.min_layer_time: a spiral has no layers to wait between" in done.err
+    done, _, _ = planned(
+        workshop, REVOLUTION, "[front, up, flip]", ", path: spiral, min_layer_time: 5 s"
+    )
+    assert (
+        done.status == 2
+        and "strategy.min_layer_time: a spiral has no layers to wait between" in done.err
+    )

@@ -18,47 +18,70 @@ def test_a_urdf_from_the_command_line_is_the_machine(workshop):
     path = workshop.folder / "arm.urdf"
     path.write_text(done.out, encoding="utf-8")
     found = urdf.Urdf(path).between("base_link", "tool0")
-    np.testing.assert_allclose(found.chain.forward(Q), KdlArm(machine.load("kuka-kr16-2")).forward(Q), atol=1e-9)
+    np.testing.assert_allclose(
+        found.chain.forward(Q), KdlArm(machine.load("kuka-kr16-2")).forward(Q), atol=1e-9
+    )
 
 
 @pytest.mark.parametrize("form", ["dh", "modified-dh"])
 def test_a_table_from_the_command_line_is_the_machine(workshop, form):
-    before, heading, *rows, after = workshop.run("machines", "staubli-tx60", f"--{form}").out.splitlines()
+    before, heading, *rows, after = workshop.run(
+        "machines", "staubli-tx60", f"--{form}"
+    ).out.splitlines()
     assert heading == "axis theta d a alpha" and len(rows) == 6
 
     def pose(line):
         figures = [float(word) for word in line.split()[1:]]
         return frames.from_rpy(figures[:3], np.radians(figures[3:]))
 
-    table = dh.Table(tuple(
-        dh.Row(np.radians(theta), d, a, np.radians(alpha))
-        for theta, d, a, alpha in ([float(word) for word in row.split()[1:]] for row in rows)
-    ), pose(before), pose(after), form != "dh")
-    np.testing.assert_allclose(dh.chain_of(table).forward(Q), KdlArm(machine.load("staubli-tx60")).forward(Q), atol=1e-7)
+    table = dh.Table(
+        tuple(
+            dh.Row(np.radians(theta), d, a, np.radians(alpha))
+            for theta, d, a, alpha in ([float(word) for word in row.split()[1:]] for row in rows)
+        ),
+        pose(before),
+        pose(after),
+        form != "dh",
+    )
+    np.testing.assert_allclose(
+        dh.chain_of(table).forward(Q), KdlArm(machine.load("staubli-tx60")).forward(Q), atol=1e-7
+    )
 
 
-@pytest.mark.parametrize("words,listed", [
-    (["--maker", "kuka", "--reach", "3.2 m"], {"kuka-kr240-r3330", "kuka-kr210-r3300-2-k"}),
-    (["--payload", "700 kg"], {"kuka-kr800-r2800-2"}),
-    (["--post", "staubli", "--reach", "1.3 m", "--maker", "Stäubli"],
-     {"staubli-tx2-90xl", "staubli-tx90xl", "staubli-rx160", "staubli-rx160l"}),
-    (["--maker", "yaskawa", "--reach", "3100"], {"motoman-gp20hl", "motoman-gp200r"}),
-    (["--maker", "universal robots", "--reach", "1.4 m"], {"ur-ur20"}), (["--payload", "2000"], set()),
-])
+@pytest.mark.parametrize(
+    "words,listed",
+    [
+        (["--maker", "kuka", "--reach", "3.2 m"], {"kuka-kr240-r3330", "kuka-kr210-r3300-2-k"}),
+        (["--payload", "700 kg"], {"kuka-kr800-r2800-2"}),
+        (
+            ["--post", "staubli", "--reach", "1.3 m", "--maker", "Stäubli"],
+            {"staubli-tx2-90xl", "staubli-tx90xl", "staubli-rx160", "staubli-rx160l"},
+        ),
+        (["--maker", "yaskawa", "--reach", "3100"], {"motoman-gp20hl", "motoman-gp200r"}),
+        (["--maker", "universal robots", "--reach", "1.4 m"], {"ur-ur20"}),
+        (["--payload", "2000"], set()),
+    ],
+)
 def test_the_list_is_of_those_asked_for(workshop, words, listed):
     lines = workshop.run("machines", *words).out.splitlines()
     assert {line.split()[0] for line in lines} == listed
     assert all(", reach " in line for line in lines)
 
 
-@pytest.mark.parametrize("words,told", [
-    (["--maker", "kukka"], "no machine known is of 'kukka'; use one of ABB, FANUC"),
-    (["--payload", "heavy"], "'heavy' is not a mass"), (["--reach", "3 s"], "--reach"),
-    (["--post", "krl"], "use one of fanuc"),
-    (["kuka-kr16-2", "--urdf", "--reach", "1 m"], "leave 'kuka-kr16-2' out"),
-    (["kuka-kr16-2"], "in what form is 'kuka-kr16-2' to be written"), (["--urdf"], "--urdf of what machine"),
-    (["kuka-kr16", "--dh"], "did you mean kuka-kr16-2"), (["kuka-kr16-2", "--dh", "--urdf"], "not allowed with"),
-])
+@pytest.mark.parametrize(
+    "words,told",
+    [
+        (["--maker", "kukka"], "no machine known is of 'kukka'; use one of ABB, FANUC"),
+        (["--payload", "heavy"], "'heavy' is not a mass"),
+        (["--reach", "3 s"], "--reach"),
+        (["--post", "krl"], "use one of fanuc"),
+        (["kuka-kr16-2", "--urdf", "--reach", "1 m"], "leave 'kuka-kr16-2' out"),
+        (["kuka-kr16-2"], "in what form is 'kuka-kr16-2' to be written"),
+        (["--urdf"], "--urdf of what machine"),
+        (["kuka-kr16", "--dh"], "did you mean kuka-kr16-2"),
+        (["kuka-kr16-2", "--dh", "--urdf"], "not allowed with"),
+    ],
+)
 def test_slips_on_the_command_line_are_told(workshop, words, told):
     done = workshop.run("machines", *words)
     assert done.status == 2 and told in done.err and not done.out

@@ -26,20 +26,30 @@ def test_an_open_mesh_is_a_wall_on_the_platform(workshop):
     done = workshop.run("plan", "vase.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
-    assert report["status"] == "ok" and {"FIRST_LAYER"} <= {issue["code"] for issue in report["issues"]}
+    assert report["status"] == "ok" and {"FIRST_LAYER"} <= {
+        issue["code"] for issue in report["issues"]
+    }
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     layer = np.array([int(row["layer"]) for row in rows])
     x, y, z = (np.array([float(row[f"{axis}_mm"]) for row in rows]) for axis in "xyz")
     low = float(side.BoundBox.ZMin)
     assert (z - low) / 40.0 * np.hypot(40.0, 15.0) == pytest.approx(5.0 * layer, abs=0.1)
-    wide = 20.0 + 15.0 * (z - low) / 40.0 if np.hypot(x, y)[layer == 0].mean() < 25.0 else 35.0 - 15.0 * (z - low) / 40.0
+    wide = (
+        20.0 + 15.0 * (z - low) / 40.0
+        if np.hypot(x, y)[layer == 0].mean() < 25.0
+        else 35.0 - 15.0 * (z - low) / 40.0
+    )
     assert np.hypot(x, y) == pytest.approx(wide, abs=0.5)
     assert layer.max() == 8
-    (workshop.folder / "vase.yaml").write_text(JOB.replace("vase.stl}", "vase.stl, faces: [Face1]}"), encoding="utf-8")
+    (workshop.folder / "vase.yaml").write_text(
+        JOB.replace("vase.stl}", "vase.stl, faces: [Face1]}"), encoding="utf-8"
+    )
     refused = workshop.run("plan", "vase.yaml")
     assert (refused.status, refused.err.count("error[UNKNOWN_FACE]")) == (2, 1), refused.err
-    (workshop.folder / "vase.yaml").write_text(JOB.replace("vase.stl}", "vase.stl, start_edges: [Edge9]}"), encoding="utf-8")
+    (workshop.folder / "vase.yaml").write_text(
+        JOB.replace("vase.stl}", "vase.stl, start_edges: [Edge9]}"), encoding="utf-8"
+    )
     refused = workshop.run("plan", "vase.yaml")
     assert (refused.status, refused.err.count("error[UNKNOWN_EDGE]")) == (2, 1), refused.err
 
@@ -64,14 +74,19 @@ def planned_at(workshop, low, mount):
         return done.status, done.err, None, None
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
-    axes = np.array([[float(row[key]) for key in row if key[0] == "q" and key.endswith("_deg")] for row in rows])
+    axes = np.array(
+        [[float(row[key]) for key in row if key[0] == "q" and key.endswith("_deg")] for row in rows]
+    )
     return done.status, done.err, np.array([float(row["z_mm"]) for row in rows]), axes
 
 
 def test_an_open_mesh_drawn_at_another_height_than_the_platform_is_put_onto_it(workshop):
     """As many open meshes are: about their middle, or in the air. The robot moves as for the mesh drawn at zero."""
     status, messages, _, _ = planned_at(workshop, -90.8, "auto")
-    assert (status, messages.count("error[OFF_PLATFORM]")) == (2, 1) and "use mount: feature" in messages, messages
+    assert (status, messages.count("error[OFF_PLATFORM]")) == (
+        2,
+        1,
+    ) and "use mount: feature" in messages, messages
     _, _, height, axes = planned_at(workshop, 0.0, "auto")
     assert axes.shape[1] == 6 and height.min() == pytest.approx(0.0, abs=0.01)
     for low in (-90.8, 35.0):

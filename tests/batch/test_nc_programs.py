@@ -15,7 +15,12 @@ program: {post: POST, motion: MOTION, max_points: MOST, nc: {feed: FEED}}
 
 
 def job(post, motion, most=2000, feed="time"):
-    return JOB.replace("POST", post).replace("MOTION", motion).replace("MOST", str(most)).replace("FEED", feed)
+    return (
+        JOB.replace("POST", post)
+        .replace("MOTION", motion)
+        .replace("MOST", str(most))
+        .replace("FEED", feed)
+    )
 
 
 @pytest.mark.parametrize(("post", "motion"), [("siemens", "joint"), ("linuxcnc", "cartesian")])
@@ -38,9 +43,15 @@ def test_parts_of_an_earlier_run_are_removed_and_nothing_else(workshop, post, mo
 
 
 def test_a_robot_is_told_which_controllers_it_has(workshop):
-    workshop.write_job(job("linuxcnc", "joint").replace("table-xyzac, setup: rotary-table", "fanuc-arcmate120ic"))
+    workshop.write_job(
+        job("linuxcnc", "joint").replace("table-xyzac, setup: rotary-table", "fanuc-arcmate120ic")
+    )
     done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2 and done.err.startswith("error[WRONG_CONTROLLER]") and "use one of fanuc" in done.err
+    assert (
+        done.status == 2
+        and done.err.startswith("error[WRONG_CONTROLLER]")
+        and "use one of fanuc" in done.err
+    )
 
 
 @pytest.mark.parametrize(("keys", "code", "key"), [
@@ -52,7 +63,11 @@ def test_a_robot_is_told_which_controllers_it_has(workshop):
     ("nc: {wire_output: 0}", "BAD_VALUE", "nc.wire_output"), ("nc: {wire_gain: 0}", "BAD_VALUE", "nc.wire_gain"),
 ])  # fmt: skip
 def test_keys_that_cannot_be(workshop, keys, code, key):
-    text = job("siemens", "joint").partition("program:")[0] + f"program: {{post: siemens, {keys}}}\n"
+    text = (
+        job("siemens", "joint").partition("program:")[0] + f"program: {{post: siemens, {keys}}}\n"
+    )
     workshop.write_job(text)
     done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2 and done.err.startswith(f"error[{code}] cup.yaml: program.{key}"), done.err
+    assert done.status == 2 and done.err.startswith(f"error[{code}] cup.yaml: program.{key}"), (
+        done.err
+    )

@@ -18,7 +18,10 @@ from tests.kdl_links import KdlLinks
 
 ROBOT, CLEARANCE = "fanuc-arcmate120ic", 10.0
 POST, TABLE = (60.0, 60.0, 400.0), (1000.0, 800.0, 30.0)
-POST_AT, TABLE_AT = (1080.0, 138.564, 95.0), (1000.0, 0.0, -116.0)  # their middles, mm in the robot's base
+POST_AT, TABLE_AT = (
+    (1080.0, 138.564, 95.0),
+    (1000.0, 0.0, -116.0),
+)  # their middles, mm in the robot's base
 
 
 @pytest.fixture
@@ -31,14 +34,23 @@ def job(workshop, root):
     def plan(**cell):
         corner = [middle - 0.5 * edge for middle, edge in zip(POST_AT, POST)]
         told = {
-            "machine": ROBOT, "limits": "paper", "setup": "tool-on-robot", "deposition_point": [1000, 0, -100, 0, 0, 0],
-            "nozzle": {"length": "60 mm", "tool": [120, 0, 200, 0, 45, 0]}, "branch": ["front", "down", "noflip"],
-            "obstacles": [{"name": "post", "file": "a post.step", "pose": [*corner, 0, 0, 0]}], **cell,
+            "machine": ROBOT,
+            "limits": "paper",
+            "setup": "tool-on-robot",
+            "deposition_point": [1000, 0, -100, 0, 0, 0],
+            "nozzle": {"length": "60 mm", "tool": [120, 0, 200, 0, 45, 0]},
+            "branch": ["front", "down", "noflip"],
+            "obstacles": [{"name": "post", "file": "a post.step", "pose": [*corner, 0, 0, 0]}],
+            **cell,
         }
         text = {
-            "version": 1, "name": "dome", "part": {"file": "hemisphere.step"},
+            "version": 1,
+            "name": "dome",
+            "part": {"file": "hemisphere.step"},
             "strategy": {"kind": "revolution", "layer_height": "15 mm", "chord_error": "0.2 mm"},
-            "build_direction": {"mode": "fixed"}, "cell": told, "program": {"post": "fanuc"},
+            "build_direction": {"mode": "fixed"},
+            "cell": told,
+            "program": {"post": "fanuc"},
         }
         (workshop.folder / "dome.yaml").write_text(yaml.safe_dump(text), encoding="utf-8")
         return workshop.run("plan", "dome.yaml", "-o", "out", "--no-page"), workshop.folder / "out"
@@ -49,17 +61,26 @@ def job(workshop, root):
 def nearest(folder, middle, size):
     """mm between links and a box along the rows that were written, ten places to each."""
     with open(folder / "waypoints.csv", encoding="utf-8", newline="") as file:
-        rows = np.radians([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in csv.DictReader(file)])
+        rows = np.radians(
+            [[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in csv.DictReader(file)]
+        )
     robot = machine.load(ROBOT)
     arm, best = KdlLinks(robot), np.inf
-    links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(robot.chain)) if k and rods]
-    dense = np.concatenate([rows[:-1] + share * np.diff(rows, axis=0) for share in np.linspace(0.1, 1.0, 10)])[::17]
+    links = [
+        (k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(robot.chain)) if k and rods
+    ]
+    dense = np.concatenate(
+        [rows[:-1] + share * np.diff(rows, axis=0) for share in np.linspace(0.1, 1.0, 10)]
+    )[::17]
     place = robot.base[:3, :3] @ np.array(middle) + robot.base[:3, 3]
     for q in dense:
         for number, points in links:
             pose = arm.frame(q, number)
             seen = points @ pose[:3, :3].T + pose[:3, 3] - place
-            best = min(best, np.linalg.norm(np.maximum(np.abs(seen) - 0.5 * np.array(size), 0.0), axis=1).min())
+            best = min(
+                best,
+                np.linalg.norm(np.maximum(np.abs(seen) - 0.5 * np.array(size), 0.0), axis=1).min(),
+            )
     return best
 
 

@@ -22,18 +22,30 @@ joints: {{method: layer-by-layer}}
 program: {{post: {post}}}
 """
 CALIBRATED = "ur-ur10e calibration=robot.yaml"
-POINTS = {"ur-ur10e": (700.0, 0.0, 300.0), CALIBRATED: (700.0, 0.0, 300.0), "fanuc-crx10ia": (710.0, 0.0, 839.0)}
-CELLS = [("ur-ur10e", "auto"), ("ur-ur10e", "[front, up, flip]"), (CALIBRATED, "[front, up, flip]"),
-         ("fanuc-crx10ia", "[front, up, noflip]")]
+POINTS = {
+    "ur-ur10e": (700.0, 0.0, 300.0),
+    CALIBRATED: (700.0, 0.0, 300.0),
+    "fanuc-crx10ia": (710.0, 0.0, 839.0),
+}
+CELLS = [
+    ("ur-ur10e", "auto"),
+    ("ur-ur10e", "[front, up, flip]"),
+    (CALIBRATED, "[front, up, flip]"),
+    ("fanuc-crx10ia", "[front, up, noflip]"),
+]
 
 
-@pytest.mark.parametrize(("name", "branch"), CELLS, ids=[f"{name} {branch.split(',')[0]}" for name, branch in CELLS])
+@pytest.mark.parametrize(
+    ("name", "branch"), CELLS, ids=[f"{name} {branch.split(',')[0]}" for name, branch in CELLS]
+)
 def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branch, monkeypatch):
     monkeypatch.chdir(workshop.folder)
     (workshop.folder / "robot.yaml").write_text(FILE, encoding="utf-8")
     point = POINTS[name]
     cell = f"deposition_point: [{', '.join(map(str, point))}, 0, 0, 0], branch: {branch}"
-    workshop.write_job(JOB.format(machine=name, cell=cell, post="fanuc" if name.startswith("fanuc") else "ur"))
+    workshop.write_job(
+        JOB.format(machine=name, cell=cell, post="fanuc" if name.startswith("fanuc") else "ur")
+    )
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 0, done.err
     assert ("note[FOLLOWED]" in done.err) == (name == "fanuc-crx10ia")
@@ -67,11 +79,21 @@ def test_programs_that_nobody_can_check_are_refused(workshop):
     (workshop.job.parent / "mine.json").write_text(json.dumps(without))
     workshop.write_job(JOB.format(machine="mine.json", cell=cell, post="fanuc"))
     done = workshop.run("plan", "cup.yaml", "--no-page")
-    assert done.status == 2 and "error[WRONG_CONTROLLER]" in done.err and "no post for it yet" in done.err
+    assert (
+        done.status == 2
+        and "error[WRONG_CONTROLLER]" in done.err
+        and "no post for it yet" in done.err
+    )
     workshop.write_job(JOB.format(machine="motoman-ma2010", cell=cell, post="yaskawa"))
     done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2 and "error[NO_PULSES]" in done.err and "controller.pulses_per_degree" in done.err
+    assert (
+        done.status == 2
+        and "error[NO_PULSES]" in done.err
+        and "controller.pulses_per_degree" in done.err
+    )
     cell = "deposition_point: [710, 0, 839, 0, 0, 0], branch: [front, up, noflip]"
-    workshop.write_job(JOB.format(machine="fanuc-crx10ia", cell=cell, post="fanuc, motion: cartesian"))
+    workshop.write_job(
+        JOB.format(machine="fanuc-crx10ia", cell=cell, post="fanuc, motion: cartesian")
+    )
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 2 and "error[NOT_FOR_WRIST]" in done.err and "use joint" in done.err

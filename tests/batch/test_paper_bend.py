@@ -26,21 +26,30 @@ def plans(tmp_path_factory):
         torus = Part.Toroid()
         torus.MajorRadius, torus.MinorRadius = BEND, tube
         torus.Center, torus.Axis = FreeCAD.Vector(-BEND, 0, 0), FreeCAD.Vector(0, -1, 0)
-        torus.toShape(0.0, math.radians(175.0), 0.0, 2.0 * math.pi).exportStep(str(made.folder / f"{name}.step"))
+        torus.toShape(0.0, math.radians(175.0), 0.0, 2.0 * math.pi).exportStep(
+            str(made.folder / f"{name}.step")
+        )
     return made
 
 
 @pytest.fixture(scope="module")
 def sliced(plans):
     """Beads of the layers up to the first wholly past 90 deg: (tube, layer height, spacing, chord error, method)."""
+
     def beads(tube, height, spacing, chord_error, method="auto"):
         text = plans.exact(plans.text("tube-on-pipe"), chord_error)
-        text = text.replace("layer_height: 5 mm", f"layer_height: {height:g} mm\n  method: {method}")
+        text = text.replace(
+            "layer_height: 5 mm", f"layer_height: {height:g} mm\n  method: {method}"
+        )
         text = text.replace("constant-distance", spacing)
-        text = text.replace("tube-on-pipe.step", "long-tube.step" if tube == TUBE else "long-wide-tube.step")
+        text = text.replace(
+            "tube-on-pipe.step", "long-tube.step" if tube == TUBE else "long-wide-tube.step"
+        )
         layers = plans.plan("tube-on-pipe", text).layers
         rings = [[bead for bead in layer if bead.closed] for layer in layers]
-        past = next(number for number, layer in enumerate(rings) if angle(layer[0].points).min() > PASSED)
+        past = next(
+            number for number, layer in enumerate(rings) if angle(layer[0].points).min() > PASSED
+        )
         assert all(len(ring) == 1 for ring in rings[: past + 1])
         # fronts close with beads of their own what their corners leave
         assert method == "fronts" or all(len(layer) == 1 for layer in layers[: past + 1])
@@ -55,14 +64,20 @@ def angle(points):
 
 
 def distances(beads):
-    return [wall_checks.nearest(above.points, [below.points]).distance for below, above in zip(beads, beads[1:])]
+    return [
+        wall_checks.nearest(above.points, [below.points]).distance
+        for below, above in zip(beads, beads[1:])
+    ]
 
 
 @pytest.mark.parametrize(
     "tube, height, count, chord_error, method",
-    [(TUBE, 5.0, 16, 2e-5, "auto"), pytest.param(TUBE, 5.0, 16, 2e-5, "fronts", marks=pytest.mark.long),
-     pytest.param(TUBE, 1.0, 72, 5e-5, "auto", marks=pytest.mark.long),
-     pytest.param(WIDE, 5.0, None, 2e-5, "auto", marks=pytest.mark.long)],
+    [
+        (TUBE, 5.0, 16, 2e-5, "auto"),
+        pytest.param(TUBE, 5.0, 16, 2e-5, "fronts", marks=pytest.mark.long),
+        pytest.param(TUBE, 1.0, 72, 5e-5, "auto", marks=pytest.mark.long),
+        pytest.param(WIDE, 5.0, None, 2e-5, "auto", marks=pytest.mark.long),
+    ],
 )
 def test_corrected_layers(sliced, tube, height, count, chord_error, method):
     """Thousands of points around each layer, corners included; fronts are the same layers."""
@@ -75,11 +90,14 @@ def test_corrected_layers(sliced, tube, height, count, chord_error, method):
         x, y, z = bead.points.T
         assert np.abs(np.hypot(np.hypot(x + BEND, z) - BEND, y) - tube).max() <= 1e-5
     # fronts run from a curve through points of both surfaces, as far off the pipe as chords may be
-    assert np.abs(rod(0.0, 0.0, PIPE)(beads[0].points)).max() <= (1e-5 if method == "auto" else chord_error)
+    assert np.abs(rod(0.0, 0.0, PIPE)(beads[0].points)).max() <= (
+        1e-5 if method == "auto" else chord_error
+    )
 
 
 @pytest.mark.parametrize(
-    "height, count, chord_error", [(5.0, 19, 1e-4), pytest.param(1.0, 87, 1e-2, marks=pytest.mark.long)]
+    "height, count, chord_error",
+    [(5.0, 19, 1e-4), pytest.param(1.0, 87, 1e-2, marks=pytest.mark.long)],
 )
 def test_layers_of_equation_2(sliced, height, count, chord_error):
     beads = sliced(TUBE, height, "iso-parameter", chord_error)
@@ -89,7 +107,9 @@ def test_layers_of_equation_2(sliced, height, count, chord_error):
         assert max(found.max() for found in distances(beads)) <= 5.0 + 1e-4
 
 
-@pytest.mark.parametrize("tube, turn", [(TUBE, 97.0), pytest.param(WIDE, 105.0, marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "tube, turn", [(TUBE, 97.0), pytest.param(WIDE, 105.0, marks=pytest.mark.long)]
+)
 def test_the_corner_on_the_outside_of_the_bend(sliced, tube, turn):
     """It is one point of the last layer, in the plane of the bend, and as sharp as the errata say."""
     points = sliced(tube, 5.0, "constant-distance", 2e-5)[-1].points[:-1]
@@ -100,7 +120,10 @@ def test_the_corner_on_the_outside_of_the_bend(sliced, tube, turn):
     corner = int(np.argmax(turns))
     assert turns[corner] == pytest.approx(turn, abs=0.5)
     assert np.delete(turns, corner).max() < 1.0
-    assert abs(points[corner, 1]) < 1e-5 and np.hypot(points[corner, 0] + BEND, points[corner, 2]) > BEND
+    assert (
+        abs(points[corner, 1]) < 1e-5
+        and np.hypot(points[corner, 0] + BEND, points[corner, 2]) > BEND
+    )
 
 
 @pytest.mark.long
@@ -108,8 +131,16 @@ def test_fronts_and_the_parameter_find_the_same_layers(sliced):
     """Each layer of one lies on that of the other, and is as long."""
     found = [sliced(TUBE, 5.0, "constant-distance", 2e-5, method) for method in ("auto", "fronts")]
     for one, other in zip(*found, strict=True):
-        assert max(wall_checks.nearest(a.points, [b.points]).distance.max() for a, b in ((one, other), (other, one))) < 1e-3
-        lengths = [np.linalg.norm(np.diff(bead.points, axis=0), axis=1).sum() for bead in (one, other)]
+        assert (
+            max(
+                wall_checks.nearest(a.points, [b.points]).distance.max()
+                for a, b in ((one, other), (other, one))
+            )
+            < 1e-3
+        )
+        lengths = [
+            np.linalg.norm(np.diff(bead.points, axis=0), axis=1).sum() for bead in (one, other)
+        ]
         assert lengths[0] == pytest.approx(lengths[1], abs=1e-2)
 
 

@@ -35,7 +35,11 @@ def test_the_line_makes_a_job_feasible(workshop, job):
     with open(workshop.folder / "out" / "place.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 7 and {row["feasible"] for row in rows} == {"yes", "no"}
-    best = next(row for row in rows if float(row["z_mm"]) == pytest.approx(line["deposition_point"][2], abs=1e-6))
+    best = next(
+        row
+        for row in rows
+        if float(row["z_mm"]) == pytest.approx(line["deposition_point"][2], abs=1e-6)
+    )
     assert (best["feasible"], best["all_points"], best["code"]) == ("yes", "yes", "")
     page = (workshop.folder / "out" / "place.html").read_text(encoding="utf-8")
     assert page.count("<rect") >= 7 and "http" not in page.replace("http://www.w3.org", "")

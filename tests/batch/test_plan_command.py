@@ -30,7 +30,9 @@ def test_a_whole_job(workshop):
     assert {"cup.FCStd", "waypoints.csv", "report.json", "report.html", "program/CUP.LS"} <= names
     others = names - {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
     assert all(name.startswith("program/") for name in others)
-    assert set(done.out.split("\n")[:-1]) == {str(workshop.folder / "out" / "cup" / name) for name in names}
+    assert set(done.out.split("\n")[:-1]) == {
+        str(workshop.folder / "out" / "cup" / name) for name in names
+    }
     assert all(MESSAGE.fullmatch(line) for line in done.err.splitlines())
     assert "\x1b" not in done.err and "\r" not in done.err  # no progress without a terminal
     report = json.loads(workshop.files()["report.json"], parse_constant=pytest.fail)
@@ -44,7 +46,9 @@ def test_a_whole_job(workshop):
     assert report["spacing_mm"]["max"] == pytest.approx(between, abs=1e-4)
     layers = np.array([int(row["layer"]) for row in rows])
     steps = [np.diff(points[layers == k], axis=0) for k in range(16)]
-    assert report["length_mm"] == pytest.approx(np.linalg.norm(np.concatenate(steps), axis=1).sum(), rel=1e-6)
+    assert report["length_mm"] == pytest.approx(
+        np.linalg.norm(np.concatenate(steps), axis=1).sum(), rel=1e-6
+    )
     joints = report["joints"]
     assert joints["method"] == "layer-by-layer" and joints["feasible"] is True
     angles = np.array([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in rows])
@@ -59,11 +63,16 @@ def test_a_whole_job(workshop):
 
 
 def test_the_page_is_one_file_that_parses(workshop):
-    workshop.change("travel_speed: 6 mm/s", "travel_speed: 6 mm/s\njoints: {compare: [constant], certificate: true}")
+    workshop.change(
+        "travel_speed: 6 mm/s",
+        "travel_speed: 6 mm/s\njoints: {compare: [constant], certificate: true}",
+    )
     assert workshop.run("plan", "cup.yaml").status == 0
     page = workshop.files()["report.html"].decode()
     assert re.findall(r"<script[^>]*>", page) == [
-        '<script type="application/json" id="path-facts">', '<script type="text/plain" id="path-columns">', "<script>",
+        '<script type="application/json" id="path-facts">',
+        '<script type="text/plain" id="path-columns">',
+        "<script>",
     ]  # the path: its figures, its columns, and what draws them
     assert not re.search(r"(src|href)\s*=|@import|url\((?!#)", page)
     open_tags = []
@@ -81,17 +90,32 @@ def test_the_page_is_one_file_that_parses(workshop):
 
     Checker().feed(page)
     assert open_tags == []
-    for word in ("q1", "q6 (endless)", "Distance to the layer before", "Joint speeds", "Condition", "Comparison"):
+    for word in (
+        "q1",
+        "q6 (endless)",
+        "Distance to the layer before",
+        "Joint speeds",
+        "Condition",
+        "Comparison",
+    ):
         assert word in page
     told = re.sub(r"<script>.*</script>", "", page, flags=re.DOTALL)  # its code knows the word
-    assert "NaN" not in told and "Infinity" not in told and ">nan" not in told and "inf<" not in told
+    assert (
+        "NaN" not in told and "Infinity" not in told and ">nan" not in told and "inf<" not in told
+    )
     report = json.loads(workshop.files()["report.json"])
     proved = report["joints"]["optimality"]
     assert proved["gap"] == pytest.approx(1.0 - proved["bound"] / proved["objective"])
     assert 0.0 <= proved["gap"] < 0.01 and f"a gap of {proved['gap']:.1%}" in page
     (constant,) = report["comparison"]
     assert constant["method"] == "constant" and constant["feasible"] is False
-    assert {"min_deg", "limit_margin_deg", "speed_max_deg_s", "acceleration_max_deg_s2", "jerk_max_deg_s3"} <= set(constant)
+    assert {
+        "min_deg",
+        "limit_margin_deg",
+        "speed_max_deg_s",
+        "acceleration_max_deg_s2",
+        "jerk_max_deg_s3",
+    } <= set(constant)
 
 
 def test_the_document_holds_every_stage(workshop):
@@ -135,9 +159,12 @@ def test_sections_left_out_end_the_job_early(workshop):
     assert workshop.run("plan", "cup.yaml", "--no-page").status == 0
     files = workshop.files()
     assert files["waypoints.csv"].startswith(
-        b"layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm,class\n0,0,0,deposit,")
+        b"layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm,class\n0,0,0,deposit,"
+    )
     report = json.loads(files["report.json"])
-    assert report["joints"] is None and report["counts"]["layers"] == 16 and report["status"] == "ok"
+    assert (
+        report["joints"] is None and report["counts"]["layers"] == 16 and report["status"] == "ok"
+    )
 
 
 def test_an_infeasible_job_writes_all_but_the_program(workshop):
@@ -146,12 +173,20 @@ def test_an_infeasible_job_writes_all_but_the_program(workshop):
     (out / "program" / "notes.txt").write_text("mine")
     (out / "program" / "HOME.LS").write_text("mine")
     (out / "photo.jpg").write_text("mine")
-    workshop.change("  limits: paper", "  limits: paper\n  deposition_point: [9000, 0, 500, 0, 0, 0]")
+    workshop.change(
+        "  limits: paper", "  limits: paper\n  deposition_point: [9000, 0, 500, 0, 0, 0]"
+    )
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 3
     assert re.search(r"^error\[[A-Z_]+\] layer 0 .*: ", done.err, re.MULTILINE)
     assert set(workshop.files()) == {
-        "cup.FCStd", "waypoints.csv", "report.json", "report.html", "program/notes.txt", "program/HOME.LS", "photo.jpg"
+        "cup.FCStd",
+        "waypoints.csv",
+        "report.json",
+        "report.html",
+        "program/notes.txt",
+        "program/HOME.LS",
+        "photo.jpg",
     }
     report = json.loads(workshop.files()["report.json"])
     assert report["status"] == "infeasible" and report["programs"] == []
@@ -185,7 +220,11 @@ def test_a_run_of_another_name_takes_the_place_of_the_last(workshop):
 
 
 def test_spaces_and_accents(workshop):
-    workshop.write_job(workshop.text[: workshop.text.index("program:")].replace("name: cup", "name: Käse Glocke n° 1"))
+    workshop.write_job(
+        workshop.text[: workshop.text.index("program:")].replace(
+            "name: cup", "name: Käse Glocke n° 1"
+        )
+    )
     folder = "mit Leerzeichen é"
     done = workshop.launch("plan", workshop.job, "-o", workshop.folder / folder, "--no-page")
     assert done.status == 0, done.err
@@ -206,13 +245,38 @@ def test_through_a_link_and_from_elsewhere(workshop, tmp_path_factory):
 @pytest.mark.parametrize(
     ("old", "new", "code", "says"),
     [
-        ("layer_height: 4 mm", "layer_height: 4 cubits", "BAD_UNIT", "cup.yaml: strategy.layer_height"),
-        ("layer_height: 4 mm", "layer_height: 0 mm", "BAD_VALUE", "cup.yaml: strategy.layer_height"),
-        ("layer_height: 4 mm", "layer_height: 500 mm", "LAYER_HEIGHT", "cup.yaml: strategy.layer_height"),
-        ("layer_height: 4 mm", "layer_height: 1e-6 mm", "TOO_MANY", "cup.yaml: strategy.layer_height"),
+        (
+            "layer_height: 4 mm",
+            "layer_height: 4 cubits",
+            "BAD_UNIT",
+            "cup.yaml: strategy.layer_height",
+        ),
+        (
+            "layer_height: 4 mm",
+            "layer_height: 0 mm",
+            "BAD_VALUE",
+            "cup.yaml: strategy.layer_height",
+        ),
+        (
+            "layer_height: 4 mm",
+            "layer_height: 500 mm",
+            "LAYER_HEIGHT",
+            "cup.yaml: strategy.layer_height",
+        ),
+        (
+            "layer_height: 4 mm",
+            "layer_height: 1e-6 mm",
+            "TOO_MANY",
+            "cup.yaml: strategy.layer_height",
+        ),
         ("limits: paper", "nozzle: {length: 1e9 mm}", "BAD_VALUE", "cup.yaml: cell.nozzle.length"),
         ("limits: paper", "limits: papre", "UNKNOWN_LIMITS", "cup.yaml: cell.limits"),
-        ("limits: paper", "machine: fanuc-arcmate120", "UNKNOWN_MACHINE", "did you mean fanuc-arcmate120ic"),
+        (
+            "limits: paper",
+            "machine: fanuc-arcmate120",
+            "UNKNOWN_MACHINE",
+            "did you mean fanuc-arcmate120ic",
+        ),
         ("limits: paper", "machine: none/such.json", "UNKNOWN_MACHINE", "such.json"),
         ("post: fanuc", "post: fanuk", "UNKNOWN_POST", "cup.yaml: program.post"),
         ("name: cup", "name: my-cup", "PROGRAM_NAME", "cup.yaml: name"),
@@ -264,11 +328,20 @@ def test_folders_in_the_place_of_files_leave_all_as_it_was(workshop):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        ([], ""), (["plan"], "JOB.yaml"), (["plan", "a", "b"], "b"), (["plna", "a"], "did you mean plan"),
-        (["plan", "none.yaml"], "none.yaml"), (["plan", "cup.yaml", "--nope"], "--nope"), (["plan", "cup.yaml", "-o"], "-o"),
-        (["export"], "DOC.FCStd"), (["export", "none.FCStd"], "none.FCStd"), (["export", "cup.step"], "FCStd"),
-        (["batch", "t.csv"], "--job"), (["batch", "t.csv", "--job", "cup.yaml"], "t.csv"),
-        (["batch", "t.csv", "--job", "cup.yaml", "-j", "0"], "processes"), (["machines", "all"], "all"),
+        ([], ""),
+        (["plan"], "JOB.yaml"),
+        (["plan", "a", "b"], "b"),
+        (["plna", "a"], "did you mean plan"),
+        (["plan", "none.yaml"], "none.yaml"),
+        (["plan", "cup.yaml", "--nope"], "--nope"),
+        (["plan", "cup.yaml", "-o"], "-o"),
+        (["export"], "DOC.FCStd"),
+        (["export", "none.FCStd"], "none.FCStd"),
+        (["export", "cup.step"], "FCStd"),
+        (["batch", "t.csv"], "--job"),
+        (["batch", "t.csv", "--job", "cup.yaml"], "t.csv"),
+        (["batch", "t.csv", "--job", "cup.yaml", "-j", "0"], "processes"),
+        (["machines", "all"], "all"),
     ],
 )
 def test_usage_errors(workshop, words, says):
@@ -282,7 +355,11 @@ def test_machines_lists_those_that_plan_accepts(workshop):
     done = workshop.launch("machines")
     assert done.status == 0 and done.err == ""
     known = dict(line.split(None, 1) for line in done.out.splitlines())
-    assert "FANUC" in known["fanuc-arcmate120ic"] and "kuka-kr16-2" in known and "staubli-rx60bl" in known
+    assert (
+        "FANUC" in known["fanuc-arcmate120ic"]
+        and "kuka-kr16-2" in known
+        and "staubli-rx60bl" in known
+    )
     folder = workshop.folder / "RoboticAM" / "machines"
     folder.mkdir(parents=True)
     from freecad_am.core.kinematics.machines import machine
@@ -328,13 +405,24 @@ def test_progress_shows_on_a_terminal_and_is_gone_at_the_end(workshop):
 
 def test_a_large_job_is_told_before_its_work(workshop):
     """670,000 points: the line is there while the work goes on, which is then interrupted."""
-    workshop.write_job(workshop.text.replace("4 mm", "0.1 mm").replace("chord_error: 0.1 mm", "chord_error: 0.0001 mm"))
+    workshop.write_job(
+        workshop.text.replace("4 mm", "0.1 mm").replace(
+            "chord_error: 0.1 mm", "chord_error: 0.0001 mm"
+        )
+    )
     process = subprocess.Popen(
-        [str(workshop.launcher), "plan", "cup.yaml"], cwd=workshop.folder, env=workshop.environment(),
-        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        [str(workshop.launcher), "plan", "cup.yaml"],
+        cwd=workshop.folder,
+        env=workshop.environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     line = process.stderr.readline()
-    assert re.fullmatch(r"note\[LARGE\] job: about 6\d0,000 points in 6\d0 layers are planned, .+\n", line), line
+    assert re.fullmatch(
+        r"note\[LARGE\] job: about 6\d0,000 points in 6\d0 layers are planned, .+\n", line
+    ), line
     assert process.poll() is None
     process.send_signal(signal.SIGINT)
     assert process.communicate(timeout=120)[1] == "interrupted: nothing was written\n"

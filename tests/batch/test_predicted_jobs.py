@@ -40,7 +40,9 @@ def fed_by_hand(out, wire_mm_s, diameter):
     seconds = 0.0
     for one, other in zip(rows, rows[1:], strict=False):
         if (one["layer"], one["bead"]) == (other["layer"], other["bead"]):
-            step = math.dist(*([float(row[f"{axis}_mm"]) for axis in "xyz"] for row in (one, other)))
+            step = math.dist(
+                *([float(row[f"{axis}_mm"]) for axis in "xyz"] for row in (one, other))
+            )
             seconds += step / float(other["speed_mm_s"])
     return 0.25 * math.pi * diameter**2 * wire_mm_s * seconds
 
@@ -50,16 +52,26 @@ def test_a_block_against_its_predicted_deposit(block):
     contours, and that is told."""
     report, out, done = block("out")
     found = report["predicted_shape"]
-    feed = 4.0 * 2.0 * 8.0 / (0.25 * math.pi * 1.6**2)  # what beads take that lie 4 mm apart in layers of 2 mm
+    feed = (
+        4.0 * 2.0 * 8.0 / (0.25 * math.pi * 1.6**2)
+    )  # what beads take that lie 4 mm apart in layers of 2 mm
     assert abs(1000.0 * found["laid_cm3"] / fed_by_hand(out, feed, 1.6) - 1.0) < 1e-6
     assert abs(found["laid_cm3"] / report["totals"]["fed_cm3"] - 1.0) < 1e-6
-    assert found["allowance_mm"] == 0.0 and found["places"] > 10_000 and len(found["layers"]) == report["counts"]["layers"]
+    assert (
+        found["allowance_mm"] == 0.0
+        and found["places"] > 10_000
+        and len(found["layers"]) == report["counts"]["layers"]
+    )
     assert 0.0 < found["short"] < 0.03 and -1.5 < found["beyond_mm"]["min"] < 0.0
     assert abs(found["worst"]["place"][2] - 14.0) < 1e-6 and "ALLOWANCE" in done.err
     assert 0.8 < found["beyond_mm"]["mean"] < 2.5
     rows = {row["promise"]: row for row in report["preflight"]}
     inside = rows["The part lies inside the predicted deposit, by its machining allowance"]
-    assert inside["ok"] is False and inside["worst"] == found["beyond_mm"]["min"] and inside["bound"] == 0.0
+    assert (
+        inside["ok"] is False
+        and inside["worst"] == found["beyond_mm"]["min"]
+        and inside["bound"] == 0.0
+    )
     assert rows["The predicted deposit holds what the wire feeds"]["ok"]
     assert "Predicted deposit against the part" in (out / "report.html").read_text(encoding="utf-8")
 
@@ -68,7 +80,11 @@ def test_without_a_margin_more_of_the_block_sticks_out(block):
     report, _, _ = block("out", margin=0)
     assert report["predicted_shape"]["short"] > 0.03
     told = next(issue for issue in report["issues"] if issue["code"] == "ALLOWANCE")
-    assert told["level"] == "warning" and told["layer"] is not None and "strategy.margin" in told["message"]
+    assert (
+        told["level"] == "warning"
+        and told["layer"] is not None
+        and "strategy.margin" in told["message"]
+    )
     worst = report["predicted_shape"]["worst"]
     x, y, z = worst["place"]
     # at an edge of the block: beads end half of their width inside of it, and round
@@ -84,8 +100,11 @@ def test_jobs_without_the_key_are_as_they_were(block):
     assert plain["predicted_shape"] is None and "ALLOWANCE" not in done.err
     assert not any("redicted deposit" in row["promise"] for row in plain["preflight"])
     assert (out / "waypoints.csv").read_bytes() == (other / "waypoints.csv").read_bytes()
-    assert [row for row in report["preflight"] if "redicted" not in row["promise"] and "come out" not in row["promise"]] == (
-        plain["preflight"])
+    assert [
+        row
+        for row in report["preflight"]
+        if "redicted" not in row["promise"] and "come out" not in row["promise"]
+    ] == (plain["preflight"])
 
 
 def test_curves_have_no_part_to_lie_in(workshop):
@@ -102,10 +121,16 @@ def test_curves_have_no_part_to_lie_in(workshop):
 def test_the_blades_of_the_thruster_are_told_not_to_be_inside(workshop, root):
     """In layers of 10 mm, with beads and wire as shipped, which feed less than layers take: these come out lower, and with
     what height is told; the blades are not inside, and where is told."""
-    text = (root / "resources" / "examples" / "thruster" / "thruster.yaml").read_text(encoding="utf-8")
-    text = text[: text.index("cell:")].replace("file: ", f"file: {root}/resources/examples/thruster/")
+    text = (root / "resources" / "examples" / "thruster" / "thruster.yaml").read_text(
+        encoding="utf-8"
+    )
+    text = text[: text.index("cell:")].replace(
+        "file: ", f"file: {root}/resources/examples/thruster/"
+    )
     text = text.replace("  direction:", "  machining_allowance: 0 mm\n  direction:")
-    text = text.replace("layer_height: 2.5 mm", "layer_height: 10 mm").replace("chord_error: 0.05", "chord_error: 0.2")
+    text = text.replace("layer_height: 2.5 mm", "layer_height: 10 mm").replace(
+        "chord_error: 0.05", "chord_error: 0.2"
+    )
     workshop.write_job(text)
     done = workshop.run("plan", "cup.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err

@@ -8,9 +8,13 @@ import json
 import numpy as np
 import pytest
 
-LIMITS, SPEEDS = "Every axis stays within its limits", "No axis is asked for more than its largest speed"
-TEXT, NOZZLE = "The text takes the tool to the planned points", (
-    "The nozzle stays clear of deposit, part and platform while it deposits"
+LIMITS, SPEEDS = (
+    "Every axis stays within its limits",
+    "No axis is asked for more than its largest speed",
+)
+TEXT, NOZZLE = (
+    "The text takes the tool to the planned points",
+    ("The nozzle stays clear of deposit, part and platform while it deposits"),
 )
 
 
@@ -38,13 +42,21 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
     # a ball of solid material is laid as a skin, and nothing else is wrong with it
     broken = [name for name, entry in promises.items() if entry["ok"] is False]
     assert broken == ["All of the part is deposited"]
-    assert promises[NOZZLE]["ok"] is True and promises[NOZZLE]["worst"] == 0.0 and "platform" in promises[NOZZLE]["how"]
+    assert (
+        promises[NOZZLE]["ok"] is True
+        and promises[NOZZLE]["worst"] == 0.0
+        and "platform" in promises[NOZZLE]["how"]
+    )
     whole = 2.0 / 3.0 * np.pi * 4.0**3
     assert 0.4 * whole < promises["All of the part is deposited"]["worst"] < 0.6 * whole
     assert promises["What is deposited lies on the part"]["ok"] is True
     assert promises["Every bead is carried by what lies below it"]["worst"] == 0.0
     rapids = promises["The nozzle stays clear on the rapids"]
-    assert rapids["ok"] is True and (rapids["worst"], rapids["unit"]) == (0.0, "rapids") and " 0.5 mm apart" in rapids["how"]
+    assert (
+        rapids["ok"] is True
+        and (rapids["worst"], rapids["unit"]) == (0.0, "rapids")
+        and " 0.5 mm apart" in rapids["how"]
+    )
     values = joints(rows)
     worst = promises[LIMITS]
     # the least distance of any row to any limit, rapids included
@@ -52,25 +64,34 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
     low, high = limits_of(machine, "paper")
     margin = np.minimum(values - low, high - values)
     assert worst["ok"] is True and worst["unit"] == "deg"
-    assert worst["worst"] == pytest.approx(np.nanmin(np.where(np.isfinite(margin), margin, np.nan)), abs=1e-5)
+    assert worst["worst"] == pytest.approx(
+        np.nanmin(np.where(np.isfinite(margin), margin, np.nan)), abs=1e-5
+    )
     row = rows[int(np.nanargmin(np.where(np.isfinite(margin), margin, np.nan)) // 6)]
     assert {key: int(row[key]) for key in ("layer", "bead", "point")} == worst["place"]
     # the text is nowhere farther from the plan than its digits explain
-    assert promises[TEXT]["ok"] is True and 0.0 < promises[TEXT]["worst"] <= promises[TEXT]["bound"] < 0.1
+    assert (
+        promises[TEXT]["ok"] is True
+        and 0.0 < promises[TEXT]["worst"] <= promises[TEXT]["bound"] < 0.1
+    )
     assert "PyKDL" in promises[TEXT]["how"]
     # nothing green stands for what nobody has looked at
     unchecked = [entry for entry in promises.values() if entry["ok"] is None]
     assert any("UFRAME" in entry["promise"] for entry in unchecked)
     assert all(entry["how"].startswith("not checked") for entry in unchecked)
     page = files["report.html"].decode()
-    assert page.count('<td class="good">kept') == sum(entry["ok"] is True for entry in promises.values())
+    assert page.count('<td class="good">kept') == sum(
+        entry["ok"] is True for entry in promises.values()
+    )
     assert page.count('<td class="unknown">not checked') == len(unchecked)
     assert page.count('<td class="error">broken') == len(broken)
 
 
 def limits_of(machine, name):
     """(6,) lower and upper limits of a set, deg; infinite for none. Coupled ones are left out."""
-    pairs = [(-np.inf, np.inf) if pair is None else pair for pair in machine["limits"][name]["axes"]]
+    pairs = [
+        (-np.inf, np.inf) if pair is None else pair for pair in machine["limits"][name]["axes"]
+    ]
     low, high = zip(*pairs, strict=True)
     return np.array(low, float), np.array(high, float)
 
@@ -83,25 +104,37 @@ def test_what_was_not_looked_at_is_never_green(workshop):
 
 def test_a_job_without_a_cell_promises_nothing_of_joints(workshop):
     head, _, rest = workshop.text.partition("cell:\n")
-    status, promises, _, _ = planned(workshop, head + rest[rest.index("process:") : rest.index("program:")])
+    status, promises, _, _ = planned(
+        workshop, head + rest[rest.index("process:") : rest.index("program:")]
+    )
     assert status == 0
-    assert promises[LIMITS]["ok"] is None and promises[SPEEDS]["ok"] is None and promises[TEXT]["ok"] is None
+    assert (
+        promises[LIMITS]["ok"] is None
+        and promises[SPEEDS]["ok"] is None
+        and promises[TEXT]["ok"] is None
+    )
 
 
 @pytest.mark.parametrize(
     ("change", "broken"),
     [
         pytest.param(
-            "joints: {min_condition: 0.9}\n", {"The tool keeps away from singularities while it deposits"},
+            "joints: {min_condition: 0.9}\n",
+            {"The tool keeps away from singularities while it deposits"},
             marks=pytest.mark.long,
         ),
-        ("deposition_point: [1900, -900, 653, 0, 0, 0]", {"The joints bring the tool to every point"}),
+        (
+            "deposition_point: [1900, -900, 653, 0, 0, 0]",
+            {"The joints bring the tool to every point"},
+        ),
     ],
 )
 def test_a_job_that_cannot_be_done_says_which_promise_is_broken(workshop, change, broken):
     text = workshop.text.replace("layer_height: 4 mm", "layer_height: 20 mm")
-    text = text.replace("process:\n", f"{change}process:\n") if change.startswith("joints") else (
-        text.replace("  limits: paper\n", f"  limits: paper\n  {change}\n")
+    text = (
+        text.replace("process:\n", f"{change}process:\n")
+        if change.startswith("joints")
+        else (text.replace("  limits: paper\n", f"  limits: paper\n  {change}\n"))
     )
     status, promises, rows, _ = planned(workshop, text)
     assert status == 3

@@ -14,24 +14,42 @@ JOBS = {
     "machine": {"cell": {"machine": "kuka-kr16-2", "deposition_point": OF_ANOTHER}},
     "speed": {"cell": {"limits": "paper"}, "process": {"travel_speed": "300 mm/s"}},
     "range": {"cell": {}, "joints": {"rotation_range": "[-5 deg, 5 deg]"}},
-    "tool": {"cell": {"machine": "abb-irb2400-12-155", "setup": "tool-on-robot", "deposition_point": OF_ANOTHER}},
+    "tool": {
+        "cell": {
+            "machine": "abb-irb2400-12-155",
+            "setup": "tool-on-robot",
+            "deposition_point": OF_ANOTHER,
+        }
+    },
     # nothing turns the part so that its walls could be laid upright, nor does one direction for all do, on a slant
     "leaning": {
-        "cell": {"machine": "kuka-kr8-r2100-2-arc-hw", "setup": "tool-on-robot", "nozzle": "{tool: [0, 0, 300, 0, 0, 0]}",
-                 "deposition_point": "[1300, 0, 100, 40, 0, 0]", "mount": "part"},
+        "cell": {
+            "machine": "kuka-kr8-r2100-2-arc-hw",
+            "setup": "tool-on-robot",
+            "nozzle": "{tool: [0, 0, 300, 0, 0, 0]}",
+            "deposition_point": "[1300, 0, 100, 40, 0, 0]",
+            "mount": "part",
+        },
         "build_direction": {"max_from_vertical": "10 deg"},
     },
     # a branch that does not reach round the positioner
     "branch": {
-        "cell": {"machine": "kuka-kr8-r2100-2-arc-hw", "setup": "tool-on-robot", "nozzle": "{tool: [0, 0, 300, 0, 0, 0]}",
-                 "branch": "[back, down, noflip]",
-                 "external": "[{machine: motoman-motopos-d500, pose: [1615, 0, 0, 0, 0, 0], carries: part}]"},
+        "cell": {
+            "machine": "kuka-kr8-r2100-2-arc-hw",
+            "setup": "tool-on-robot",
+            "nozzle": "{tool: [0, 0, 300, 0, 0, 0]}",
+            "branch": "[back, down, noflip]",
+            "external": "[{machine: motoman-motopos-d500, pose: [1615, 0, 0, 0, 0, 0], carries: part}]",
+        },
         "build_direction": {"max_from_vertical": "10 deg"},
     },
 }
 EXPECTED = {
     "branch": "cell.branch",
-    "machine": "cell.deposition_point", "speed": "process.travel_speed", "range": "", "tool": "",
+    "machine": "cell.deposition_point",
+    "speed": "process.travel_speed",
+    "range": "",
+    "tool": "",
     "leaning": "cell.external: [{machine: motoman-motopos-d500, pose: ",
 }
 
@@ -39,7 +57,9 @@ EXPECTED = {
 def written(sections):
     lines = [PART]
     for section, keys in sections.items():
-        lines.append(f"{section}:\n" + "".join(f"  {key}: {value}\n" for key, value in keys.items()))
+        lines.append(
+            f"{section}:\n" + "".join(f"  {key}: {value}\n" for key, value in keys.items())
+        )
     return "".join(lines)
 
 
@@ -52,11 +72,16 @@ def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3, done.err
     first = done.err.splitlines()[0]
-    assert first.startswith("note[REMEDY] job: with `") and first.endswith("this job is feasible; tried, not applied")
+    assert first.startswith("note[REMEDY] job: with `") and first.endswith(
+        "this job is feasible; tried, not applied"
+    )
     told = re.findall(r"`(\w+)\.(\w+): ([^`]+)`", first)
     assert told and EXPECTED[name] in first
     report = json.loads(workshop.files()["report.json"])
-    assert report["status"] == "infeasible" and sum(issue["code"] == "REMEDY" for issue in report["issues"]) == 1
+    assert (
+        report["status"] == "infeasible"
+        and sum(issue["code"] == "REMEDY" for issue in report["issues"]) == 1
+    )
     for section, key, value in told:
         sections.setdefault(section, {})[key] = value
     workshop.write_job(written(sections))
@@ -66,9 +91,17 @@ def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
 
 def test_what_was_tried_in_vain_is_told(workshop):
     # far out of reach, where no change of the program helps
-    workshop.write_job(written({
-        "cell": {"limits": "paper", "branch": "auto", "deposition_point": "[3000, 0, 3000, 0, 0, 0]"},
-    }))
+    workshop.write_job(
+        written(
+            {
+                "cell": {
+                    "limits": "paper",
+                    "branch": "auto",
+                    "deposition_point": "[3000, 0, 3000, 0, 0, 0]",
+                },
+            }
+        )
+    )
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3
     told = "note[NO_REMEDY] job: none of these makes the job feasible, each was tried: `"
@@ -82,13 +115,20 @@ def test_a_positioner_out_of_reach_is_called_so_and_told_where_it_could_stand(wo
     workshop.write_job(written(sections))
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3
-    found = re.search(r"error\[UNREACHABLE\] job: the positioner is out of the robot's reach: the nearest point of the "
-                      r"part is (\d+) mm from the shoulder, arm and tool stretch (\d+) mm at most", done.err)
+    found = re.search(
+        r"error\[UNREACHABLE\] job: the positioner is out of the robot's reach: the nearest point of the "
+        r"part is (\d+) mm from the shoulder, arm and tool stretch (\d+) mm at most",
+        done.err,
+    )
     assert found, done.err
     # the shoulder is above the base's middle at some 0.3 m, ahead of it by less; the part is 40 mm wide
-    assert abs(float(found[1]) - math.hypot(200.0, 3600.0)) < 320.0 and 2100.0 < float(found[2]) < float(found[1])
+    assert abs(float(found[1]) - math.hypot(200.0, 3600.0)) < 320.0 and 2100.0 < float(
+        found[2]
+    ) < float(found[1])
     assert "move the positioner, choose another branch" in done.err
-    (pose,) = re.findall(r"with `cell\.external\[0\]\.pose: (\[[^`]+\])` this job is feasible", done.err)
+    (pose,) = re.findall(
+        r"with `cell\.external\[0\]\.pose: (\[[^`]+\])` this job is feasible", done.err
+    )
     assert pose.endswith(", -40, 0, 0, 20]")  # on the same floor, turned as it was
     sections["cell"]["external"] = "[{" + told.format(pose) + "}]"
     workshop.write_job(written(sections))
@@ -104,8 +144,10 @@ cell:
 
 
 def written_for(kind, more=""):
-    return (f"part: {{file: skin.step}}\nprocess: {{bead_width: 3 mm}}\n"
-            f"strategy: {{kind: {kind}, layer_height: 2 mm, chord_error: 0.1 mm}}\n{CELL}{more}")
+    return (
+        f"part: {{file: skin.step}}\nprocess: {{bead_width: 3 mm}}\n"
+        f"strategy: {{kind: {kind}, layer_height: 2 mm, chord_error: 0.1 mm}}\n{CELL}{more}"
+    )
 
 
 def skin(folder, lean, squeezed):
@@ -130,11 +172,17 @@ def groove(folder):
     return "fixtures: [{file: groove.step}]\n"
 
 
-@pytest.mark.parametrize(("kind", "lean", "sections", "code"), [
-    ("revolution", 30, groove, "CLEARANCE"), ("surface", 42, lambda _: "joints: {min_condition: 0.15}\n", "SINGULAR"),
-])
+@pytest.mark.parametrize(
+    ("kind", "lean", "sections", "code"),
+    [
+        ("revolution", 30, groove, "CLEARANCE"),
+        ("surface", 42, lambda _: "joints: {min_condition: 0.15}\n", "SINGULAR"),
+    ],
+)
 @pytest.mark.always("revolution-30-groove-CLEARANCE")
-def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(workshop, kind, lean, sections, code):
+def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(
+    workshop, kind, lean, sections, code
+):
     """Where the tool meets something, or leans through a singularity, with directions that follow the wall."""
     skin(workshop.folder, lean, squeezed=kind == "surface")
     more = sections(workshop.folder)
@@ -142,7 +190,8 @@ def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(workshop, kind, 
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3 and f"error[{code}]" in done.err, done.err
     assert done.err.splitlines()[0] == (
-        "note[REMEDY] job: with `build_direction.mode: fixed` this job is feasible; tried, not applied"), done.err
+        "note[REMEDY] job: with `build_direction.mode: fixed` this job is feasible; tried, not applied"
+    ), done.err
     workshop.write_job(written_for(kind, more + "build_direction: {mode: fixed}\n"))
     again = workshop.run("plan", "cup.yaml", "--no-page")
     assert again.status == 0 and "error[" not in again.err and "REMEDY" not in again.err, again.err
@@ -153,9 +202,12 @@ def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(workshop, kind, 
     issues = json.loads(workshop.files()["report.json"])["issues"]
     told = [issue["message"] for issue in issues if issue["code"] == "PROPOSED"]
     assert told[0].startswith(f"kind: {kind}: ") and told[0].endswith(
-        f"ends with {code}, so they are one (build_direction.mode: fixed)")
+        f"ends with {code}, so they are one (build_direction.mode: fixed)"
+    )
     workshop.write_job(written_for("auto", more + "build_direction: {mode: local}\n"))
-    assert workshop.run("plan", "cup.yaml", "--no-page").status == 3, "what the job says of directions counts"
+    assert workshop.run("plan", "cup.yaml", "--no-page").status == 3, (
+        "what the job says of directions counts"
+    )
 
 
 def test_one_direction_that_does_not_clear_the_nozzle_is_told_to(workshop):
@@ -163,10 +215,15 @@ def test_one_direction_that_does_not_clear_the_nozzle_is_told_to(workshop):
     import FreeCAD
     import Part
 
-    Part.makeCylinder(200, 4, FreeCAD.Vector(0, 0, 20)).exportStep(str(workshop.folder / "groove.step"))
+    Part.makeCylinder(200, 4, FreeCAD.Vector(0, 0, 20)).exportStep(
+        str(workshop.folder / "groove.step")
+    )
     skin(workshop.folder, 30, squeezed=False)
     for kind in ("revolution", "auto"):
         workshop.write_job(written_for(kind, "fixtures: [{file: groove.step}]\n"))
         done = workshop.run("plan", "cup.yaml", "--no-page")
         assert done.status == 3 and "error[CLEARANCE]" in done.err, done.err
-        assert "note[NO_REMEDY] job: the nozzle is not clear with `build_direction.mode: fixed` either" in done.err, done.err
+        assert (
+            "note[NO_REMEDY] job: the nozzle is not clear with `build_direction.mode: fixed` either"
+            in done.err
+        ), done.err

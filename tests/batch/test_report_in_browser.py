@@ -15,7 +15,10 @@ from tests.batch.conftest import JOB, Workshop, make_cup
 
 pytestmark = [
     pytest.mark.long,
-    pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here; on Debian: apt-get install chromium"),
+    pytest.mark.skipif(
+        browser.found() is None,
+        reason="there is no Chromium here; on Debian: apt-get install chromium",
+    ),
 ]
 RESTED = "new Promise((done) => setTimeout(done, 600))"
 
@@ -42,9 +45,13 @@ def agrees(page, row):
     """What is told of the point shown is that row of the waypoints."""
     words, expected = told(page), page.rows[row]
     place = f"layer {expected['layer']} bead {expected['bead']}"
-    assert words.startswith(f"{place} point {expected['point']}" if expected["kind"] == "deposit" else f"{place}, rapid")
+    assert words.startswith(
+        f"{place} point {expected['point']}" if expected["kind"] == "deposit" else f"{place}, rapid"
+    )
     at = [float(text) for text in re.search(r"x y z (\S+) (\S+) (\S+) mm", words).groups()]
-    assert all(abs(float(expected[key]) - value) < 0.02 for key, value in zip(("x_mm", "y_mm", "z_mm"), at))
+    assert all(
+        abs(float(expected[key]) - value) < 0.02 for key, value in zip(("x_mm", "y_mm", "z_mm"), at)
+    )
 
 
 def picture(page):
@@ -53,30 +60,48 @@ def picture(page):
 
     page.run("document.getElementById('path').scrollIntoView()")
     page.run(RESTED)
-    box = page.run("(() => { const b = document.querySelector('#path canvas').getBoundingClientRect();"
-                   " return [b.left, b.top, b.right, b.bottom]; })()")
-    image = Image.open(io.BytesIO(base64.b64decode(page.picture()))).convert("RGB").crop([round(side) for side in box])
+    box = page.run(
+        "(() => { const b = document.querySelector('#path canvas').getBoundingClientRect();"
+        " return [b.left, b.top, b.right, b.bottom]; })()"
+    )
+    image = (
+        Image.open(io.BytesIO(base64.b64decode(page.picture())))
+        .convert("RGB")
+        .crop([round(side) for side in box])
+    )
     return np.asarray(image, float)
 
 
 def middle(page):
-    return page.run("(() => { document.getElementById('path').scrollIntoView();"
-                    " const b = document.querySelector('#path canvas').getBoundingClientRect();"
-                    " return [b.left + b.width / 2, b.top + b.height / 2]; })()")
+    return page.run(
+        "(() => { document.getElementById('path').scrollIntoView();"
+        " const b = document.querySelector('#path canvas').getBoundingClientRect();"
+        " return [b.left + b.width / 2, b.top + b.height / 2]; })()"
+    )
 
 
 def test_the_path_takes_the_place_of_the_picture_and_is_drawn_in_the_colours_of_its_layers(page):
-    assert page.run("['path', 'path-still'].map((name) => document.getElementById(name).hidden)") == [False, True]
+    assert page.run(
+        "['path', 'path-still'].map((name) => document.getElementById(name).hidden)"
+    ) == [False, True]
     seen = picture(page).reshape(-1, 3)
     paper = seen[0]
     drawn = seen[np.abs(seen - paper).max(axis=1) > 20.0]
     assert 0.05 < len(drawn) / len(seen) < 0.8
-    for low, high in (((0, 0, 40), (90, 60, 140)), ((0, 60, 50), (60, 180, 160)), ((90, 110, 0), (255, 240, 90))):
-        assert ((drawn >= low) & (drawn <= high)).all(axis=1).sum() > 200  # dark blue, green, yellow
+    for low, high in (
+        ((0, 0, 40), (90, 60, 140)),
+        ((0, 60, 50), (60, 180, 160)),
+        ((90, 110, 0), (255, 240, 90)),
+    ):
+        assert ((drawn >= low) & (drawn <= high)).all(
+            axis=1
+        ).sum() > 200  # dark blue, green, yellow
 
 
 def test_a_place_of_the_preflight_leads_to_its_row(page):
-    rows = page.run("[...document.querySelectorAll('td button[data-row]')].map((one) => Number(one.dataset.row))")
+    rows = page.run(
+        "[...document.querySelectorAll('td button[data-row]')].map((one) => Number(one.dataset.row))"
+    )
     assert len(rows) >= 3
     for number, row in enumerate(rows):
         page.run(f"document.querySelectorAll('td button[data-row]')[{number}].click()")
@@ -89,8 +114,10 @@ def test_it_is_stepped_through_layer_by_layer_and_point_by_point(page):
     for _ in range(3):
         page.run("document.querySelector('[name=back]').click()")
     agrees(page, len(page.rows) - 4)
-    page.run("(() => { const to = document.querySelector('[name=to]'); to.value = 2;"
-             " to.dispatchEvent(new Event('input')); })()")
+    page.run(
+        "(() => { const to = document.querySelector('[name=to]'); to.value = 2;"
+        " to.dispatchEvent(new Event('input')); })()"
+    )
     last = max(at for at, row in enumerate(page.rows) if row["layer"] == "2")
     agrees(page, last)
     fewer = picture(page)
@@ -99,14 +126,18 @@ def test_it_is_stepped_through_layer_by_layer_and_point_by_point(page):
 
 
 def test_a_click_reads_the_bead_that_is_there(page):
-    page.run("document.querySelector('[name=whole]').click(); document.querySelector('[name=above]').click()")
+    page.run(
+        "document.querySelector('[name=whole]').click(); document.querySelector('[name=above]').click()"
+    )
     page.run(RESTED)
     x, y = middle(page)
     right, up, _ = page.run("window.pathViewer.camera.seen(window.pathViewer.path.at(200))")
     for kind in ("mousePressed", "mouseReleased"):
         page.mouse(kind, x + right, y - up, button="left", clickCount=1)
     row = page.run("window.pathViewer.look.row")
-    near = np.array([[float(one[key]) for key in ("x_mm", "y_mm")] for one in (page.rows[row], page.rows[200])])
+    near = np.array(
+        [[float(one[key]) for key in ("x_mm", "y_mm")] for one in (page.rows[row], page.rows[200])]
+    )
     assert np.linalg.norm(near[0] - near[1]) < 2.0  # seen from above, within a few pixels
     agrees(page, row)
 
@@ -131,11 +162,15 @@ def test_it_turns_with_the_mouse_and_the_wheel_is_its_own_only_after_a_click(pag
 
 
 def test_every_colour_and_option_is_drawn(page):
-    page.run("document.querySelector('[name=reset]').click(); document.querySelector('[name=whole]').click()")
+    page.run(
+        "document.querySelector('[name=reset]').click(); document.querySelector('[name=whole]').click()"
+    )
     before = picture(page)
     for number in range(1, page.run("window.pathViewer.path.columns.length")):
-        page.run(f"(() => {{ const c = document.querySelector('[name=colour]'); c.value = {number};"
-                 " c.dispatchEvent(new Event('input')); })()")
+        page.run(
+            f"(() => {{ const c = document.querySelector('[name=colour]'); c.value = {number};"
+            " c.dispatchEvent(new Event('input')); })()"
+        )
         assert page.run("document.querySelector('#path .most').textContent") != ""
         now = picture(page)
         assert np.abs(now - before).max() > 20.0
@@ -163,8 +198,11 @@ def test_a_path_of_a_hundred_thousand_rows_is_turned_and_stepped_through(tmp_pat
     what that takes, which is drawn once the path rests."""
     make_cup(tmp_path)
     shop = Workshop(tmp_path, root / "freecad-am")
-    shop.write_job(JOB.replace("layer_height: 4 mm", "layer_height: 0.5 mm").replace("0.1 mm", "0.00015 mm").replace(
-        "post: fanuc", "post: none"))
+    shop.write_job(
+        JOB.replace("layer_height: 4 mm", "layer_height: 0.5 mm")
+        .replace("0.1 mm", "0.00015 mm")
+        .replace("post: fanuc", "post: none")
+    )
     assert shop.run("plan", "cup.yaml").status == 0
     with browser.Browser(tmp_path / "out" / "cup" / "report.html", tmp_path / "profile") as page:
         assert page.run("window.pathViewer.path.rows") >= MANY
@@ -184,11 +222,18 @@ def test_a_path_of_a_hundred_thousand_rows_is_turned_and_stepped_through(tmp_pat
         page.mouse("mouseReleased", x + 120, y, button="left", clickCount=1)
         page.run("new Promise((done) => setTimeout(done, 3000))")
         rested = frames(page)
-        assert len(turning) >= 20 and turning[:, 1].all() and not rested[-1, 1] and (rested[:-1, 1] == 1.0).all()
+        assert (
+            len(turning) >= 20
+            and turning[:, 1].all()
+            and not rested[-1, 1]
+            and (rested[:-1, 1] == 1.0).all()
+        )
         row = page.run("window.pathViewer.look.row")
         for _ in range(20):
-            page.run("document.querySelector('[name=back]').click();"
-                     " new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+            page.run(
+                "document.querySelector('[name=back]').click();"
+                " new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+            )
         stepping = frames(page)
         assert page.run("window.pathViewer.look.row") == row - 20 and stepping[:, 1].mean() > 0.8
         page.run("document.querySelector('[name=whole]').click()")
@@ -199,8 +244,17 @@ def test_a_path_of_a_hundred_thousand_rows_is_turned_and_stepped_through(tmp_pat
         page.run("document.querySelector('[name=play]').click()")
         playing = frames(page)
         assert len(playing) > 10 and playing[:, 1].all()
-        took = {name: np.median(some[:, 0]) for name, some in (
-            ("turning", turning), ("stepping", stepping[stepping[:, 1] == 1.0]), ("playing", playing))}
-        print(f"all of it {whole:.0f} ms; " + ", ".join(f"{name} {ms:.0f} ms a frame" for name, ms in took.items()))
+        took = {
+            name: np.median(some[:, 0])
+            for name, some in (
+                ("turning", turning),
+                ("stepping", stepping[stepping[:, 1] == 1.0]),
+                ("playing", playing),
+            )
+        }
+        print(
+            f"all of it {whole:.0f} ms; "
+            + ", ".join(f"{name} {ms:.0f} ms a frame" for name, ms in took.items())
+        )
         assert all(ms < 0.2 * whole for ms in took.values()), (whole, took)
         assert page.errors == []

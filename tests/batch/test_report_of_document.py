@@ -61,7 +61,9 @@ def test_it_is_the_page_of_the_command(workshop):
     assert done.status == 0, done.err
     theirs, ours = both(workshop, "cup", "program")
     assert ours == theirs
-    assert {"Preflight", "Programs", "Joints against their limits", "Time and material"} <= set(ours)
+    assert {"Preflight", "Programs", "Joints against their limits", "Time and material"} <= set(
+        ours
+    )
     assert "program/CUP.LS" in ours["Programs"]
 
 
@@ -69,7 +71,9 @@ def test_a_toolpath_has_the_path_alone(workshop):
     workshop.change("cell:\n  limits: paper\n  platform_diameter: 100 mm\n", "")
     assert workshop.run("plan", "cup.yaml").status == 0
     theirs, ours = both(workshop, "cup", "toolpath")
-    assert ours == theirs and "Joints against their limits" not in ours and "Layers and path" in ours
+    assert (
+        ours == theirs and "Joints against their limits" not in ours and "Layers and path" in ours
+    )
 
 
 @pytest.mark.long
@@ -78,21 +82,29 @@ def test_of_a_wall_it_compares_spacings_with_the_robots_motion(workshop):
     shell.rotate(App.Vector(), App.Vector(0, 1, 0), -90)
     face = next(face for face in shell.Faces if isinstance(face.Surface, Part.Toroid))
     face.exportStep(str(workshop.folder / "bend.step"))
-    Part.makeBox(60, 60, 20, App.Vector(0, -30, -20)).exportStep(str(workshop.folder / "block.step"))
+    Part.makeBox(60, 60, 20, App.Vector(0, -30, -20)).exportStep(
+        str(workshop.folder / "block.step")
+    )
     workshop.write_job(BEND)
     assert workshop.run("plan", "cup.yaml").status in (0, 3)
     theirs, ours = both(workshop, "bend", "joint path")
-    assert ours == theirs and "What spacing gains in motion" in ours and "What spacing costs" in ours
+    assert (
+        ours == theirs and "What spacing gains in motion" in ours and "What spacing costs" in ours
+    )
 
 
 def test_several_features_are_told_one_by_one(workshop):
-    Part.makeBox(40, 40, 10, App.Vector(-20, -20, 0)).exportStep(str(workshop.folder / "plate.step"))
+    Part.makeBox(40, 40, 10, App.Vector(-20, -20, 0)).exportStep(
+        str(workshop.folder / "plate.step")
+    )
     Part.makeCylinder(12, 15, App.Vector(0, 0, 10)).exportStep(str(workshop.folder / "post.step"))
     workshop.write_job(TWO)
     done = workshop.run("plan", "cup.yaml")
     assert done.status in (0, 3), done.err
     theirs, ours = both(workshop, "two", "joint path")
-    assert ours == theirs and "plate" in ours["Layers and path"] and "post" in ours["Layers and path"]
+    assert (
+        ours == theirs and "plate" in ours["Layers and path"] and "post" in ours["Layers and path"]
+    )
 
 
 def test_what_does_not_fit_its_inputs_is_refused(doc, tmp_path):

@@ -33,16 +33,26 @@ class Page:
         return found
 
     def column(self, place):
-        return struct.unpack_from(f"<{place['count']}{FORMATS[place['kind']]}", self.bytes, place["at"])
+        return struct.unpack_from(
+            f"<{place['count']}{FORMATS[place['kind']]}", self.bytes, place["at"]
+        )
 
     def values(self, one):
         span = (one["high"] - one["low"]) / 65534
-        return [math.nan if value == 65535 else one["low"] + span * value for value in self.column(one["values"])]
+        return [
+            math.nan if value == 65535 else one["low"] + span * value
+            for value in self.column(one["values"])
+        ]
 
     def positions(self):
         flat = self.column(self.facts["position"])
-        return [[low + self.facts["step"] * value for low, value in zip(self.facts["low"], flat[at:at + 3])]
-                for at in range(0, len(flat), 3)]
+        return [
+            [
+                low + self.facts["step"] * value
+                for low, value in zip(self.facts["low"], flat[at : at + 3])
+            ]
+            for at in range(0, len(flat), 3)
+        ]
 
 
 @pytest.fixture(scope="module")
@@ -64,26 +74,36 @@ def test_its_bytes_are_the_waypoints(planned):
     size = max(max(abs(float(row[key])) for row in rows) for key in ("x_mm", "y_mm", "z_mm"))
     assert facts["step"] < 3.0 * size / 65000
     for row, place in zip(rows, page.positions(), strict=True):
-        assert all(abs(float(row[key]) - value) <= 0.51 * facts["step"] + 1e-6
-                   for key, value in zip(("x_mm", "y_mm", "z_mm"), place))
+        assert all(
+            abs(float(row[key]) - value) <= 0.51 * facts["step"] + 1e-6
+            for key, value in zip(("x_mm", "y_mm", "z_mm"), place)
+        )
     for key, name in (("build", "b"), ("tool", "t")):
         flat = page.column(facts[key])
         for at, row in enumerate(rows):
-            assert all(abs(float(row[f"{name}{axis}"]) - value / 32767) < 2e-5
-                       for axis, value in zip("xyz", flat[3 * at:3 * at + 3]))
+            assert all(
+                abs(float(row[f"{name}{axis}"]) - value / 32767) < 2e-5
+                for axis, value in zip("xyz", flat[3 * at : 3 * at + 3])
+            )
     laid = [row["kind"] == "deposit" and row["point"] != "0" for row in rows]
     assert laid == [bool(value) for value in page.column(facts["laid"])]
     assert [int(row["point"]) for row in rows] == list(page.column(facts["point"]))
     assert [one["name"] for one in facts["axes"]] == report["machine"]["labels"]
     for number, axis in enumerate(facts["axes"], 1):
         near = (axis["high"] - axis["low"]) / 65534 + 1e-6
-        assert all(abs(float(row[f"q{number}_deg"]) - value) <= near
-                   for row, value in zip(rows, page.values(axis), strict=True))
+        assert all(
+            abs(float(row[f"q{number}_deg"]) - value) <= near
+            for row, value in zip(rows, page.values(axis), strict=True)
+        )
     speed = next(one for one in facts["columns"] if one["name"] == "speed")
     told = {round(value, 3) for value, on in zip(page.values(speed), laid) if on}
-    assert told == {6.0} and speed["least"] == speed["most"] == 6.0 < speed["high"]  # rapids are faster, and have no colour
+    assert (
+        told == {6.0} and speed["least"] == speed["most"] == 6.0 < speed["high"]
+    )  # rapids are faster, and have no colour
     times = page.column(facts["time"])
-    assert list(times) == sorted(times) and times[-1] == pytest.approx(report["totals"]["time_s"], rel=1e-3)
+    assert list(times) == sorted(times) and times[-1] == pytest.approx(
+        report["totals"]["time_s"], rel=1e-3
+    )
 
 
 def test_a_row_takes_few_bytes_and_no_word_of_its_own(planned):
@@ -92,9 +112,15 @@ def test_a_row_takes_few_bytes_and_no_word_of_its_own(planned):
     page, rows, _ = planned
     facts = page.facts
     a_row = 3 * 3 * 2 + 1 + 4 + 4 + 2 * (len(facts["columns"]) + len(facts["axes"]))
-    bodies = sum(4 * one[key]["count"] for one in facts["bodies"] for key in ("vertices", "triangles"))
-    assert a_row * len(rows) <= len(page.bytes) - bodies <= a_row * len(rows) + 3 * 40 and a_row <= 60
-    of_page = len(page.text) - len(page.text[page.text.index('id="path-columns"'):].split("</script>")[0])
+    bodies = sum(
+        4 * one[key]["count"] for one in facts["bodies"] for key in ("vertices", "triangles")
+    )
+    assert (
+        a_row * len(rows) <= len(page.bytes) - bodies <= a_row * len(rows) + 3 * 40 and a_row <= 60
+    )
+    of_page = len(page.text) - len(
+        page.text[page.text.index('id="path-columns"') :].split("</script>")[0]
+    )
     assert of_page < 400_000  # the rest is no longer for more rows
 
 
@@ -111,9 +137,12 @@ def test_its_stretches_are_those_of_the_rows(planned):
 
 def test_places_of_findings_and_promises_lead_to_their_rows(planned):
     page, rows, report = planned
-    told = re.findall(r'<button data-row="(\d+)">layer (\d+)(?: bead (\d+))?(?: point (\d+))?</button>', page.text)
+    told = re.findall(
+        r'<button data-row="(\d+)">layer (\d+)(?: bead (\d+))?(?: point (\d+))?</button>', page.text
+    )
     places = [one["place"] for one in report["preflight"] if one["place"]] + [
-        one for one in report["issues"] if one["layer"] is not None]
+        one for one in report["issues"] if one["layer"] is not None
+    ]
     assert len(told) == len(places) >= 3
     for row, *place in told:
         found = rows[int(row)]
@@ -124,8 +153,13 @@ def test_places_of_findings_and_promises_lead_to_their_rows(planned):
 
 def test_nothing_is_fetched_and_no_other_script_runs(planned):
     page, _, _ = planned
-    assert not re.search(r"""(?:src|href|action)\s*=\s*["'](?!#)|url\((?!#)|@import|https?:(?!//www\.w3\.org)""", page.text)
-    (policy,) = re.findall(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', page.text)
+    assert not re.search(
+        r"""(?:src|href|action)\s*=\s*["'](?!#)|url\((?!#)|@import|https?:(?!//www\.w3\.org)""",
+        page.text,
+    )
+    (policy,) = re.findall(
+        r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', page.text
+    )
     (script,) = (text for attributes, text in page.scripts if "type=" not in attributes)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     assert policy == f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest}'"
@@ -138,22 +172,39 @@ def test_a_page_of_a_path_alone_has_it_too(workshop):
     workshop.write_job(text)
     assert workshop.run("plan", "cup.yaml").status == 0
     page = Page(workshop.files()["report.html"].decode())
-    assert page.facts["axes"] == [] and {"layer", "speed", "tilt"} == {one["name"] for one in page.facts["columns"]}
+    assert page.facts["axes"] == [] and {"layer", "speed", "tilt"} == {
+        one["name"] for one in page.facts["columns"]
+    }
 
 
-def test_of_longer_motions_every_so_many_th_row_is_shown_with_the_ends_of_beads(planned, monkeypatch, random_motion):
+def test_of_longer_motions_every_so_many_th_row_is_shown_with_the_ends_of_beads(
+    planned, monkeypatch, random_motion
+):
     motion = random_motion
     for most in (len(motion), len(motion) // 3, 40):
         monkeypatch.setattr(columns, "MOST_ROWS", most)
         rows = columns._thinned(motion)
-        starts = [at for at in range(len(motion)) if at == 0 or any(
-            column[at] != column[at - 1] for column in (motion.deposit, motion.layer, motion.bead))]
+        starts = [
+            at
+            for at in range(len(motion))
+            if at == 0
+            or any(
+                column[at] != column[at - 1]
+                for column in (motion.deposit, motion.layer, motion.bead)
+            )
+        ]
         ends = [*(at - 1 for at in starts[1:]), len(motion) - 1]
-        assert set(starts) <= set(rows) and set(ends) <= set(rows) and len(rows) <= most + 2 * len(starts)
+        assert (
+            set(starts) <= set(rows)
+            and set(ends) <= set(rows)
+            and len(rows) <= most + 2 * len(starts)
+        )
         shown = columns.Shown(motion, rows, np.zeros(len(rows)), [], [])
         for at in range(0, len(motion), 7):
             if motion.deposit[at]:
-                row = shown.row_of(int(motion.layer[at]), int(motion.bead[at]), int(motion.point[at]))
+                row = shown.row_of(
+                    int(motion.layer[at]), int(motion.bead[at]), int(motion.point[at])
+                )
                 assert rows[row] <= at and (row + 1 == len(rows) or rows[row + 1] > at)
         assert shown.row_of(10_000, 0, 0) is None and shown.row_of(None, None, None) is None
 
@@ -175,6 +226,15 @@ def random_motion():
     n = len(deposit)
     up = np.tile([0.0, 0.0, 1.0], (n, 1))
     return Motion(
-        np.array(deposit), np.array(layer), np.array(bead), np.array(point), random.normal(size=(n, 3)), up, up, np.ones(n),
-        np.full(n, np.nan), np.zeros((n, 6)), np.ones(n),
+        np.array(deposit),
+        np.array(layer),
+        np.array(bead),
+        np.array(point),
+        random.normal(size=(n, 3)),
+        up,
+        up,
+        np.ones(n),
+        np.full(n, np.nan),
+        np.zeros((n, 6)),
+        np.ones(n),
     )

@@ -7,9 +7,16 @@ import re
 from xml.etree import ElementTree
 
 TITLES = (
-    "q1", "q6 (endless)", "Joint speeds while depositing", "Joint accelerations while depositing",
-    "Joint jerks while depositing", "Condition of the Jacobian (0 is singular)", "Speed along the path", "Deposit rate",
-    "Deposited mass", "Distance to the layer before (asked: 4 mm)",
+    "q1",
+    "q6 (endless)",
+    "Joint speeds while depositing",
+    "Joint accelerations while depositing",
+    "Joint jerks while depositing",
+    "Condition of the Jacobian (0 is singular)",
+    "Speed along the path",
+    "Deposit rate",
+    "Deposited mass",
+    "Distance to the layer before (asked: 4 mm)",
 )
 
 
@@ -25,23 +32,34 @@ def test_the_report_has_them(workshop):
     page = files["report.html"].decode()
     found = pictures(page)
     assert set(TITLES) <= set(found) and len(found) >= 14 and "matplotlib" not in page
-    texts = {title: [node.text for node in picture.iter() if node.tag.endswith("text")] for title, picture in found.items()}
+    texts = {
+        title: [node.text for node in picture.iter() if node.tag.endswith("text")]
+        for title, picture in found.items()
+    }
     assert "limits -185 to 185 deg" in texts["q1"]
     assert "layer 0" in texts["q1"] and json.loads(files["report.json"])["counts"]["layers"] > 5
     assert workshop.launch("plan", "cup.yaml", "-o", "again").status == 0
     again = pictures(workshop.files("again")["report.html"].decode())
-    assert all(ElementTree.tostring(again[title]) == ElementTree.tostring(found[title]) for title in TITLES)
+    assert all(
+        ElementTree.tostring(again[title]) == ElementTree.tostring(found[title]) for title in TITLES
+    )
 
 
 def test_without_matplotlib_the_report_says_so(workshop, monkeypatch):
     missing = workshop.folder / "missing" / "matplotlib"
     missing.mkdir(parents=True)
     (missing / "__init__.py").write_text("raise ImportError('not installed')\n", encoding="utf-8")
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(missing.parent), os.environ.get("PYTHONPATH")))))
+    monkeypatch.setenv(
+        "PYTHONPATH",
+        os.pathsep.join(filter(None, (str(missing.parent), os.environ.get("PYTHONPATH")))),
+    )
     workshop.write_job()
     done = workshop.launch("plan", "cup.yaml")
     assert done.status == 0, done.err
     page = workshop.files()["report.html"].decode()
-    assert page.count("matplotlib is not installed") == 1 and "largest share of the speed limit" in page
+    assert (
+        page.count("matplotlib is not installed") == 1
+        and "largest share of the speed limit" in page
+    )
     assert set(pictures(page)) == {"the path, coloured by layer"}
     assert "<figure></figure>" not in page and '<div class="grid"></div>' not in page

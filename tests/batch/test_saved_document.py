@@ -35,7 +35,11 @@ def _sizes(path):
     """Bytes of the results in a file, as they are and as they stand in it."""
     with zipfile.ZipFile(path) as file:
         assert file.testzip() is None
-        return [(one.file_size, one.compress_size) for one in file.infolist() if one.filename.startswith("ResultData")]
+        return [
+            (one.file_size, one.compress_size)
+            for one in file.infolist()
+            if one.filename.startswith("ResultData")
+        ]
 
 
 @pytest.mark.parametrize("before", [None, 0, 5])
@@ -50,7 +54,10 @@ def test_large_results_are_saved_as_they_are_packed(stages, tmp_path, chosen, mo
     assert chosen.GetInt(LEVEL, -1) == (-1 if before is None else before)
     again = FreeCAD.openDocument(path)
     try:
-        points = [[bead.points for _, _, bead in api.result(thing)] for thing in (stages, again.getObject(stages.Name))]
+        points = [
+            [bead.points for _, _, bead in api.result(thing)]
+            for thing in (stages, again.getObject(stages.Name))
+        ]
         assert all(np.array_equal(one, other) for one, other in zip(*points, strict=True))
     finally:
         FreeCAD.closeDocument(again.Name)
@@ -63,7 +70,9 @@ def test_small_ones_are_deflated_as_the_user_chose(stages, tmp_path, chosen):
     assert any(packed < size for size, packed in _sizes(path)) and chosen.GetInt(LEVEL, -1) == 9
 
 
-def test_the_choice_comes_back_where_the_file_cannot_be_written(stages, tmp_path, chosen, monkeypatch):
+def test_the_choice_comes_back_where_the_file_cannot_be_written(
+    stages, tmp_path, chosen, monkeypatch
+):
     class Full:
         """A document on a full disk."""
 

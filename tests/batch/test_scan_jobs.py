@@ -23,7 +23,13 @@ def parts(tmp_path_factory):
     block.translate((-40, -15, 0))
     plate.exportStep(str(folder / "plate.step"))
     block.exportStep(str(folder / "block.step"))
-    np.savetxt(folder / "scan.csv", points_on(bent, count=8_000), delimiter=",", header="x,y,z", comments="")
+    np.savetxt(
+        folder / "scan.csv",
+        points_on(bent, count=8_000),
+        delimiter=",",
+        header="x,y,z",
+        comments="",
+    )
     return folder
 
 
@@ -33,18 +39,32 @@ def job(workshop, parts):
 
     def plan(more=None, **substrate):
         told = {
-            "version": 1, "name": "block", "part": {"file": str(parts / "block.step")}, "strategy": BLOCK,
-            "substrate": {"file": str(parts / "plate.step"), "scan": str(parts / "scan.csv"), **substrate}, **(more or {}),
+            "version": 1,
+            "name": "block",
+            "part": {"file": str(parts / "block.step")},
+            "strategy": BLOCK,
+            "substrate": {
+                "file": str(parts / "plate.step"),
+                "scan": str(parts / "scan.csv"),
+                **substrate,
+            },
+            **(more or {}),
         }
         (workshop.folder / "block.yaml").write_text(yaml.safe_dump(told), encoding="utf-8")
-        return workshop.run("plan", "block.yaml", "-o", "out", *(() if more else ("--no-page",))), workshop.folder / "out"
+        return workshop.run(
+            "plan", "block.yaml", "-o", "out", *(() if more else ("--no-page",))
+        ), workshop.folder / "out"
 
     return plan
 
 
 def deposit(folder, layer):
     with open(folder / "waypoints.csv", encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["kind"] == "deposit" and int(row["layer"]) == layer]
+        rows = [
+            row
+            for row in csv.DictReader(file)
+            if row["kind"] == "deposit" and int(row["layer"]) == layer
+        ]
     return np.array([[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows])
 
 
@@ -53,18 +73,29 @@ def test_a_block_stands_on_the_plate_as_it_was_scanned(job, parts):
     points = np.loadtxt(parts / "scan.csv", delimiter=",", skiprows=1)
     astray = np.abs(points[:, 2] - bent(points[:, 0], points[:, 1])) > 1.0
     assert 0.009 < astray.mean() <= 0.01
-    ended, folder = job({"cell": {"machine": "fanuc-arcmate120ic", "platform": "20 mm"}, "program": {"post": "fanuc"}})
+    ended, folder = job(
+        {
+            "cell": {"machine": "fanuc-arcmate120ic", "platform": "20 mm"},
+            "program": {"post": "fanuc"},
+        }
+    )
     assert (ended.status, ended.err.count("error")) == (0, 0)
     x, y, z = deposit(folder, 0).T
     assert np.abs(z - bent(x, y)).max() < 0.06 and np.ptp(bent(x, y)) > 1.0
     report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
     assert report["status"] == "ok" and report["programs"]
     scan = report["scan"]
-    assert scan["left_mm"] < 0.06 and scan["remains_mm"] == 0.0 and scan["motion"] == np.eye(4).tolist()
+    assert (
+        scan["left_mm"] < 0.06
+        and scan["remains_mm"] == 0.0
+        and scan["motion"] == np.eye(4).tolist()
+    )
     assert scan["off_mm"]["max"] == pytest.approx(bent(x, y).max(), abs=0.06)
     assert deposit(folder, scan["layers"])[:, 2] == pytest.approx(4.0 * scan["layers"])
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert page.count("Layer 0 as planned") == 2 and page.count("Layer 0 as laid") == 2  # a picture each, and its name
+    assert (
+        page.count("Layer 0 as planned") == 2 and page.count("Layer 0 as laid") == 2
+    )  # a picture each, and its name
 
 
 @pytest.mark.long
@@ -83,9 +114,16 @@ def test_a_wall_leaves_a_pipe_where_it_was_scanned(workshop, root):
     np.savetxt(workshop.folder / "pipe.xyz", points)
     examples = root / "resources" / "examples"
     told = {
-        "version": 1, "name": "bend", "part": {"file": str(examples / "tube-on-pipe.step")},
+        "version": 1,
+        "name": "bend",
+        "part": {"file": str(examples / "tube-on-pipe.step")},
         "substrate": {"file": str(examples / "pipe.step"), "scan": "pipe.xyz"},
-        "strategy": {"kind": "surface", "layer_height": "12 mm", "end": "trim", "chord_error": "0.1 mm"},
+        "strategy": {
+            "kind": "surface",
+            "layer_height": "12 mm",
+            "end": "trim",
+            "chord_error": "0.1 mm",
+        },
     }
     (workshop.folder / "bend.yaml").write_text(yaml.safe_dump(told), encoding="utf-8")
     ended = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
@@ -100,8 +138,12 @@ def test_a_job_after_a_layer_begins_above_it(job, workshop):
     points = points_on(lambda x, y: 8.0 - 0.5 + 0.003 * x, (40.0, 15.0), 6000)
     np.savetxt(workshop.folder / "grown.xyz", points)
     ended, folder = job(
-        {"cell": {"machine": "fanuc-arcmate120ic", "platform": "20 mm"}, "program": {"post": "fanuc"}},
-        scan="grown.xyz", after_layer=1,
+        {
+            "cell": {"machine": "fanuc-arcmate120ic", "platform": "20 mm"},
+            "program": {"post": "fanuc"},
+        },
+        scan="grown.xyz",
+        after_layer=1,
     )
     assert ended.status == 0
     x, _, z = deposit(folder, 2).T
@@ -110,15 +152,26 @@ def test_a_job_after_a_layer_begins_above_it(job, workshop):
     assert "!layer 2 ;" in text and "!layer 1 ;" not in text and "!layer 0 ;" not in text
 
 
-@pytest.mark.parametrize(("code", "substrate"), [
-    ("SCAN_UNIT", {"scan": "metres.csv"}), ("SCAN_OTHER", {"scan": "ball.csv"}), ("NO_FILE", {"scan": "none.csv"}),
-    ("BAD_VALUE", {"scan_fit": "tight"}), ("BAD_VALUE", {"scan": None, "after_layer": 2}),
-    ("BAD_VALUE", {"scan_fit": "best", "after_layer": 2}), ("BAD_VALUE", {"scan_pairs": "1 2 > 3"}),
-])
+@pytest.mark.parametrize(
+    ("code", "substrate"),
+    [
+        ("SCAN_UNIT", {"scan": "metres.csv"}),
+        ("SCAN_OTHER", {"scan": "ball.csv"}),
+        ("NO_FILE", {"scan": "none.csv"}),
+        ("BAD_VALUE", {"scan_fit": "tight"}),
+        ("BAD_VALUE", {"scan": None, "after_layer": 2}),
+        ("BAD_VALUE", {"scan_fit": "best", "after_layer": 2}),
+        ("BAD_VALUE", {"scan_pairs": "1 2 > 3"}),
+    ],
+)
 def test_scans_of_something_else_are_refused(job, parts, workshop, code, substrate):
     points = np.loadtxt(parts / "scan.csv", delimiter=",", skiprows=1)
     np.savetxt(workshop.folder / "metres.csv", 1e-3 * points, delimiter=",")
     ball = np.random.default_rng(2).normal(size=(3000, 3))
-    np.savetxt(workshop.folder / "ball.csv", 90.0 * ball / np.linalg.norm(ball, axis=1, keepdims=True), delimiter=",")
+    np.savetxt(
+        workshop.folder / "ball.csv",
+        90.0 * ball / np.linalg.norm(ball, axis=1, keepdims=True),
+        delimiter=",",
+    )
     ended, folder = job(**substrate)
     assert ended.status == 2 and f"error[{code}]" in ended.err and not folder.exists()

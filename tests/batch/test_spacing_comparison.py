@@ -31,11 +31,15 @@ METHODS = ("smooth", "iso-parameter", "centreline-normal", "constant-distance")
 @pytest.fixture
 def elbow(workshop):
     """A bend (R = 30, r = 8) that grows out of the flat top of a block and leans over by 40 degrees."""
-    shell = Part.makeTorus(30.0, 8.0, FreeCAD.Vector(-5, 0, 0), FreeCAD.Vector(0, -1, 0), -180, 180, 50)
+    shell = Part.makeTorus(
+        30.0, 8.0, FreeCAD.Vector(-5, 0, 0), FreeCAD.Vector(0, -1, 0), -180, 180, 50
+    )
     shell.rotate(FreeCAD.Vector(), FreeCAD.Vector(0, 1, 0), -90)
     face = next(face for face in shell.Faces if isinstance(face.Surface, Part.Toroid))
     face.exportStep(str(workshop.folder / "elbow.step"))
-    Part.makeBox(60, 60, 20, FreeCAD.Vector(0, -30, -20)).exportStep(str(workshop.folder / "block.step"))
+    Part.makeBox(60, 60, 20, FreeCAD.Vector(0, -30, -20)).exportStep(
+        str(workshop.folder / "block.step")
+    )
     (workshop.folder / "elbow.yaml").write_text(JOB, encoding="utf-8")
     return workshop
 
@@ -51,7 +55,9 @@ def test_a_job_tells_what_its_spacing_costs_and_gains(elbow):
     assert [row["method"] for row in rows.values() if row["planned"]] == ["smooth"]
     assert rows["constant-distance"]["min_mm"] == pytest.approx(5.0, abs=1e-3)
     assert rows["smooth"]["min_mm"] >= 4.0 and rows["smooth"]["max_mm"] <= 6.0
-    assert rows["centreline-normal"]["max_mm"] == pytest.approx(2.0 * 38.0 * np.sin(5.0 / 60.0), abs=1e-3)
+    assert rows["centreline-normal"]["max_mm"] == pytest.approx(
+        2.0 * 38.0 * np.sin(5.0 / 60.0), abs=1e-3
+    )
     assert rows["iso-parameter"]["max_mm"] == pytest.approx(5.0, abs=1e-3)
     with_motion = [method for method in METHODS if rows[method]["motion"]]
     assert with_motion == ["smooth", "constant-distance"]
@@ -61,15 +67,34 @@ def test_a_job_tells_what_its_spacing_costs_and_gains(elbow):
         assert len(motion["speed_ratio_max"]) == 6
         assert motion["axis_limited_s"] >= motion["deposit_s"] > 0.0
     page = files["report.html"].decode()
-    for text in ("What spacing costs", "What spacing gains in motion", "Normal to the centreline: ", "Both paths"):
+    for text in (
+        "What spacing costs",
+        "What spacing gains in motion",
+        "Normal to the centreline: ",
+        "Both paths",
+    ):
         assert text in page
-    pictures = [ElementTree.fromstring(text) for text in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]
+    pictures = [
+        ElementTree.fromstring(text) for text in re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+    ]
     plots = {picture.get("aria-label"): picture for picture in pictures}
     path = plots["the path, coloured by layer"]
-    assert any(node.get("class").startswith("body") for node in path.iter("path"))  # the block is there
-    near, far = (sum(node.get("class") == side for node in path.iter("path")) for side in ("near", "far"))
-    assert near >= report["counts"]["layers"] - 1 and far >= 3  # each layer has a side towards the eye
-    for title in ("Iso-parameter", "Constant distance", "Smooth", "\u0394 up the lines", "As deposited"):
+    assert any(
+        node.get("class").startswith("body") for node in path.iter("path")
+    )  # the block is there
+    near, far = (
+        sum(node.get("class") == side for node in path.iter("path")) for side in ("near", "far")
+    )
+    assert (
+        near >= report["counts"]["layers"] - 1 and far >= 3
+    )  # each layer has a side towards the eye
+    for title in (
+        "Iso-parameter",
+        "Constant distance",
+        "Smooth",
+        "\u0394 up the lines",
+        "As deposited",
+    ):
         (plot,) = [plot for label, plot in plots.items() if label.startswith(title)]
         curves = [node.get("d") for node in plot.iter("path")]
         assert len(curves) >= 3 and all("L" in curve and "nan" not in curve for curve in curves)
@@ -77,7 +102,10 @@ def test_a_job_tells_what_its_spacing_costs_and_gains(elbow):
 
 def test_walls_of_several_faces_say_what_does_not_apply():
     circle = np.linspace(0.0, 2.0 * np.pi, 73)
-    points = [np.c_[10 * np.cos(circle), 10 * np.sin(circle), np.full(73, height)] for height in (0.0, 2.0, 4.0)]
+    points = [
+        np.c_[10 * np.cos(circle), 10 * np.sin(circle), np.full(73, height)]
+        for height in (0.0, 2.0, 4.0)
+    ]
     up = np.tile([0.0, 0.0, 1.0], (73, 1))
     for ring in points:
         ring[-1] = ring[0]
@@ -92,19 +120,33 @@ def test_walls_of_several_faces_say_what_does_not_apply():
     assert {row["method"] for row in others} == set(METHODS) - {"constant-distance"}
     assert all(row["reason"] and row["layers"] is None and not row["planned"] for row in others)
 
-    others = spacing_comparison.compare(object(), SurfaceParameters(layer_height=2.0, method="fronts"))
+    others = spacing_comparison.compare(
+        object(), SurfaceParameters(layer_height=2.0, method="fronts")
+    )
     told = {one.method: one.reason for one in others}
-    assert "strategy.method" in told["iso-parameter"] and "strategy.method" in told["centreline-normal"]
+    assert (
+        "strategy.method" in told["iso-parameter"]
+        and "strategy.method" in told["centreline-normal"]
+    )
 
 
 def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
     bent = np.radians(40.0)
-    points = np.array([[-5.0, 0.0, 0.0], [0.0, 0.0, 0.0], [5.0 * np.cos(bent), 5.0 * np.sin(bent), 0.0]])
+    points = np.array(
+        [[-5.0, 0.0, 0.0], [0.0, 0.0, 0.0], [5.0 * np.cos(bent), 5.0 * np.sin(bent), 0.0]]
+    )
     up, path = np.tile([0.0, 0.0, 1.0], (3, 1)), np.arange(3.0)
     before, after = np.array([1.0, 0.0, 0.0]), np.array([np.cos(bent), np.sin(bent), 0.0])
     tangents = np.array([[before, before], [before, after], [after, after]])
     layers = tuple(
-        Layer((Bead(points + [0.0, 0.0, 2.0 * k], up, up, path, np.ones(3), False, tangents=tangents),)) for k in range(3)
+        Layer(
+            (
+                Bead(
+                    points + [0.0, 0.0, 2.0 * k], up, up, path, np.ones(3), False, tangents=tangents
+                ),
+            )
+        )
+        for k in range(3)
     )
     toolpath = Toolpath(layers, np.eye(4), 2.0, 0.1, family="surface")
     strategy = SurfaceParameters(layer_height=2.0)

@@ -33,12 +33,20 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
 """
 
 
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other libraries ask in ways of their own")
+@pytest.mark.skipif(
+    platform.libc_ver()[0] != "glibc", reason="other libraries ask in ways of their own"
+)
 def test_freed_memory_is_taken_again():
     def faults(*asked):
-        return int(subprocess.run(
-            [sys.executable, "-c", FAULTS, *asked], capture_output=True, text=True, check=True, cwd=ROOT
-        ).stdout)
+        return int(
+            subprocess.run(
+                [sys.executable, "-c", FAULTS, *asked],
+                capture_output=True,
+                text=True,
+                check=True,
+                cwd=ROOT,
+            ).stdout
+        )
 
     assert faults("kept") < 1000 < faults()
 
@@ -67,7 +75,10 @@ def test_a_part_of_revolution_loads_nothing_slow_that_others_need(tmp_path):
     job = tmp_path / "job.yaml"
     job.write_text(JOB.format(part=ROOT / "resources" / "examples" / "hemisphere.step"))
     ran = subprocess.run(
-        [sys.executable, "-c", LOADED, str(job), "-o", str(tmp_path / "out")], capture_output=True, text=True, check=True,
+        [sys.executable, "-c", LOADED, str(job), "-o", str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        check=True,
         cwd=ROOT,
     )
     assert ran.stdout.split("\n")[-2] == "0"
@@ -92,15 +103,21 @@ os._exit(0)
 """
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="elsewhere FreeCAD is loaded when it is imported")
+@pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="elsewhere FreeCAD is loaded when it is imported"
+)
 def test_freecad_is_loaded_while_our_modules_are_imported_which_do_not_wait_for_it():
     if "freecad" in Path(sys.executable).name.lower():
         pytest.skip("FreeCAD's own interpreter has it loaded")
-    ran = subprocess.run([sys.executable, "-c", MEANWHILE], capture_output=True, text=True, check=True, cwd=ROOT)
+    ran = subprocess.run(
+        [sys.executable, "-c", MEANWHILE], capture_output=True, text=True, check=True, cwd=ROOT
+    )
     assert ran.stdout.split() == ["False", "True", "12"]
 
 
-@pytest.mark.skipif(not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2, reason="one processor")
+@pytest.mark.skipif(
+    not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2, reason="one processor"
+)
 def test_the_outputs_are_the_same_on_one_processor(tmp_path):
     """On two a copy of the process looks for what takes long of the preflight."""
     job = tmp_path / "job.yaml"
@@ -110,13 +127,16 @@ def test_the_outputs_are_the_same_on_one_processor(tmp_path):
     for how in ({one}, os.sched_getaffinity(0)):
         out = tmp_path / str(len(how))
         subprocess.run(
-            [str(ROOT / "freecad-am"), "plan", str(job), "-o", str(out), "--no-page"], check=True, capture_output=True,
+            [str(ROOT / "freecad-am"), "plan", str(job), "-o", str(out), "--no-page"],
+            check=True,
+            capture_output=True,
             preexec_fn=lambda how=how: os.sched_setaffinity(0, how),
         )
         report = json.loads((out / "report.json").read_text())
         del report["timing_s"], report["joints"]["planning_time_s"]
         files = {
-            path.name: path.read_bytes() for path in sorted(out.rglob("*"))
+            path.name: path.read_bytes()
+            for path in sorted(out.rglob("*"))
             if path.is_file() and path.suffix not in (".json", ".FCStd")
         }
         outputs.append((report, files))
@@ -137,8 +157,15 @@ def test_what_takes_long_of_the_preflight_comes_from_a_copy(doc, tmp_path, monke
     here = preflight.survey_of(stages.toolpath, stages.joint_path, stages.job.program)()
     monkeypatch.setattr(stages.survey, "_work", lambda: pytest.fail("it is done here"))
     there = stages.survey()
-    assert pickle.dumps(there) == pickle.dumps(pickle.loads(pickle.dumps(here)))  # what is one there is one here
-    assert there.rapids.places > 100 and len(there.distances) > 3 and there.arm.link.size and there.looked.count > 100
+    assert pickle.dumps(there) == pickle.dumps(
+        pickle.loads(pickle.dumps(here))
+    )  # what is one there is one here
+    assert (
+        there.rapids.places > 100
+        and len(there.distances) > 3
+        and there.arm.link.size
+        and there.looked.count > 100
+    )
 
 
 @pytest.mark.parametrize("closed", [">&-", "2>&-", "<&-", "<&- >&- 2>&-"])

@@ -35,6 +35,7 @@ def planned(doc, part, tmp_path):
     def plan(edge):
         (tmp_path / "half.yaml").write_text(JOB.format(edge=edge), encoding="utf-8")
         return run.plan(read_job(str(tmp_path / "half.yaml")), doc, QUIET)
+
     return plan
 
 
@@ -42,10 +43,15 @@ def test_layers_start_at_the_edge(planned, part):
     low = next(k for k, edge in enumerate(part.Edges, 1) if edge.BoundBox.ZMax < 7.001)
     stages = planned(f"Edge{low}")
     wall = api.result(stages.features[0])
-    curve, = wall.first
+    (curve,) = wall.first
     assert not curve.closed and curve.points[:, 2] == pytest.approx(7.0, abs=1e-9)
-    heights = np.array([layer.beads[0].points[:, 2].mean() for layer in api.result(stages.toolpath).layers])
-    assert heights == pytest.approx(7.0 + 5.0 * np.arange(len(heights)), abs=1e-3) and len(heights) >= 8
+    heights = np.array(
+        [layer.beads[0].points[:, 2].mean() for layer in api.result(stages.toolpath).layers]
+    )
+    assert (
+        heights == pytest.approx(7.0 + 5.0 * np.arange(len(heights)), abs=1e-3)
+        and len(heights) >= 8
+    )
 
 
 def test_an_edge_that_is_not_there(planned):

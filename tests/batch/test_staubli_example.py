@@ -27,7 +27,11 @@ def made(tmp_path_factory, root, request):
     folder = root / "resources" / "examples"
     for name in ("tube-on-pipe.step", "pipe.step"):
         shutil.copy(folder / name, workshop.folder)
-    text = (folder / f"{NAME}.yaml").read_text(encoding="utf-8").replace("motion: cartesian", f"motion: {request.param}")
+    text = (
+        (folder / f"{NAME}.yaml")
+        .read_text(encoding="utf-8")
+        .replace("motion: cartesian", f"motion: {request.param}")
+    )
     (workshop.folder / "bend.yaml").write_text(text, encoding="utf-8")
     done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
@@ -36,7 +40,11 @@ def made(tmp_path_factory, root, request):
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     program = workshop.folder / "out" / "program"
-    texts = {str(path.relative_to(program)): path.read_bytes() for path in program.rglob("*") if path.is_file()}
+    texts = {
+        str(path.relative_to(program)): path.read_bytes()
+        for path in program.rglob("*")
+        if path.is_file()
+    }
     return request.param, rows, texts
 
 
@@ -58,8 +66,13 @@ def test_the_texts_bring_the_points_of_the_part_to_the_nozzle(made):
         assert np.abs(flange - wanted).max() < 1e-3
         return
     gauge = read.tool[read.deposit]
-    flange = read.frame @ np.linalg.inv(gauge)  # where the robot must hold its flange, from the texts alone
-    assert np.abs(read.frame[:3, 3] - TARGET).max() == 0.0 and np.abs(read.position[read.deposit]).max() == 0.0
+    flange = read.frame @ np.linalg.inv(
+        gauge
+    )  # where the robot must hold its flange, from the texts alone
+    assert (
+        np.abs(read.frame[:3, 3] - TARGET).max() == 0.0
+        and np.abs(read.position[read.deposit]).max() == 0.0
+    )
     seen = gauge[:, :3, 3] + [0.0, 0.0, -PLATFORM]
     # all of the programmed points lie on the wall, those that planning added between those of the layers too
     x, y, z = seen.T
@@ -83,9 +96,13 @@ def test_parts_are_loaded_only_where_the_deposit_is_off(made):
         assert switches == ["true", "false"] * (len(switches) // 2)
         switched += len(switches) // 2
         data = texts[f"tubeOnPipe/{part}/{part}.dtx"].decode("utf-8-sig")
-        sizes = {name: int(size) for name, size in re.findall(r'name="([jt]Path)".*? size="(\d+)"', data)}
+        sizes = {
+            name: int(size) for name, size in re.findall(r'name="([jt]Path)".*? size="(\d+)"', data)
+        }
         assert sum(sizes.values()) <= 400
         if motion == "cartesian":
-            assert f'z="{PLATFORM + ORIGIN[2]:.4f}"' in data  # the program origin on the flange, which carries all gauges
+            assert (
+                f'z="{PLATFORM + ORIGIN[2]:.4f}"' in data
+            )  # the program origin on the flange, which carries all gauges
             assert data.count('fatherId="tCarried[0]"') == sizes["tPath"]
     assert switched == len(beads)

@@ -35,7 +35,9 @@ def planned(workshop, root):
         out = workshop.folder / "out"
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream))
-        texts = {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
+        texts = {
+            path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()
+        }
         cell = read_job(str(workshop.folder / "dome.yaml")).cell
         assert row_limits.over_all(out, cell.machine, cell.limits) <= 0.0
         return json.loads((out / "report.json").read_text(encoding="utf-8")), rows, texts, out
@@ -72,7 +74,9 @@ def in_part(moves):
     a, c = np.radians(moves[:, 3:5].T)
     v, w = y - Y_OFFSET, z - Z_OFFSET
     yr, zt = np.cos(a) * v + np.sin(a) * w + Y_OFFSET, -np.sin(a) * v + np.cos(a) * w + Z_OFFSET
-    tip = np.stack([np.cos(c) * x + np.sin(c) * yr, -np.sin(c) * x + np.cos(c) * yr, zt - PLATFORM], axis=1)
+    tip = np.stack(
+        [np.cos(c) * x + np.sin(c) * yr, -np.sin(c) * x + np.cos(c) * yr, zt - PLATFORM], axis=1
+    )
     return tip, np.stack([np.sin(c) * np.sin(a), np.cos(c) * np.sin(a), np.cos(a)], axis=1)
 
 
@@ -91,7 +95,10 @@ def test_the_text_lays_the_dome(planned):
     asked = column(wanted, "speed_mm_s")[:, 0]
     np.testing.assert_allclose(way / moves[ends, 5], asked, rtol=2e-3)
     slowed = asked < SPEED - 1e-9
-    assert slowed.any() == any(issue["code"] == "SLOWED" for issue in report["issues"]) and slowed.mean() < 0.02
+    assert (
+        slowed.any() == any(issue["code"] == "SLOWED" for issue in report["issues"])
+        and slowed.mean() < 0.02
+    )
     assert np.abs(moves[on, 3]).max() > 60.0  # the table tilts
     # no axis faster than it can
     rate = np.abs(np.diff(moves[:, :5], axis=0)) / moves[1:, 5:6]
@@ -99,7 +106,9 @@ def test_the_text_lays_the_dome(planned):
 
 
 def test_what_is_told_of_axes_is_in_their_units(planned):
-    report, rows, _, out = planned(lambda text: text.replace("layer_height: 2 mm", "layer_height: 5 mm"), page=True)
+    report, rows, _, out = planned(
+        lambda text: text.replace("layer_height: 2 mm", "layer_height: 5 mm"), page=True
+    )
     assert report["machine"]["axes"] == ["mx", "my", "mz", "a", "c"]
     assert report["machine"]["units"] == ["mm", "mm", "mm", "deg", "deg"]
     assert list(rows[0])[-6:] == ["mx_mm", "my_mm", "mz_mm", "a_deg", "c_deg", "class"]
@@ -107,37 +116,71 @@ def test_what_is_told_of_axes_is_in_their_units(planned):
     joints = report["joints"]
     np.testing.assert_allclose(joints["min_deg"], axes.min(axis=0), atol=1e-6)
     np.testing.assert_allclose(joints["max_deg"], axes.max(axis=0), atol=1e-6)
-    assert joints["limit_margin_deg"][0] == pytest.approx(500.0 - np.abs(axes[:, 0]).max(), abs=1e-6)
-    assert joints["limit_margin_deg"][4] is None and joints["condition_min"] is None and joints["branch"] == []
+    assert joints["limit_margin_deg"][0] == pytest.approx(
+        500.0 - np.abs(axes[:, 0]).max(), abs=1e-6
+    )
+    assert (
+        joints["limit_margin_deg"][4] is None
+        and joints["condition_min"] is None
+        and joints["branch"] == []
+    )
     assert all(0.0 <= share <= 1.0 for share in joints["speed_ratio_max"])
     page = (out / "report.html").read_text(encoding="utf-8")
-    assert "mx, mm" in page and "largest speed, deg/s or mm/s" not in page  # one method: no table of methods
+    assert (
+        "mx, mm" in page and "largest speed, deg/s or mm/s" not in page
+    )  # one method: no table of methods
     drawn = [ElementTree.fromstring(text) for text in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]
-    texts = {one.get("aria-label"): [node.text for node in one.iter() if node.tag.endswith("text")] for one in drawn}
-    assert {"place, mm", "limits -500 to 500 mm"} <= set(texts["mx"]) and "angle, deg" not in texts["mx"]
+    texts = {
+        one.get("aria-label"): [node.text for node in one.iter() if node.tag.endswith("text")]
+        for one in drawn
+    }
+    assert {"place, mm", "limits -500 to 500 mm"} <= set(texts["mx"]) and "angle, deg" not in texts[
+        "mx"
+    ]
     assert "angle, deg" in texts["c (endless)"] and "place, mm" not in texts["c (endless)"]
     assert not any("limits" in text for text in texts["c (endless)"])
     assert "smallest condition" not in page and "Condition of the Jacobian" not in page
 
 
-@pytest.mark.parametrize("machine, motion", [
-    ("table-xyzac", "joint"), ("table-xyzbc", "joint"), ("head-table-xyzbc", "joint"), ("head-xyzab", "joint"),
-    ("table-xyzac", "cartesian"),
-])
+@pytest.mark.parametrize(
+    "machine, motion",
+    [
+        ("table-xyzac", "joint"),
+        ("table-xyzbc", "joint"),
+        ("head-table-xyzbc", "joint"),
+        ("head-xyzab", "joint"),
+        ("table-xyzac", "cartesian"),
+    ],
+)
 def test_sinumerik_texts_of_tables_and_heads(planned, machine, motion):
     def change(text):
-        return (text.replace("linuxcnc", "siemens").replace("motion: joint", f"motion: {motion}")
-                .replace("table-xyzac", machine).replace("layer_height: 2 mm", "layer_height: 8 mm")
-                .replace("travel_speed: 5", "travel_speed: 2" if machine == "head-xyzab" else "travel_speed: 5"))
+        return (
+            text.replace("linuxcnc", "siemens")
+            .replace("motion: joint", f"motion: {motion}")
+            .replace("table-xyzac", machine)
+            .replace("layer_height: 2 mm", "layer_height: 8 mm")
+            .replace(
+                "travel_speed: 5",
+                "travel_speed: 2" if machine == "head-xyzab" else "travel_speed: 5",
+            )
+        )
 
     report, rows, texts, _ = planned(change)
     assert report["status"] == "ok" and all(name.upper() == name for name in texts)
     deposit = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
     lines = [line for name in sorted(texts) for line in texts[name].splitlines() if " G1 " in line]
     if motion == "cartesian":
-        told = [dict(re.findall(r"\b([XYZ]|[ABC]3)=?(-?\d+\.\d+)", line)) for line in lines if "A3=" in line]
-        np.testing.assert_allclose(column(told, "X", "Y", "Z"), column(deposit, "x_mm", "y_mm", "z_mm"), atol=6e-6)
-        np.testing.assert_allclose(column(told, "A3", "B3", "C3"), column(deposit, "tx", "ty", "tz"), atol=6e-7)
+        told = [
+            dict(re.findall(r"\b([XYZ]|[ABC]3)=?(-?\d+\.\d+)", line))
+            for line in lines
+            if "A3=" in line
+        ]
+        np.testing.assert_allclose(
+            column(told, "X", "Y", "Z"), column(deposit, "x_mm", "y_mm", "z_mm"), atol=6e-6
+        )
+        np.testing.assert_allclose(
+            column(told, "A3", "B3", "C3"), column(deposit, "tx", "ty", "tz"), atol=6e-7
+        )
         return
     names = [name for name in rows[0] if name[:2] in ("mx", "my", "mz", "a_", "b_", "c_")]
     moved = column([row for row in rows if row["kind"] == "rapid" or row["point"] != "0"], *names)
@@ -156,8 +199,10 @@ def test_a_wall_on_an_existing_part_on_a_table(workshop, root):
     for name in ("tube-on-pipe.step", "pipe.step"):
         shutil.copy(folder / name, workshop.folder)
     text = (folder / "tube-on-pipe.yaml").read_text(encoding="utf-8").split("cell:")[0]
-    text += ("cell: {machine: table-xyzbc, setup: rotary-table, platform: 80 mm}\nprocess: {travel_speed: 6 mm/s}\n"
-             "program: {post: linuxcnc, motion: cartesian}\n")
+    text += (
+        "cell: {machine: table-xyzbc, setup: rotary-table, platform: 80 mm}\nprocess: {travel_speed: 6 mm/s}\n"
+        "program: {post: linuxcnc, motion: cartesian}\n"
+    )
     (workshop.folder / "bend.yaml").write_text(text, encoding="utf-8")
     done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
@@ -165,13 +210,19 @@ def test_a_wall_on_an_existing_part_on_a_table(workshop, root):
         rows = list(csv.DictReader(stream))
     machine = machines.load("table-xyzbc", ())
     axes = column(rows, "mx_mm", "my_mm", "mz_mm", "b_deg", "c_deg") * machine.unit_values
-    seen = np.linalg.inv(KdlArm(machine).forward(axes))  # the torch's tip from the face of the table
-    np.testing.assert_allclose(seen[:, :3, 3] - [0.0, 0.0, 80.0], column(rows, "x_mm", "y_mm", "z_mm"), atol=1e-5)
+    seen = np.linalg.inv(
+        KdlArm(machine).forward(axes)
+    )  # the torch's tip from the face of the table
+    np.testing.assert_allclose(
+        seen[:, :3, 3] - [0.0, 0.0, 80.0], column(rows, "x_mm", "y_mm", "z_mm"), atol=1e-5
+    )
     np.testing.assert_allclose(seen[:, :3, 2], column(rows, "tx", "ty", "tz"), atol=1e-7)
 
 
 def test_four_axes_are_told_with_what_they_miss(planned):
-    report, rows, _, _ = planned(lambda text: text + "joints:\n  lock: first\n  lock_at: -40 deg\n  max_residual: 50 deg\n")
+    report, rows, _, _ = planned(
+        lambda text: text + "joints:\n  lock: first\n  lock_at: -40 deg\n  max_residual: 50 deg\n"
+    )
     note = next(issue for issue in report["issues"] if issue["code"] == "FOUR_AXES")
     assert note["level"] == "note" and "axis a stands at -40 deg" in note["message"]
     assert set(column(rows, "a_deg")[:, 0].round(6)) == {-40.0}
@@ -181,8 +232,14 @@ def test_four_axes_are_told_with_what_they_miss(planned):
 
 def test_a_part_that_leans_is_refused_before_it_is_planned(workshop, root):
     (workshop.folder / "dome.step").write_text("no part: it is never read", encoding="utf-8")
-    text = ("version: 1\npart: {file: dome.step}\nprogram: {post: linuxcnc, motion: cartesian}\n"
-            "cell: {machine: table-xyzac, setup: rotary-table, platform: [11, -7, 60, 0, 20, 35]}\n")
+    text = (
+        "version: 1\npart: {file: dome.step}\nprogram: {post: linuxcnc, motion: cartesian}\n"
+        "cell: {machine: table-xyzac, setup: rotary-table, platform: [11, -7, 60, 0, 20, 35]}\n"
+    )
     (workshop.folder / "leans.yaml").write_text(text, encoding="utf-8")
     done = workshop.run("plan", "leans.yaml", "-o", "out")
-    assert done.status == 2 and "UNSUPPORTED_FRAME" in done.err and "cell.platform: [11, -7, 60, 0, 0, 35]" in done.err
+    assert (
+        done.status == 2
+        and "UNSUPPORTED_FRAME" in done.err
+        and "cell.platform: [11, -7, 60, 0, 0, 35]" in done.err
+    )

@@ -29,7 +29,9 @@ def test_blades_and_hub_of_3mf_files(workshop):
     blades = mesh(Part.makeBox(59.0, 14.0, 30.0, FreeCAD.Vector(0, -7, 60)))
     blades.addMesh(mesh(Part.makeBox(59.0, 14.0, 30.0, FreeCAD.Vector(-59, -7, 20))))
     blades.write(Filename=str(workshop.folder / "blades.3mf"), Format="3MF")
-    mesh(Part.makeCylinder(30.0, 120.0)).write(Filename=str(workshop.folder / "hub.3mf"), Format="3MF")
+    mesh(Part.makeCylinder(30.0, 120.0)).write(
+        Filename=str(workshop.folder / "hub.3mf"), Format="3MF"
+    )
     (workshop.folder / "hub.yaml").write_text(JOB, encoding="utf-8")
     done = workshop.run("plan", "hub.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
@@ -39,7 +41,10 @@ def test_blades_and_hub_of_3mf_files(workshop):
     away = np.hypot(x, y) - 30.0
     assert np.abs(away - 10.0 * np.rint(away / 10.0)).max() < 1e-5
     assert set(np.rint(away / 10.0).astype(int)) == {0, 1, 2} and np.abs(y).max() < 7.0
-    assert 60.0 < z[x > 0].min() < z[x > 0].max() < 90.0 and 20.0 < z[x < 0].min() < z[x < 0].max() < 50.0
+    assert (
+        60.0 < z[x > 0].min() < z[x > 0].max() < 90.0
+        and 20.0 < z[x < 0].min() < z[x < 0].max() < 50.0
+    )
     assert math.isclose(x.max(), -x.min(), abs_tol=0.5)
     (workshop.folder / "blades.3mf").write_bytes(b"PK")
     done = workshop.run("plan", "hub.yaml", "-o", "out")

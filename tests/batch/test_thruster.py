@@ -30,14 +30,36 @@ class Whole:
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
             lines = csv.reader(stream)
             header = next(lines)
-            names = ("layer", "bead", "point", "x_mm", "y_mm", "z_mm", "speed_mm_s", "tx", "ty", "tz", "width_mm")
+            names = (
+                "layer",
+                "bead",
+                "point",
+                "x_mm",
+                "y_mm",
+                "z_mm",
+                "speed_mm_s",
+                "tx",
+                "ty",
+                "tz",
+                "width_mm",
+            )
             kept = [header.index(name) for name in names]
             kind = header.index("kind")
-            rows = np.array([[row[k] for k in kept] for row in lines if row[kind] == "deposit"], dtype=np.float64)
+            rows = np.array(
+                [[row[k] for k in kept] for row in lines if row[kind] == "deposit"],
+                dtype=np.float64,
+            )
         self.layer, self.bead, self.point = rows[:, :3].astype(int).T
-        self.places, self.speed, self.tool, self.width = rows[:, 3:6], rows[:, 6], rows[:, 7:10], rows[:, 10]
+        self.places, self.speed, self.tool, self.width = (
+            rows[:, 3:6],
+            rows[:, 6],
+            rows[:, 7:10],
+            rows[:, 10],
+        )
         self.page = (out / "report.html").read_text(encoding="utf-8")
-        self.texts = {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
+        self.texts = {
+            path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()
+        }
 
     def away(self, places):
         """Distance of places (n, 3) from the three bases: (3, n)."""
@@ -60,7 +82,9 @@ def check_levels(whole):
     for k, (_, diameter) in enumerate(HUBS):
         mine = hub == k
         layers = sorted(set(zip(whole.layer[mine].tolist(), level[mine].tolist(), strict=True)))
-        assert [number for _, number in layers] == list(range(len(layers)))  # each once, and from the hub outwards
+        assert [number for _, number in layers] == list(
+            range(len(layers))
+        )  # each once, and from the hub outwards
         mean = np.array([away[mine & (whole.layer == layer)].mean() for layer, _ in layers])
         assert np.abs(np.diff(mean) - whole.height).max() < 1e-6
         tip = np.hypot(*whole.places[mine, :2].T).max()
@@ -92,15 +116,23 @@ def check_outlines(whole):
         for layer in np.unique(whole.layer[hub == k])[:2]:
             mine = np.flatnonzero(whole.layer == layer)
             last = whole.bead[mine].max()
-            means = [whole.places[mine[whole.bead[mine] == last - back], :2].mean(axis=0) for back in range(6)]
+            means = [
+                whole.places[mine[whole.bead[mine] == last - back], :2].mean(axis=0)
+                for back in range(6)
+            ]
             turn = [math.atan2(y, x) for x, y in means]
-            np.testing.assert_allclose(np.remainder(-np.diff(turn), 2.0 * math.pi), math.pi / 3.0, atol=0.1)
+            np.testing.assert_allclose(
+                np.remainder(-np.diff(turn), 2.0 * math.pi), math.pi / 3.0, atol=0.1
+            )
 
 
 def check_program(whole):
     """All deposit of the texts, in the order of the parts: the places, directions and speeds of waypoints.csv."""
     number = r"=?(-?\d+\.?\d*)"
-    asked = re.compile(" ".join(f"{word}{number}" for word in ("X", "Y", "Z", "A3", "B3", "C3")) + rf"(?:.* F{number})?")
+    asked = re.compile(
+        " ".join(f"{word}{number}" for word in ("X", "Y", "Z", "A3", "B3", "C3"))
+        + rf"(?:.* F{number})?"
+    )
     told, feed = [], math.nan
     for name in sorted(whole.texts):
         if name.endswith(".SPF"):
@@ -116,20 +148,32 @@ def check_program(whole):
     np.testing.assert_allclose(told[:, 6] / 60.0, whole.speed[moves], rtol=1e-4)
 
 
-@pytest.fixture(scope="module", params=[COARSE, pytest.param(SHIPPED, marks=pytest.mark.long)], ids=["coarse", "shipped"])
+@pytest.fixture(
+    scope="module",
+    params=[COARSE, pytest.param(SHIPPED, marks=pytest.mark.long)],
+    ids=["coarse", "shipped"],
+)
 def whole(request, tmp_path_factory, root):
     folder = tmp_path_factory.mktemp("thruster")
     shutil.copytree(root / "resources" / "examples" / "thruster", folder / "thruster")
     job = folder / "thruster" / "thruster.yaml"
     text = job.read_text(encoding="utf-8")
-    for key, shipped, asked in zip(("layer_height", "chord_error"), SHIPPED, request.param, strict=False):
+    for key, shipped, asked in zip(
+        ("layer_height", "chord_error"), SHIPPED, request.param, strict=False
+    ):
         assert f"  {key}: {shipped:g} mm\n" in text
         text = text.replace(f"  {key}: {shipped:g} mm\n", f"  {key}: {asked:g} mm\n")
     job.write_text(text, encoding="utf-8")
     words = ["plan", str(job), "-o", str(folder / "out")]
     done = subprocess.run(
-        [str(root / "freecad-am"), *words], cwd=folder, capture_output=True, text=True, encoding="utf-8", check=False,
-        stdin=subprocess.DEVNULL, env={**os.environ, "FREECAD_USER_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"},
+        [str(root / "freecad-am"), *words],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
+        stdin=subprocess.DEVNULL,
+        env={**os.environ, "FREECAD_USER_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"},
         timeout=1800,  # a minute of work, on a machine that may be busy
     )
     assert done.returncode == 0, done.stderr

@@ -34,8 +34,11 @@ CAMERA = ((0.0, -15.0, -100.0), (120.0, 30.0, 25.0))
 
 @pytest.fixture
 def shop(workshop):
-    workshop.write_job(workshop.text.replace("cell:\n  limits: paper\n  platform_diameter: 100 mm\n", CELL).replace(
-        "layer_height: 4 mm", "layer_height: 15 mm").replace("cell:", "build_direction: {mode: fixed}\ncell:"))
+    workshop.write_job(
+        workshop.text.replace("cell:\n  limits: paper\n  platform_diameter: 100 mm\n", CELL)
+        .replace("layer_height: 4 mm", "layer_height: 15 mm")
+        .replace("cell:", "build_direction: {mode: fixed}\ncell:")
+    )
     torch(NECK, CAMERA).exportStep(str(workshop.folder / "torch.step"))
     return workshop
 
@@ -47,29 +50,41 @@ def test_a_job_with_a_torch(shop):
     done = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     # as a wide shield it cannot but be near the platform that it deposits on
-    torch(NECK, ((-400.0, -400.0, -95.0), (800.0, 800.0, 20.0)), ((-400.0, -400.0, -95.0), (20.0, 800.0, 100.0))).exportStep(
-        str(shop.folder / "torch.step"))
+    torch(
+        NECK,
+        ((-400.0, -400.0, -95.0), (800.0, 800.0, 20.0)),
+        ((-400.0, -400.0, -95.0), (20.0, 800.0, 100.0)),
+    ).exportStep(str(shop.folder / "torch.step"))
     done = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
     assert done.status == 2 and "reaches 5 mm beyond its origin" in done.err, done.err
-    torch(NECK, ((-400.0, -400.0, -95.0), (800.0, 800.0, 20.0)), ((-400.0, -400.0, -75.0), (20.0, 800.0, 20.0))).exportStep(
-        str(shop.folder / "torch.step"))
+    torch(
+        NECK,
+        ((-400.0, -400.0, -95.0), (800.0, 800.0, 20.0)),
+        ((-400.0, -400.0, -75.0), (20.0, 800.0, 20.0)),
+    ).exportStep(str(shop.folder / "torch.step"))
     shop.write_job(shop.job.read_text().replace("60 mm", "40 mm"))
     done = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
     assert done.status == 3, done.err
     issues = json.loads((shop.folder / "out" / "report.json").read_text())["issues"]
     near = [issue["message"] for issue in issues if issue["code"] == "ARM_CLEARANCE"]
-    assert any(message.startswith("the torch comes nearer than 10 mm to ") or " to torch" in message for message in near)
+    assert any(
+        message.startswith("the torch comes nearer than 10 mm to ") or " to torch" in message
+        for message in near
+    )
 
 
-@pytest.mark.parametrize(("shape", "says"), [
-    ("none.step", "error[NO_FILE] cup.yaml: cell.nozzle.shape: there is no file"),
-    ("{file: none.step}", "error[NO_FILE] cup.yaml: cell.nozzle.shape.file: there is no file"),
-    ("{path: torch.step}", "error[UNKNOWN_KEY] cup.yaml: cell.nozzle.shape.path"),
-    ("cup.yaml", "error[UNSUPPORTED_FILE] cup.yaml: cell.nozzle.shape"),
-    ("open.stl", "error[TORCH] cup.yaml: cell.nozzle.shape: it is open"),
-    ("far.step", "error[TORCH] cup.yaml: cell.nozzle.shape: it is 200 mm from its origin"),
-    ("[1]", "error[BAD_VALUE] cup.yaml: cell.nozzle.shape"),
-])
+@pytest.mark.parametrize(
+    ("shape", "says"),
+    [
+        ("none.step", "error[NO_FILE] cup.yaml: cell.nozzle.shape: there is no file"),
+        ("{file: none.step}", "error[NO_FILE] cup.yaml: cell.nozzle.shape.file: there is no file"),
+        ("{path: torch.step}", "error[UNKNOWN_KEY] cup.yaml: cell.nozzle.shape.path"),
+        ("cup.yaml", "error[UNSUPPORTED_FILE] cup.yaml: cell.nozzle.shape"),
+        ("open.stl", "error[TORCH] cup.yaml: cell.nozzle.shape: it is open"),
+        ("far.step", "error[TORCH] cup.yaml: cell.nozzle.shape: it is 200 mm from its origin"),
+        ("[1]", "error[BAD_VALUE] cup.yaml: cell.nozzle.shape"),
+    ],
+)
 def test_what_is_refused(shop, shape, says):
     sides = Mesh.createBox(10.0, 10.0, 40.0)
     sides.removeFacets([0])
@@ -83,7 +98,9 @@ def test_what_is_refused(shop, shape, says):
 
 
 def test_a_document_notices_and_a_saved_cell_keeps_it(shop, doc):
-    cell = api.make_cell(doc, nozzle_shape=str(shop.folder / "torch.step"), nozzle_half_angle=30, nozzle_diameter=10)
+    cell = api.make_cell(
+        doc, nozzle_shape=str(shop.folder / "torch.step"), nozzle_half_angle=30, nozzle_diameter=10
+    )
     assert cell.Status == "up to date", cell.Message
     torch(((-6.0, -6.0, -300.0), (12.0, 12.0, 100.0))).exportStep(str(shop.folder / "torch.step"))
     cell.touch()

@@ -23,13 +23,23 @@ TOOL = (120.0, 0.0, 200.0, 0.0, 45.0, 0.0)
 def shop(workshop):
     def with_points(told, tolerance="1 mm"):
         cell = {
-            "setup": "tool-on-robot", "deposition_point": [900, 0, -100, 0, 0, 0], "platform_diameter": "100 mm",
-            "nozzle": {"tool": list(TOOL)}, "branch": ["front", "up", "flip"], "mount": "part",
-            "touched": told, "touched_tolerance": tolerance,
+            "setup": "tool-on-robot",
+            "deposition_point": [900, 0, -100, 0, 0, 0],
+            "platform_diameter": "100 mm",
+            "nozzle": {"tool": list(TOOL)},
+            "branch": ["front", "up", "flip"],
+            "mount": "part",
+            "touched": told,
+            "touched_tolerance": tolerance,
         }
-        text = workshop.text.replace("cell:\n  limits: paper\n  platform_diameter: 100 mm\n", f"cell: {json.dumps(cell)}\n")
-        workshop.write_job(text.replace("layer_height: 4 mm", "layer_height: 20 mm").replace(
-            "cell:", "build_direction: {mode: fixed}\ncell:"))
+        text = workshop.text.replace(
+            "cell:\n  limits: paper\n  platform_diameter: 100 mm\n", f"cell: {json.dumps(cell)}\n"
+        )
+        workshop.write_job(
+            text.replace("layer_height: 4 mm", "layer_height: 20 mm").replace(
+                "cell:", "build_direction: {mode: fixed}\ncell:"
+            )
+        )
         return workshop
 
     return with_points
@@ -37,12 +47,22 @@ def shop(workshop):
 
 def test_what_is_written_stands_where_it_was_touched(shop):
     """The tip at every row, by PyKDL from the joints that are written, is the moved point of the part."""
-    robot = PART @ MOVED[:3, :3].T + MOVED[:3, 3] + np.array([[0.0, 0.0, 0.2], [0.0, 0.0, -0.2], [0.0, 0.0, 0.0], [0.0] * 3])
-    told = [{"part": one, "robot": other} for one, other in zip(PART.tolist(), robot.tolist(), strict=True)]
+    robot = (
+        PART @ MOVED[:3, :3].T
+        + MOVED[:3, 3]
+        + np.array([[0.0, 0.0, 0.2], [0.0, 0.0, -0.2], [0.0, 0.0, 0.0], [0.0] * 3])
+    )
+    told = [
+        {"part": one, "robot": other}
+        for one, other in zip(PART.tolist(), robot.tolist(), strict=True)
+    ]
     done = shop(told).run("plan", "cup.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     out = shop(told).folder / "out"
-    issues = {issue["code"]: issue["message"] for issue in json.loads((out / "report.json").read_text())["issues"]}
+    issues = {
+        issue["code"]: issue["message"]
+        for issue in json.loads((out / "report.json").read_text())["issues"]
+    }
     assert issues["WORK_OFFSET"].startswith("by 4 touched points the part's coordinates are at [9")
     with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
@@ -57,21 +77,33 @@ def test_what_is_written_stands_where_it_was_touched(shop):
     assert 0.001 < worst < 0.6  # what was touched is 0.2 mm off at two points
 
 
-@pytest.mark.parametrize(("told", "says"), [
-    ([{"part": [0, 0, 0], "robot": [1, 2, 3]}], "error[TOUCHED] cup.yaml: cell.touched: 1 point"),
-    ([{"part": [0, 0, 0]}], "error[BAD_VALUE] cup.yaml: cell.touched[0].robot"),
-    ([{"part": [0, 0], "robot": [1, 2, 3]}], "error[BAD_VALUE] cup.yaml: cell.touched[0].part"),
-    ([{"parts": [0, 0, 0], "robot": [1, 2, 3]}], "error[UNKNOWN_KEY] cup.yaml: cell.touched[0].parts"),
-    ("0 0 = 1 2 3", "error[BAD_VALUE] cup.yaml: cell.touched: "),
-    (3, "error[BAD_VALUE] cup.yaml: cell.touched"),
-])
+@pytest.mark.parametrize(
+    ("told", "says"),
+    [
+        (
+            [{"part": [0, 0, 0], "robot": [1, 2, 3]}],
+            "error[TOUCHED] cup.yaml: cell.touched: 1 point",
+        ),
+        ([{"part": [0, 0, 0]}], "error[BAD_VALUE] cup.yaml: cell.touched[0].robot"),
+        ([{"part": [0, 0], "robot": [1, 2, 3]}], "error[BAD_VALUE] cup.yaml: cell.touched[0].part"),
+        (
+            [{"parts": [0, 0, 0], "robot": [1, 2, 3]}],
+            "error[UNKNOWN_KEY] cup.yaml: cell.touched[0].parts",
+        ),
+        ("0 0 = 1 2 3", "error[BAD_VALUE] cup.yaml: cell.touched: "),
+        (3, "error[BAD_VALUE] cup.yaml: cell.touched"),
+    ],
+)
 def test_what_says_nothing_is_refused(shop, told, says):
     done = shop(told).run("plan", "cup.yaml", "-o", "out")
     assert done.status == 2 and done.err.startswith(says), done.err
 
 
 def test_a_saved_cell_keeps_them(shop, tmp_path):
-    made = shop([{"part": one, "robot": [x + 900.25, y, z]} for one in PART.tolist() for x, y, z in [one]], "0.5 mm")
+    made = shop(
+        [{"part": one, "robot": [x + 900.25, y, z]} for one in PART.tolist() for x, y, z in [one]],
+        "0.5 mm",
+    )
     section = json.loads(made.job.read_text().split("cell: ")[1].split("\n")[0])
     cell = job_cell.read(section, str(made.job.parent))
     (tmp_path / "hall.yaml").write_text(cell_file.text(cell, str(tmp_path)), encoding="utf-8")

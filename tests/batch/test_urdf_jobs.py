@@ -46,12 +46,23 @@ def test_a_job_on_a_urdf_moves_as_on_the_machine_file(planned, workshop):
 
 def test_a_robot_with_its_track_is_refused_and_told_where_the_robot_begins(planned, workshop):
     """It was taken for a five-axis machine, whatever else was chosen. The remedy that is told is one."""
-    (workshop.folder / "rail.urdf").write_text(on_track((workshop.folder / "arm.urdf").read_text()), encoding="utf-8")
+    (workshop.folder / "rail.urdf").write_text(
+        on_track((workshop.folder / "arm.urdf").read_text()), encoding="utf-8"
+    )
     for name in ("rail.urdf", "rail.urdf, setup: tool-on-robot"):
         done = planned(name)
-        assert done.status == 2 and "error[NO_CLOSED_FORM] cup.yaml: cell.machine: rail.urdf" in done.err
-        assert "rail.urdf from base_link to tool0: this cannot be planned for: its first axis slides" in done.err
-        assert "`cell.external` with `carries: robot`; the robot begins at the link 'carriage'" in done.err
+        assert (
+            done.status == 2
+            and "error[NO_CLOSED_FORM] cup.yaml: cell.machine: rail.urdf" in done.err
+        )
+        assert (
+            "rail.urdf from base_link to tool0: this cannot be planned for: its first axis slides"
+            in done.err
+        )
+        assert (
+            "`cell.external` with `carries: robot`; the robot begins at the link 'carriage'"
+            in done.err
+        )
     alone = planned("{file: rail.urdf, base: carriage}")
     assert alone.status == 0, alone.err
     rows = workshop.files()["waypoints.csv"]
@@ -64,23 +75,40 @@ def test_a_mirrored_mesh_is_told_in_the_job_and_changes_no_path(planned, worksho
     rows = workshop.files()["waypoints.csv"]
     (workshop.folder / "hand.stl").touch()
     mesh = '<visual><geometry><mesh filename="hand.stl" scale="1 1 -1"/></geometry></visual>'
-    text = (workshop.folder / "arm.urdf").read_text().replace('<link name="link_6"/>', f'<link name="link_6">{mesh}</link>')
+    text = (
+        (workshop.folder / "arm.urdf")
+        .read_text()
+        .replace('<link name="link_6"/>', f'<link name="link_6">{mesh}</link>')
+    )
     (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
     done = planned("arm.urdf")
     assert done.status == 0 and "note[URDF_LOOKS]" in done.err
-    assert "hand.stl is mirrored or flat by its scale 1 1 -1" in done.err and "link_6 is drawn plain" in done.err
+    assert (
+        "hand.stl is mirrored or flat by its scale 1 1 -1" in done.err
+        and "link_6 is drawn plain" in done.err
+    )
     assert workshop.files()["waypoints.csv"] == rows
 
 
 def test_a_program_is_refused_for_a_controller_that_a_urdf_does_not_tell_of(planned):
     done = planned("arm.urdf", "fanuc")
-    assert done.status == 2 and "does not say what the controller shows; plan without a program" in done.err
+    assert (
+        done.status == 2
+        and "does not say what the controller shows; plan without a program" in done.err
+    )
 
 
 def test_an_arm_without_a_closed_form_is_refused_with_the_reason(planned, workshop):
-    text = (workshop.folder / "arm.urdf").read_text().replace('xyz="0.835 0.0 0.0"', 'xyz="0.835 0.0 0.02"')
+    text = (
+        (workshop.folder / "arm.urdf")
+        .read_text()
+        .replace('xyz="0.835 0.0 0.0"', 'xyz="0.835 0.0 0.02"')
+    )
     (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
     done = planned("arm.urdf")
     assert done.status == 2 and "error[NO_CLOSED_FORM]" in done.err
-    assert "arm.urdf from base_link to tool0: this cannot be planned for: neither is the wrist spherical nor do" in done.err
+    assert (
+        "arm.urdf from base_link to tool0: this cannot be planned for: neither is the wrist spherical nor do"
+        in done.err
+    )
     assert "axes 4 and 5 meet" in done.err

@@ -14,8 +14,15 @@ from tests.swept_beads import Cone, Swept
 CHORD = 0.01  # mm, the chord error of the jobs
 FINE = 2e-5  # mm, at which chords stand for the curve
 TOLERANCE = 1e-4  # mm, of the local distance
-NOZZLE_TIP, NOZZLE_ANGLE = 0.5, np.radians(20.0)  # mm, rad; radius of the tip, half the cone's angle
-BEND, TUBE, PIPE = 60.0, 15.0, 32.0  # mm, radii of the bend of the paper, of its tube and of the pipe
+NOZZLE_TIP, NOZZLE_ANGLE = (
+    0.5,
+    np.radians(20.0),
+)  # mm, rad; radius of the tip, half the cone's angle
+BEND, TUBE, PIPE = (
+    60.0,
+    15.0,
+    32.0,
+)  # mm, radii of the bend of the paper, of its tube and of the pipe
 TURN = 30.0  # deg/mm, the largest turn of the build direction, build_direction.max_turn
 
 
@@ -59,7 +66,9 @@ def test_a_platform_of_an_example_is_under_what_it_carries(job, plans):
     settings = yaml.safe_load(plans.text(job))
     cell, path = settings["cell"], (plans.folder / job).parent / settings["substrate"]["file"]
     box = wall_checks.bounds(path)
-    beside = np.hypot(*np.maximum(np.abs((box[0] + box[1])[:2] / 2.0) - (box[1] - box[0])[:2] / 2.0, 0.0))
+    beside = np.hypot(
+        *np.maximum(np.abs((box[0] + box[1])[:2] / 2.0) - (box[1] - box[0])[:2] / 2.0, 0.0)
+    )
     diameter = float(str(cell.get("platform_diameter", "113 mm")).split()[0])
     assert diameter == 0.0 or (2.0 * beside < diameter and abs(box[0, 2]) < 1.0)
 
@@ -69,7 +78,14 @@ def test_jobs_with_a_cell_end_in_a_verified_program(example, planned):
     assert bool(planned.report["programs"]) == example.has_cell
     if example.has_cell:
         assert planned.report["joints"]["feasible"] is True
-        assert min(margin for margin in planned.report["joints"]["limit_margin_deg"] if margin is not None) > 0.0
+        assert (
+            min(
+                margin
+                for margin in planned.report["joints"]["limit_margin_deg"]
+                if margin is not None
+            )
+            > 0.0
+        )
 
 
 def test_points_lie_on_the_wall(planned, exact, wall):
@@ -82,7 +98,9 @@ def test_the_first_layer_lies_on_the_substrate(example, planned, exact):
     for run, error in ((planned, CHORD), (exact, TOLERANCE)):
         for bead in run.layers[0]:
             assert np.abs(example.depth(bead.points)).max() <= error + example.substrate_error
-    assert all(example.depth(bead.points).min() > 0.0 for layer in exact.layers[2:] for bead in layer)
+    assert all(
+        example.depth(bead.points).min() > 0.0 for layer in exact.layers[2:] for bead in layer
+    )
 
 
 def test_layers_are_at_the_layer_height_everywhere(example, exact):
@@ -110,7 +128,9 @@ def test_beads_lie_on_what_was_deposited_before(example, exact):
 def test_seams_follow_one_another(example, planned):
     """Their step is the layer height, and more where the front itself takes longer steps up the lines of the wall."""
     steps = wall_checks.seam_steps(planned)
-    assert steps.size == 0 or (steps.min() >= example.height - CHORD and steps.max() <= 1.75 * example.height)
+    assert steps.size == 0 or (
+        steps.min() >= example.height - CHORD and steps.max() <= 1.75 * example.height
+    )
 
 
 def test_build_directions_are_continuous(planned):
@@ -132,21 +152,37 @@ def deepest_in_deposit(example, planned, points, step):
     Beads that close gaps stand in what they close, nearer to it than a layer height: they are left out, as many as are told.
     """
     assert planned.report["process"]["bead_width_counted_mm"] == 8.0
-    laid = Swept([
-        (one.points, one.build, np.full(len(one.points), 8.0), np.full(len(one.points), example.height), one.layer)
-        for one in planned.passes
-    ], step)
+    laid = Swept(
+        [
+            (
+                one.points,
+                one.build,
+                np.full(len(one.points), 8.0),
+                np.full(len(one.points), example.height),
+                one.layer,
+            )
+            for one in planned.passes
+        ],
+        step,
+    )
     cone = Cone(NOZZLE_TIP, NOZZLE_ANGLE, 60.0)
     low, deepest, closing = cone.clear_of(example.height, 0.0), -np.inf, 0
     for k, one in enumerate(planned.passes):
         if one.layer:
             below = [other.points for other in planned.layers[one.layer - 1]]
-            if (wall_checks.nearest(one.points, below).distance < 0.99 * example.height).mean() > 0.9:
+            if (
+                wall_checks.nearest(one.points, below).distance < 0.99 * example.height
+            ).mean() > 0.9:
                 closing += 1
                 continue
-        for j in np.unique(np.linspace(0, len(one.points) - 1, min(points, len(one.points))).astype(int)):
+        for j in np.unique(
+            np.linspace(0, len(one.points) - 1, min(points, len(one.points))).astype(int)
+        ):
             number = laid.begin[k] + j + 1
-            deepest = max(deepest, laid.deepest(one.points[j], one.tool[j], number, laid.layer_began(k), cone, low))
+            deepest = max(
+                deepest,
+                laid.deepest(one.points[j], one.tool[j], number, laid.layer_began(k), cone, low),
+            )
     told = [issue["message"] for issue in planned.report["issues"] if issue["code"] == "CLOSING"]
     assert closing == sum(int(message.split()[0]) for message in told)
     return deepest
@@ -178,7 +214,9 @@ def test_the_nozzle_keeps_clear_of_beads_as_wide_as_they_are_at_all_points(examp
 def test_the_bend_grows_on_the_pipe_as_in_the_paper(plans):
     made = plans.plan("tube-on-pipe")
     assert made.report["counts"]["layers"] == 15  # the 16th of the errata lies wholly past the end
-    assert made.report["joints"]["feasible"] is True and made.report["programs"] == ["program/TUBE_ON_PIPE.LS"]
+    assert made.report["joints"]["feasible"] is True and made.report["programs"] == [
+        "program/TUBE_ON_PIPE.LS"
+    ]
     x, y, z = made.points.T
     off = np.hypot(np.hypot(x + BEND, z) - BEND, y) - TUBE
     assert np.abs(off).max() < 0.0105  # the chord error, for planning adds points on the chords
@@ -186,7 +224,9 @@ def test_the_bend_grows_on_the_pipe_as_in_the_paper(plans):
     assert np.abs(np.hypot(first[:, 0], first[:, 2]) - PIPE).max() < 0.0105
     assert np.arctan2(z, x + BEND).max() <= 0.5 * np.pi + 1e-6
     tool = np.concatenate([one.tool for one in made.passes])
-    assert np.abs(tool[:, 1]).max() < 1e-9 and np.degrees(np.arccos(tool[:, 2].min())) <= 85.0 + 1e-6
+    assert (
+        np.abs(tool[:, 1]).max() < 1e-9 and np.degrees(np.arccos(tool[:, 2].min())) <= 85.0 + 1e-6
+    )
 
 
 def test_the_half_shell_is_deposited_to_and_fro(plans):
@@ -209,7 +249,9 @@ def test_the_front_of_the_branched_tube_splits_in_two(plans):
 
 def test_a_mesh_serves_as_well_as_the_solid(plans):
     solid = plans.plan("tube-on-pipe", plans.exact(plans.text("tube-on-pipe"), FINE))
-    mesh = plans.plan("walls/tube-on-scanned-pipe", plans.exact(plans.text("walls/tube-on-scanned-pipe"), FINE))
+    mesh = plans.plan(
+        "walls/tube-on-scanned-pipe", plans.exact(plans.text("walls/tube-on-scanned-pipe"), FINE)
+    )
     assert len(mesh.layers) == len(solid.layers) == 15
     for one, other in zip(mesh.layers, solid.layers):
         assert wall_checks.nearest(one[0].points, [other[0].points]).distance.max() <= 0.05

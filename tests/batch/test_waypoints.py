@@ -13,8 +13,10 @@ from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.simulation import deposit, waypoints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
-COLUMNS = ("layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm,"
-           "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,class")
+COLUMNS = (
+    "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm,"
+    "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,class"
+)
 AXES = tuple(f"q{i}" for i in range(1, 7))
 
 
@@ -30,9 +32,17 @@ def random_motion(n, seed=3):
     width = rng.uniform(5, 9, n)
     width[::2] = np.nan
     return Motion(
-        deposit=rng.random(n) < 0.8, layer=np.sort(rng.integers(0, 70, n)), bead=rng.integers(0, 3, n),
-        point=np.arange(n), position=rng.normal(size=(n, 3)) * 300, build=units(), tool=units(),
-        speed=rng.uniform(1, 100, n), width=width, joints=joints, duration=rng.uniform(0, 1, n),
+        deposit=rng.random(n) < 0.8,
+        layer=np.sort(rng.integers(0, 70, n)),
+        bead=rng.integers(0, 3, n),
+        point=np.arange(n),
+        position=rng.normal(size=(n, 3)) * 300,
+        build=units(),
+        tool=units(),
+        speed=rng.uniform(1, 100, n),
+        width=width,
+        joints=joints,
+        duration=rng.uniform(0, 1, n),
     )
 
 
@@ -56,9 +66,15 @@ def test_reads_back_to_the_motion(count):
     np.testing.assert_allclose(column("x_mm", "y_mm", "z_mm"), motion.position, atol=5.1e-7)
     np.testing.assert_allclose(column("bx", "by", "bz"), motion.build, atol=1e-9)
     np.testing.assert_allclose(column("tx", "ty", "tz"), motion.tool, atol=1e-9)
-    np.testing.assert_allclose(column("speed_mm_s", "width_mm"), np.c_[motion.speed, motion.width], atol=5.1e-7)
-    np.testing.assert_allclose(np.radians(column(*(f"{a}_deg" for a in AXES))), motion.joints, atol=1e-8)
-    numbers = [cell for name in COLUMNS.split(",")[4:] for cell in (rows[0][name], rows[-1][name]) if cell]
+    np.testing.assert_allclose(
+        column("speed_mm_s", "width_mm"), np.c_[motion.speed, motion.width], atol=5.1e-7
+    )
+    np.testing.assert_allclose(
+        np.radians(column(*(f"{a}_deg" for a in AXES))), motion.joints, atol=1e-8
+    )
+    numbers = [
+        cell for name in COLUMNS.split(",")[4:] for cell in (rows[0][name], rows[-1][name]) if cell
+    ]
     assert all(len(cell.partition(".")[2]) >= 6 for cell in numbers)
 
 
@@ -67,14 +83,21 @@ def test_the_last_column_is_the_class_whatever_comes_before():
     number = np.random.default_rng(4).integers(-1, len(CLASSES), 500)
     for more in ({}, {"wire": np.full(500, 2.0)}):
         changed = dataclasses.replace(motion, bead_class=number, **more)
-        rows = [line.rpartition(",")[2] for line in "".join(waypoints.text(changed, AXES)).splitlines()]
+        rows = [
+            line.rpartition(",")[2] for line in "".join(waypoints.text(changed, AXES)).splitlines()
+        ]
         assert rows == ["class", *(CLASSES[one] if one >= 0 else "" for one in number)]
 
 
 def test_no_negative_zero():
     motion = random_motion(2)
-    small = Motion(**{**{f: getattr(motion, f).copy() for f in motion.__dataclass_fields__},
-                      "position": np.full((2, 3), -1e-9), "joints": np.full((2, 6), -1e-12)})
+    small = Motion(
+        **{
+            **{f: getattr(motion, f).copy() for f in motion.__dataclass_fields__},
+            "position": np.full((2, 3), -1e-9),
+            "joints": np.full((2, 6), -1e-12),
+        }
+    )
     assert "-0.0000" not in "".join(waypoints.text(small, AXES))
 
 
@@ -86,13 +109,21 @@ def test_without_a_cell_the_deposit_alone():
         up = np.tile([0.0, 0.0, 1.0], (13, 1))
         return Bead(points, up, up, angle, np.full(13, 6.0), closed)
 
-    path = Toolpath((Layer((bead(0.0, True),)), Layer((bead(1.0, True), bead(1.5, True)))), np.eye(4), 1.0, 0.01)
+    path = Toolpath(
+        (Layer((bead(0.0, True),)), Layer((bead(1.0, True), bead(1.5, True)))), np.eye(4), 1.0, 0.01
+    )
     motion = deposit.alone(path)
     rows = list(csv.DictReader(io.StringIO("".join(waypoints.text(motion)))))
-    assert list(rows[0]) == [*COLUMNS.split(",")[:15], "class"] and {row["class"] for row in rows} == {""}
+    assert list(rows[0]) == [*COLUMNS.split(",")[:15], "class"] and {
+        row["class"] for row in rows
+    } == {""}
     assert [(r["layer"], r["bead"], r["point"]) for r in rows] == [
         (str(i), str(j), str(k)) for i, j in ((0, 0), (1, 0), (1, 1)) for k in range(13)
     ]
     assert motion.total_time == pytest.approx(path.length / 6.0)
     first, last = rows[13], rows[25]
-    assert (first["x_mm"], first["y_mm"], first["z_mm"]) == (last["x_mm"], last["y_mm"], last["z_mm"])
+    assert (first["x_mm"], first["y_mm"], first["z_mm"]) == (
+        last["x_mm"],
+        last["y_mm"],
+        last["z_mm"],
+    )

@@ -44,7 +44,10 @@ class Planned:
     @cached_property
     def layers(self):
         """The beads of each layer."""
-        return [[one for one in self.passes if one.layer == layer] for layer in range(self.passes[-1].layer + 1)]
+        return [
+            [one for one in self.passes if one.layer == layer]
+            for layer in range(self.passes[-1].layer + 1)
+        ]
 
     @cached_property
     def points(self):
@@ -64,7 +67,12 @@ def read(folder: Path) -> Planned:
     values = np.array([line[first : last + 1] for line in rows], dtype=float)
     starts = np.flatnonzero(np.any(np.diff(bead, axis=0, prepend=-1), axis=1))
     passes = [
-        Pass(int(bead[start, 0]), values[start:end, :3], values[start:end, 3:6], values[start:end, 6:])
+        Pass(
+            int(bead[start, 0]),
+            values[start:end, :3],
+            values[start:end, 3:6],
+            values[start:end, 6:],
+        )
         for start, end in zip(starts, [*starts[1:], len(rows)], strict=True)
     ]
     return Planned(report, passes)
@@ -113,7 +121,12 @@ def _dense(line: np.ndarray, longest: float) -> np.ndarray:
     kept = np.r_[True, np.diff(length) > 0.0]
     line, length = line[kept], length[kept]
     counts = np.ceil(np.diff(length) / longest).astype(int)
-    at = np.concatenate([length[:1], *(np.linspace(s, e, n + 1)[1:] for s, e, n in zip(length[:-1], length[1:], counts))])
+    at = np.concatenate(
+        [
+            length[:1],
+            *(np.linspace(s, e, n + 1)[1:] for s, e, n in zip(length[:-1], length[1:], counts)),
+        ]
+    )
     return np.column_stack([np.interp(at, length, line[:, axis]) for axis in range(3)])
 
 
@@ -165,19 +178,30 @@ def turn_rate(planned: Planned) -> float:
         total = np.r_[0.0, np.cumsum(turn)]
         if length[-1] > 1.0:
             at = np.arange(0.0, length[-1] - 1.0, 0.25)
-            rate = max(rate, float((np.interp(at + 1.0, length, total) - np.interp(at, length, total)).max()))
+            rate = max(
+                rate,
+                float((np.interp(at + 1.0, length, total) - np.interp(at, length, total)).max()),
+            )
     return rate
 
 
 def seam_steps(planned: Planned) -> np.ndarray:
     """Distances between the starts of beads of consecutive layers that are one closed bead each."""
     pairs = zip(planned.layers, planned.layers[1:], strict=False)
-    starts = [(low[0], high[0]) for low, high in pairs if len(low) == len(high) == 1 and low[0].closed and high[0].closed]
+    starts = [
+        (low[0], high[0])
+        for low, high in pairs
+        if len(low) == len(high) == 1 and low[0].closed and high[0].closed
+    ]
     return np.array([np.linalg.norm(high.points[0] - low.points[0]) for low, high in starts])
 
 
 def nozzle_depth(
-    one: Pass, depth: Callable[[np.ndarray], np.ndarray], tip: float, length: float, half_angle: float
+    one: Pass,
+    depth: Callable[[np.ndarray], np.ndarray],
+    tip: float,
+    length: float,
+    half_angle: float,
 ) -> float:
     """How far the nozzle, a cone (mm, rad) around the tool axes of a bead, stays away from the substrate; less than
     nothing inside of it."""
@@ -218,7 +242,11 @@ class Wall:
         """Points all over the faces, about `step` apart, that are not in the substrate."""
         points = np.concatenate([_face_samples(face, step) for face in self.shape.Faces])
         # slivers of a tessellation have hundreds of times as many: one in each cube of a fifth of the step
-        points = points[np.unique(np.floor(points / (0.2 * step)).astype(np.int64), axis=0, return_index=True)[1]]
+        points = points[
+            np.unique(np.floor(points / (0.2 * step)).astype(np.int64), axis=0, return_index=True)[
+                1
+            ]
+        ]
         return points[self.depth(points) > 0.0]
 
     def end_edges(self, step: float) -> np.ndarray:

@@ -59,23 +59,50 @@ class Example:
 
 EXAMPLES = (
     Example("tube-on-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), has_cell=True),
-    Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 8.0, cone, spacing_error=1e-3, thicker=True),
     Example(
-        "walls/half-shell-on-rod", "walls/half shell.step", 4.0, rod(150.0, 40.0, 30.0), has_cell=True, spacing_error=1e-3
+        "walls/spatial-pipe-on-cone",
+        "walls/spatial-pipe.step",
+        8.0,
+        cone,
+        spacing_error=1e-3,
+        thicker=True,
+    ),
+    Example(
+        "walls/half-shell-on-rod",
+        "walls/half shell.step",
+        4.0,
+        rod(150.0, 40.0, 30.0),
+        has_cell=True,
+        spacing_error=1e-3,
     ),
 )
 LONG = (
-    Example("walls/elbow-on-block", "walls/elbow.step", 4.0, sloping_block, has_cell=True, spacing_error=1e-3),
+    Example(
+        "walls/elbow-on-block",
+        "walls/elbow.step",
+        4.0,
+        sloping_block,
+        has_cell=True,
+        spacing_error=1e-3,
+    ),
     Example("walls/flared-shell-on-dome", "walls/coque évasée.step", 4.0, dome),
     # its first layer bridges 240 flats smoothly, and these are up to 0.033 mm off the pipe; where such a curve forms its
     # first corner, arcs between the points of a layer are 3e-4 mm off, of the 1e-3 mm that is promised there
     Example(
-        "walls/tube-on-scanned-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), substrate_error=0.036,
+        "walls/tube-on-scanned-pipe",
+        "tube-on-pipe.step",
+        5.0,
+        rod(0.0, 0.0, 32.0),
+        substrate_error=0.036,
         spacing_error=1e-3,
     ),
     Example("walls/wide-tube-on-pipe", "walls/wide-tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0)),
-    Example("walls/skewed-bend", "walls/skewed-bend.step", 4.0, rod(200.0, 75.0, 30.0), has_cell=True),
-    Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3),
+    Example(
+        "walls/skewed-bend", "walls/skewed-bend.step", 4.0, rod(200.0, 75.0, 30.0), has_cell=True
+    ),
+    Example(
+        "walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3
+    ),
     Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, cone, spacing_error=1e-3),
 )
 
@@ -85,7 +112,11 @@ class Plans:
 
     def __init__(self, root: Path, folder: Path):
         self.folder = folder / "examples"
-        shutil.copytree(root / "resources" / "examples", self.folder, ignore=shutil.ignore_patterns("out", "__pycache__"))
+        shutil.copytree(
+            root / "resources" / "examples",
+            self.folder,
+            ignore=shutil.ignore_patterns("out", "__pycache__"),
+        )
         self._done = {}
 
     def text(self, job):
@@ -94,7 +125,9 @@ class Plans:
     def text_of(self, example):
         """That of its job, as shipped but for its layer height."""
         text = self.text(example.job)
-        changed = re.sub(r"(?m)^  layer_height: .*$", f"  layer_height: {example.height:g} mm", text)
+        changed = re.sub(
+            r"(?m)^  layer_height: .*$", f"  layer_height: {example.height:g} mm", text
+        )
         assert example.thicker == (changed != text)
         return changed
 

@@ -81,13 +81,13 @@ def test_half_shell_starts_in_a_chain_from_side_to_side():
     half = bend(start=20.0, width=180.0)
     wall = wall_on(half, (), pipe(), 4.0)
     sound(wall, half)
-    curve, = wall.first
+    (curve,) = wall.first
     assert not curve.closed
     on_both(curve.points[1:-1])
     x, y, z = curve.points[[0, -1]].T
     angle = np.degrees(np.arctan2(y, np.hypot(x + BEND, z) - BEND))
     assert np.sort(angle) == pytest.approx([-20.0, 160.0], abs=1e-5)
-    end, = (rim for rim in wall.rims if rim.end)
+    (end,) = (rim for rim in wall.rims if rim.end)
     assert end.points[:, 0] == pytest.approx(-BEND, abs=1e-6)
     assert wall.behind[np.hypot(wall.vertices[:, 0], wall.vertices[:, 2]) < PIPE - 1e-6].all()
     assert not wall.behind[np.hypot(wall.vertices[:, 0], wall.vertices[:, 2]) > PIPE + 1e-6].any()
@@ -98,7 +98,7 @@ def test_fronts_may_be_asked_for_on_a_tube_of_one_surface():
     wall = wall_on(bend(), (), pipe(), 5.0, fronts=True)
     assert isinstance(wall, PatchWall) and wall.faces == ("Face1",)
     sound(wall, bend())
-    curve, = wall.first
+    (curve,) = wall.first
     assert curve.closed and [rim.closed for rim in wall.rims] == [True] * len(wall.rims)
     on_both(curve.points)
     assert np.abs(wall.symmetry_normal) == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
@@ -112,7 +112,7 @@ def test_three_tangent_faces():
     elbow = shell(foot, bend(), head)
     wall = wall_on(elbow, (), slab(-10.0), 5.0)
     sound(wall, elbow)
-    curve, = wall.first
+    (curve,) = wall.first
     assert curve.closed and curve.points[:, 2] == pytest.approx(-10.0, abs=1e-9)
     assert np.hypot(*curve.points[:, :2].T) == pytest.approx(TUBE, abs=1e-9)
     assert [rim.end for rim in wall.rims if rim.points[:, 2].mean() > 0.0] == [True]
@@ -141,7 +141,11 @@ def test_window_and_slanted_end():
     wall = wall_on(cut, (), slab(), 4.0)
     assert isinstance(wall, PatchWall)
     sound(wall, cut)
-    kinds = {bool(rim.end): rim.points.mean(axis=0)[2] for rim in wall.rims if rim.points.mean(axis=0)[2] > 5.0}
+    kinds = {
+        bool(rim.end): rim.points.mean(axis=0)[2]
+        for rim in wall.rims
+        if rim.points.mean(axis=0)[2] > 5.0
+    }
     assert kinds[True] > 40.0 and kinds[False] == pytest.approx(25.0, abs=1.0)
 
 
@@ -157,16 +161,31 @@ def test_splines_loft_and_pipe():
         wall = wall_on(shape, ("Face1",) if len(shape.Faces) == 1 else (), slab(), 3.0)
         points = wall.first if isinstance(wall, SurfaceWall) else wall.first[0].points
         assert points[:, 2] == pytest.approx(5.0, abs=1e-6)
-        assert max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in points[::10]) < 5e-5
+        assert (
+            max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in points[::10]) < 5e-5
+        )
 
 
 def test_corners_of_the_substrate_are_corners_of_the_curve():
-    wall = wall_on(shell(Part.makeCylinder(15, 30, Vector(0, 0, 10), Vector(0, 0, 1), 180).Faces[0]), (),
-                   Part.makeBox(100, 15, 30, Vector(-50, -5, 0)), 3.0)
-    corner = [k for curve in wall.first for k, (a, b) in enumerate(zip(curve.into, curve.out)) if a @ b < 0.9]
+    wall = wall_on(
+        shell(Part.makeCylinder(15, 30, Vector(0, 0, 10), Vector(0, 0, 1), 180).Faces[0]),
+        (),
+        Part.makeBox(100, 15, 30, Vector(-50, -5, 0)),
+        3.0,
+    )
+    corner = [
+        k
+        for curve in wall.first
+        for k, (a, b) in enumerate(zip(curve.into, curve.out))
+        if a @ b < 0.9
+    ]
     assert corner
-    points = np.vstack([curve.points[[k for k, (a, b) in enumerate(zip(curve.into, curve.out)) if a @ b < 0.9]]
-                        for curve in wall.first])
+    points = np.vstack(
+        [
+            curve.points[[k for k, (a, b) in enumerate(zip(curve.into, curve.out)) if a @ b < 0.9]]
+            for curve in wall.first
+        ]
+    )
     assert points[:, 1] == pytest.approx(10.0, abs=1e-9)
     assert points[:, 2] == pytest.approx(30.0, abs=1e-9)
     assert np.hypot(points[:, 0], points[:, 1]) == pytest.approx(15.0, abs=1e-9)
@@ -190,7 +209,9 @@ def test_chosen_edges_need_no_substrate():
     wall = wall_on(face, (), None, 4.0, start_edges=(low,))
     assert wall.first[0].closed and wall.first[0].points[:, 2] == pytest.approx(0.0, abs=1e-12)
     assert wall.first[0].curve().length == pytest.approx(TURN * 15.0, abs=1e-3)
-    assert not wall.behind.any() and [rim.points[0, 2] for rim in wall.rims if rim.end] == pytest.approx([60.0])
+    assert not wall.behind.any() and [
+        rim.points[0, 2] for rim in wall.rims if rim.end
+    ] == pytest.approx([60.0])
 
 
 def oval(turned=0.0):
@@ -200,8 +221,11 @@ def oval(turned=0.0):
         for z, (a, b) in ((0.0, (30.0, 18.0)), (60.0, (22.0, 36.0))):
             long, short, ahead = (a, b, Vector(1, 0, 0)) if a > b else (b, a, Vector(0, 1, 0))
             begin = half if a > b else half - 0.5 * np.pi
-            ellipse = Part.Ellipse(Vector(long * ahead.x, long * ahead.y, z), Vector(-short * ahead.y, short * ahead.x, z),
-                                   Vector(0, 0, z))
+            ellipse = Part.Ellipse(
+                Vector(long * ahead.x, long * ahead.y, z),
+                Vector(-short * ahead.y, short * ahead.x, z),
+                Vector(0, 0, z),
+            )
             ends.append(Part.Wire(Part.ArcOfEllipse(ellipse, begin, begin + np.pi).toShape()))
     skin = Part.Compound([Part.makeLoft(ends[:2]), Part.makeLoft(ends[2:])])
     return skin.rotated(Vector(), Vector(1, 0, 0), turned)
@@ -214,12 +238,25 @@ def test_what_stands_on_the_platform_needs_no_substrate_either():
     assert first.closed and first.points[:, 2] == pytest.approx(0.0, abs=1e-6)
     x, y = first.points[:, :2].T
     assert np.hypot(x / 30.0, y / 18.0) == pytest.approx(1.0, abs=1e-6) and abs(np.ptp(x)) > 59.0
-    assert note.code == "FIRST_LAYER" and "Vase" in note.message and "stands on the platform" in note.message
+    assert (
+        note.code == "FIRST_LAYER"
+        and "Vase" in note.message
+        and "stands on the platform" in note.message
+    )
     assert [rim.points[0, 2] for rim in wall.rims if rim.end] == pytest.approx([60.0])
     for names, length in (((), 60.0), (("Face1",), 30.0)):
-        half = wall_on(Part.Compound([Part.makePlane(20, 30, Vector(x, 0, 5), Vector(0, -1, 0)) for x in (0, 30)]),
-                       names, None, 4.0)
-        assert sum(one.curve().length for one in half.first) == pytest.approx(length) and not half.first[0].closed
+        half = wall_on(
+            Part.Compound(
+                [Part.makePlane(20, 30, Vector(x, 0, 5), Vector(0, -1, 0)) for x in (0, 30)]
+            ),
+            names,
+            None,
+            4.0,
+        )
+        assert (
+            sum(one.curve().length for one in half.first) == pytest.approx(length)
+            and not half.first[0].closed
+        )
     with pytest.raises(InputError) as caught:
         wall_on(oval(20.0), (), None, 4.0, "Vase")
     low = -18.0 * np.sin(np.radians(20.0))
@@ -229,7 +266,7 @@ def test_what_stands_on_the_platform_needs_no_substrate_either():
 def test_several_loops_are_all_taken_and_told():
     wall = wall_on(Part.makeCylinder(5, 120, Vector(0, 0, -60)).Faces[0], (), pipe(), 3.0)
     assert len(wall.first) == 2
-    told, = (issue.message for issue in wall.issues if issue.code == "SEVERAL_LOOPS")
+    (told,) = (issue.message for issue in wall.issues if issue.code == "SEVERAL_LOOPS")
     assert "2 curves" in told and "31" in told and "-31" in told
 
 
@@ -241,7 +278,9 @@ def refused(*args, **more):
 
 def open_mesh():
     mesh = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=0.5, AngularDeflection=0.5)
-    mesh.removeFacets([k for k, facet in enumerate(mesh.Facets) if abs(facet.Normal.x) > 0.99])  # both ends
+    mesh.removeFacets(
+        [k for k, facet in enumerate(mesh.Facets) if abs(facet.Normal.x) > 0.99]
+    )  # both ends
     return mesh
 
 
@@ -259,7 +298,9 @@ def moved(face, *by):
 
 def tight_pipe():
     spine = Part.BSplineCurve()
-    spine.interpolate([Vector(0, 0, 0), Vector(0, 0, 40), Vector(8, 0, 45), Vector(16, 0, 40), Vector(16, 0, 0)])
+    spine.interpolate(
+        [Vector(0, 0, 0), Vector(0, 0, 40), Vector(8, 0, 45), Vector(16, 0, 40), Vector(16, 0, 0)]
+    )
     return Part.Wire(spine.toShape()).makePipeShell([Part.Wire(Part.makeCircle(10))], False, True)
 
 
@@ -281,26 +322,68 @@ def test_a_sheared_tube_has_a_mesh_of_its_own_size():
 def blade():
     around = np.linspace(0.0, TURN, 41)
     skin = Part.BSplineSurface()
-    skin.interpolate([
-        [Vector(11 * np.cos(a), np.sin(a), z) for a in around + np.radians(0.5 * z)] for z in (0.0, 15.0, 30.0)
-    ])
+    skin.interpolate(
+        [
+            [Vector(11 * np.cos(a), np.sin(a), z) for a in around + np.radians(0.5 * z)]
+            for z in (0.0, 15.0, 30.0)
+        ]
+    )
     return skin.toShape()
 
 
-@pytest.mark.parametrize(("make", "substrate", "height", "code", "words"), [
-    (lambda: bend(start=0, width=180), lambda: Part.makeBox(9, 9, 9, Vector(200, 0, 0)), 5.0, "NO_CONTACT", ["mm away"]),
-    (lambda: bend(start=0, width=180), lambda: Part.makeSphere(300.0), 5.0, "INSIDE", ["deep"]),
-    (lambda: bend(start=0, width=180), reversed_solid, 5.0, "INSIDE_OUT", ["volume"]),
-    (lambda: bend(), open_mesh, 5.0, "OPEN_MESH", ["mm across"]),
-    (lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 30.1)), slab, 4.0, "GAP", ["0.1 mm", "0.01 mm"]),
-    (lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 33)), slab, 4.0, "GAP", ["separate", "3 mm"]),
-    (lambda: shell(tube(height=30), Part.makeCone(15, 25, 30, Vector(0, 0, 30)).Faces[0]), slab, 4.0, "CREASE",
-     ["18.4 deg"]),
-    (lambda: shell(tube(2.0, 30.0), moved(tube(2.0, 30.0), 0, 0, 30)), slab, 4.0, "LAYER_HEIGHT", ["2 mm"]),
-    (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["cuts itself"]),
-    # noses of a blade turn over sharply and do not fold
-    pytest.param(blade, slab, 2.0, "LAYER_HEIGHT", ["smallest radius of curvature, 0.0"], marks=pytest.mark.long),
-])
+@pytest.mark.parametrize(
+    ("make", "substrate", "height", "code", "words"),
+    [
+        (
+            lambda: bend(start=0, width=180),
+            lambda: Part.makeBox(9, 9, 9, Vector(200, 0, 0)),
+            5.0,
+            "NO_CONTACT",
+            ["mm away"],
+        ),
+        (lambda: bend(start=0, width=180), lambda: Part.makeSphere(300.0), 5.0, "INSIDE", ["deep"]),
+        (lambda: bend(start=0, width=180), reversed_solid, 5.0, "INSIDE_OUT", ["volume"]),
+        (lambda: bend(), open_mesh, 5.0, "OPEN_MESH", ["mm across"]),
+        (
+            lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 30.1)),
+            slab,
+            4.0,
+            "GAP",
+            ["0.1 mm", "0.01 mm"],
+        ),
+        (
+            lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 33)),
+            slab,
+            4.0,
+            "GAP",
+            ["separate", "3 mm"],
+        ),
+        (
+            lambda: shell(tube(height=30), Part.makeCone(15, 25, 30, Vector(0, 0, 30)).Faces[0]),
+            slab,
+            4.0,
+            "CREASE",
+            ["18.4 deg"],
+        ),
+        (
+            lambda: shell(tube(2.0, 30.0), moved(tube(2.0, 30.0), 0, 0, 30)),
+            slab,
+            4.0,
+            "LAYER_HEIGHT",
+            ["2 mm"],
+        ),
+        (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["cuts itself"]),
+        # noses of a blade turn over sharply and do not fold
+        pytest.param(
+            blade,
+            slab,
+            2.0,
+            "LAYER_HEIGHT",
+            ["smallest radius of curvature, 0.0"],
+            marks=pytest.mark.long,
+        ),
+    ],
+)
 def test_refusals_by_real_shapes(make, substrate, height, code, words):
     error = refused(make(), (), substrate(), height)
     assert error.code == code, error.line()
@@ -310,7 +393,9 @@ def test_refusals_by_real_shapes(make, substrate, height, code, words):
         assert word in error.message
 
 
-@pytest.mark.parametrize(("radius", "tall", "lean", "edge"), [(10.0, 120.0, 0.9, 3.0), (15.0, 150.0, 0.5, 5.0)])
+@pytest.mark.parametrize(
+    ("radius", "tall", "lean", "edge"), [(10.0, 120.0, 0.9, 3.0), (15.0, 150.0, 0.5, 5.0)]
+)
 @pytest.mark.always("10.0-120.0-0.9-3.0")
 def test_the_mesh_of_a_slanted_tube_has_no_edges_across(radius, tall, lean, edge):
     """Long needles, of which edges that are turned reached from side to side: halving them never ended."""
@@ -329,7 +414,10 @@ def test_the_mesh_of_a_slanted_tube_that_is_cut_has_no_edges_across():
     radius, low, tall, lean, edge = 89.16, -185.0, 580.0, 1.0627, 40.0
     circle = Part.makeCircle(radius, Vector(lean * low, 0, low))
     tube = circle.extrude(Vector(lean * (tall - low), 0, tall - low))
-    skin = max(tube.cut(Part.makeBox(616, 616, 308, Vector(-308, -308, -308))).Faces, key=lambda face: face.BoundBox.ZMax)
+    skin = max(
+        tube.cut(Part.makeBox(616, 616, 308, Vector(-308, -308, -308))).Faces,
+        key=lambda face: face.BoundBox.ZMax,
+    )
     wall = sheet([("Face1", skin)], edge, "Wall")
     corner = wall.vertices[wall.triangles]
     assert np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).max() <= edge

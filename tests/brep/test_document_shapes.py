@@ -16,7 +16,11 @@ UPRIGHT = Placement(Vector(), Rotation(Vector(1, 0, 0), 90))
 
 
 def sketch(owner, kind="Sketcher::SketchObject"):
-    made = owner.newObject(kind, "Profile") if hasattr(owner, "newObject") else owner.addObject(kind, "Profile")
+    made = (
+        owner.newObject(kind, "Profile")
+        if hasattr(owner, "newObject")
+        else owner.addObject(kind, "Profile")
+    )
     made.Placement = UPRIGHT
     corners = [Vector(20, 0, 0), Vector(22, 0, 0), Vector(17, 30, 0), Vector(15, 30, 0)]
     for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
@@ -34,14 +38,21 @@ def assert_slanted(wall, angle=360.0):
 def test_part_revolutions(doc, angle):
     profile = sketch(doc)
     revolve = doc.addObject("Part::Revolution", "Revolve")
-    revolve.Source, revolve.Axis, revolve.Angle, revolve.Solid = profile, Vector(0, 0, 1), angle, True
+    revolve.Source, revolve.Axis, revolve.Angle, revolve.Solid = (
+        profile,
+        Vector(0, 0, 1),
+        angle,
+        True,
+    )
     doc.recompute()
     assert_slanted(find_wall(revolve.Shape), angle)
 
 
 def test_part_design_revolutions(doc, monkeypatch):
     for folder in [Path(entry) for entry in sys.path if Path(entry).name == "PartDesign"]:
-        monkeypatch.syspath_prepend(str(folder.parent))  # PartDesign is a package in FreeCAD's folder Mod
+        monkeypatch.syspath_prepend(
+            str(folder.parent)
+        )  # PartDesign is a package in FreeCAD's folder Mod
     body = doc.addObject("PartDesign::Body", "Body")
     profile = sketch(body)
     revolve = body.newObject("PartDesign::Revolution", "Revolution")
@@ -56,11 +67,15 @@ def test_sketches_with_an_axis(doc):
     assert_slanted(find_wall(profile.Shape, axis=(Vector(), Vector(0, 0, 1))))
 
 
-@pytest.mark.parametrize(("kind", "values", "length"), [
-    ("Part::Sphere", {"Radius": 30}, 30 * math.pi), ("Part::Cylinder", {"Radius": 8, "Height": 25}, 25),
-    ("Part::Cone", {"Radius1": 20, "Radius2": 5, "Height": 20}, 25),
-    ("Part::Torus", {"Radius1": 40, "Radius2": 5}, 5 * math.pi),
-])
+@pytest.mark.parametrize(
+    ("kind", "values", "length"),
+    [
+        ("Part::Sphere", {"Radius": 30}, 30 * math.pi),
+        ("Part::Cylinder", {"Radius": 8, "Height": 25}, 25),
+        ("Part::Cone", {"Radius1": 20, "Radius2": 5, "Height": 20}, 25),
+        ("Part::Torus", {"Radius1": 40, "Radius2": 5}, 5 * math.pi),
+    ],
+)
 def test_primitives_wherever_they_stand(doc, kind, values, length):
     made = doc.addObject(kind, "Primitive")
     for name, value in values.items():

@@ -70,23 +70,40 @@ def same_meridian(one, other, tolerance=1e-6):
 
 
 SHAPES = {
-    "hemisphere": BALL, "dome on a cylinder": dome_on_cylinder(), "cone": Part.makeCone(20, 10, 30),
-    "pointed cone": Part.makeCone(20, 0, 30), "cylinder": Part.makeCylinder(10, 30), "torus": Part.makeTorus(50, 10),
-    "whole sphere": Part.makeSphere(20), "freeform": turned([freeform().toShape()]), "thick dome": thick_dome(),
-    "polyline": turned(polyline((10, 0), (10, 5), (5, 9), (7, 20))), "partial": dome_on_cylinder(200),
+    "hemisphere": BALL,
+    "dome on a cylinder": dome_on_cylinder(),
+    "cone": Part.makeCone(20, 10, 30),
+    "pointed cone": Part.makeCone(20, 0, 30),
+    "cylinder": Part.makeCylinder(10, 30),
+    "torus": Part.makeTorus(50, 10),
+    "whole sphere": Part.makeSphere(20),
+    "freeform": turned([freeform().toShape()]),
+    "thick dome": thick_dome(),
+    "polyline": turned(polyline((10, 0), (10, 5), (5, 9), (7, 20))),
+    "partial": dome_on_cylinder(200),
     "partial solid": Part.makeCylinder(10, 30, ORIGIN, Z, 120),
     "stepped": turned(polyline((30, 0), (30, 10), (20, 10), (20, 25))),
-    "elliptic dome": turned([half_ellipse()]), "elliptic bowl": turned([half_ellipse(-1)]),
-    "elliptic tank": Part.Face(Part.Wire([half_ellipse(), *polyline((0, 40), (0, -15), (60, -15), (60, 0))])).revolve(
-        ORIGIN, Z, 360),
+    "elliptic dome": turned([half_ellipse()]),
+    "elliptic bowl": turned([half_ellipse(-1)]),
+    "elliptic tank": Part.Face(
+        Part.Wire([half_ellipse(), *polyline((0, 40), (0, -15), (60, -15), (60, 0))])
+    ).revolve(ORIGIN, Z, 360),
     "partial sphere": Part.makeSphere(45, ORIGIN, Z, 0, 90, 100),
     "extruded circle": Part.makeCircle(12).extrude(Vector(0, 0, 25)),
 }
 LENGTHS = {
-    "hemisphere": 22.5 * math.pi, "cone": math.hypot(10, 30), "pointed cone": math.hypot(20, 30), "cylinder": 30.0,
-    "torus": 10.0 * math.pi, "whole sphere": 20.0 * math.pi, "thick dome": 22.5 * math.pi,
-    "polyline": 5.0 + math.hypot(5, 4) + math.hypot(2, 11), "partial solid": 30.0, "stepped": 35.0,
-    "partial sphere": 22.5 * math.pi, "extruded circle": 25.0,
+    "hemisphere": 22.5 * math.pi,
+    "cone": math.hypot(10, 30),
+    "pointed cone": math.hypot(20, 30),
+    "cylinder": 30.0,
+    "torus": 10.0 * math.pi,
+    "whole sphere": 20.0 * math.pi,
+    "thick dome": 22.5 * math.pi,
+    "polyline": 5.0 + math.hypot(5, 4) + math.hypot(2, 11),
+    "partial solid": 30.0,
+    "stepped": 35.0,
+    "partial sphere": 22.5 * math.pi,
+    "extruded circle": 25.0,
 }
 TURNS = {"partial": 200.0, "partial solid": 120.0, "partial sphere": 100.0}
 
@@ -108,7 +125,9 @@ def test_a_step_file_gives_the_same_wall(name, tmp_path):
     wall, direct = find_wall(read_shape(tmp_path / "part.step")), find_wall(SHAPES[name])
     same_meridian(direct, wall)
     assert wall.frame == pytest.approx(direct.frame, abs=1e-7)
-    assert (wall.start, wall.end, wall.full) == pytest.approx((direct.start, direct.end, direct.full), abs=1e-7)
+    assert (wall.start, wall.end, wall.full) == pytest.approx(
+        (direct.start, direct.end, direct.full), abs=1e-7
+    )
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -128,7 +147,8 @@ def test_placements_move_the_frame_and_nothing_else(name, seed):
     random = np.random.default_rng([seed, len(name)])
     axis = random.normal(size=3)
     placement = FreeCAD.Placement(
-        Vector(*random.uniform(-200, 200, 3)), FreeCAD.Rotation(Vector(*axis), random.uniform(0, 80))
+        Vector(*random.uniform(-200, 200, 3)),
+        FreeCAD.Rotation(Vector(*axis), random.uniform(0, 80)),
     )
     upright = placement.Rotation.multVec(Z)
     if upright.z < 0.05:
@@ -146,11 +166,16 @@ def test_placements_move_the_frame_and_nothing_else(name, seed):
     assert_on_wall(wall, moved)
 
 
-@pytest.mark.parametrize(("axis", "z", "x"), [
-    (Vector(0, 0, -1), (0, 0, 1), (1, 0, 0)), (Vector(1, 0, 0), (1, 0, 0), (0, 1, 0)),
-    (Vector(-1, 0, 0), (1, 0, 0), (0, 1, 0)), (Vector(0, -1, 0), (0, 1, 0), (1, 0, 0)),
-    (Vector(-0.6, 0, -0.8), (0.6, 0, 0.8), (0.8, 0, -0.6)),
-])
+@pytest.mark.parametrize(
+    ("axis", "z", "x"),
+    [
+        (Vector(0, 0, -1), (0, 0, 1), (1, 0, 0)),
+        (Vector(1, 0, 0), (1, 0, 0), (0, 1, 0)),
+        (Vector(-1, 0, 0), (1, 0, 0), (0, 1, 0)),
+        (Vector(0, -1, 0), (0, 1, 0), (1, 0, 0)),
+        (Vector(-0.6, 0, -0.8), (0.6, 0, 0.8), (0.8, 0, -0.6)),
+    ],
+)
 def test_the_frame_points_up_and_its_x_is_the_parts(axis, z, x):
     wall = find_wall(Part.makeCone(20, 10, 30, Vector(1, 2, 3), axis))
     assert wall.frame[:3, 2] == pytest.approx(z, abs=1e-12)
@@ -185,7 +210,9 @@ def test_a_torus_has_an_outer_an_inner_and_a_middle_wall(wall, side):
     meridian = find_wall(Part.makeTorus(50, 10), wall=wall).meridian
     r, h, _ = meridian.at(np.linspace(0.0, meridian.length, 101))
     assert h[[0, -1]] == pytest.approx([0.0, 20.0], abs=1e-6)
-    assert r == pytest.approx(50.0 + side * np.sqrt(np.maximum(100.0 - (h - 10.0) ** 2, 0.0)), abs=1e-4)
+    assert r == pytest.approx(
+        50.0 + side * np.sqrt(np.maximum(100.0 - (h - 10.0) ** 2, 0.0)), abs=1e-4
+    )
 
 
 def test_kinks_of_a_shell_are_kept():
@@ -237,15 +264,24 @@ def test_a_flat_face_is_wall_when_chosen():
 
 
 def test_flanges_with_holes_do_not_matter_where_the_wall_is_chosen():
-    drilled = Part.makeCylinder(30, 5).fuse(Part.makeCylinder(10, 40)).cut(Part.makeCylinder(3, 5, Vector(20, 0, 0)))
-    side = next(f"Face{i}" for i, face in enumerate(drilled.Faces, 1) if face.Surface.TypeId.endswith("Cylinder")
-                and abs(face.Surface.Radius - 10) < 1e-9)
+    drilled = (
+        Part.makeCylinder(30, 5)
+        .fuse(Part.makeCylinder(10, 40))
+        .cut(Part.makeCylinder(3, 5, Vector(20, 0, 0)))
+    )
+    side = next(
+        f"Face{i}"
+        for i, face in enumerate(drilled.Faces, 1)
+        if face.Surface.TypeId.endswith("Cylinder") and abs(face.Surface.Radius - 10) < 1e-9
+    )
     assert find_wall(drilled, (side,)).meridian.length == pytest.approx(35.0)
 
 
 @pytest.mark.parametrize("closed", [False, True])
 def test_a_wire_with_an_axis(closed):
-    edges = polyline((10, 0), (10, 20), (8, 20), (8, 0), (10, 0)) if closed else [freeform().toShape()]
+    edges = (
+        polyline((10, 0), (10, 20), (8, 20), (8, 0), (10, 0)) if closed else [freeform().toShape()]
+    )
     wall = find_wall(Part.Wire(edges), axis=(ORIGIN, Z))
     assert wall.full
     truth = find_wall(turned(edges))
@@ -282,7 +318,9 @@ def test_an_offset_shell_runs_beside_the_original():
 
 
 def test_a_gap_is_bridged_and_said():
-    shape = Part.makeCompound([turned(polyline((10, 0), (10, 5))), turned(polyline((9.94, 5), (9.94, 8)))])
+    shape = Part.makeCompound(
+        [turned(polyline((10, 0), (10, 5))), turned(polyline((9.94, 5), (9.94, 8)))]
+    )
     wall = find_wall(shape)
     assert wall.meridian.length == pytest.approx(8.06)
     assert [issue.code for issue in wall.issues] == ["GAP"]

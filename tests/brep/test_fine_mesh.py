@@ -22,14 +22,24 @@ def off_torus(points):
 
 
 def off_ball_with_bore(points):
-    ball, bore = np.abs(np.linalg.norm(points, axis=1) - 60.0), np.abs(np.hypot(points[:, 0], points[:, 1]) - 12.0)
+    ball, bore = (
+        np.abs(np.linalg.norm(points, axis=1) - 60.0),
+        np.abs(np.hypot(points[:, 0], points[:, 1]) - 12.0),
+    )
     return np.minimum(ball, bore)
 
 
-@pytest.mark.parametrize(("shape", "off"), [
-    (Part.makeTorus(40, 16), off_torus),
-    (Part.makeSphere(60).cut(Part.makeCylinder(12, 200, Vector(0, 0, -100))), off_ball_with_bore),
-], ids=["torus", "ball with a bore"])
+@pytest.mark.parametrize(
+    ("shape", "off"),
+    [
+        (Part.makeTorus(40, 16), off_torus),
+        (
+            Part.makeSphere(60).cut(Part.makeCylinder(12, 200, Vector(0, 0, -100))),
+            off_ball_with_bore,
+        ),
+    ],
+    ids=["torus", "ball with a bore"],
+)
 def test_a_mesh_of_hundreds_of_thousands_of_triangles(shape, off):
     """The kernel takes minutes for them."""
     began = time.process_time()
@@ -39,7 +49,13 @@ def test_a_mesh_of_hundreds_of_thousands_of_triangles(shape, off):
     assert (Edges(triangles).count == 2).all()
     assert off(vertices).max() < 1e-6
     some = vertices[triangles[::97]]
-    assert max(off(some.mean(axis=1)).max(), *(off(some[:, [k, k - 1]].mean(axis=1)).max() for k in range(3))) < CHORD
+    assert (
+        max(
+            off(some.mean(axis=1)).max(),
+            *(off(some[:, [k, k - 1]].mean(axis=1)).max() for k in range(3)),
+        )
+        < CHORD
+    )
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     assert (np.cross(a, b) * c).sum() / 6.0 == pytest.approx(shape.Volume, rel=2e-4)
 
@@ -47,14 +63,21 @@ def test_a_mesh_of_hundreds_of_thousands_of_triangles(shape, off):
 def test_others_are_as_the_kernel_makes_them():
     shape = Part.makeTorus(40, 16)
     ours, kernels = fine_mesh.fine(shape.copy(), 0.1), tessellated(shape.copy(), 0.1)
-    assert np.array_equal(ours.vertices, kernels.vertices) and np.array_equal(ours.triangles, kernels.triangles)
+    assert np.array_equal(ours.vertices, kernels.vertices) and np.array_equal(
+        ours.triangles, kernels.triangles
+    )
 
 
 def without(face):
     """The kernel's triangles, but for those of one face as long as that is not a spline."""
+
     def made(shape, chord):
         found = tessellated(shape, chord)
-        bare = found.owner == face if shape.Faces[face].Surface.TypeId != "Part::GeomBSplineSurface" else found.owner < 0
+        bare = (
+            found.owner == face
+            if shape.Faces[face].Surface.TypeId != "Part::GeomBSplineSurface"
+            else found.owner < 0
+        )
         return found._replace(triangles=found.triangles[~bare], owner=found.owner[~bare])
 
     return made
@@ -69,7 +92,9 @@ def test_a_face_that_the_kernel_makes_no_triangles_of_gets_those_of_splines(monk
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     assert (np.cross(a, b) * c).sum() / 6.0 == pytest.approx(shape.Volume, rel=5e-3)
     side = vertices[(vertices[:, 2] > 1e-6) & (vertices[:, 2] < 4.0 - 1e-6)]
-    assert np.abs(np.hypot(side[:, 0], side[:, 1]) - (8.0 - 0.75 * side[:, 2])).max(initial=0.0) < 1e-6
+    assert (
+        np.abs(np.hypot(side[:, 0], side[:, 1]) - (8.0 - 0.75 * side[:, 2])).max(initial=0.0) < 1e-6
+    )
 
 
 def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
@@ -119,4 +144,7 @@ def test_what_of_it_is_wider_is_told(topless):
     with pytest.raises(InputError) as caught:
         hub.bodies_of(topless, "knob", 0.1, 4.9, True)
     assert caught.value.code == "OPEN_MESH" and caught.value.where == "knob"
-    assert "up to strategy.mend, 4.9 mm, what is open is closed, and the widest place is 5 mm across" in caught.value.message
+    assert (
+        "up to strategy.mend, 4.9 mm, what is open is closed, and the widest place is 5 mm across"
+        in caught.value.message
+    )

@@ -25,7 +25,10 @@ def test_splines_are_what_they_were_made_of(solid, placement):
     solid = solid.copy()
     solid.Placement = placement
     (exact,), (found,) = seats(named(solid), False), seats(named(solid.toNurbs()), False)
-    assert all(face.Surface.TypeId in ("Part::GeomBSplineSurface", "Part::GeomPlane") for face in solid.toNurbs().Faces)
+    assert all(
+        face.Surface.TypeId in ("Part::GeomBSplineSurface", "Part::GeomPlane")
+        for face in solid.toNurbs().Faces
+    )
     assert found.base.surface.radius == pytest.approx(exact.base.surface.radius, abs=1e-6)
     assert found.base.surface.height == pytest.approx(exact.base.surface.height, rel=1e-6)
     np.testing.assert_allclose(found.base.frame, exact.base.frame, atol=1e-6)
@@ -37,8 +40,12 @@ def test_a_spline_that_is_nearly_one_is_none():
     for more, taken in ((0.2 * FITTED, True), (4.0 * FITTED, False)):
         wire = Part.Wire([Part.Ellipse(FreeCAD.Vector(), 60.0 + more, 60.0).toShape()])
         found = seats(named(Part.Face(wire).extrude(FreeCAD.Vector(0, 0, 100)).toNurbs()), False)
-        assert [seat.base.surface.radius for seat in found] == ([pytest.approx(60.0, abs=FITTED)] if taken else [])
-    arc = Part.Arc(FreeCAD.Vector(60, 0, 0), FreeCAD.Vector(61, 0, 50), FreeCAD.Vector(60, 0, 100)).toShape()
+        assert [seat.base.surface.radius for seat in found] == (
+            [pytest.approx(60.0, abs=FITTED)] if taken else []
+        )
+    arc = Part.Arc(
+        FreeCAD.Vector(60, 0, 0), FreeCAD.Vector(61, 0, 50), FreeCAD.Vector(60, 0, 100)
+    ).toShape()
     barrel = arc.revolve(FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 360).toNurbs().Faces[0]
     with pytest.raises(InputError) as refused:
         seats([("Face1", barrel)], True)
@@ -57,8 +64,11 @@ def test_bores_of_splines_are_bores():
 @pytest.mark.always
 def test_a_face_tells_from_where_to_where_it_goes_round(degrees, start, made):
     axis = FreeCAD.Vector(0, 0, 1)
-    solid = Part.makeCone(60.0, 36.0, 80.0, FreeCAD.Vector(), axis, degrees) if made == "cone" else Part.makeCylinder(
-        60.0, 140.0, FreeCAD.Vector(), axis, degrees)
+    solid = (
+        Part.makeCone(60.0, 36.0, 80.0, FreeCAD.Vector(), axis, degrees)
+        if made == "cone"
+        else Part.makeCylinder(60.0, 140.0, FreeCAD.Vector(), axis, degrees)
+    )
     solid.rotate(FreeCAD.Vector(), axis, start)
     solid = solid.toNurbs() if made == "spline" else solid
     middle = FreeCAD.Rotation(axis, start + 0.5 * degrees).multVec(FreeCAD.Vector(1, 0, 0))
@@ -82,5 +92,7 @@ def test_halves_of_a_cylinder_are_one_seat_all_round():
     around = np.linspace(-np.pi, np.pi, 500)
     points = np.stack([60.0 * np.cos(around), 60.0 * np.sin(around), np.full(500, 70.0)], axis=1)
     assert np.logical_or.reduce([face.near(points, 0.05) for face in seat.faces]).all()
-    assert all(face.near(points, 0.05).mean() == pytest.approx(0.5, abs=0.01) for face in seat.faces)
+    assert all(
+        face.near(points, 0.05).mean() == pytest.approx(0.5, abs=0.01) for face in seat.faces
+    )
     assert whole.faces[0].span == pytest.approx(2.0 * np.pi)

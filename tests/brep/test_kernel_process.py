@@ -21,10 +21,17 @@ from freecad_am.brep.walls import sheet
 from freecad_am.core.issues import InputError
 
 EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
-PARTS = ("thruster/spindle.step", "hemisphere.step", "walls/spatial-pipe.step", "walls/branched-tube.step", "blade")
+PARTS = (
+    "thruster/spindle.step",
+    "hemisphere.step",
+    "walls/spatial-pipe.step",
+    "walls/branched-tube.step",
+    "blade",
+)
 
 
 # what the process is asked for here; it imports this file
+
 
 def pid_of(shape):
     return os.getpid()
@@ -75,7 +82,11 @@ def in_thread(function, *arguments):
 
 
 def flat(value):
-    return [array for entry in value for array in (flat(entry) if isinstance(entry, (tuple, list)) else [entry])]
+    return [
+        array
+        for entry in value
+        for array in (flat(entry) if isinstance(entry, (tuple, list)) else [entry])
+    ]
 
 
 class Ended(BaseException):
@@ -117,7 +128,9 @@ def test_both_come_to_the_same_numbers(name, monkeypatch):
     monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     shape = part(name)
     for function, *rest in (
-        (tessellate.tessellated, 0.05), (sheet.tessellated_for, 2.0), (tessellate.triangles_of, 0.1),
+        (tessellate.tessellated, 0.05),
+        (sheet.tessellated_for, 2.0),
+        (tessellate.triangles_of, 0.1),
         (distance._by_face, 0.1),
     ):
         here = flat(function(shape.copy(), *rest))
@@ -130,7 +143,10 @@ def test_both_come_to_the_same_numbers(name, monkeypatch):
 
 def test_one_process_serves_one_call_after_the_other_and_none_the_main_thread(slow_part):
     first = in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
-    assert first != os.getpid() and in_thread(kernel_process.in_kernel_process, pid_of, slow_part) == first
+    assert (
+        first != os.getpid()
+        and in_thread(kernel_process.in_kernel_process, pid_of, slow_part) == first
+    )
     assert kernel_process.in_kernel_process(pid_of, slow_part) == os.getpid()
 
 
@@ -165,36 +181,47 @@ def test_a_process_that_has_left_is_replaced(slow_part):
     (process,) = kernel_process._idle
     process.popen.terminate()
     process.popen.wait(20)
-    assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) not in (first, os.getpid())
+    assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) not in (
+        first,
+        os.getpid(),
+    )
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="a signal of POSIX")
 def test_a_process_that_has_left_does_not_take_freecad_along():
     """As in FreeCAD 1.0, whose Python does not ignore the signal of a broken pipe; the one who asks and the one who ends."""
-    script = "\n".join((
-        "import signal",
-        "import FreeCAD, Part",
-        "from freecad_am.brep.kernel import process as kernel_process",
-        "from tests.brep.test_kernel_process import in_thread, pid_of",
-        "kernel_process.MAX_FACES = 0",
-        "signal.signal(signal.SIGPIPE, signal.SIG_DFL)",
-        "box = Part.makeBox(1, 2, 3)",
-        "first = in_thread(kernel_process.in_kernel_process, pid_of, box)",
-        "(process,) = kernel_process._idle",
-        "process.popen.terminate()",
-        "process.popen.wait(20)",
-        "second = in_thread(kernel_process.in_kernel_process, pid_of, box)",
-        "(process,) = kernel_process._idle",
-        "process.popen.terminate()",
-        "process.popen.wait(20)",
-        "process.end()",
-        "print('still here', first != second, signal.SIGPIPE in signal.sigpending())",
-    ))
-    done = subprocess.run(
-        [sys.executable, "-c", script], env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}, capture_output=True,
-        text=True, timeout=120, check=False,
+    script = "\n".join(
+        (
+            "import signal",
+            "import FreeCAD, Part",
+            "from freecad_am.brep.kernel import process as kernel_process",
+            "from tests.brep.test_kernel_process import in_thread, pid_of",
+            "kernel_process.MAX_FACES = 0",
+            "signal.signal(signal.SIGPIPE, signal.SIG_DFL)",
+            "box = Part.makeBox(1, 2, 3)",
+            "first = in_thread(kernel_process.in_kernel_process, pid_of, box)",
+            "(process,) = kernel_process._idle",
+            "process.popen.terminate()",
+            "process.popen.wait(20)",
+            "second = in_thread(kernel_process.in_kernel_process, pid_of, box)",
+            "(process,) = kernel_process._idle",
+            "process.popen.terminate()",
+            "process.popen.wait(20)",
+            "process.end()",
+            "print('still here', first != second, signal.SIGPIPE in signal.sigpending())",
+        )
     )
-    assert (done.returncode, done.stdout.splitlines()[-1:]) == (0, ["still here True False"]), done.stderr
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (done.returncode, done.stdout.splitlines()[-1:]) == (0, ["still here True False"]), (
+        done.stderr
+    )
 
 
 def test_errors_come_back(slow_part):
@@ -226,7 +253,9 @@ def test_a_thread_that_is_ended_takes_its_process_with_it(slow_part, tmp_path):
     while not (told.exists() and told.read_text(encoding="utf-8")):
         assert time.monotonic() < patience
         time.sleep(0.02)
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(Ended))
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(
+        ctypes.c_ulong(thread.ident), ctypes.py_object(Ended)
+    )
     thread.join(20)
     assert ended and not thread.is_alive() and not kernel_process._idle
     with pytest.raises(ProcessLookupError):
@@ -282,7 +311,11 @@ def test_a_process_that_nobody_holds_any_more_is_ended(slow_part):
 
 
 def test_a_process_that_is_asked_nothing_leaves_from_the_beginning():
-    host = ("import sys; from freecad_am.brep.kernel import host as kernel_host; kernel_host.IDLE = 0.2; "
-            "kernel_host.serve(sys.stdin.buffer, sys.stdout.buffer)")
-    with subprocess.Popen([sys.executable, "-c", host], stdin=subprocess.PIPE, cwd=EXAMPLES.parent.parent) as process:
+    host = (
+        "import sys; from freecad_am.brep.kernel import host as kernel_host; kernel_host.IDLE = 0.2; "
+        "kernel_host.serve(sys.stdin.buffer, sys.stdout.buffer)"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", host], stdin=subprocess.PIPE, cwd=EXAMPLES.parent.parent
+    ) as process:
         assert process.wait(20) == 0

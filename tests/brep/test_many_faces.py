@@ -20,7 +20,8 @@ TEETH, RINGS = 250, 300
 def gear():
     corners = [
         Vector(radius * math.cos(angle), radius * math.sin(angle), 0)
-        for tooth in range(TEETH) for quarter, radius in enumerate((50, 50, 54, 54))
+        for tooth in range(TEETH)
+        for quarter, radius in enumerate((50, 50, 54, 54))
         for angle in [2.0 * math.pi * (tooth + quarter / 4) / TEETH]
     ]
     outline = Part.makePolygon([*corners, corners[0]])
@@ -33,7 +34,11 @@ def ribbed():
 
 
 def perforated():
-    holes = [Part.makeCylinder(3, 5, Vector(10 + 10 * k, 10 + 10 * j, 0)) for k in range(12) for j in range(12)]
+    holes = [
+        Part.makeCylinder(3, 5, Vector(10 + 10 * k, 10 + 10 * j, 0))
+        for k in range(12)
+        for j in range(12)
+    ]
     return Part.makeBox(130, 130, 5).cut(Part.Compound(holes))
 
 
@@ -42,7 +47,9 @@ def looks(monkeypatch):
     """The faces that are looked at closely, time after time."""
     found = []
     real = revolution.patch_of
-    monkeypatch.setattr(revolution, "patch_of", lambda face, *rest: (found.append(face), real(face, *rest))[1])
+    monkeypatch.setattr(
+        revolution, "patch_of", lambda face, *rest: (found.append(face), real(face, *rest))[1]
+    )
     return found
 
 
@@ -72,7 +79,9 @@ def test_a_thousand_faces_that_are_not_of_revolution_are_soon_refused(make, look
 
 def test_hundreds_of_rings_are_one_wall(looks):
     wall = find_wall(ribbed())
-    steps = [math.hypot(3 * (math.sin(0.3 * k + 0.3) - math.sin(0.3 * k)), 0.5) for k in range(RINGS)]
+    steps = [
+        math.hypot(3 * (math.sin(0.3 * k + 0.3) - math.sin(0.3 * k)), 0.5) for k in range(RINGS)
+    ]
     assert len(wall.faces) == RINGS == len(looks)
     assert wall.meridian.length == pytest.approx(math.fsum(steps), rel=1e-9)
 
@@ -80,4 +89,6 @@ def test_hundreds_of_rings_are_one_wall(looks):
 def test_the_axis_of_each_hole_is_found_once():
     axes = axis._weighed(list(perforated().Faces))
     places = {(round(point[0]), round(point[1])) for (point, _), _ in axes}
-    assert len(axes) == 144 and places == {(10 + 10 * k, 10 + 10 * j) for k in range(12) for j in range(12)}
+    assert len(axes) == 144 and places == {
+        (10 + 10 * k, 10 + 10 * j) for k in range(12) for j in range(12)
+    }

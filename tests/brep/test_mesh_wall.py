@@ -25,7 +25,9 @@ def turned(low, high, height, rows=12, sides=SIDES, floor=False):
     z = np.linspace(0.0, height, rows + 1)
     radius = np.linspace(low, high, rows + 1)
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    points = np.concatenate([np.column_stack([r * ring, np.full(sides, h)]) for r, h in zip(radius, z)])
+    points = np.concatenate(
+        [np.column_stack([r * ring, np.full(sides, h)]) for r, h in zip(radius, z)]
+    )
     faces = []
     for row in range(rows):
         for k in range(sides):
@@ -43,7 +45,10 @@ def wall(points, faces, height=4.0, substrate=None, edges=(), mend=5.0):
 
 def layers(made, height=4.0):
     return wall_fronts.plan(
-        made, SurfaceParameters(layer_height=height, chord_error=0.05), BuildDirectionParameters(), ProcessParameters()
+        made,
+        SurfaceParameters(layer_height=height, chord_error=0.05),
+        BuildDirectionParameters(),
+        ProcessParameters(),
     ).layers
 
 
@@ -54,7 +59,11 @@ def codes(made):
 def test_the_smooth_surface_of_a_cylinders_mesh_is_the_cylinder():
     points, faces = turned(30.0, 30.0, 60.0, rows=30, sides=90)
     rng = np.random.default_rng(4)
-    angle, r, z = rng.uniform(0.0, 6.28, 400), rng.uniform(28.0, 32.0, 400), rng.uniform(8.0, 52.0, 400)
+    angle, r, z = (
+        rng.uniform(0.0, 6.28, 400),
+        rng.uniform(28.0, 32.0, 400),
+        rng.uniform(8.0, 52.0, 400),
+    )
     asked = np.column_stack([r * np.cos(angle), r * np.sin(angle), z])
     found, normals = SmoothMesh(points, faces, 2.0).project(asked)
     assert np.abs(np.hypot(*found[:, :2].T) - 30.0).max() < 5e-4
@@ -93,7 +102,9 @@ def test_a_cup_starts_above_its_floor_and_what_stands_on_its_tip_nowhere():
     assert "floor" in " ".join(issue.message for issue in made.issues)
     heights = [bead.points[:, 2] for layer in layers(made) for bead in layer.beads]
     assert min(z.min() for z in heights) == pytest.approx(2.0, abs=0.1) and len(heights) == 8
-    tips = 20.0 * np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
+    tips = 20.0 * np.array(
+        [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float
+    )
     sides = [(k, (k + 1) % 4, 4) for k in range(4)] + [((k + 1) % 4, k, 5) for k in range(4)]
     with pytest.raises(InputError) as caught:
         wall(tips, np.array(sides, dtype=np.int64))
@@ -125,7 +136,9 @@ def test_small_holes_are_closed_and_the_ends_are_not():
     points, faces = turned(20.0, 20.0, 40.0, rows=20)
     gone = (faces == 10 * SIDES + 3).any(axis=1)
     made = wall(points, faces[~gone], mend=6.0)
-    assert "MENDED" in codes(made) and "1 holes were closed" in " ".join(issue.message for issue in made.issues)
+    assert "MENDED" in codes(made) and "1 holes were closed" in " ".join(
+        issue.message for issue in made.issues
+    )
     assert [len(layer.beads) for layer in layers(made)] == [1] * 11
     assert "MENDED" not in codes(wall(points, faces[~gone], mend=1.0))
     assert "MENDED" not in codes(wall(*turned(1.0, 1.0, 30.0, sides=12), height=1.0))
@@ -160,7 +173,10 @@ def test_facets_that_cross_in_one_place_are_cut_out_and_what_cuts_itself_farther
 
     made = wall(crossed(10), faces, mend=8.0)
     told = " ".join(issue.message for issue in made.issues if issue.code == "MENDED")
-    assert "8 triangles that cross were cut out, as at (" in told and "which left holes of up to 7.4 mm across" in told
+    assert (
+        "8 triangles that cross were cut out, as at (" in told
+        and "which left holes of up to 7.4 mm across" in told
+    )
     found = layers(made)
     assert [len(layer.beads) for layer in found] == [1] * 11
     radii = np.concatenate([np.hypot(*layer.beads[0].points[:, :2].T) for layer in found])
@@ -168,7 +184,10 @@ def test_facets_that_cross_in_one_place_are_cut_out_and_what_cuts_itself_farther
     for bad, mend in ((crossed(10), 7.0), (crossed(18), 8.0)):
         with pytest.raises(InputError) as caught:
             wall(bad, faces, mend=mend)
-        assert caught.value.code == "SELF_INTERSECTION" and "6 pairs of its triangles cross" in caught.value.message
+        assert (
+            caught.value.code == "SELF_INTERSECTION"
+            and "6 pairs of its triangles cross" in caught.value.message
+        )
 
 
 def test_large_facets_are_followed_where_they_meet():
@@ -177,7 +196,10 @@ def test_large_facets_are_followed_where_they_meet():
     points, faces = turned(60.0, 60.0, 80.0, rows=2, sides=20)
     angle = 1.5 * np.pi / 10.0 * points[:, 2] / 40.0
     x, y = points[:, 0].copy(), points[:, 1].copy()
-    points[:, 0], points[:, 1] = x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)
+    points[:, 0], points[:, 1] = (
+        x * np.cos(angle) - y * np.sin(angle),
+        x * np.sin(angle) + y * np.cos(angle),
+    )
     made = wall(points, faces)
     share = np.array([(i, j, 12 - i - j) for i in range(13) for j in range(13 - i)]) / 12.0
     places = np.einsum("sk,mkc->msc", share, points[faces]).reshape(-1, 3)
@@ -189,9 +211,15 @@ def test_large_facets_are_followed_where_they_meet():
 def lying_bend(sides=60, rows=24):
     """Points and triangles of a quarter of a torus of 60 and 20 mm that lies on a floor beside its open end, at
     Y = 0, and turns up."""
-    v, u = np.meshgrid(np.linspace(0.0, 0.5 * np.pi, rows + 1), 2.0 * np.pi * np.arange(sides) / sides, indexing="ij")
+    v, u = np.meshgrid(
+        np.linspace(0.0, 0.5 * np.pi, rows + 1),
+        2.0 * np.pi * np.arange(sides) / sides,
+        indexing="ij",
+    )
     away = 60.0 + 20.0 * np.cos(u)
-    points = np.stack([20.0 * np.sin(u), away * np.sin(v), -away * np.cos(v)], axis=-1).reshape(-1, 3)
+    points = np.stack([20.0 * np.sin(u), away * np.sin(v), -away * np.cos(v)], axis=-1).reshape(
+        -1, 3
+    )
     k, row = np.meshgrid(np.arange(sides), sides * np.arange(rows))
     a, b = row + k, row + (k + 1) % sides
     return points, np.stack([a, b, a + sides, b, b + sides, a + sides], axis=-1).reshape(-1, 3)
@@ -202,7 +230,10 @@ def test_a_first_layer_about_a_floor_goes_on_to_the_open_end_beside_it():
     made = wall(*lying_bend())
     (first,) = made.first
     assert not first.closed
-    assert np.abs(first.points[[0, -1], 1]).max() < 0.05 and np.abs(first.points[:, 2] + 78.0).max() < 1e-5
+    assert (
+        np.abs(first.points[[0, -1], 1]).max() < 0.05
+        and np.abs(first.points[:, 2] + 78.0).max() < 1e-5
+    )
     for one in layers(made):
         for bead in one.beads:
             assert bead.points[:, 1].min() > -0.05

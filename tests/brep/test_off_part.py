@@ -28,7 +28,11 @@ def ring(rng, radius, low, high, count=400):
 
 def test_distances_from_chosen_faces(rng):
     shape = Part.makeCylinder(30.0, 50.0)
-    round_ = [f"Face{k}" for k, face in enumerate(shape.Faces, start=1) if face.Surface.TypeId == "Part::GeomCylinder"]
+    round_ = [
+        f"Face{k}"
+        for k, face in enumerate(shape.Faces, start=1)
+        if face.Surface.TypeId == "Part::GeomCylinder"
+    ]
     radius = 30.0 + rng.uniform(-3.0, 3.0, 150)
     points = ring(rng, radius, 5.0, 45.0, 150)
     assert off_faces(shape, round_, points, 0.03) == pytest.approx(np.abs(radius - 30.0), abs=0.101)
@@ -40,7 +44,9 @@ def test_distances_from_chosen_faces(rng):
 
 def test_a_shape_of_which_the_kernel_makes_no_triangles(rng, monkeypatch):
     """Its own distances from some places, nothing of the others, where it ended as an internal error."""
-    monkeypatch.setattr(off_part, "triangles_of", lambda *_: (np.zeros((0,)), np.zeros((0,), dtype=int)))
+    monkeypatch.setattr(
+        off_part, "triangles_of", lambda *_: (np.zeros((0,)), np.zeros((0,), dtype=int))
+    )
     radius = 30.0 + rng.uniform(-3.0, 3.0, 150)
     points = ring(rng, radius, 5.0, 45.0, 150)
     shape = Part.makeCylinder(30.0, 50.0)
@@ -54,7 +60,9 @@ def test_a_shape_of_which_the_kernel_makes_no_triangles(rng, monkeypatch):
 
 def test_distances_outside_of_solids(rng):
     """Two boxes that touch: no place between them is outside, and past them it is counted from the nearer one."""
-    solids = Part.makeCompound([Part.makeBox(10, 10, 10), Part.makeBox(10, 10, 10, Vector(10, 0, 0))])
+    solids = Part.makeCompound(
+        [Part.makeBox(10, 10, 10), Part.makeBox(10, 10, 10, Vector(10, 0, 0))]
+    )
     inside = rng.uniform([0.5, 0.5, 0.5], [19.5, 9.5, 9.5], (300, 3))
     assert off_solids(solids, inside, 0.5).max() == 0.0
     above = rng.uniform([0.5, 0.5, 11.0], [19.5, 9.5, 14.0], (100, 3))
@@ -62,7 +70,9 @@ def test_distances_outside_of_solids(rng):
     box = Part.makeBox(10, 10, 10)
     points, triangles = box.tessellate(1.0)
     vertices = np.array([tuple(point) for point in points])
-    assert off_mesh(vertices, np.array(triangles), np.array([[5.0, 5, 5], [5, 5, 13]])) == pytest.approx([0.0, 3.0])
+    assert off_mesh(
+        vertices, np.array(triangles), np.array([[5.0, 5, 5], [5, 5, 13]])
+    ) == pytest.approx([0.0, 3.0])
 
 
 def test_solids_that_differ_by_their_place_are_divided_once(rng, monkeypatch):
@@ -79,7 +89,9 @@ def test_solids_that_differ_by_their_place_are_divided_once(rng, monkeypatch):
         local = points @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) - [40.0, 0, 5.0 + number]
         off.append(np.linalg.norm(np.maximum(np.abs(local) - [10.0, 3.0, 5.0], 0.0), axis=1))
     divide = off_part.triangles_of
-    monkeypatch.setattr(off_part, "triangles_of", lambda *given: asked.append(given) or divide(*given))
+    monkeypatch.setattr(
+        off_part, "triangles_of", lambda *given: asked.append(given) or divide(*given)
+    )
     for solids, count in ((shared, 1), ([solid.copy() for solid in shared], 6)):
         asked.clear()
         found = off_solids(Part.makeCompound(solids), points, 0.5)
@@ -95,15 +107,27 @@ def test_distances_outside_of_a_mesh_that_cuts_itself(rng):
         points, corners = solid.tessellate(1.0)
         triangles += (np.array(corners) + len(vertices)).tolist()
         vertices += [tuple(point) for point in points]
-    points = np.vstack([rng.uniform(0.5, 39.5, (300, 3)), rng.uniform([40.5, 18.5, 18.5], [59.5, 21.5, 21.5], (50, 3))])
+    points = np.vstack(
+        [
+            rng.uniform(0.5, 39.5, (300, 3)),
+            rng.uniform([40.5, 18.5, 18.5], [59.5, 21.5, 21.5], (50, 3)),
+        ]
+    )
     assert off_mesh(np.array(vertices), np.array(triangles), points).max() == 0.0
     aside = rng.uniform([45.0, 23.0, 18.0], [60.0, 26.0, 22.0], (50, 3))
-    assert off_mesh(np.array(vertices), np.array(triangles), aside) == pytest.approx(aside[:, 1] - 22.0, abs=1e-9)
+    assert off_mesh(np.array(vertices), np.array(triangles), aside) == pytest.approx(
+        aside[:, 1] - 22.0, abs=1e-9
+    )
 
 
 def moved(toolpath, way):
     layers = tuple(
-        dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, points=bead.points + way) for bead in layer.beads))
+        dataclasses.replace(
+            layer,
+            beads=tuple(
+                dataclasses.replace(bead, points=bead.points + way) for bead in layer.beads
+            ),
+        )
         for layer in toolpath.layers
     )
     return dataclasses.replace(toolpath, layers=layers)
@@ -120,7 +144,9 @@ def on_hub(doc):
     rod, box = doc.addObject("Part::Feature", "Rod"), doc.addObject("Part::Feature", "Block")
     rod.Shape = Part.makeCylinder(20.0, 100.0)
     box.Shape = Part.makeBox(24.0, 24.0, 40.0, Vector(15.0, -12.0, 30.0)).cut(rod.Shape)
-    return api.make_developable_feature(doc, box, rod, layer_height=4.0, bead_spacing=6.0, chord_error=0.1)
+    return api.make_developable_feature(
+        doc, box, rod, layer_height=4.0, bead_spacing=6.0, chord_error=0.1
+    )
 
 
 def wall(doc):
@@ -139,18 +165,32 @@ def in_planes(doc):
 def clad(doc):
     cone = doc.addObject("Part::Feature", "Cone")
     cone.Shape = Part.makeCone(30, 18, 40)
-    return api.make_cladding_feature(doc, cone, ["Face1"], layers=2, layer_height=2.0, bead_spacing=6.0, chord_error=0.1)
+    return api.make_cladding_feature(
+        doc, cone, ["Face1"], layers=2, layer_height=2.0, bead_spacing=6.0, chord_error=0.1
+    )
 
 
-@pytest.mark.parametrize("make, way", [
-    (revolved, [1.0, 0, 0]), (on_hub, [0, 0, 9.0]), (wall, [0, 1.0, 0]), (in_planes, [9.0, 0, 0]),
-    (clad, [0, 1.0, 0]), (revolved, [0.3, 0, 0]), (wall, [0, 0.3, 0]),
-])
+@pytest.mark.parametrize(
+    "make, way",
+    [
+        (revolved, [1.0, 0, 0]),
+        (on_hub, [0, 0, 9.0]),
+        (wall, [0, 1.0, 0]),
+        (in_planes, [9.0, 0, 0]),
+        (clad, [0, 1.0, 0]),
+        (revolved, [0.3, 0, 0]),
+        (wall, [0, 0.3, 0]),
+    ],
+)
 def test_deposit_beside_the_part_is_refused(doc, monkeypatch, make, way):
     feature = make(doc)
     sound = api.result(api.make_toolpath(doc, feature))
     count, worst, allowed = sound.on_part
-    assert count == sound.point_count and worst <= allowed and not [one for one in sound.issues if one.level == "error"]
+    assert (
+        count == sound.point_count
+        and worst <= allowed
+        and not [one for one in sound.issues if one.level == "error"]
+    )
     plan = stage.planned
     monkeypatch.setattr(stage, "planned", lambda *given: moved(plan(*given), np.array(way)))
     toolpath = api.make_toolpath(doc, feature)
@@ -164,13 +204,17 @@ def test_of_several_features_the_one_beside_its_part_is_refused(doc, monkeypatch
     for name, low in (("Low", 0.0), ("High", 12.0)):
         box = doc.addObject("Part::Feature", name)
         box.Shape = Part.makeBox(40.0, 30.0, 12.0, Vector(0, 0, low))
-        features.append(api.make_solid_feature(doc, box, layer_height=4.0, bead_spacing=6.0, chord_error=0.1))
+        features.append(
+            api.make_solid_feature(doc, box, layer_height=4.0, bead_spacing=6.0, chord_error=0.1)
+        )
     sound = api.result(api.make_toolpath(doc, features))
     count, worst, allowed = sound.on_part
     assert count == sound.point_count and worst <= allowed
     lay, numbers = in_sequence.layers_of, iter((0, 1))
     way = np.array([0, 9.0, 0])
-    monkeypatch.setattr(in_sequence, "layers_of", lambda given: moved(lay(given), next(numbers) * way))
+    monkeypatch.setattr(
+        in_sequence, "layers_of", lambda given: moved(lay(given), next(numbers) * way)
+    )
     toolpath = api.make_toolpath(doc, features)
     (issue,) = [one for one in api.issues(toolpath) if one.code == "OFF_PART"]
     assert issue.level == "error" and issue.layer >= 3 and None not in (issue.bead, issue.point)
@@ -192,9 +236,15 @@ def test_points_off_edges(rng):
     """About the ends of a cylinder, of which one is named."""
     shape = Part.makeCylinder(20.0, 40.0)
     top = next(f"Edge{k}" for k, edge in enumerate(shape.Edges, 1) if edge.BoundBox.ZMin > 39.0)
-    angle, radius, height = rng.uniform(-3.0, 3.0, 60), rng.uniform(15.0, 25.0, 60), rng.uniform(30.0, 50.0, 60)
+    angle, radius, height = (
+        rng.uniform(-3.0, 3.0, 60),
+        rng.uniform(15.0, 25.0, 60),
+        rng.uniform(30.0, 50.0, 60),
+    )
     points = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
-    assert off_edges(shape, (top,), points) == pytest.approx(np.hypot(radius - 20.0, height - 40.0), abs=1e-6)
+    assert off_edges(shape, (top,), points) == pytest.approx(
+        np.hypot(radius - 20.0, height - 40.0), abs=1e-6
+    )
     assert (off_edges(shape, (), points) <= off_edges(shape, (top,), points) + 1e-9).all()
     many = off_edges(shape, (top,), np.tile(points, (50, 1)))
     assert np.isfinite(many).sum() == 500 and np.isfinite(many[[0, -1]]).all()
@@ -203,7 +253,10 @@ def test_points_off_edges(rng):
 @pytest.mark.parametrize("inverted", [(), (0,), (1,), (0, 1)])
 def test_distances_outside_of_boxes_that_cross_whichever_way_they_are_turned(rng, inverted):
     """What is inside of one of them is inside: by the equations of both."""
-    sizes, corners = np.array([[40.0, 30, 20], [40.0, 30, 20]]), np.array([[0.0, 0, 0], [7.0, 11, 5]])
+    sizes, corners = (
+        np.array([[40.0, 30, 20], [40.0, 30, 20]]),
+        np.array([[0.0, 0, 0], [7.0, 11, 5]]),
+    )
     vertices, triangles = [], []
     for k in range(2):
         points, faces = Part.makeBox(*sizes[k], Vector(*corners[k])).tessellate(1.0)

@@ -38,8 +38,16 @@ def bowl():
 
 def bracket():
     """Two plates and the bend between them, three solids that touch."""
-    bend = Part.makeCylinder(15, 50, Vector(), Z, 90).cut(Part.makeCylinder(10, 50, Vector(), Z, 90))
-    return Part.Compound([Part.makeBox(60, 5, 50, Vector(-60, 10, 0)), bend, Part.makeBox(5, 60, 50, Vector(10, -60, 0))])
+    bend = Part.makeCylinder(15, 50, Vector(), Z, 90).cut(
+        Part.makeCylinder(10, 50, Vector(), Z, 90)
+    )
+    return Part.Compound(
+        [
+            Part.makeBox(60, 5, 50, Vector(-60, 10, 0)),
+            bend,
+            Part.makeBox(5, 60, 50, Vector(10, -60, 0)),
+        ]
+    )
 
 
 def balance(shape, wall="outer", width=WIDTH, faces=()):
@@ -54,13 +62,21 @@ def codes(found):
 SOLID = {
     # shape, and what of it lies within a bead of the outer wall
     "cylinder": (lambda: Part.makeCylinder(30, 40), lambda: tube(30, 22)),
-    "ball": (lambda: Part.makeSphere(45, Vector(), Z, 0, 90, 360),
-             lambda: Part.makeSphere(45, Vector(), Z, 0, 90, 360).cut(Part.makeSphere(37))),
+    "ball": (
+        lambda: Part.makeSphere(45, Vector(), Z, 0, 90, 360),
+        lambda: Part.makeSphere(45, Vector(), Z, 0, 90, 360).cut(Part.makeSphere(37)),
+    ),
     "thick tube": (lambda: tube(60, 40), lambda: tube(60, 52)),
-    "quarter": (lambda: Part.makeCylinder(30, 40, Vector(), Z, 90),
-                lambda: tube(30, 22).common(Part.makeBox(40, 40, 40))),
-    "cone": (lambda: Part.makeCone(60, 30, 60),
-             lambda: turned((60, 0), (30, 60), (30 - WIDTH * math.sqrt(1.25), 60), (60 - WIDTH * math.sqrt(1.25), 0))),
+    "quarter": (
+        lambda: Part.makeCylinder(30, 40, Vector(), Z, 90),
+        lambda: tube(30, 22).common(Part.makeBox(40, 40, 40)),
+    ),
+    "cone": (
+        lambda: Part.makeCone(60, 30, 60),
+        lambda: turned(
+            (60, 0), (30, 60), (30 - WIDTH * math.sqrt(1.25), 60), (60 - WIDTH * math.sqrt(1.25), 0)
+        ),
+    ),
 }
 
 
@@ -73,34 +89,52 @@ def test_a_solid_laid_as_a_skin_is_told_with_what_of_it_is_missing(name):
     assert codes(found) == ["NOT_DEPOSITED"] and found.outside == 0.0
 
 
-@pytest.mark.parametrize("wall, shape", [
-    ("outer", lambda: tube(30, 22)), ("inner", lambda: tube(30, 22)), ("middle", lambda: tube(30, 22)),
-    ("outer", lambda: tube(30, 21)), ("outer", lambda: tube(30, 23.2)), ("outer", lambda: tube(10, 2)),
-    ("outer", lambda: turned((60, 0), (30, 60), (38, 60), (68, 0), angle=120)),
-    ("outer", lambda: Part.makeSphere(45, Vector(), Z, 0, 90, 360).cut(Part.makeSphere(37))),
-])
+@pytest.mark.parametrize(
+    "wall, shape",
+    [
+        ("outer", lambda: tube(30, 22)),
+        ("inner", lambda: tube(30, 22)),
+        ("middle", lambda: tube(30, 22)),
+        ("outer", lambda: tube(30, 21)),
+        ("outer", lambda: tube(30, 23.2)),
+        ("outer", lambda: tube(10, 2)),
+        ("outer", lambda: turned((60, 0), (30, 60), (38, 60), (68, 0), angle=120)),
+        ("outer", lambda: Part.makeSphere(45, Vector(), Z, 0, 90, 360).cut(Part.makeSphere(37))),
+    ],
+)
 def test_a_wall_about_as_thick_as_a_bead_is_no_news(wall, shape):
     found = balance(shape(), wall)
     assert codes(found) == [] and found.left_out == found.outside == 0.0 and found.faces == ()
 
 
 def test_a_sheet_has_no_volume_and_its_other_faces_are_named():
-    sheet = Part.makeShell([face for face in bowl().Faces if face.Surface.TypeId != "Part::GeomPlane"][:2])
+    sheet = Part.makeShell(
+        [face for face in bowl().Faces if face.Surface.TypeId != "Part::GeomPlane"][:2]
+    )
     names = [f"Face{k + 1}" for k, face in enumerate(sheet.Faces)]
     assert codes(balance(sheet)) == []
     found = balance(sheet, faces=names[:1])
-    assert found.part is None and found.faces == tuple(names[1:]) and codes(found) == ["NOT_DEPOSITED"]
+    assert (
+        found.part is None and found.faces == tuple(names[1:]) and codes(found) == ["NOT_DEPOSITED"]
+    )
 
 
 def test_a_bowl_has_its_floor_left_out_and_a_bead_thicker_than_its_wall():
     shape = bowl()
     found = balance(shape)
-    floor = {f"Face{k + 1}" for k, face in enumerate(shape.Faces)
-             if face.Surface.TypeId == "Part::GeomPlane" and face.BoundBox.ZMax < 5 and face.BoundBox.XMax > 30}
+    floor = {
+        f"Face{k + 1}"
+        for k, face in enumerate(shape.Faces)
+        if face.Surface.TypeId == "Part::GeomPlane"
+        and face.BoundBox.ZMax < 5
+        and face.BoundBox.XMax > 30
+    }
     assert set(found.faces) == floor and codes(found) == ["NOT_DEPOSITED", "DEPOSITED_BESIDE"]
     # all within 8 mm of the outer wall: the wall, and of the floor a ring
     ring = Part.makeCylinder(40, 40).cut(Part.makeCylinder(32, 40))
-    low = turned((28, 0), (34, 0), (40, 6), (40, 8), (28, 8))  # under the rounded edge it reaches farther in
+    low = turned(
+        (28, 0), (34, 0), (40, 6), (40, 8), (28, 8)
+    )  # under the rounded edge it reaches farther in
     at_most, at_least = shape.common(ring.fuse(low)).Volume, shape.common(ring).Volume
     assert 0.98 * at_least < found.part - found.left_out < 1.02 * at_most
     assert found.outside == pytest.approx(found.beads * (1 - 4.7 / WIDTH), rel=0.1)
@@ -109,7 +143,8 @@ def test_a_bowl_has_its_floor_left_out_and_a_bead_thicker_than_its_wall():
 
 
 @pytest.mark.parametrize(
-    "radius, height, width", [(6000.0, 2.0, 8.0), (5000.0, 10000.0, 8.0), (0.05, 0.1, 0.02), (1.0, 3000.0, 8.0)]
+    "radius, height, width",
+    [(6000.0, 2.0, 8.0), (5000.0, 10000.0, 8.0), (0.05, 0.1, 0.02), (1.0, 3000.0, 8.0)],
 )
 def test_parts_of_any_size_take_little_memory(radius, height, width):
     shape = Part.makeCylinder(radius, height)
@@ -126,7 +161,11 @@ def test_parts_of_any_size_take_little_memory(radius, height, width):
 
 def test_what_lies_in_the_substrate_does_not_count():
     shape = Part.makeCylinder(30, 40)
-    skin = [f"Face{k + 1}" for k, face in enumerate(shape.Faces) if face.Surface.TypeId == "Part::GeomCylinder"]
+    skin = [
+        f"Face{k + 1}"
+        for k, face in enumerate(shape.Faces)
+        if face.Surface.TypeId == "Part::GeomCylinder"
+    ]
     points, corners = Part.makeBox(100, 100, 10, Vector(-50, -50, 0)).tessellate(0.1)
     ground = Body("Plate", np.array([tuple(p) for p in points]), np.array(corners, dtype=np.int64))
     found = deposit_balance.of_wall(of_faces(shape, skin, "Part", ground), WIDTH)
@@ -139,7 +178,11 @@ def test_of_solids_that_touch_the_one_of_revolution_is_not_taken_for_all():
     with pytest.raises(InputError) as caught:
         find_wall(shape)
     assert caught.value.code == "NOT_OF_REVOLUTION" and "Solid2" in caught.value.message
-    bend = [f"Face{k + 1}" for k, face in enumerate(shape.Faces) if any(face.isSame(one) for one in shape.Solids[1].Faces)]
+    bend = [
+        f"Face{k + 1}"
+        for k, face in enumerate(shape.Faces)
+        if any(face.isSame(one) for one in shape.Solids[1].Faces)
+    ]
     found = balance(shape, faces=bend)  # on purpose
     assert [name for name, _ in found.solids] == ["Solid1", "Solid3"]
     assert found.left_out == pytest.approx(30_000.0, rel=0.05)
@@ -149,7 +192,9 @@ def test_of_solids_that_touch_the_one_of_revolution_is_not_taken_for_all():
 def test_the_one_solid_of_revolution_that_is_most_of_a_part_is_taken_and_the_rest_told():
     shape = Part.Compound([tube(30, 22), Part.makeBox(10, 10, 10, Vector(40, 0, 0))])
     found = balance(shape)
-    assert [name for name, _ in found.solids] == ["Solid2"] and found.left_out == pytest.approx(1000.0, rel=0.3)
+    assert [name for name, _ in found.solids] == ["Solid2"] and found.left_out == pytest.approx(
+        1000.0, rel=0.3
+    )
     assert codes(found) == ["NOT_DEPOSITED"]
 
 
@@ -157,4 +202,6 @@ def test_a_solid_left_aside_is_told_however_small():
     shape = Part.Compound([tube(30, 22), Part.makeBox(5, 5, 5, Vector(40, 0, 0))])
     found = balance(shape)
     assert found.left_out < deposit_balance.NEGLIGIBLE * found.part
-    assert "1 solid(s) (Solid2)" in deposit_balance.issues(found)[0].message and codes(found) == ["NOT_DEPOSITED"]
+    assert "1 solid(s) (Solid2)" in deposit_balance.issues(found)[0].message and codes(found) == [
+        "NOT_DEPOSITED"
+    ]

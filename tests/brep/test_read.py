@@ -18,10 +18,14 @@ def cone():
     return Part.makeCone(20, 10, 30)
 
 
-@pytest.mark.parametrize("name", ["a.step", "a.STP", "b.brep", "with space.stp", "Hémisphère ø45 – été.step"])
+@pytest.mark.parametrize(
+    "name", ["a.step", "a.STP", "b.brep", "with space.stp", "Hémisphère ø45 – été.step"]
+)
 def test_shapes_come_back_whole(tmp_path, cone, name):
     path = tmp_path / name
-    cone.exportBrep(str(path)) if name.endswith("brep") else cone.exportStep(str(tmp_path / "x.step"))
+    cone.exportBrep(str(path)) if name.endswith("brep") else cone.exportStep(
+        str(tmp_path / "x.step")
+    )
     if not name.endswith("brep"):
         (tmp_path / "x.step").rename(path)
     shape = read_shape(path)
@@ -33,22 +37,33 @@ def in_unit(path, cone, factor, name):
     """Writes a cone whose coordinates are those of mm, in a file that says its unit is another one."""
     cone.exportStep(str(path))
     text = path.read_text()
-    number, = re.findall(r"(#\d+) ?= ?\( LENGTH_UNIT\(\) NAMED_UNIT\(\*\) SI_UNIT\(\.MILLI\.,\.METRE\.\) \);", text)
+    (number,) = re.findall(
+        r"(#\d+) ?= ?\( LENGTH_UNIT\(\) NAMED_UNIT\(\*\) SI_UNIT\(\.MILLI\.,\.METRE\.\) \);", text
+    )
     unit = "( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT({},.METRE.) )"
     prefix = {0.001: ".MICRO.", 10.0: ".CENTI.", 1000.0: "$"}.get(factor)
     lines = [f"{number} = {unit.format(prefix)};"]
     if prefix is None:
         lines = [
             f"{number} = ( CONVERSION_BASED_UNIT('{name}',#90001) LENGTH_UNIT() NAMED_UNIT(#90003) );",
-            f"#90001 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE({factor!r}),#90002);", f"#90002 = {unit.format('.MILLI.')};",
+            f"#90001 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE({factor!r}),#90002);",
+            f"#90002 = {unit.format('.MILLI.')};",
             "#90003 = DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);",
         ]
     path.write_text(re.sub(rf"{number} ?= ?\( LENGTH_UNIT[^;]*;", "\n".join(lines), text))
 
 
-@pytest.mark.parametrize(("name", "factor"), [
-    ("METRE", 1000.0), ("CENTIMETRE", 10.0), ("MICROMETRE", 0.001), ("INCH", 25.4), ("FOOT", 304.8), ("MIL", 0.0254),
-])
+@pytest.mark.parametrize(
+    ("name", "factor"),
+    [
+        ("METRE", 1000.0),
+        ("CENTIMETRE", 10.0),
+        ("MICROMETRE", 0.001),
+        ("INCH", 25.4),
+        ("FOOT", 304.8),
+        ("MIL", 0.0254),
+    ],
+)
 def test_step_files_are_as_large_as_their_unit_says(tmp_path, cone, name, factor):
     """And the next one, in mm, is as large as it was: the kernel keeps no unit. Headless and from the window alike."""
     cone.exportStep(str(tmp_path / "mm.step"))
@@ -56,11 +71,14 @@ def test_step_files_are_as_large_as_their_unit_says(tmp_path, cone, name, factor
     document = FreeCAD.newDocument("Units")
     try:
         for file, wanted in (("other.step", factor), ("mm.step", 1.0), ("other.step", factor)):
-            for shape in (read_shape(tmp_path / file), api.open_part(document, str(tmp_path / file)).Shape):
+            for shape in (
+                read_shape(tmp_path / file),
+                api.open_part(document, str(tmp_path / file)).Shape,
+            ):
                 box = shape.BoundBox
                 sides = [box.XLength, box.YLength, box.ZLength]
                 assert sides == pytest.approx([40 * wanted, 40 * wanted, 30 * wanted], rel=1e-6)
-                assert shape.Volume == pytest.approx(wanted ** 3 * cone.Volume, rel=1e-9)
+                assert shape.Volume == pytest.approx(wanted**3 * cone.Volume, rel=1e-9)
     finally:
         FreeCAD.closeDocument(document.Name)
 
@@ -70,12 +88,22 @@ def test_iges_comes_back(tmp_path, cone):
     assert read_shape(str(tmp_path / "a.igs")).Area == pytest.approx(cone.Area, rel=1e-6)
 
 
-@pytest.mark.parametrize(("name", "content", "code"), [
-    ("missing.step", None, "NO_FILE"), ("empty.step", b"", "EMPTY_FILE"), ("bad.step", b"no STEP file\n", "BAD_FILE"),
-    ("bad.brep", b"xx", "BAD_FILE"), ("bad.igs", b"xx", "BAD_FILE"), ("binary.step", bytes(range(256)) * 20, "BAD_FILE"),
-    ("part.stl", b"solid x\nendsolid x\n", "UNSUPPORTED_FILE"), ("part.3mf", b"x", "UNSUPPORTED_FILE"),
-    ("part.OBJ", b"x", "UNSUPPORTED_FILE"), ("part.txt", b"x", "UNSUPPORTED_FILE"), ("part", b"x", "UNSUPPORTED_FILE"),
-])
+@pytest.mark.parametrize(
+    ("name", "content", "code"),
+    [
+        ("missing.step", None, "NO_FILE"),
+        ("empty.step", b"", "EMPTY_FILE"),
+        ("bad.step", b"no STEP file\n", "BAD_FILE"),
+        ("bad.brep", b"xx", "BAD_FILE"),
+        ("bad.igs", b"xx", "BAD_FILE"),
+        ("binary.step", bytes(range(256)) * 20, "BAD_FILE"),
+        ("part.stl", b"solid x\nendsolid x\n", "UNSUPPORTED_FILE"),
+        ("part.3mf", b"x", "UNSUPPORTED_FILE"),
+        ("part.OBJ", b"x", "UNSUPPORTED_FILE"),
+        ("part.txt", b"x", "UNSUPPORTED_FILE"),
+        ("part", b"x", "UNSUPPORTED_FILE"),
+    ],
+)
 def test_what_cannot_be_read_is_refused_by_name(tmp_path, name, content, code):
     path = tmp_path / name
     if content is not None:
@@ -123,12 +151,17 @@ def test_a_folder_is_no_file(tmp_path):
         read_shape(tmp_path / "a.step")
 
 
-@pytest.mark.parametrize(("relative", "between"), [(False, " "), (True, " "), (False, " \\\n"), (True, " \\\r\n  ")])
+@pytest.mark.parametrize(
+    ("relative", "between"), [(False, " "), (True, " "), (False, " \\\n"), (True, " \\\r\n  ")]
+)
 def test_faces_of_obj_files_with_many_corners_are_read(tmp_path, relative, between):
     """A prism over a star of 16 corners, of two faces of 16 corners, some sides of four and some of two triangles. FreeCAD
     leaves out the two, whose lines may go on in the next ones."""
     count, height = 16, 10.0
-    angle, radius = 2.0 * np.pi * np.arange(count) / count, np.where(np.arange(count) % 2, 12.0, 5.0)
+    angle, radius = (
+        2.0 * np.pi * np.arange(count) / count,
+        np.where(np.arange(count) % 2, 12.0, 5.0),
+    )
     ring = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
     lines = [f"v {x!r} {y!r} {z!r}" for z in (0.0, height) for x, y in ring.tolist()]
     faces = [list(range(count, 0, -1)), list(range(count + 1, 2 * count + 1))]
@@ -137,7 +170,8 @@ def test_faces_of_obj_files_with_many_corners_are_read(tmp_path, relative, betwe
         faces += [[a, b, c, d]] if i % 2 else [[a, b, c], [a, c, d]]
     shift = 2 * count + 1 if relative else 0
     lines += [
-        "f " + (between if len(face) > 4 else " ").join(f"{corner - shift}//1" for corner in face) for face in faces
+        "f " + (between if len(face) > 4 else " ").join(f"{corner - shift}//1" for corner in face)
+        for face in faces
     ]
     (tmp_path / "star.obj").write_bytes(("\n".join(lines) + "\n").encode())
     mesh = read_mesh(tmp_path / "star.obj", 2.0)

@@ -14,7 +14,8 @@ from freecad_am.brep.files.read import read_shape, reading_shape
 from freecad_am.core.issues import InputError
 
 pytestmark = pytest.mark.skipif(
-    FreeCAD.GuiUp or not sys.platform.startswith("linux"), reason="a window, and other systems, copy no process"
+    FreeCAD.GuiUp or not sys.platform.startswith("linux"),
+    reason="a window, and other systems, copy no process",
 )
 
 
@@ -105,10 +106,16 @@ def test_what_cannot_be_read_is_refused_with_the_same_words(cone, content):
         read_shape(cone)
     with reading_shape(cone), pytest.raises(InputError) as ahead:
         read_shape(cone)
-    assert (ahead.value.code, ahead.value.where, str(ahead.value)) == (alone.value.code, alone.value.where, str(alone.value))
+    assert (ahead.value.code, ahead.value.where, str(ahead.value)) == (
+        alone.value.code,
+        alone.value.where,
+        str(alone.value),
+    )
 
 
-@pytest.mark.parametrize("name", ["there is none.step", "a folder.step", "part.FCStd", "mesh.stl", ""])
+@pytest.mark.parametrize(
+    "name", ["there is none.step", "a folder.step", "part.FCStd", "mesh.stl", ""]
+)
 def test_nothing_is_begun_for_files_that_are_not_read_like_this(tmp_path, copied, name):
     if name.startswith("a folder"):
         (tmp_path / name).mkdir()

@@ -24,7 +24,11 @@ def bend(axis=(0, -1, 0), low=0.0, high=90.0):
 
 def pipe(bore=0.0):
     outer = Part.makeCylinder(PIPE, 200, Vector(0, -100, 0), Vector(0, 1, 0))
-    return outer.cut(Part.makeCylinder(bore, 200, Vector(0, -100, 0), Vector(0, 1, 0))) if bore else outer
+    return (
+        outer.cut(Part.makeCylinder(bore, 200, Vector(0, -100, 0), Vector(0, 1, 0)))
+        if bore
+        else outer
+    )
 
 
 def placed(shape, place):
@@ -75,7 +79,10 @@ def test_a_tube_that_goes_through_starts_on_one_side_and_says_so():
 
 @pytest.mark.parametrize("cone", [False, True])
 def test_leaning_branch_on_pipe_from_either_end_of_its_surface(cone):
-    for start, direction in ((Vector(3, 5, 0), Vector(0.3, 0.2, 1)), (Vector(3, 5, 0) + Vector(0.3, 0.2, 1) * 70, None)):
+    for start, direction in (
+        (Vector(3, 5, 0), Vector(0.3, 0.2, 1)),
+        (Vector(3, 5, 0) + Vector(0.3, 0.2, 1) * 70, None),
+    ):
         direction = direction or Vector(-0.3, -0.2, -1)
         length = direction.Length * 70
         radii = (10.0, 14.0) if direction.z > 0 else (14.0, 10.0)
@@ -88,7 +95,9 @@ def test_leaning_branch_on_pipe_from_either_end_of_its_surface(cone):
         local = wall.first - [3.0, 5.0, 0.0]
         along = local @ axis
         radius = 10.0 + (4.0 * along / length if cone else 0.0)
-        assert np.linalg.norm(local - along[:, None] * axis, axis=1) == pytest.approx(radius, abs=1e-9)
+        assert np.linalg.norm(local - along[:, None] * axis, axis=1) == pytest.approx(
+            radius, abs=1e-9
+        )
         assert wall.end == pytest.approx(np.hypot(length, 4.0) if cone else length, abs=1e-9)
         top = wall.surface().point(np.full(7, wall.end), np.linspace(0, 6, 7))
         assert (top - [3.0, 5.0, 0.0]) @ axis == pytest.approx(length, abs=1e-9)
@@ -133,11 +142,27 @@ def test_a_spline_tube_as_a_table():
         (lambda: bend(), ("Face7",), lambda: pipe(), "UNKNOWN_FACE"),
         (lambda: Part.makeBox(1, 1, 1), (), lambda: pipe(), "NO_WALL"),
         (lambda: Part.makeCylinder(5, 60), ("Face1", "Face2"), lambda: pipe(), "NOT_ONE_SURFACE"),
-        (lambda: Part.makeCylinder(5, 60).cut(Part.makeCylinder(2, 60)), (), lambda: pipe(), "NO_WALL"),
-        (lambda: Part.makeCylinder(5, 60, Vector(), Vector(0, 0, 1), 180), ("Face1",), lambda: pipe(), "NOT_CLOSED"),
+        (
+            lambda: Part.makeCylinder(5, 60).cut(Part.makeCylinder(2, 60)),
+            (),
+            lambda: pipe(),
+            "NO_WALL",
+        ),
+        (
+            lambda: Part.makeCylinder(5, 60, Vector(), Vector(0, 0, 1), 180),
+            ("Face1",),
+            lambda: pipe(),
+            "NOT_CLOSED",
+        ),
         (lambda: Part.Shape(), (), lambda: pipe(), "NO_WALL"),
-        (lambda: Part.makeCylinder(5, 60).cut(Part.makeCylinder(2, 60, Vector(-30, 0, 45), Vector(1, 0, 0))), ("Face1",),
-         lambda: pipe(), "WALL_EDGE"),
+        (
+            lambda: Part.makeCylinder(5, 60).cut(
+                Part.makeCylinder(2, 60, Vector(-30, 0, 45), Vector(1, 0, 0))
+            ),
+            ("Face1",),
+            lambda: pipe(),
+            "WALL_EDGE",
+        ),
     ],
 )
 def test_refusals(shape, faces, substrate, code):

@@ -25,11 +25,15 @@ def solid():
 
 def test_triangles_of_a_solid_enclose_it():
     found = body(solid(), "pipe")
-    corners = np.array([[tuple(PLACE.inverse().multVec(Vector(*p))) for p in t] for t in found.corners()])
+    corners = np.array(
+        [[tuple(PLACE.inverse().multVec(Vector(*p))) for p in t] for t in found.corners()]
+    )
     radius = np.hypot(*corners.mean(axis=1)[:, :2].T)
     side = np.ptp(corners[:, :, 2], axis=1) > 1.0
     assert (np.abs(radius[side] - 32.0) <= DEFLECTION).all()
-    volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6.0
+    volume = (
+        np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6.0
+    )
     assert volume == pytest.approx(solid().Volume, rel=2.0 * DEFLECTION / 32.0)
     assert found.name == "pipe"
 
@@ -51,15 +55,28 @@ def test_an_edge_is_no_body():
 
 def crossed():
     """A face that the kernel makes no triangles of, as its edges cross: between two others, and a box."""
-    bow = Part.makePolygon([Vector(*place) for place in ((0, 0, 0), (9, 9, 0), (9, 0, 0), (0, 9, 0), (0, 0, 0))])
-    return Part.makeCompound([Part.makeSphere(2).Faces[0], Part.Face(bow), Part.makeCylinder(1, 3).Faces[0],
-                              Part.makeBox(4, 5, 6, Vector(20, 0, 0))])
+    bow = Part.makePolygon(
+        [Vector(*place) for place in ((0, 0, 0), (9, 9, 0), (9, 0, 0), (0, 9, 0), (0, 0, 0))]
+    )
+    return Part.makeCompound(
+        [
+            Part.makeSphere(2).Faces[0],
+            Part.Face(bow),
+            Part.makeCylinder(1, 3).Faces[0],
+            Part.makeBox(4, 5, 6, Vector(20, 0, 0)),
+        ]
+    )
 
 
 def test_a_face_that_the_kernel_fails_on_has_no_triangles_and_the_others_theirs():
     found = tessellated(crossed(), 0.05)
-    assert set(found.owner) == {0, *range(2, 9)} and [len(nodes) > 0 for nodes in found.nodes].count(False) == 1
-    assert np.linalg.norm(found.vertices[found.triangles[found.owner == 0]], axis=2) == pytest.approx(2.0, abs=1e-6)
+    assert (
+        set(found.owner) == {0, *range(2, 9)}
+        and [len(nodes) > 0 for nodes in found.nodes].count(False) == 1
+    )
+    assert np.linalg.norm(
+        found.vertices[found.triangles[found.owner == 0]], axis=2
+    ) == pytest.approx(2.0, abs=1e-6)
     assert found.vertices[found.triangles[found.owner > 2], 0].min() >= 20.0
     distance, _ = skin(crossed(), "faces").exact(np.array([[22.0, 2.0, 7.5]]))
     assert distance == pytest.approx([1.5])
@@ -67,6 +84,7 @@ def test_a_face_that_the_kernel_fails_on_has_no_triangles_and_the_others_theirs(
 
 def test_a_face_that_the_kernel_has_failed_on_is_not_asked_for_again(monkeypatch):
     """Beside a countersink out of a STEP file it took minutes for that, or did not come back."""
+
     def failed():
         raise RuntimeError("Face has no triangulation")
 
@@ -75,5 +93,7 @@ def test_a_face_that_the_kernel_has_failed_on_is_not_asked_for_again(monkeypatch
 
     shape = Part.makeBox(1, 2, 3)
     faces = [SimpleNamespace(getUVNodes=failed, tessellate=asked), *shape.Faces]
-    monkeypatch.setattr(MeshPart, "meshFromShape", lambda **words: shape.tessellate(words["LinearDeflection"]))
+    monkeypatch.setattr(
+        MeshPart, "meshFromShape", lambda **words: shape.tessellate(words["LinearDeflection"])
+    )
     assert set(tessellated(SimpleNamespace(Faces=faces), 0.1).owner) == set(range(1, 7))

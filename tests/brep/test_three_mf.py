@@ -26,10 +26,14 @@ RELATIONS = (
 
 
 def mesh(number, points=CORNERS, faces=FACES, kind="model"):
-    vertices = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in np.asarray(points).tolist())
+    vertices = "".join(
+        f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in np.asarray(points).tolist()
+    )
     corners = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces)
-    return (f'<object id="{number}" type="{kind}"><mesh><vertices>{vertices}</vertices>'
-            f"<triangles>{corners}</triangles></mesh></object>")
+    return (
+        f'<object id="{number}" type="{kind}"><mesh><vertices>{vertices}</vertices>'
+        f"<triangles>{corners}</triangles></mesh></object>"
+    )
 
 
 def holder(number, *parts):
@@ -38,13 +42,19 @@ def holder(number, *parts):
 
 def placed(tag, number, matrix=None, more=""):
     """An item or component moved by (4, 4) for columns."""
-    text = "" if matrix is None else ' transform="' + " ".join(map(repr, matrix[:3].T.ravel().tolist())) + '"'
+    text = (
+        ""
+        if matrix is None
+        else ' transform="' + " ".join(map(repr, matrix[:3].T.ravel().tolist())) + '"'
+    )
     return f'<{tag} objectid="{number}"{text}{more}/>'
 
 
 def model(resources, items, unit="millimeter", more=""):
-    return (f'<?xml version="1.0" encoding="UTF-8"?><model unit="{unit}" xmlns="{three_mf.CORE}" {more}>'
-            f"<resources>{resources}</resources><build>{items}</build></model>")
+    return (
+        f'<?xml version="1.0" encoding="UTF-8"?><model unit="{unit}" xmlns="{three_mf.CORE}" {more}>'
+        f"<resources>{resources}</resources><build>{items}</build></model>"
+    )
 
 
 def written(folder, text, name="part.3mf", at=three_mf.MODEL, more=(), relations=None):
@@ -63,7 +73,10 @@ def moved(seed, mirrored=False):
     turned = np.linalg.qr(random.normal(size=(3, 3)))[0]
     turned *= np.sign(np.linalg.det(turned)) * (-1.0 if mirrored else 1.0)
     matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = turned @ np.diag(random.uniform(0.5, 2.0, 3)), random.uniform(-50.0, 50.0, 3)
+    matrix[:3, :3], matrix[:3, 3] = (
+        turned @ np.diag(random.uniform(0.5, 2.0, 3)),
+        random.uniform(-50.0, 50.0, 3),
+    )
     return matrix
 
 
@@ -77,7 +90,10 @@ def test_what_freecad_writes_comes_back(tmp_path):
     made.write(Filename=str(tmp_path / "made.3mf"), Format="3MF")
     read = read_mesh(tmp_path / "made.3mf")
     assert (read.CountFacets, read.CountPoints) == (made.CountFacets, made.CountPoints)
-    theirs, ours = (np.array([tuple(p) for p in one.Topology[0]])[np.array(one.Topology[1])] for one in (made, read))
+    theirs, ours = (
+        np.array([tuple(p) for p in one.Topology[0]])[np.array(one.Topology[1])]
+        for one in (made, read)
+    )
     np.testing.assert_allclose(ours, theirs, atol=1e-5)
 
 
@@ -94,16 +110,31 @@ def test_moves_of_items_and_of_components_in_components_follow_one_another(tmp_p
     inner = holder(2, placed("component", 1, ways[0]), placed("component", 7))
     outer = holder(3, placed("component", 2, ways[1]), placed("component", 1, ways[2]))
     resources = mesh(1) + mesh(7, CORNERS * 2.0) + inner + outer
-    items = placed("item", 3, ways[3]) + placed("item", 1, ways[4]) + placed("item", 7, None, ' printable="0"')
+    items = (
+        placed("item", 3, ways[3])
+        + placed("item", 1, ways[4])
+        + placed("item", 7, None, ' printable="0"')
+    )
     points, corners = three_mf.triangles(written(tmp_path, model(resources, items)))
     wanted = [
-        in_place(ways[3] @ ways[1] @ ways[0]), in_place(ways[3] @ ways[1], 2.0 * CORNERS), in_place(ways[3] @ ways[2]),
+        in_place(ways[3] @ ways[1] @ ways[0]),
+        in_place(ways[3] @ ways[1], 2.0 * CORNERS),
+        in_place(ways[3] @ ways[2]),
         in_place(ways[4]),
     ]
     np.testing.assert_allclose(points, np.vstack(wanted), atol=1e-11)
-    for k, (own, way) in enumerate(zip(wanted, (
-        ways[3] @ ways[1] @ ways[0], 2.0 * (ways[3] @ ways[1]), ways[3] @ ways[2], ways[4],
-    ), strict=True)):
+    for k, (own, way) in enumerate(
+        zip(
+            wanted,
+            (
+                ways[3] @ ways[1] @ ways[0],
+                2.0 * (ways[3] @ ways[1]),
+                ways[3] @ ways[2],
+                ways[4],
+            ),
+            strict=True,
+        )
+    ):
         solid = SolidMesh(points, corners[4 * k : 4 * k + 4])
         assert solid.volume == pytest.approx(abs(np.linalg.det(way[:3, :3])), rel=1e-12)
         assert set(np.unique(solid.triangles)) == set(range(4 * k, 4 * k + 4)) and len(own) == 4
@@ -114,16 +145,27 @@ def test_objects_in_further_files_and_a_model_in_another_place(tmp_path):
     way = moved(11)
     other = model(mesh(5), "")
     path = f' xmlns:p="{PRODUCTION}" p:path="/3D/Objects/blade.model"'
-    text = model(holder(1, placed("component", 5, way, path)), placed("item", 1), more='requiredextensions="p" '
-                 f'xmlns:p="{PRODUCTION}"')
-    file = written(tmp_path, text, at="Odd/place.model", more={"3D/Objects/blade.model": other},
-                   relations=RELATIONS.format("Odd/place.model"))
+    text = model(
+        holder(1, placed("component", 5, way, path)),
+        placed("item", 1),
+        more=f'requiredextensions="p" xmlns:p="{PRODUCTION}"',
+    )
+    file = written(
+        tmp_path,
+        text,
+        at="Odd/place.model",
+        more={"3D/Objects/blade.model": other},
+        relations=RELATIONS.format("Odd/place.model"),
+    )
     np.testing.assert_allclose(three_mf.triangles(file)[0], in_place(way), atol=1e-12)
 
 
 def test_supports_are_left_out_and_other_elements_do_not_matter(tmp_path):
     odd = '<x:vertex xmlns:x="urn:other" x="no number"/><basematerials id="9"><base name="a"/></basematerials>'
-    text = model(odd + mesh(1) + mesh(2, CORNERS + 9.0, kind="support"), placed("item", 1) + placed("item", 2))
+    text = model(
+        odd + mesh(1) + mesh(2, CORNERS + 9.0, kind="support"),
+        placed("item", 1) + placed("item", 2),
+    )
     assert len(three_mf.triangles(written(tmp_path, text))[0]) == 4
 
 
@@ -136,31 +178,67 @@ NESTED = "".join(holder(k + 1, *[placed("component", k)] * 4) for k in range(1, 
 DEEP = "".join(holder(k + 1, placed("component", k)) for k in range(1, 2000))
 
 
-@pytest.mark.parametrize(("text", "code", "told"), [
-    (model("", ""), "EMPTY_FILE", "no triangles"),
-    (model(mesh(1), ""), "EMPTY_FILE", "no triangles"),
-    (model(mesh(1, kind="support"), placed("item", 1)), "EMPTY_FILE", "no triangles"),
-    (model(mesh(1, faces=[[0, 1, 4]]), placed("item", 1)), "BAD_FILE", "points that it has not"),
-    (model(mesh(1, faces=[[0, 1, -1]]), placed("item", 1)), "BAD_FILE", "points that it has not"),
-    (model(mesh(1), placed("item", 2)), "BAD_FILE", "object 2"),
-    (model(holder(1, placed("component", 1)), placed("item", 1)), "BAD_FILE", "holds itself"),
-    (model(mesh(1), placed("item", 1, np.diag([1.0, 1.0, 0.0, 1.0]))), "BAD_FILE", "flattens"),
-    (model(mesh(1), '<item objectid="1" transform="1 0 0"/>'), "BAD_FILE", "transform"),
-    (model(mesh(1), '<item objectid="1" transform="nan 0 0 0 1 0 0 0 1 0 0 0"/>'), "BAD_FILE", "transform"),
-    (model(mesh(1), "<item/>"), "BAD_FILE", "lacks 'objectid'"),
-    (model(mesh(1).replace('x="1.0"', 'x="one"'), placed("item", 1)), "BAD_FILE", "not a number"),
-    (model(mesh(1).replace('x="1.0"', 'y1="1"'), placed("item", 1)), "BAD_FILE", "lacks 'x'"),
-    (model(mesh(1), placed("item", 1), "furlong"), "BAD_FILE", "furlong"),
-    (model(mesh(1), placed("item", 1))[:-30], "BAD_FILE", "XML"),
-    ('<!DOCTYPE a [<!ENTITY b "b">]>' + model(mesh(1), placed("item", 1))[38:], "BAD_FILE", "document type"),
-    (model(mesh(1), placed("item", 1), more='requiredextensions="b" xmlns:b="urn:beams"'), "UNSUPPORTED_FILE", "urn:beams"),
-    (model(mesh(1), placed("item", 1), more='requiredextensions="s" xmlns:s="urn:securecontent"'), "UNSUPPORTED_FILE",
-     "encrypted"),
-    (model(mesh(1) + NESTED, placed("item", 30)), "UNSUPPORTED_FILE", "objects"),
-    (model(mesh(1) + DEEP, placed("item", 2000)), "UNSUPPORTED_FILE", "nested"),
-])
+@pytest.mark.parametrize(
+    ("text", "code", "told"),
+    [
+        (model("", ""), "EMPTY_FILE", "no triangles"),
+        (model(mesh(1), ""), "EMPTY_FILE", "no triangles"),
+        (model(mesh(1, kind="support"), placed("item", 1)), "EMPTY_FILE", "no triangles"),
+        (
+            model(mesh(1, faces=[[0, 1, 4]]), placed("item", 1)),
+            "BAD_FILE",
+            "points that it has not",
+        ),
+        (
+            model(mesh(1, faces=[[0, 1, -1]]), placed("item", 1)),
+            "BAD_FILE",
+            "points that it has not",
+        ),
+        (model(mesh(1), placed("item", 2)), "BAD_FILE", "object 2"),
+        (model(holder(1, placed("component", 1)), placed("item", 1)), "BAD_FILE", "holds itself"),
+        (model(mesh(1), placed("item", 1, np.diag([1.0, 1.0, 0.0, 1.0]))), "BAD_FILE", "flattens"),
+        (model(mesh(1), '<item objectid="1" transform="1 0 0"/>'), "BAD_FILE", "transform"),
+        (
+            model(mesh(1), '<item objectid="1" transform="nan 0 0 0 1 0 0 0 1 0 0 0"/>'),
+            "BAD_FILE",
+            "transform",
+        ),
+        (model(mesh(1), "<item/>"), "BAD_FILE", "lacks 'objectid'"),
+        (
+            model(mesh(1).replace('x="1.0"', 'x="one"'), placed("item", 1)),
+            "BAD_FILE",
+            "not a number",
+        ),
+        (model(mesh(1).replace('x="1.0"', 'y1="1"'), placed("item", 1)), "BAD_FILE", "lacks 'x'"),
+        (model(mesh(1), placed("item", 1), "furlong"), "BAD_FILE", "furlong"),
+        (model(mesh(1), placed("item", 1))[:-30], "BAD_FILE", "XML"),
+        (
+            '<!DOCTYPE a [<!ENTITY b "b">]>' + model(mesh(1), placed("item", 1))[38:],
+            "BAD_FILE",
+            "document type",
+        ),
+        (
+            model(mesh(1), placed("item", 1), more='requiredextensions="b" xmlns:b="urn:beams"'),
+            "UNSUPPORTED_FILE",
+            "urn:beams",
+        ),
+        (
+            model(
+                mesh(1),
+                placed("item", 1),
+                more='requiredextensions="s" xmlns:s="urn:securecontent"',
+            ),
+            "UNSUPPORTED_FILE",
+            "encrypted",
+        ),
+        (model(mesh(1) + NESTED, placed("item", 30)), "UNSUPPORTED_FILE", "objects"),
+        (model(mesh(1) + DEEP, placed("item", 2000)), "UNSUPPORTED_FILE", "nested"),
+    ],
+)
 def test_refused_with_what_is_wrong(tmp_path, monkeypatch, text, code, told):
-    monkeypatch.setattr(three_mf, "MOST_PLACED", 10_000)  # to place ten times as many comes near the limit of time
+    monkeypatch.setattr(
+        three_mf, "MOST_PLACED", 10_000
+    )  # to place ten times as many comes near the limit of time
     with pytest.raises(InputError) as refused:
         read_mesh(written(tmp_path, text))
     assert (refused.value.code, refused.value.where) == (code, "part.3mf")
@@ -200,7 +278,9 @@ def test_zips_that_are_none_and_zips_that_grow(tmp_path, monkeypatch):
 
 
 def test_damage_anywhere_is_refused_not_a_traceback(tmp_path):
-    whole = written(tmp_path, model(mesh(1), placed("item", 1)), relations=RELATIONS.format(three_mf.MODEL)).read_bytes()
+    whole = written(
+        tmp_path, model(mesh(1), placed("item", 1)), relations=RELATIONS.format(three_mf.MODEL)
+    ).read_bytes()
     random = np.random.default_rng(3)
     read = 0
     for _ in range(400):

@@ -12,10 +12,14 @@ def tube_with_gaps(gap):
     makers write it within their tolerance."""
     tube = Part.makeCylinder(50, 30).cut(Part.makeCylinder(40, 30))
     curves, surfaces = tube.exportBrepToString().split("\nSurfaces ")
-    before = [line for line in surfaces.splitlines() if line.startswith("2 ") and line.endswith(" 40")]
+    before = [
+        line for line in surfaces.splitlines() if line.startswith("2 ") and line.endswith(" 40")
+    ]
     assert len(before) == 1
     made = Part.Shape()
-    made.importBrepFromString(f"{curves}\nSurfaces {surfaces.replace(before[0], f'{before[0][:-2]}{40 + gap}')}")
+    made.importBrepFromString(
+        f"{curves}\nSurfaces {surfaces.replace(before[0], f'{before[0][:-2]}{40 + gap}')}"
+    )
     assert len(made.Solids) == 1 and made.Shells[0].isClosed()
     return made
 

@@ -21,7 +21,11 @@ RADIUS = 32.0
 
 def pipe(bore=0.0):
     outer = Part.makeCylinder(RADIUS, 160, Vector(0, -80, 0), Vector(0, 1, 0))
-    return outer.cut(Part.makeCylinder(bore, 160, Vector(0, -80, 0), Vector(0, 1, 0))) if bore else outer
+    return (
+        outer.cut(Part.makeCylinder(bore, 160, Vector(0, -80, 0), Vector(0, 1, 0)))
+        if bore
+        else outer
+    )
 
 
 def slab():
@@ -45,6 +49,7 @@ def fan():
 
 def twisted_band(count):
     """A band with half a twist, of `count` ruled faces."""
+
     def point(angle, side):
         reach = 30.0 + side * np.cos(0.5 * angle)
         return Vector(reach * np.cos(angle), reach * np.sin(angle), side * np.sin(0.5 * angle))
@@ -54,41 +59,121 @@ def twisted_band(count):
         angles = 2.0 * np.pi * np.linspace(k, k + 1, 9) / count
         curves = []
         for side in (-8.0, 8.0):
-            slopes = [(point(a + 1e-5, side) - point(a - 1e-5, side)) * 5e4 for a in angles[[0, -1]]]
+            slopes = [
+                (point(a + 1e-5, side) - point(a - 1e-5, side)) * 5e4 for a in angles[[0, -1]]
+            ]
             curve = Part.BSplineCurve()
             points = [point(a, side) for a in angles]
-            curve.interpolate(points, Parameters=angles.tolist(), InitialTangent=slopes[0], FinalTangent=slopes[1])
+            curve.interpolate(
+                points, Parameters=angles.tolist(), InitialTangent=slopes[0], FinalTangent=slopes[1]
+            )
             curves.append(curve)
         # not Part.makeRuledSurface: since FreeCAD 1.0 it turns an edge around where that brings ends together
         poles = [list(pair) for pair in zip(*(curve.getPoles() for curve in curves), strict=True)]
         knots, mults = curves[0].getKnots(), curves[0].getMultiplicities()
         surface = Part.BSplineSurface()
-        surface.buildFromPolesMultsKnots(poles, mults, [2, 2], knots, [0.0, 1.0], False, False, curves[0].Degree, 1)
+        surface.buildFromPolesMultsKnots(
+            poles, mults, [2, 2], knots, [0.0, 1.0], False, False, curves[0].Degree, 1
+        )
         faces.append(surface.toShape())
     return Part.Compound(faces)
 
 
 def kinked():
     surface = Part.BSplineSurface()
-    poles = [[Vector(x, y, z) for y in (-20, 20)] for x, z in ((0, 0), (0, 20), (0, 40), (10, 60), (20, 80))]
-    surface.buildFromPolesMultsKnots(poles, [2, 1, 1, 1, 2], [2, 2], [0, 1, 2, 3, 4], [0, 1], False, False, 1, 1)
+    poles = [
+        [Vector(x, y, z) for y in (-20, 20)]
+        for x, z in ((0, 0), (0, 20), (0, 40), (10, 60), (20, 80))
+    ]
+    surface.buildFromPolesMultsKnots(
+        poles, [2, 1, 1, 1, 2], [2, 2], [0, 1, 2, 3, 4], [0, 1], False, False, 1, 1
+    )
     return surface.toShape()
 
 
-@pytest.mark.parametrize(("make", "substrate", "height", "edges", "code", "where", "words"), [
-    (fan, slab, 2.0, (), "BRANCHING_FACES", "Wall", ["more than two faces", "0, 0)"]),
-    (lambda: twisted_band(1), slab, 3.0, (), "NOT_ORIENTABLE", "Wall", ["Face1 cannot"]),
-    (lambda: twisted_band(2), slab, 3.0, (), "NOT_ORIENTABLE", "Wall", ["Face1", "Face2", "twisted"]),
-    (lambda: Part.makePlane(1e4, 1e4, Vector(), Vector(1, 0, 0)), slab, 1.0, (), "TOO_FINE", "strategy.layer_height",
-     ["1 mm", "about 230,000,000 triangles", "more than 13 mm"]),
-    (lambda: Part.makePlane(780, 780, Vector(), Vector(1, 0, 0)), slab, 1.0, (), "TOO_FINE", "Wall", ["1 mm", "larger"]),
-    (tube, slab, 1e-6, ("Edge1",), "TOO_FINE", "strategy.layer_height", ["1e-06 mm", "more than 0.0"]),
-    (kinked, slab, 4.0, (), "ROUGH_WALL", "Wall Face1", ["26.6 deg", "40)"]),
-    (lambda: Part.Compound([tube(), tube(100.0)]), lambda: None, 4.0, ("Edge6",), "NO_START", "Wall Edge6", ["100 mm off"]),
-    (tube, lambda: None, 4.0, ("Edge99",), "UNKNOWN_EDGE", "Wall", ["Edge99", "Edge1 to Edge3"]),
-    (lambda: tube().rotated(Vector(), Vector(1, 0, 0), 30.0), lambda: None, 4.0, (), "NO_SUBSTRATE", "Wall",
-     ["choose a substrate"]),
-], ids=["fan", "twisted", "twisted in two", "huge", "large", "fine", "kinked", "edge elsewhere", "no such edge", "nothing"])
+@pytest.mark.parametrize(
+    ("make", "substrate", "height", "edges", "code", "where", "words"),
+    [
+        (fan, slab, 2.0, (), "BRANCHING_FACES", "Wall", ["more than two faces", "0, 0)"]),
+        (lambda: twisted_band(1), slab, 3.0, (), "NOT_ORIENTABLE", "Wall", ["Face1 cannot"]),
+        (
+            lambda: twisted_band(2),
+            slab,
+            3.0,
+            (),
+            "NOT_ORIENTABLE",
+            "Wall",
+            ["Face1", "Face2", "twisted"],
+        ),
+        (
+            lambda: Part.makePlane(1e4, 1e4, Vector(), Vector(1, 0, 0)),
+            slab,
+            1.0,
+            (),
+            "TOO_FINE",
+            "strategy.layer_height",
+            ["1 mm", "about 230,000,000 triangles", "more than 13 mm"],
+        ),
+        (
+            lambda: Part.makePlane(780, 780, Vector(), Vector(1, 0, 0)),
+            slab,
+            1.0,
+            (),
+            "TOO_FINE",
+            "Wall",
+            ["1 mm", "larger"],
+        ),
+        (
+            tube,
+            slab,
+            1e-6,
+            ("Edge1",),
+            "TOO_FINE",
+            "strategy.layer_height",
+            ["1e-06 mm", "more than 0.0"],
+        ),
+        (kinked, slab, 4.0, (), "ROUGH_WALL", "Wall Face1", ["26.6 deg", "40)"]),
+        (
+            lambda: Part.Compound([tube(), tube(100.0)]),
+            lambda: None,
+            4.0,
+            ("Edge6",),
+            "NO_START",
+            "Wall Edge6",
+            ["100 mm off"],
+        ),
+        (
+            tube,
+            lambda: None,
+            4.0,
+            ("Edge99",),
+            "UNKNOWN_EDGE",
+            "Wall",
+            ["Edge99", "Edge1 to Edge3"],
+        ),
+        (
+            lambda: tube().rotated(Vector(), Vector(1, 0, 0), 30.0),
+            lambda: None,
+            4.0,
+            (),
+            "NO_SUBSTRATE",
+            "Wall",
+            ["choose a substrate"],
+        ),
+    ],
+    ids=[
+        "fan",
+        "twisted",
+        "twisted in two",
+        "huge",
+        "large",
+        "fine",
+        "kinked",
+        "edge elsewhere",
+        "no such edge",
+        "nothing",
+    ],
+)
 def test_refusals(make, substrate, height, edges, code, where, words):
     faces = ("Face1",) if code == "NO_START" else ()
     with pytest.raises(InputError) as caught:
@@ -111,24 +196,44 @@ def test_unsound_meshes_are_refused_with_a_place():
     points, corners = box()
     flat = points[:, 2] == points[:, 2].max()
     cases = [
-        (points, corners[~flat[corners].all(axis=1)], "OPEN_MESH", "4 edges, 28.28 mm across, at (0, 0, 10)"),
+        (
+            points,
+            corners[~flat[corners].all(axis=1)],
+            "OPEN_MESH",
+            "4 edges, 28.28 mm across, at (0, 0, 10)",
+        ),
         (points, corners[:0], "NO_SOLID", "no triangles"),
         (np.where(points > 0.0, np.nan, points), corners, "BAD_FILE", "not numbers"),
     ]
     for some, triangles, code, words in cases:
         with pytest.raises(InputError) as caught:
             mesh_solid(some, triangles, "Scan")
-        assert (caught.value.code, caught.value.where) == (code, "Scan") and words in caught.value.message, code
+        assert (caught.value.code, caught.value.where) == (
+            code,
+            "Scan",
+        ) and words in caught.value.message, code
 
 
 def test_meshes_that_can_be_mended_are():
     points, corners = box()
     beside, _ = box((20.0, 20.0, 0.0))  # meets the first box in one edge
     cases = [
-        (np.vstack([points, beside]), np.vstack([corners, corners + len(points)]), 16000.0, "MENDED", "(10, 10, 0)"),
+        (
+            np.vstack([points, beside]),
+            np.vstack([corners, corners + len(points)]),
+            16000.0,
+            "MENDED",
+            "(10, 10, 0)",
+        ),
         (points, corners[1:], 8000.0, "MESH_REPAIRED", "1 missing triangles"),
         (points, corners[:, ::-1], 8000.0, "MESH_REPAIRED", "inside out"),
-        (points, np.vstack([corners[:1, ::-1], corners[1:]]), 8000.0, "MESH_REPAIRED", "1 triangles were turned"),
+        (
+            points,
+            np.vstack([corners[:1, ::-1], corners[1:]]),
+            8000.0,
+            "MESH_REPAIRED",
+            "1 triangles were turned",
+        ),
     ]
     for some, triangles, volume, code, words in cases:
         solid, issues = mesh_solid(some, triangles, "Scan")
@@ -140,7 +245,9 @@ def test_meshes_that_can_be_mended_are():
 
 def test_doubled_points_and_triangles_without_area_do_no_harm():
     points, corners = box()
-    loose = points[corners].reshape(-1, 3)  # each triangle with points of its own, as STL files have them
+    loose = points[corners].reshape(
+        -1, 3
+    )  # each triangle with points of its own, as STL files have them
     triangles = np.arange(len(loose)).reshape(-1, 3)
     thin = np.array([[0, 0, 1], [2, 2, 2]])
     solid, issues = mesh_solid(loose, np.vstack([triangles, thin]), "Scan")
@@ -161,9 +268,14 @@ def test_mesh_files_bring_the_same_solid(tmp_path):
         assert solid.volume == pytest.approx(made.Volume, rel=1e-5), kind
 
 
-@pytest.mark.parametrize(("name", "content", "code"), [
-    ("none.stl", None, "NO_FILE"), ("empty.stl", b"", "EMPTY_FILE"), ("odd.obj", b"nothing here\n", "EMPTY_FILE"),
-])
+@pytest.mark.parametrize(
+    ("name", "content", "code"),
+    [
+        ("none.stl", None, "NO_FILE"),
+        ("empty.stl", b"", "EMPTY_FILE"),
+        ("odd.obj", b"nothing here\n", "EMPTY_FILE"),
+    ],
+)
 def test_bad_mesh_files(tmp_path, name, content, code):
     if content is not None:
         (tmp_path / name).write_bytes(content)
@@ -180,7 +292,9 @@ def test_first_layers_on_meshes_are_as_good_as_the_facets(angle):
     points = np.array([tuple(point) for point in points])
     middles = points[np.array(corners)][:, [0, 1, 2]].mean(axis=1)
     round_ = np.abs(middles[:, 1]) < 79.0
-    edges = 0.5 * (points[np.array(corners)[round_]] + points[np.roll(np.array(corners)[round_], 1, axis=1)])
+    edges = 0.5 * (
+        points[np.array(corners)[round_]] + points[np.roll(np.array(corners)[round_], 1, axis=1)]
+    )
     sagitta = RADIUS - np.hypot(edges[..., 0], edges[..., 2]).min()
     wall = wall_on(half_tube(), (), mesh, 5.0)
     curve = wall.first[0].curve()
@@ -214,7 +328,10 @@ def test_a_branch_that_comes_out_on_both_sides_grows_on_both_and_one_from_the_bo
     through = Part.makeCylinder(5, 120, Vector(0, 0, -60)).Faces[0]
     both = wall_on(through, (), pipe(29.0), 3.0)
     assert sorted(np.sign(curve.points[:, 2].mean()) for curve in both.first) == [-1.0, 1.0]
-    assert all(np.hypot(curve.points[:, 0], curve.points[:, 2]) == pytest.approx(RADIUS, abs=1e-9) for curve in both.first)
+    assert all(
+        np.hypot(curve.points[:, 0], curve.points[:, 2]) == pytest.approx(RADIUS, abs=1e-9)
+        for curve in both.first
+    )
     branch = wall_on(Part.makeCylinder(5, 60).Faces[0], (), pipe(29.0), 3.0)
     assert not isinstance(branch, PatchWall)
     assert np.hypot(branch.first[:, 0], branch.first[:, 2]) == pytest.approx(RADIUS, abs=1e-9)
@@ -225,4 +342,7 @@ def test_a_mesh_that_comes_to_no_end_is_not_said_to_have_too_many_triangles(monk
     with pytest.raises(InputError) as caught:
         wall_on(half_tube(), (), slab(), 4.0, "Wall", "Slab")
     assert caught.value.code == "TOO_FINE"
-    assert "comes to no end, though about" in caught.value.message and "larger layer height" not in caught.value.message
+    assert (
+        "comes to no end, though about" in caught.value.message
+        and "larger layer height" not in caught.value.message
+    )

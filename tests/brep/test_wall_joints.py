@@ -19,7 +19,11 @@ LONG, WIDE, ROUND, HEIGHT = 26.0, 20.0, 6.0, 3.0
 def off_rounded_box(points):
     """Distances (n,) from the sides of the box with rounded edges."""
     out = np.abs(points[:, :2]) - np.array([0.5 * LONG - ROUND, 0.5 * WIDE - ROUND])
-    return np.abs(np.where((out > 0.0).all(axis=1), np.linalg.norm(out, axis=1) - ROUND, out.max(axis=1) - ROUND))
+    return np.abs(
+        np.where(
+            (out > 0.0).all(axis=1), np.linalg.norm(out, axis=1) - ROUND, out.max(axis=1) - ROUND
+        )
+    )
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +53,10 @@ def test_first_curve_and_fronts_lie_on_flats_and_roundings_between_their_nodes_t
 
 def test_beads_and_what_they_outline_lie_on_the_wall(rounded_box):
     found = wall_fronts.plan(
-        rounded_box, SurfaceParameters(layer_height=HEIGHT), BuildDirectionParameters(), ProcessParameters()
+        rounded_box,
+        SurfaceParameters(layer_height=HEIGHT),
+        BuildDirectionParameters(),
+        ProcessParameters(),
     )
     for layer, _, bead in found:
         assert off_rounded_box(bead.points).max() < 1e-9
@@ -63,7 +70,12 @@ def test_a_wall_moved_and_turned_gives_the_same_beads():
     """An elbow whose fronts meet: gaps between them are closed by how deep they are, wherever the wall stands."""
     low = Part.makeCylinder(12, 8, Vector(0, 0, -5)).Faces[0]
     torus = Part.Toroid()
-    torus.MajorRadius, torus.MinorRadius, torus.Center, torus.Axis = 24, 12, Vector(-24, 0, 3), Vector(0, -1, 0)
+    torus.MajorRadius, torus.MinorRadius, torus.Center, torus.Axis = (
+        24,
+        12,
+        Vector(-24, 0, 3),
+        Vector(0, -1, 0),
+    )
     elbow = torus.toShape(0.0, np.radians(70.0), 0.0, 2.0 * np.pi).Faces[0]
     both = Part.Compound([low, elbow])
     block = Part.makeBox(60, 60, 20, Vector(-30, -30, -20))
@@ -75,7 +87,10 @@ def test_a_wall_moved_and_turned_gives_the_same_beads():
         found.append(sliced)
     assert any(found[0].closing)
     for kind in ("fronts", "closing"):
-        lengths = [[sorted(curve.length for curve in layer) for layer in getattr(some, kind)] for some in found]
+        lengths = [
+            [sorted(curve.length for curve in layer) for layer in getattr(some, kind)]
+            for some in found
+        ]
         assert list(map(len, lengths[0])) == list(map(len, lengths[1]))
         for mine, its in zip(*lengths, strict=True):
             assert mine == pytest.approx(its, rel=0.02, abs=0.02)

@@ -25,12 +25,17 @@ def tube(radius=12.0, height=40.0):
 def figure_eight():
     curve = Part.BSplineCurve()
     angle = 2.0 * np.pi * np.arange(40) / 40
-    curve.interpolate([Vector(20 * np.sin(a), 12 * np.sin(2 * a), -5) for a in angle], PeriodicFlag=True)
+    curve.interpolate(
+        [Vector(20 * np.sin(a), 12 * np.sin(2 * a), -5) for a in angle], PeriodicFlag=True
+    )
     return curve.toShape().extrude(Vector(0, 0, 40))
 
 
 def crossing_pipe():
-    points = [Vector(*p) for p in ((0, 0, -5), (0, 0, 40), (40, 0, 60), (40, 0, 20), (-20, 2, 20), (-60, 0, 40))]
+    points = [
+        Vector(*p)
+        for p in ((0, 0, -5), (0, 0, 40), (40, 0, 60), (40, 0, 20), (-20, 2, 20), (-60, 0, 40))
+    ]
     spine = Part.BSplineCurve()
     spine.interpolate(points)
     profile = Part.Wire(Part.makeCircle(8, points[0], spine.tangent(0)[0]))
@@ -67,7 +72,10 @@ def test_faults_of_the_kernel_name_the_part(monkeypatch):
     monkeypatch.setattr(module, "find_patch_wall", fails)
     with pytest.raises(InputError) as caught:
         wall_on(tube(), (), slab(), 4.0, "Wall", "Slab")
-    assert (caught.value.code, caught.value.where) == ("BAD_SHAPE", "Wall") and "repair" in caught.value.message
+    assert (caught.value.code, caught.value.where) == (
+        "BAD_SHAPE",
+        "Wall",
+    ) and "repair" in caught.value.message
     monkeypatch.setattr(module, "substrate_of", fails)
     with pytest.raises(InputError) as caught:
         wall_on(tube(), (), slab(), 4.0, "Wall", "Slab")
@@ -79,8 +87,10 @@ def test_faults_of_the_kernel_name_the_part(monkeypatch):
 def test_solids_that_touch_are_grown_on_as_one(split, overlap):
     wall = tube()
     if split:
-        wall = Part.Compound(Part.makeCylinder(12, 20, Vector(0, 0, -5)).Faces[:1]
-                             + Part.makeCylinder(12, 25, Vector(0, 0, 15)).Faces[:1])
+        wall = Part.Compound(
+            Part.makeCylinder(12, 20, Vector(0, 0, -5)).Faces[:1]
+            + Part.makeCylinder(12, 25, Vector(0, 0, 15)).Faces[:1]
+        )
     halves = Part.Compound([slab(-50.0, 50.0), slab(-overlap, 50.0 + overlap)])
     found = wall_on(wall, (), halves, 4.0)
     assert isinstance(found, PatchWall if split else SurfaceWall)
@@ -99,7 +109,10 @@ def test_one_of_two_solids_inside_out_is_refused():
     assert slab().Volume + other.Volume <= 0.0 < Part.Compound([slab(), slab(), other]).Volume
     with pytest.raises(InputError) as caught:
         wall_on(tube(), (), Part.Compound([slab(), slab(60.0, 30.0), other]), 4.0, "Wall", "Slab")
-    assert (caught.value.code, caught.value.where) == ("INSIDE_OUT", "Slab") and "150" in caught.value.message
+    assert (caught.value.code, caught.value.where) == (
+        "INSIDE_OUT",
+        "Slab",
+    ) and "150" in caught.value.message
 
 
 def bend(major, minor):
@@ -119,17 +132,26 @@ def below_only():
 
 
 def flared():
-    rings = [Part.Wire(Part.makeCircle(r, Vector(0, 0, z))) for r, z in ((20, -4), (9, 18), (20, 40))]
+    rings = [
+        Part.Wire(Part.makeCircle(r, Vector(0, 0, z))) for r, z in ((20, -4), (9, 18), (20, 40))
+    ]
     return Part.makeLoft(rings, False, False).Faces[0]
 
 
 SLOPE = np.cos(np.arctan2(10.0, 30.0))
 
 
-@pytest.mark.parametrize(("make", "radius"), [
-    (tube, 12.0), (lambda: bend(40.0, 10.0), 10.0), (lambda: bend(40.0, 25.0), 15.0), (lambda: cone(10.0), 10.0 / SLOPE),
-    (below_only, 14.0 * np.sqrt(2.0)),
-], ids=["cylinder", "torus", "torus inside", "cone", "cone from its wide part"])
+@pytest.mark.parametrize(
+    ("make", "radius"),
+    [
+        (tube, 12.0),
+        (lambda: bend(40.0, 10.0), 10.0),
+        (lambda: bend(40.0, 25.0), 15.0),
+        (lambda: cone(10.0), 10.0 / SLOPE),
+        (below_only, 14.0 * np.sqrt(2.0)),
+    ],
+    ids=["cylinder", "torus", "torus inside", "cone", "cone from its wide part"],
+)
 def test_layers_higher_than_a_tube_is_round_are_refused(make, radius):
     """By the principal radii that geometry books give; on the cone that of its narrower end out of the substrate."""
     assert isinstance(wall_on(make(), (), slab(), 0.999 * radius), SurfaceWall)
@@ -137,7 +159,9 @@ def test_layers_higher_than_a_tube_is_round_are_refused(make, radius):
         wall_on(make(), (), slab(), 1.03 * radius, "Wall")
     assert (caught.value.code, caught.value.where) == ("LAYER_HEIGHT", "Wall Face1")
     told = float(caught.value.message.split("curvature, ")[1].split(" mm")[0])
-    assert told == pytest.approx(radius, rel=0.02) and f"{1.03 * radius:g} mm" in caught.value.message
+    assert (
+        told == pytest.approx(radius, rel=0.02) and f"{1.03 * radius:g} mm" in caught.value.message
+    )
 
 
 def test_a_waist_of_a_loft_is_told_with_its_place():
@@ -152,8 +176,11 @@ def test_a_waist_of_a_loft_is_told_with_its_place():
 def rod_of_two():
     """A solid rod: a cylinder that flares, both of it one wall."""
     outline = [Vector(0, 0, -5), Vector(12, 0, -5), Vector(12, 0, 20)]
-    arc = Part.Arc(Vector(12, 0, 20), Vector(20 - 8 * np.cos(0.35), 0, 20 + 8 * np.sin(0.35)),
-                   Vector(20 - 8 * np.cos(0.7), 0, 20 + 8 * np.sin(0.7)))
+    arc = Part.Arc(
+        Vector(12, 0, 20),
+        Vector(20 - 8 * np.cos(0.35), 0, 20 + 8 * np.sin(0.35)),
+        Vector(20 - 8 * np.cos(0.7), 0, 20 + 8 * np.sin(0.7)),
+    )
     top = Vector(20 - 8 * np.cos(0.7), 0, 20 + 8 * np.sin(0.7))
     back = Part.makePolygon([top, Vector(0, 0, top.z), outline[0]])
     edges = [*Part.makePolygon(outline).Edges, arc.toShape(), *back.Edges]
@@ -162,7 +189,11 @@ def rod_of_two():
 
 def test_of_a_solid_the_faces_that_are_not_flat_are_the_wall_where_that_is_clear():
     rod = rod_of_two()
-    curved = [f"Face{k}" for k, face in enumerate(rod.Faces, 1) if face.Surface.TypeId != "Part::GeomPlane"]
+    curved = [
+        f"Face{k}"
+        for k, face in enumerate(rod.Faces, 1)
+        if face.Surface.TypeId != "Part::GeomPlane"
+    ]
     assert rod.isValid() and rod.Solids and len(curved) == 2
     assert [name for name, _ in module.named_faces(rod, (), "Rod")] == curved
     found = wall_on(rod, (), slab(), 3.0)
@@ -176,17 +207,24 @@ def rounded_box():
 
 def rounded_on_top():
     box = Part.makeBox(60, 40, 30, Vector(-30, -20, -5))
-    return box.makeFillet(5, [edge for edge in box.Edges if min(vertex.Z for vertex in edge.Vertexes) > 24.0])
+    return box.makeFillet(
+        5, [edge for edge in box.Edges if min(vertex.Z for vertex in edge.Vertexes) > 24.0]
+    )
 
 
 def hollow():
     return Part.makeCylinder(15, 30).cut(Part.makeCylinder(10, 30))
 
 
-@pytest.mark.parametrize(("make", "words"), [
-    (rounded_box, ["are not one wall", "Face"]), (hollow, ["are not one wall", "Face"]),
-    (rounded_on_top, ["run on smoothly into Face"]), (lambda: Part.makeBox(9, 9, 9), ["none"]),
-])
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (rounded_box, ["are not one wall", "Face"]),
+        (hollow, ["are not one wall", "Face"]),
+        (rounded_on_top, ["run on smoothly into Face"]),
+        (lambda: Part.makeBox(9, 9, 9), ["none"]),
+    ],
+)
 def test_of_a_solid_where_it_is_not_clear_it_is_told_how_to_name_them(make, words):
     with pytest.raises(InputError) as caught:
         wall_on(make(), (), slab(), 3.0, "Part")

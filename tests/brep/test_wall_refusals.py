@@ -55,7 +55,11 @@ def test_the_face_that_is_off_is_named():
 def test_a_wall_with_a_window_is_refused():
     error = refused(TUBE.cut(Part.makeCylinder(2, 50, Vector(-25, 0, 15), Vector(1, 0, 0))))
     assert error.code == "NOT_REVOLUTION"
-    side = Part.makeCylinder(10, 30).Faces[0].cut(Part.makeCylinder(2, 50, Vector(-25, 0, 15), Vector(1, 0, 0)))
+    side = (
+        Part.makeCylinder(10, 30)
+        .Faces[0]
+        .cut(Part.makeCylinder(2, 50, Vector(-25, 0, 15), Vector(1, 0, 0)))
+    )
     error = refused(side.Faces[0])
     assert error.code == "NOT_REVOLUTION"
     assert "cut out or slanted" in error.message
@@ -70,11 +74,17 @@ def test_a_slanted_end_is_refused():
     assert told == pytest.approx(20.0 * math.tan(math.radians(10.0)), rel=0.05)
 
 
-@pytest.mark.parametrize(("shape", "code"), [
-    (Part.makeBox(10, 20, 30), "NO_WALL"), (Part.Shape(), "NO_WALL"), (None, "NO_WALL"),
-    (Part.Vertex(1, 2, 3), "NO_WALL"), (Part.makeLine(ORIGIN, Vector(1, 0, 1)), "NO_AXIS"),
-    (Part.makePlane(10, 10), "NO_WALL"),
-])
+@pytest.mark.parametrize(
+    ("shape", "code"),
+    [
+        (Part.makeBox(10, 20, 30), "NO_WALL"),
+        (Part.Shape(), "NO_WALL"),
+        (None, "NO_WALL"),
+        (Part.Vertex(1, 2, 3), "NO_WALL"),
+        (Part.makeLine(ORIGIN, Vector(1, 0, 1)), "NO_AXIS"),
+        (Part.makePlane(10, 10), "NO_WALL"),
+    ],
+)
 def test_what_has_no_wall_is_told(shape, code):
     assert refused(shape, label="Thing").code == code
 
@@ -104,7 +114,9 @@ def test_faces_that_do_not_join_are_named():
 
 
 def test_two_solids_with_a_wall_are_named():
-    error = refused(Part.makeCompound([Part.makeCylinder(10, 30), Part.makeCylinder(10, 30, Vector(50, 0, 0))]))
+    error = refused(
+        Part.makeCompound([Part.makeCylinder(10, 30), Part.makeCylinder(10, 30, Vector(50, 0, 0))])
+    )
     assert error.code == "SEVERAL_SOLIDS"
     assert "Solid1" in error.message
     assert "Solid2" in error.message

@@ -42,13 +42,23 @@ def test_what_no_deflection_mends_is_told_with_both_volumes(monkeypatch):
     monkeypatch.setattr(whole_mesh, "in_kernel_process", made)
     found = hub.bodies_of(TORUS, "ring", 0.01 / hub.SHARE, 0.1)
     (issue,) = found.issues
-    assert issue.code == "MESH_VOLUME" and issue.level == "warning" and len(asked) == len(whole_mesh.FINER)
+    assert (
+        issue.code == "MESH_VOLUME"
+        and issue.level == "warning"
+        and len(asked) == len(whole_mesh.FINER)
+    )
     assert f"{1e-3 * TORUS.Volume:.4g} cm3" in issue.message
 
 
-@pytest.mark.parametrize("shape", [
-    TORUS, Part.makeSphere(30.0), Part.makeCone(1.0, 20.0, 300.0), Part.makeBox(0.1, 50.0, 50.0),
-])
+@pytest.mark.parametrize(
+    "shape",
+    [
+        TORUS,
+        Part.makeSphere(30.0),
+        Part.makeCone(1.0, 20.0, 300.0),
+        Part.makeBox(0.1, 50.0, 50.0),
+    ],
+)
 @pytest.mark.parametrize("chord", [0.5, 0.01])
 @pytest.mark.always
 def test_sound_solids_are_meshed_once(monkeypatch, shape, chord):

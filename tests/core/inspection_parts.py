@@ -12,8 +12,13 @@ R0 = 45.0
 
 def hemisphere(start=0.0, end=2.0 * np.pi, full=True):
     angle = np.linspace(0.0, 0.5 * np.pi, 700)
-    points, tangents = R0 * np.column_stack([np.cos(angle), np.sin(angle)]), np.column_stack([-np.sin(angle), np.cos(angle)])
-    return RevolvedWall(Meridian.chained([(points, tangents)]), np.eye(4), start, end, full, label="hemisphere")
+    points, tangents = (
+        R0 * np.column_stack([np.cos(angle), np.sin(angle)]),
+        np.column_stack([-np.sin(angle), np.cos(angle)]),
+    )
+    return RevolvedWall(
+        Meridian.chained([(points, tangents)]), np.eye(4), start, end, full, label="hemisphere"
+    )
 
 
 def funnel():

@@ -14,13 +14,27 @@ TURN = 2.0 * np.pi
 SUBSTRATE = 1e-9  # mm; a rim that reaches no farther above the substrate lies on it
 
 
-def patch_wall(vertices, triangles, patches, owner, substrate, is_end=lambda points: False, label="wall"):
+def patch_wall(
+    vertices, triangles, patches, owner, substrate, is_end=lambda points: False, label="wall"
+):
     """The wall of a mesh whose triangles (m, 3) belong to the patches owner (m,); it starts where it leaves `substrate`."""
     uv = np.empty((len(triangles), 3, 2))
     for k, patch in enumerate(patches):
         mine = owner == k
-        uv[mine] = patch.unwrapped(patch.inverse(vertices[triangles[mine]].reshape(-1, 3)).reshape(-1, 3, 2))
-    bare = PatchWall(vertices, triangles, owner, uv, tuple(patches), (), np.zeros(len(vertices), dtype=bool), (), label)
+        uv[mine] = patch.unwrapped(
+            patch.inverse(vertices[triangles[mine]].reshape(-1, 3)).reshape(-1, 3, 2)
+        )
+    bare = PatchWall(
+        vertices,
+        triangles,
+        owner,
+        uv,
+        tuple(patches),
+        (),
+        np.zeros(len(vertices), dtype=bool),
+        (),
+        label,
+    )
     first = tuple(_first(bare, substrate))
     behind = substrate.value(vertices)[0] < 0.0
     rims = tuple(_rims(bare, substrate, is_end))
@@ -28,7 +42,9 @@ def patch_wall(vertices, triangles, patches, owner, substrate, is_end=lambda poi
 
 
 def _first(wall, substrate):
-    lines = wall.mesh.level_lines(substrate.value(wall.vertices)[0] - SUBSTRATE, np.arange(len(wall.triangles)))
+    lines = wall.mesh.level_lines(
+        substrate.value(wall.vertices)[0] - SUBSTRATE, np.arange(len(wall.triangles))
+    )
     for line in lines:
         points, normal = wall.project(line.points)
         for _ in range(40):
@@ -36,7 +52,9 @@ def _first(wall, substrate):
             slope = gradient - dot(gradient, normal)[:, None] * normal
             if not line.closed:
                 slope[[0, -1]] = dot(gradient[[0, -1]], line.rims)[:, None] * line.rims
-            points, normal = wall.project(points - (off / np.maximum(dot(slope, slope), 1e-6))[:, None] * slope)
+            points, normal = wall.project(
+                points - (off / np.maximum(dot(slope, slope), 1e-6))[:, None] * slope
+            )
         length = np.linalg.norm(np.diff(points, axis=0), axis=1)
         keep = np.r_[True, length > 0.2 * np.median(length)]
         if not line.closed:
@@ -59,14 +77,19 @@ def _rims(wall, substrate, is_end):
         points = wall.vertices[np.r_[ends[:, 0], ends[-1, 1]]]
         if closed:
             points[-1] = points[0]
-        yield Rim(points, bool((substrate.value(points)[0] > SUBSTRATE).all() and np.all(is_end(points))))
+        yield Rim(
+            points, bool((substrate.value(points)[0] > SUBSTRATE).all() and np.all(is_end(points)))
+        )
 
 
 def grid(point, u, v, closed=False):
     """Vertices and triangles over u and v; closed: the last column of v is followed by the first."""
     n, m = len(u), len(v)
     vertices = point(*(one.ravel() for one in np.meshgrid(u, v, indexing="ij")))
-    i, j = (k.ravel() for k in np.meshgrid(np.arange(n - 1), np.arange(m if closed else m - 1), indexing="ij"))
+    i, j = (
+        k.ravel()
+        for k in np.meshgrid(np.arange(n - 1), np.arange(m if closed else m - 1), indexing="ij")
+    )
     k = (j + 1) % m
     a, b, c, d = i * m + j, (i + 1) * m + j, (i + 1) * m + k, i * m + k
     return vertices, np.vstack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
@@ -78,7 +101,15 @@ def one_patch(patch, vertices, triangles, substrate, is_end=lambda points: False
     normal = patch.at(patch.inverse((a + b + c) / 3.0))[1]
     turned = dot(np.cross(b - a, c - a), normal) < 0.0
     triangles = np.where(turned[:, None], triangles[:, ::-1], triangles)
-    return patch_wall(vertices, triangles, [patch], np.zeros(len(triangles), dtype=np.intp), substrate, is_end, label)
+    return patch_wall(
+        vertices,
+        triangles,
+        [patch],
+        np.zeros(len(triangles), dtype=np.intp),
+        substrate,
+        is_end,
+        label,
+    )
 
 
 def bend(substrate, low, high, step, start=0.0, width=TURN, radius=60.0, tube=15.0):
@@ -97,7 +128,12 @@ def bend(substrate, low, high, step, start=0.0, width=TURN, radius=60.0, tube=15
 
     top = np.array([-np.sin(high), 0.0, np.cos(high)])
     at_top = point(np.array([high]), np.array([0.0]))[0]
-    return one_patch(patch, *grid(point, u, v, closed), substrate, lambda points: np.abs((points - at_top) @ top) < 1e-9)
+    return one_patch(
+        patch,
+        *grid(point, u, v, closed),
+        substrate,
+        lambda points: np.abs((points - at_top) @ top) < 1e-9,
+    )
 
 
 def tube(substrate, height, step, radius=20.0, low=-5.0, start=0.0, width=TURN):
@@ -107,7 +143,9 @@ def tube(substrate, height, step, radius=20.0, low=-5.0, start=0.0, width=TURN):
     count = int(np.ceil(width * radius / step))
     v = start + width * np.arange(count + (0 if closed else 1)) / count
     z = np.linspace(low, height, int(np.ceil((height - low) / step)) + 1)
-    mesh = grid(lambda z, v: np.stack([radius * np.cos(v), radius * np.sin(v), z], axis=1), z, v, closed)
+    mesh = grid(
+        lambda z, v: np.stack([radius * np.cos(v), radius * np.sin(v), z], axis=1), z, v, closed
+    )
     return one_patch(patch, *mesh, substrate, lambda points: np.abs(points[:, 2] - height) < 1e-9)
 
 
@@ -115,8 +153,15 @@ def ball(substrate, count=6000, radius=20.0):
     """A sphere of evenly spread vertices."""
     i = np.arange(count) + 0.5
     height, turn = np.arccos(1.0 - 2.0 * i / count), np.pi * (1.0 + np.sqrt(5.0)) * i
-    points = radius * np.stack([np.cos(turn) * np.sin(height), np.sin(turn) * np.sin(height), np.cos(height)], axis=1)
-    return one_patch(Patch(SPHERE, (radius,), np.eye(4), 1.0, (TURN, 0.0)), points, ConvexHull(points).simplices, substrate)
+    points = radius * np.stack(
+        [np.cos(turn) * np.sin(height), np.sin(turn) * np.sin(height), np.cos(height)], axis=1
+    )
+    return one_patch(
+        Patch(SPHERE, (radius,), np.eye(4), 1.0, (TURN, 0.0)),
+        points,
+        ConvexHull(points).simplices,
+        substrate,
+    )
 
 
 def sheet(substrate, holes=(), low=(-30.0, -10.0), high=(30.0, 50.0), step=1.0):
@@ -128,7 +173,9 @@ def sheet(substrate, holes=(), low=(-30.0, -10.0), high=(30.0, 50.0), step=1.0):
         points = points[np.hypot(points[:, 0] - cx, points[:, 1] - cy) > radius + 0.4 * step]
         count = int(np.ceil(TURN * radius / step))
         angle = TURN * np.arange(count) / count
-        rounds.append(np.array([cx, cy]) + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+        rounds.append(
+            np.array([cx, cy]) + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        )
     points = np.vstack([points, *rounds])
     faces = Delaunay(points).simplices
     a, b, c = points[faces].transpose(1, 0, 2)
@@ -139,7 +186,11 @@ def sheet(substrate, holes=(), low=(-30.0, -10.0), high=(30.0, 50.0), step=1.0):
         kept &= ~((faces >= start) & (faces < start + len(one))).all(axis=1)
     vertices = np.column_stack([points, np.zeros(len(points))])
     return one_patch(
-        Patch(PLANE, (), np.eye(4)), vertices, faces[kept], substrate, lambda points: points[:, 1] > high[1] - 1e-9
+        Patch(PLANE, (), np.eye(4)),
+        vertices,
+        faces[kept],
+        substrate,
+        lambda points: points[:, 1] > high[1] - 1e-9,
     )
 
 
@@ -151,7 +202,9 @@ def brute(points, curves, times=60):
     for k in cKDTree(0.5 * (a + b)).query(points, k=12)[1].T:
         along = b[k] - a[k]
         t = ((points - a[k]) * along).sum(-1) / np.maximum((along**2).sum(-1), 1e-300)
-        found = np.minimum(found, np.linalg.norm(points - a[k] - np.clip(t, 0.0, 1.0)[:, None] * along, axis=1))
+        found = np.minimum(
+            found, np.linalg.norm(points - a[k] - np.clip(t, 0.0, 1.0)[:, None] * along, axis=1)
+        )
     return found
 
 
@@ -162,7 +215,9 @@ def samples(wall, times=3):
     share = np.stack([i[inside] + 1.0 / 3.0, j[inside] + 1.0 / 3.0], axis=1) / times
     share = np.column_stack([1.0 - share.sum(axis=1), share])
     ahead = ~wall.behind[wall.triangles].any(axis=1)
-    return wall.project(np.einsum("sk,mkc->msc", share, wall.vertices[wall.triangles[ahead]]).reshape(-1, 3))[0]
+    return wall.project(
+        np.einsum("sk,mkc->msc", share, wall.vertices[wall.triangles[ahead]]).reshape(-1, 3)
+    )[0]
 
 
 def mesh_of(wall):

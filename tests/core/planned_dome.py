@@ -34,7 +34,9 @@ def planned_dome(layer_height, process):
     """A hemisphere of R 45 mm on the robot of the papers, with its limits."""
     wall = RevolvedWall(Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)]), np.eye(4))
     strategy = RevolutionParameters(layer_height=layer_height)
-    toolpath = revolution.plan(wall, strategy, BuildDirectionParameters(), process, NozzleParameters(), 113.0, None)
+    toolpath = revolution.plan(
+        wall, strategy, BuildDirectionParameters(), process, NozzleParameters(), 113.0, None
+    )
     cell = cells.resolve(CellParameters(limits="paper"), toolpath.frame)
     path = plan_joints(toolpath, cell, JointParameters())
     motion, _ = assemble(path, cell, process)

@@ -14,7 +14,9 @@ from freecad_am.core import copies
 
 HERE = os.getpid()
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="there are copies on Linux alone")
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="there are copies on Linux alone"
+)
 
 
 @pytest.fixture(autouse=True)
@@ -35,7 +37,9 @@ def test_the_work_is_done_by_another_process_while_this_one_goes_on(tmp_path):
     def work():
         if os.getpid() == HERE:
             pytest.fail("nothing would write")
-        with open(gate, encoding="utf-8") as stream:  # until this process, which has gone on, writes
+        with open(
+            gate, encoding="utf-8"
+        ) as stream:  # until this process, which has gone on, writes
             return os.getpid(), stream.read()
 
     done = copies.meanwhile(work)
@@ -47,7 +51,9 @@ def test_the_work_is_done_by_another_process_while_this_one_goes_on(tmp_path):
 
 @pytest.mark.parametrize("numbers", [1, 100, 3_000_000])  # one that a pipe cannot hold too
 def test_results_come_back_whole(numbers):
-    found = copies.meanwhile(lambda: {"seed 7": np.random.default_rng(7).normal(size=numbers), "pid": os.getpid()})()
+    found = copies.meanwhile(
+        lambda: {"seed 7": np.random.default_rng(7).normal(size=numbers), "pid": os.getpid()}
+    )()
     assert found["pid"] != HERE
     assert np.array_equal(found["seed 7"], np.random.default_rng(7).normal(size=numbers))
 
@@ -121,7 +127,9 @@ def test_a_copy_ends_with_the_process_that_has_made_it(tmp_path):
     last, until = int(note.read_text()), time.monotonic() + 10.0
     while is_there(last) and "\nState:\tZ" not in _status(last) and time.monotonic() < until:
         time.sleep(0.01)
-    assert not is_there(last) or "\nState:\tZ" in _status(last)  # where nobody waits for processes without parents
+    assert not is_there(last) or "\nState:\tZ" in _status(
+        last
+    )  # where nobody waits for processes without parents
 
 
 def _status(pid):

@@ -24,9 +24,15 @@ def listed(value, decimals, width):
     return (("-" if np.signbit(value) else "") + text).rjust(width)
 
 
-@pytest.mark.parametrize("count, size, decimals", [
-    (*sizes, decimals) for sizes in SIZES for decimals in (0, 3, 7) if sizes[1] * 10**decimals < 1e14  # floats have so many
-])
+@pytest.mark.parametrize(
+    "count, size, decimals",
+    [
+        (*sizes, decimals)
+        for sizes in SIZES
+        for decimals in (0, 3, 7)
+        if sizes[1] * 10**decimals < 1e14  # floats have so many
+    ],
+)
 def test_plain_numbers_are_as_python_writes_them(count, size, decimals):
     values = numbers(count, size, decimals, 5)
     text = digits.joined([digits.plain(digits.whole(values, decimals), decimals), b";"], count)
@@ -48,4 +54,9 @@ def test_a_negative_nought_shows_its_sign_only_where_it_is_listed():
 
 def test_no_numbers_are_no_text():
     none = np.zeros(0)
-    assert digits.joined([digits.plain(digits.whole(none, 3), 3), digits.right_aligned(none, 3, 10), b","], 0) == ""
+    assert (
+        digits.joined(
+            [digits.plain(digits.whole(none, 3), 3), digits.right_aligned(none, 3, 10), b","], 0
+        )
+        == ""
+    )

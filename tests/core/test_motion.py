@@ -18,8 +18,18 @@ def motion(letters, **columns):
         point[row] = point[row - 1] + 1 if deposit[row] == deposit[row - 1] else 0
     vectors = np.zeros((n, 3))
     return role, Motion(
-        deposit=deposit, layer=np.zeros(n, int), bead=np.zeros(n, int), point=point, position=vectors, build=vectors,
-        tool=vectors, speed=np.ones(n), width=np.ones(n), joints=np.zeros((n, 6)), duration=np.ones(n), **columns,
+        deposit=deposit,
+        layer=np.zeros(n, int),
+        bead=np.zeros(n, int),
+        point=point,
+        position=vectors,
+        build=vectors,
+        tool=vectors,
+        speed=np.ones(n),
+        width=np.ones(n),
+        joints=np.zeros((n, 6)),
+        duration=np.ones(n),
+        **columns,
     )
 
 
@@ -34,7 +44,11 @@ def test_a_motion_without_roles_has_those_of_one_retract_and_one_approach_row(le
 
 def test_it_stops_at_every_rapid_row_and_at_the_end_of_every_bead():
     _, found = motion("TRADDDRRTADDR")
-    assert found.stops.tolist() == [letter != "D" for letter in "TRADD"] + [True] * 5 + [False, True, True]
+    assert found.stops.tolist() == [letter != "D" for letter in "TRADD"] + [True] * 5 + [
+        False,
+        True,
+        True,
+    ]
 
 
 def test_roles_must_be_as_long_as_the_rest():

@@ -41,7 +41,11 @@ class ModalWatch:
     def look(self):
         dialog = self.application.activeModalWidget()
         # that of long work comes as it should
-        if dialog is None or dialog.objectName() == "RoboticAM_Progress" or isinstance(dialog, self.awaited):
+        if (
+            dialog is None
+            or dialog.objectName() == "RoboticAM_Progress"
+            or isinstance(dialog, self.awaited)
+        ):
             self.first_seen = None
             return
         if self.first_seen is None:
@@ -62,7 +66,9 @@ class Person:
 
         self.gui, self.core, self.widgets = FreeCADGui, QtCore, QtGui
         self.window = FreeCADGui.getMainWindow()
-        self.qt = importlib.import_module("shiboken2" if QtCore.qVersion().startswith("5") else "shiboken6")
+        self.qt = importlib.import_module(
+            "shiboken2" if QtCore.qVersion().startswith("5") else "shiboken6"
+        )
         deferred = QtCore.QEvent.DeferredDelete
         self.deferred = int(getattr(deferred, "value", deferred))  # Qt 6, Qt 5
         self.folder = folder
@@ -81,7 +87,11 @@ class Person:
     def give_focus_back(self):
         """To the main window once a dialog is closed, such as that of long work: there is no window manager that would."""
         application = self.widgets.QApplication
-        if not (application.activeWindow() or application.activeModalWidget() or application.activePopupWidget()):
+        if not (
+            application.activeWindow()
+            or application.activeModalWidget()
+            or application.activePopupWidget()
+        ):
             self.window.activateWindow()
 
     def until(self, condition, what, seconds=20):
@@ -114,7 +124,11 @@ class Person:
         for bar in self.present(self.widgets.QToolBar):
             for action in bar.actions():
                 widget = bar.widgetForAction(action)
-                if command in (action.objectName(), action.data()) and widget is not None and widget.isVisible():
+                if (
+                    command in (action.objectName(), action.data())
+                    and widget is not None
+                    and widget.isVisible()
+                ):
                     return widget
         raise AssertionError(f"no button {command} is to be seen")
 
@@ -138,24 +152,34 @@ class Person:
 
     def panel(self, name):
         def visible():
-            return [widget for widget in self.present(self.widgets.QWidget, name) if widget.isVisible()]
+            return [
+                widget for widget in self.present(self.widgets.QWidget, name) if widget.isVisible()
+            ]
 
         return self.until(visible, f"the panel {name}", 5)[0]
 
     def field(self, panel, name):
-        found = panel.findChildren(self.widgets.QWidget, name)  # of the others some may be boxes that `press` let go of
+        found = panel.findChildren(
+            self.widgets.QWidget, name
+        )  # of the others some may be boxes that `press` let go of
         assert len(found) == 1, f"{len(found)} fields are called {name}"
         return found[0]
 
     def type(self, panel, name, text):
         widget = self.field(panel, name)
-        line = widget if isinstance(widget, self.widgets.QLineEdit) else widget.findChild(self.widgets.QLineEdit)
+        line = (
+            widget
+            if isinstance(widget, self.widgets.QLineEdit)
+            else widget.findChild(self.widgets.QLineEdit)
+        )
         line.setText(text)
         self.idle(0.05)
 
     def choose(self, panel, name, text):
         box = self.field(panel, name)
-        index = max(box.findText(text), box.findData(text))  # what is shown, or the key it stands for
+        index = max(
+            box.findText(text), box.findData(text)
+        )  # what is shown, or the key it stands for
         assert index >= 0, f"{name} does not offer {text}"
         box.setCurrentIndex(index)
         self.idle(0.05)
@@ -204,7 +228,11 @@ class Person:
     def panel_error(self, panel):
         """What is wrong: at the top of the panel, and under its fields."""
         labels = [self.field(panel, "error"), *panel.findChildren(self.widgets.QLabel)]
-        notes = [label for label in labels if label.isVisible() and label.objectName().endswith(("error", "Note"))]
+        notes = [
+            label
+            for label in labels
+            if label.isVisible() and label.objectName().endswith(("error", "Note"))
+        ]
         return "\n".join(dict.fromkeys(label.text() for label in notes if label.text()))
 
     def double_click(self, obj):
@@ -233,16 +261,21 @@ class Person:
         path = str(self.folder / "view.bmp")  # a PNG takes longer to pack than to draw
         self.look().saveImage(path, width, height, "White")
         image = self.widgets.QImage(path).convertToFormat(self.widgets.QImage.Format_RGB32)
-        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(
+            image.height(), -1, 4
+        )
         return rows[:, : image.width(), 2::-1].reshape(-1, 3).astype(int)
 
     def path_pixels(self):
         """How many pixels have the colours of the first layers (blue) and of the last (yellow)."""
         red, green, blue = self.picture().T
-        return int(((blue > red + 60) & (blue > green + 30)).sum()), int(((red > blue + 60) & (green > blue + 60)).sum())
+        return int(((blue > red + 60) & (blue > green + 30)).sum()), int(
+            ((red > blue + 60) & (green > blue + 60)).sum()
+        )
 
     def path_is_seen(self):
         """Wait until the first and the last layers are in the picture, which a busy machine draws late."""
+
         def both():
             counts.append(self.path_pixels())
             return counts[-1][0] > 200 and counts[-1][1] > 100
@@ -256,7 +289,11 @@ class Person:
         self.idle(0.3)
         if folder:
             screen = self.widgets.QApplication.primaryScreen()
-            grabbed = screen.grabWindow(0) if self.core.qVersion().startswith("5") else screen.grabWindow()
+            grabbed = (
+                screen.grabWindow(0)
+                if self.core.qVersion().startswith("5")
+                else screen.grabWindow()
+            )
             assert grabbed.save(os.path.join(folder, name + ".png"))
 
     def screen_pixels(self, colour, within=24):
@@ -267,11 +304,19 @@ class Person:
         screen = self.widgets.QApplication.primaryScreen()
         view = self.gui.activeDocument().activeView()
         corner = view.graphicsView().mapToGlobal(self.core.QPoint(0, 0))
-        grabbed = screen.grabWindow(0) if self.core.qVersion().startswith("5") else screen.grabWindow()
+        grabbed = (
+            screen.grabWindow(0) if self.core.qVersion().startswith("5") else screen.grabWindow()
+        )
         cut = grabbed.toImage().copy(self.core.QRect(corner, self.core.QSize(*view.getSize())))
         image = cut.convertToFormat(self.widgets.QImage.Format_RGB32)
-        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
-        return int((np.abs(rows[:, : image.width(), 2::-1].astype(int) - colour).max(axis=2) < within).sum())
+        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(
+            image.height(), -1, 4
+        )
+        return int(
+            (
+                np.abs(rows[:, : image.width(), 2::-1].astype(int) - colour).max(axis=2) < within
+            ).sum()
+        )
 
     def console(self):
         """The text of the report view."""
@@ -311,8 +356,12 @@ def coarse(monkeypatch):
     """Features get layers of 5 mm, walls of 10 mm that nothing is kept clear of, where nothing else is said: a new job is
     planned in a fifth of the time."""
     make, low = api.make_feature_of, {"layer_height": 5.0, "chord_error": 0.1}
-    of_kind = {"revolution": low, "surface": {**low, "layer_height": 10.0, "clearance": "none"}, "developable": low,
-               "solid": low}
+    of_kind = {
+        "revolution": low,
+        "surface": {**low, "layer_height": 10.0, "clearance": "none"},
+        "developable": low,
+        "solid": low,
+    }
 
     def made(doc, kind, *others, values=None, **named):
         return make(doc, kind, *others, values={**of_kind.get(kind, {}), **(values or {})}, **named)
@@ -334,7 +383,9 @@ def joint_path(person, hemisphere):
     """A joint path of the hemisphere, its beads alone to be seen."""
     document = hemisphere.Document
     cell = api.make_cell(document)
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=5), cell
+    )
     made = api.make_joint_path(document, toolpath, cell)
     cell.ViewObject.Visibility = document.Feature.ViewObject.Visibility = False
     person.idle()
@@ -374,7 +425,9 @@ def person(tmp_path, capfd, request):
                 dock.setFloating(False)
             dock.close()
     someone.idle()
-    someone.window.setGeometry(place)  # docks that needed more room have made it wider, and panels and tree lower
+    someone.window.setGeometry(
+        place
+    )  # docks that needed more room have made it wider, and panels and tree lower
     someone.window.restoreState(layout)
     _forget_places(someone.window)
     someone.idle(0.1)

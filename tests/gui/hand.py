@@ -40,14 +40,23 @@ class Hand:
 
     def reveal(self, widget):
         """Turn the wheel over the margin of a panel until all of a widget is in sight, or as much of it as goes in."""
-        areas = [one for one in self.person.present(self.person.widgets.QScrollArea)
-                 if one.isVisible() and one.isAncestorOf(widget)]
+        areas = [
+            one
+            for one in self.person.present(self.person.widgets.QScrollArea)
+            if one.isVisible() and one.isAncestorOf(widget)
+        ]
         if not areas:
             return
-        area = next(one for one in areas if not any(one is not other and one.isAncestorOf(other) for other in areas))
+        area = next(
+            one
+            for one in areas
+            if not any(one is not other and one.isAncestorOf(other) for other in areas)
+        )
         sight = area.viewport()
         for _ in range(40):
-            if widget.visibleRegion().boundingRect().height() >= min(widget.height(), sight.height()):
+            if widget.visibleRegion().boundingRect().height() >= min(
+                widget.height(), sight.height()
+            ):
                 return
             margin = sight.mapToGlobal(self.person.core.QPoint(3, sight.height() // 2))
             below = widget.mapTo(sight, widget.rect().center()).y() > sight.height() // 2
@@ -84,22 +93,36 @@ class Hand:
     def _when_able(self, command):
         """Wait until a tool is lit: FreeCAD looks at them when it has nothing else to do, and takes no keys for others."""
         bars = self.person.present(self.person.widgets.QToolBar)
-        tools = [tool for bar in bars for tool in bar.actions() if command in (tool.objectName(), tool.data())]
+        tools = [
+            tool
+            for bar in bars
+            for tool in bar.actions()
+            if command in (tool.objectName(), tool.data())
+        ]
         assert tools, f"no toolbar has {command}"
         self.person.until(tools[0].isEnabled, f"{command} to be enabled", 5)
 
     def in_tree(self, label):
         """The place of an object of the tree on the screen, brought into sight."""
+
         def there():
             trees = self.person.present(self.person.widgets.QTreeWidget)
-            return [tree for tree in trees if tree.isVisible() and tree.findItems(label, _anywhere(self.person.core))]
+            return [
+                tree
+                for tree in trees
+                if tree.isVisible() and tree.findItems(label, _anywhere(self.person.core))
+            ]
 
-        tree = self.person.until(there, f"{label} in the tree", 5)[0]  # which follows the document a little later
+        tree = self.person.until(there, f"{label} in the tree", 5)[
+            0
+        ]  # which follows the document a little later
         item = tree.findItems(label, _anywhere(self.person.core))[0]
         tree.scrollToItem(item)
         self.person.idle(0.1)
         place = tree.visualItemRect(item).center()
-        place.setX(tree.visualItemRect(item).left() + 48)  # on its text: before it FreeCAD 1.0 has an eye, which hides
+        place.setX(
+            tree.visualItemRect(item).left() + 48
+        )  # on its text: before it FreeCAD 1.0 has an eye, which hides
         where = tree.viewport().mapToGlobal(place)
         return where.x(), where.y()
 
@@ -112,8 +135,27 @@ class Hand:
         self.in_tree(onto)  # both are brought into sight before either place is taken
         (x, y), (far_x, far_y) = self.in_tree(label), self.in_tree(onto)
         way = [(x + (far_x - x) * k // 4, y + (far_y - y) * k // 4) for k in (1, 2, 3, 4)]
-        moves = [word for place in [*way, (far_x + 1, far_y)] for word in ("mousemove", *place, "sleep", 0.1)]
-        self.do("mousemove", x, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.2, *moves, "sleep", 0.3, "mouseup", 1)
+        moves = [
+            word
+            for place in [*way, (far_x + 1, far_y)]
+            for word in ("mousemove", *place, "sleep", 0.1)
+        ]
+        self.do(
+            "mousemove",
+            x,
+            y,
+            "sleep",
+            0.1,
+            "mousedown",
+            1,
+            "sleep",
+            0.2,
+            *moves,
+            "sleep",
+            0.3,
+            "mouseup",
+            1,
+        )
         self.person.idle(0.5)
 
     def click_face(self, obj, face, *held):
@@ -137,8 +179,13 @@ class Hand:
         for corners in triangles:
             middle = (points[corners[0]] + points[corners[1]] + points[corners[2]]) / 3.0
             x, y = on_screen(middle)
-            around = [view.getObjectInfo((x + dx, y + dy)) for dx, dy in ((0, 0), (6, 0), (-6, 0), (0, 6), (0, -6))]
-            if all(info and (info["Object"], info["Component"]) == (obj.Name, face) for info in around):
+            around = [
+                view.getObjectInfo((x + dx, y + dy))
+                for dx, dy in ((0, 0), (6, 0), (-6, 0), (0, 6), (0, -6))
+            ]
+            if all(
+                info and (info["Object"], info["Component"]) == (obj.Name, face) for info in around
+            ):
                 where = self.corner(view) + self.person.core.QPoint(x, view.getSize()[1] - 1 - y)
                 on_top = self.person.widgets.QApplication.widgetAt(where)
                 if on_top is not None and view.graphicsView().isAncestorOf(on_top):

@@ -43,7 +43,9 @@ def hub(root):
     blade.Length, blade.Width, blade.Height = 30, 12, 24
     blade.Placement.Base = App.Vector(25, -6, 14)
     document.recompute()
-    feature = api.make_developable_feature(document, blade, cone, layer_height=0.1, bead_spacing=0.5)
+    feature = api.make_developable_feature(
+        document, blade, cone, layer_height=0.1, bead_spacing=0.5
+    )
     return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
 
 
@@ -53,14 +55,18 @@ def joints(root):
     cell = api.make_cell(document, limits="paper")
     feature = api.make_feature(document, sphere(document), layer_height=0.15, chord_error=0.002)
     toolpath = api.make_toolpath(document, feature, cell)
-    return SimpleNamespace(document=document, function="make_joint_path", inputs={"toolpath": toolpath, "cell": cell})
+    return SimpleNamespace(
+        document=document, function="make_joint_path", inputs={"toolpath": toolpath, "cell": cell}
+    )
 
 
 def elbow(root):
     """A wall whose first layer takes seconds, on a mesh of a hundred thousand triangles."""
     document = App.newDocument("Long")
     folder = root / "resources" / "examples" / "walls"
-    bend, block = (api.open_part(document, str(folder / name)) for name in ("elbow.step", "elbow-block.step"))
+    bend, block = (
+        api.open_part(document, str(folder / name)) for name in ("elbow.step", "elbow-block.step")
+    )
     feature = api.make_surface_feature(document, bend, substrate=block, layer_height=0.6)
     return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
 

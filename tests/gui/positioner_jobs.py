@@ -9,7 +9,12 @@ def on_positioner(part, layer_height):
     doc = part.Document
     feature = api.make_feature(doc, part, layer_height=layer_height, max_from_vertical=10)
     cell = api.make_cell(
-        doc, machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto", platform=20,
-        external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part", nozzle_tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0),
+        doc,
+        machine="kuka-kr8-r2100-2-arc-hw",
+        setup="tool-on-robot",
+        branch="auto",
+        platform=20,
+        external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part",
+        nozzle_tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0),
     )
     return api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)

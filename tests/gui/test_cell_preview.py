@@ -40,7 +40,11 @@ def previewed(person):
 
 def told(person, panel, words, seconds=10):
     state = person.field(panel, "preview")
-    person.until(lambda: state.isVisible() and words in state.text(), f"{words}, not {state.text()!r}", seconds)
+    person.until(
+        lambda: state.isVisible() and words in state.text(),
+        f"{words}, not {state.text()!r}",
+        seconds,
+    )
 
 
 def entered_point(person, panel):
@@ -67,16 +71,23 @@ def planned(person, hemisphere):
     """A cell with the toolpath that is cut for it."""
     document = hemisphere.Document
     cell = api.make_cell(document)
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=5), cell
+    )
     person.idle()
     return cell, toolpath
 
 
-def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_picture_back(person, hand, planned):
+def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_picture_back(
+    person, hand, planned
+):
     cell, toolpath = planned
     document, steps, path = cell.Document, cell.Document.UndoCount, api.result(toolpath)
     switch = cell.ViewObject.Proxy.switch
-    which, before = switch.whichChild.getValue(), cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue()
+    which, before = (
+        switch.whichChild.getValue(),
+        cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue(),
+    )
     person.look()
     person.double_click(cell)
     panel = person.panel(PANEL)
@@ -94,12 +105,19 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
     told(person, panel, "does not reach the part")
     hand.enter(panel, "PlatformDiameter", "1 km")
     told(person, panel, "see the field marked")
-    assert "out of range" in person.field(panel, "PlatformDiameterNote").text() and len(previewed(person)) == 0
+    assert (
+        "out of range" in person.field(panel, "PlatformDiameterNote").text()
+        and len(previewed(person)) == 0
+    )
     person.press("Cancel")
     person.panel_closed()
     assert previewed(person) is None and switch.whichChild.getValue() == which
     assert cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue() == before
-    assert (document.UndoCount, cell.Status, api.result(cell)) == (steps, "up to date", CellParameters())
+    assert (document.UndoCount, cell.Status, api.result(cell)) == (
+        steps,
+        "up to date",
+        CellParameters(),
+    )
 
 
 def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemisphere):
@@ -109,7 +127,9 @@ def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemispher
     panel_of = {"": api.result(small)}
     for chosen in ("", "large", "neither"):
         if chosen == "large":
-            large = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=4))
+            large = api.make_toolpath(
+                document, api.make_feature(document, hemisphere, layer_height=4)
+            )
             panel_of.update(large=api.result(large), neither=None)
         person.gui.Selection.clearSelection()
         if chosen == "large":
@@ -117,7 +137,11 @@ def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemispher
         person.click("RoboticAM_Cell")
         panel = person.panel(PANEL)
         told(person, panel, "with the nozzle upright: q")
-        person.until(lambda of=panel_of[chosen]: stands_as(person, cell_of(""), of), f"the machine, {chosen}", 10)
+        person.until(
+            lambda of=panel_of[chosen]: stands_as(person, cell_of(""), of),
+            f"the machine, {chosen}",
+            10,
+        )
         person.press("Cancel")
         person.panel_closed()
 
@@ -132,7 +156,11 @@ def test_a_toolpath_that_is_made_anew_beside_the_panel_moves_the_machine(person,
     cell.Document.Feature.LayerHeight = "20 mm"
     cell.Document.recompute()
     after = api.result(toolpath)
-    person.until(lambda: stands_as(person, CellParameters(), after), "the machine to stand at the new toolpath", 10)
+    person.until(
+        lambda: stands_as(person, CellParameters(), after),
+        "the machine to stand at the new toolpath",
+        10,
+    )
     assert not stands_as(person, CellParameters(), before)
     person.press("Cancel")
     person.panel_closed()
@@ -149,7 +177,10 @@ def test_without_its_machine_the_nozzle_is_where_the_deposit_ends(person, hand, 
     np.testing.assert_allclose(previewed(person)[1, :3, 3], last.points[-1], atol=1e-4)
     hand.enter(panel, "PlatformDiameter", "100 mm")
     person.press("Apply")
-    assert cell.PlatformDiameter.Value == 100.0 and cell.ViewObject.Proxy.switch.whichChild.getValue() == -1
+    assert (
+        cell.PlatformDiameter.Value == 100.0
+        and cell.ViewObject.Proxy.switch.whichChild.getValue() == -1
+    )
     person.press("Ok")
     person.panel_closed()
     assert cell.ViewObject.Proxy.switch.whichChild.getValue() != -1 and previewed(person) is None
@@ -165,7 +196,11 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     assert note.isVisible() and note.text().startswith("Proposed for FANUC")
     hand.enter(panel, "Machine", "kuka-kr16-2")
     wanted = cell_of("kuka-kr16-2")
-    person.until(lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]), "what is proposed", 10)
+    person.until(
+        lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]),
+        "what is proposed",
+        10,
+    )
     assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
     assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
     told(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
@@ -176,22 +211,34 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     person.until(lambda: not note.isVisible(), "the note to go with what it was about", 5)
     hand.enter(panel, "Machine", "motoman-ar1440")
     other = cell_of("motoman-ar1440")
-    person.until(lambda: note.isVisible() and note.text().startswith("Left as it was entered"), "what is kept", 10)
+    person.until(
+        lambda: note.isVisible() and note.text().startswith("Left as it was entered"),
+        "what is kept",
+        10,
+    )
     assert f"{other.deposition_point[0]:g} 0 {other.deposition_point[2]:g}" in note.text()
     assert entered_point(person, panel) == [wanted.deposition_point[0], 0.0, 1500.0]
-    assert person.field(panel, "Branch").currentText() == " ".join(other.branch)  # nobody has typed another one
+    assert person.field(panel, "Branch").currentText() == " ".join(
+        other.branch
+    )  # nobody has typed another one
     person.press("Ok")
     person.panel_closed()
     made = api.result(document.Cell)
     assert made.deposition_point == (wanted.deposition_point[0], 0.0, 1500.0, 0.0, 0.0, 0.0)
-    assert (made.machine, made.branch, document.UndoCount) == ("motoman-ar1440", other.branch, steps + 1)
+    assert (made.machine, made.branch, document.UndoCount) == (
+        "motoman-ar1440",
+        other.branch,
+        steps + 1,
+    )
 
 
 @pytest.fixture
 def leaning(person, hemisphere):
     """A toolpath whose beads may lean by 10 deg from the vertical, which takes a positioner under a torch."""
     document = hemisphere.Document
-    feature = api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5, max_from_vertical=10)
+    feature = api.make_feature(
+        document, hemisphere, layer_height=15, chord_error=0.5, max_from_vertical=10
+    )
     toolpath = api.make_toolpath(document, feature)
     person.idle()
     return toolpath
@@ -222,12 +269,16 @@ def test_the_job_at_hand_is_done_in_the_cell_that_is_proposed_for_a_robot(person
     person.press("Ok")
     person.panel_closed()
     cell = document.Cell
-    assert document.UndoCount == steps + 1 and "is now" not in person.console()[before:]  # all was seen
+    assert (
+        document.UndoCount == steps + 1 and "is now" not in person.console()[before:]
+    )  # all was seen
     (positioner,) = externals(cell.External)
     assert positioner.carries == "part"
     path = api.make_joint_path(document, leaning, cell)
     assert path.Status == "up to date", api.issues(path)
-    plain = api.make_cell(document, machine=cell.Machine, setup="tool-on-robot")  # what suits the robot alone
+    plain = api.make_cell(
+        document, machine=cell.Machine, setup="tool-on-robot"
+    )  # what suits the robot alone
     assert api.make_joint_path(document, leaning, plain).Status == "infeasible"
 
 
@@ -235,7 +286,9 @@ POSITIONER = "motoman-motopos-d500 at 1615 0 0 0 0 0 carries part"
 
 
 @pytest.mark.parametrize("branch", [pytest.param("", marks=pytest.mark.long), "back down noflip"])
-def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(person, hand, planned, monkeypatch, branch):
+def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
+    person, hand, planned, monkeypatch, branch
+):
     """Nothing of it where one of its fields holds something of the user's: a positioner with another branch would be a third
     cell. It goes with the robot that it was proposed for."""
     asked = []
@@ -256,18 +309,32 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(person, hand, 
     notes = [person.field(panel, f"{name}Note") for name in ("External", "Branch")]
     left = f"Left as it was entered; the job of {label} can be done with "
     words = left if branch else f"Proposed for the job of {label}; "
-    person.until(lambda: all(note.isVisible() and note.text().startswith(words) for note in notes), "what it needs", 60)
+    person.until(
+        lambda: all(note.isVisible() and note.text().startswith(words) for note in notes),
+        "what it needs",
+        60,
+    )
     wanted = cell_of("kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot")
     last = asked[-1]
-    assert (last.setup, last.deposition_point, last.external) == ("tool-on-robot", wanted.deposition_point, "none")
+    assert (last.setup, last.deposition_point, last.external) == (
+        "tool-on-robot",
+        wanted.deposition_point,
+        "none",
+    )
     if branch:
         assert external.text() == "none" and person.field(panel, "Branch").currentText() == branch
-        assert [note.text() for note in notes] == [f"{words}{text}." for text in (POSITIONER, "auto")]
+        assert [note.text() for note in notes] == [
+            f"{words}{text}." for text in (POSITIONER, "auto")
+        ]
     else:
-        assert external.text() == POSITIONER and person.field(panel, "Branch").currentText() == "auto"
+        assert (
+            external.text() == POSITIONER and person.field(panel, "Branch").currentText() == "auto"
+        )
     hand.enter(panel, "Machine", "kuka-kr16-2")
     person.choose(panel, "Setup", "part-on-robot")
-    person.until(lambda: external.text() == "none" and not notes[0].isVisible(), "the positioner to go", 60)
+    person.until(
+        lambda: external.text() == "none" and not notes[0].isVisible(), "the positioner to go", 60
+    )
     person.press("Cancel")
     person.panel_closed()
 
@@ -281,10 +348,18 @@ def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisph
     note = person.field(panel, f"{POINT}Note")
     hand.enter(panel, "Machine", "kuka-kr16-2")
     first = cell_of("kuka-kr16-2")
-    person.until(lambda: entered_point(person, panel) == list(first.deposition_point[:3]), "what is proposed", 10)
+    person.until(
+        lambda: entered_point(person, panel) == list(first.deposition_point[:3]),
+        "what is proposed",
+        10,
+    )
     person.choose(panel, "Setup", "tool-on-robot")
     wanted = cell_of("kuka-kr16-2", setup="tool-on-robot")
-    person.until(lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]), "the platform", 10)
+    person.until(
+        lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]),
+        "the platform",
+        10,
+    )
     assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
     assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
     told(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
@@ -292,18 +367,32 @@ def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisph
     person.look()
     person.screenshot("cell_tool_on_robot")
     person.choose(panel, "Setup", "part-on-robot")
-    person.until(lambda: entered_point(person, panel) == list(first.deposition_point[:3]), "the first again", 10)
+    person.until(
+        lambda: entered_point(person, panel) == list(first.deposition_point[:3]),
+        "the first again",
+        10,
+    )
     hand.enter(panel, f"{POINT}Z", "900 mm")
     person.choose(panel, "Setup", "tool-on-robot")
-    person.until(lambda: note.isVisible() and note.text().startswith("Left as it was entered"), "what is kept", 10)
+    person.until(
+        lambda: note.isVisible() and note.text().startswith("Left as it was entered"),
+        "what is kept",
+        10,
+    )
     assert entered_point(person, panel)[2] == 900.0
     person.press("Ok")
     person.panel_closed()
     made = api.result(document.Cell)
-    assert (made.setup, made.branch, made.deposition_point[2]) == ("tool-on-robot", wanted.branch, 900.0)
+    assert (made.setup, made.branch, made.deposition_point[2]) == (
+        "tool-on-robot",
+        wanted.branch,
+        900.0,
+    )
 
 
-def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_proposal(person, planned, monkeypatch):
+def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_proposal(
+    person, planned, monkeypatch
+):
     def slowly(*asked):
         time.sleep(1.0)
         return cell_of(*asked)
@@ -328,7 +417,11 @@ def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_prop
     assert not person.field(panel, f"{POINT}Note").isVisible()  # no other machine was chosen
     person.press("Cancel")
     person.panel_closed()
-    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
+    person.until(
+        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        "the threads to end",
+        10,
+    )
 
 
 def test_an_expression_in_a_coordinate_is_left_and_told(person, hand, hemisphere):
@@ -369,7 +462,9 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
     person.type(panel, "Machine", "kuka-kr16-2")
     if ends == "fails":
         note = person.field(panel, "MachineNote")
-        person.until(lambda: note.isVisible() and note.text() == "RuntimeError: broken", "the error", 10)
+        person.until(
+            lambda: note.isVisible() and note.text() == "RuntimeError: broken", "the error", 10
+        )
         person.type(panel, "Machine", "fanuc-arcmate120ic")
         monkeypatch.undo()
         person.until(lambda: not note.isVisible(), "the error to go", 10)
@@ -385,8 +480,11 @@ def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, plan
     """Robot, track and positioner of one file: typed as one word, and its bodies are seen."""
     cell, _ = planned
     text = urdf_cells.whole_cell()
-    for link, size in (("positioner_base_link", "0.4 0.4 0.1"), ("positioner_link_2", "0.3 0.3 0.02"),
-                       ("track_base_link", "3 0.4 0.2")):
+    for link, size in (
+        ("positioner_base_link", "0.4 0.4 0.1"),
+        ("positioner_link_2", "0.3 0.3 0.02"),
+        ("track_base_link", "3 0.4 0.2"),
+    ):
         box = f'<collision><geometry><box size="{size}"/></geometry></collision>'
         text = text.replace(f'<link name="{link}"/>', f'<link name="{link}">{box}</link>')
     path = tmp_path / "bay.urdf"
@@ -401,10 +499,18 @@ def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, plan
     person.until(field.isEnabled, "external axes to be asked for", 5)
     field.setText("urdf")
     wanted = texts_of(Reference(str(path)))
-    person.until(lambda: person.field(panel, "External").text() == wanted[1], "track and positioner to be entered", 10)
+    person.until(
+        lambda: person.field(panel, "External").text() == wanted[1],
+        "track and positioner to be entered",
+        10,
+    )
     assert person.field(panel, "Machine").currentText() == wanted[0]
     assert "track" in wanted[1] and "positioner" in wanted[1]
-    person.until(lambda: (drawn := previewed(person)) is not None and len(drawn) == 9 + 3, "their bodies to be seen", 20)
+    person.until(
+        lambda: (drawn := previewed(person)) is not None and len(drawn) == 9 + 3,
+        "their bodies to be seen",
+        20,
+    )
     person.look()
     person.screenshot("cell_whole_urdf")
     person.press("Cancel")

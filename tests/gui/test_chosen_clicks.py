@@ -18,7 +18,9 @@ def cladding(doc):
     block = doc.addObject("Part::Feature", "Block")
     shape = block.Shape = Part.makeBox(40, 30, 20)
     doc.recompute()
-    feature = api.make_cladding_feature(doc, block, ["Face6"], layers=1, layer_height=2.0, bead_spacing=6.0)
+    feature = api.make_cladding_feature(
+        doc, block, ["Face6"], layers=1, layer_height=2.0, bead_spacing=6.0
+    )
     block.Shape = numbered(shape, (5, 0, 1, 2, 3, 4))
     return feature, "Layers", "2"
 
@@ -40,7 +42,11 @@ def turned(doc):
 
 @pytest.mark.parametrize(
     ("made", "panel", "what"),
-    [(cladding, "CladdingFeature", "face"), (curves, "CurvesFeature", "edge"), (turned, "RevolutionFeature", "edge")],
+    [
+        (cladding, "CladdingFeature", "face"),
+        (curves, "CurvesFeature", "edge"),
+        (turned, "RevolutionFeature", "edge"),
+    ],
 )
 def test_what_is_numbered_anew_is_confirmed_by_ok(person, made, panel, what):
     doc = App.newDocument("Chosen")
@@ -54,12 +60,17 @@ def test_what_is_numbered_anew_is_confirmed_by_ok(person, made, panel, what):
     assert warned() and feature.Status == "up to date"
     person.double_click(feature)
     shown = person.panel(f"RoboticAM_{panel}")
-    person.until(lambda: f"is not the {what} that was chosen" in person.field(shown, "findings").text(), "the warning")
+    person.until(
+        lambda: f"is not the {what} that was chosen" in person.field(shown, "findings").text(),
+        "the warning",
+    )
     person.screenshot(f"{panel}_changed")
     person.type(shown, name, value)
     person.press("Ok")
     person.panel_closed()
-    assert getattr(feature, name) == App.Units.Quantity(value) and warned()  # something else was changed
+    assert (
+        getattr(feature, name) == App.Units.Quantity(value) and warned()
+    )  # something else was changed
     person.double_click(feature)
     person.panel(f"RoboticAM_{panel}")
     person.press("Ok")

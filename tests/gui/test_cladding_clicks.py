@@ -46,7 +46,9 @@ def on_screen(obj):
     search.setType(coin.SoIndexedFaceSet.getClassTypeId())
     search.setSearchingAll(True)
     search.apply(obj.ViewObject.RootNode)
-    corners = np.array(list(search.getPath().getTail().coordIndex.getValues())).reshape(-1, 4)[:, :3]
+    corners = np.array(list(search.getPath().getTail().coordIndex.getValues())).reshape(-1, 4)[
+        :, :3
+    ]
     return points[corners]
 
 
@@ -54,7 +56,9 @@ def test_a_bent_face_is_tinted_by_the_triangles_that_are_on_screen(person):
     """Others would lie in front of them in some places and behind them in others."""
     doc = App.newDocument("Cladding")
     part = doc.addObject("Part::Feature", "Part")
-    part.Shape = Part.makeTorus(60, 25).cut(Part.makeBox(200, 200, 100, App.Vector(-100, -100, -100)))
+    part.Shape = Part.makeTorus(60, 25).cut(
+        Part.makeBox(200, 200, 100, App.Vector(-100, -100, -100))
+    )
     doc.recompute()
     person.look()
     face = max(range(len(part.Shape.Faces)), key=lambda k: part.Shape.Faces[k].Area)
@@ -62,5 +66,10 @@ def test_a_bent_face_is_tinted_by_the_triangles_that_are_on_screen(person):
     assert len(corners) > 100
     seen = {tuple(sorted(map(tuple, np.round(one, 3)))) for one in on_screen(part)}
     assert {tuple(sorted(map(tuple, np.round(one, 3)))) for one in points[corners]} <= seen
-    area = 0.5 * np.linalg.norm(np.cross(*np.diff(points[corners], axis=1).transpose(1, 0, 2)), axis=1).sum()
+    area = (
+        0.5
+        * np.linalg.norm(
+            np.cross(*np.diff(points[corners], axis=1).transpose(1, 0, 2)), axis=1
+        ).sum()
+    )
     assert math.isclose(area, part.Shape.Faces[face].Area, rel_tol=0.02)  # all of it

@@ -22,8 +22,12 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
     person.screenshot("panel_cell")
     person.press("Ok")
     person.panel_closed()
-    assert [(obj.Label, obj.Limits, obj.Status) for obj in api.stages_of(doc)] == [("Cell", "paper", "up to date")]
-    assert api.result(doc.Cell) == replace(cell_of(""), limits="paper")  # no digit is lost in the panel
+    assert [(obj.Label, obj.Limits, obj.Status) for obj in api.stages_of(doc)] == [
+        ("Cell", "paper", "up to date")
+    ]
+    assert api.result(doc.Cell) == replace(
+        cell_of(""), limits="paper"
+    )  # no digit is lost in the panel
 
     person.select(part)
     person.click("RoboticAM_Feature")
@@ -63,7 +67,9 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
     person.double_click(doc.Program)
     panel = person.panel("RoboticAM_ProgramText")
     text = person.field(panel, "text").toPlainText()
-    assert text.startswith("/PROG") and text.encode("latin-1") in api.result(doc.Program).files["CUP.LS"].replace(b"\r", b"")
+    assert text.startswith("/PROG") and text.encode("latin-1") in api.result(doc.Program).files[
+        "CUP.LS"
+    ].replace(b"\r", b"")
     person.screenshot("program_text")
     person.field(panel, "close").click()
     assert np.isfinite(api.result(doc.JointPath).motion.joints).all()
@@ -108,12 +114,21 @@ def test_without_a_selection_the_panel_says_what_to_do(person, hemisphere):
 
 def test_a_tool_without_its_input_is_greyed_and_says_what_to_make_first(person, hemisphere):
     for command, words in (
-        ("Toolpath", "First make a feature"), ("JointPath", "First make a feature"), ("Path", "First make a toolpath"),
-        ("Simulate", "First make a joint path"), ("Program", "First make a joint path"),
+        ("Toolpath", "First make a feature"),
+        ("JointPath", "First make a feature"),
+        ("Path", "First make a toolpath"),
+        ("Simulate", "First make a joint path"),
+        ("Program", "First make a joint path"),
     ):
         button = person.button(f"RoboticAM_{command}")
-        person.until(lambda: not button.isEnabled() and words in button.toolTip(), f"{command} to say {words}", 5)  # noqa: B023
-        person.gui.runCommand(f"RoboticAM_{command}")  # by a shortcut or macro it says so too, and opens nothing
+        person.until(
+            lambda button=button, words=words: not button.isEnabled() and words in button.toolTip(),
+            f"{command} to say {words}",
+            5,
+        )
+        person.gui.runCommand(
+            f"RoboticAM_{command}"
+        )  # by a shortcut or macro it says so too, and opens nothing
         assert not person.gui.Control.activeDialog()
     assert api.stages_of(hemisphere.Document) == []
 
@@ -127,7 +142,9 @@ def test_a_tool_without_its_input_is_greyed_and_says_what_to_make_first(person, 
         ("LayerHeight", "500 mm", "500 mm is more than the wall is long"),
     ],
 )
-def test_what_is_wrong_is_told_in_the_panel_and_nothing_is_made(person, hemisphere, name, text, message):
+def test_what_is_wrong_is_told_in_the_panel_and_nothing_is_made(
+    person, hemisphere, name, text, message
+):
     doc = hemisphere.Document
     person.select(hemisphere)
     person.click("RoboticAM_Feature")
@@ -160,7 +177,11 @@ def test_a_double_click_changes_parameters_in_one_step_of_undo(person, hemispher
     person.choose(panel, "Spacing", "iso-height")
     person.press("Ok")
     person.panel_closed()
-    assert (feature.LayerHeight.Value, feature.Spacing, toolpath.Status) == (10.0, "iso-height", "up to date")
+    assert (feature.LayerHeight.Value, feature.Spacing, toolpath.Status) == (
+        10.0,
+        "iso-height",
+        "up to date",
+    )
     fewer = toolpath.Layers
     assert fewer < 10 and len(api.result(toolpath).layers) == fewer
     person.gui.runCommand("Std_Undo")
@@ -171,7 +192,9 @@ def test_a_double_click_changes_parameters_in_one_step_of_undo(person, hemispher
     assert (toolpath.Layers, toolpath.Status) == (fewer, "up to date")
 
 
-def test_the_panel_of_every_stage_opens_and_ok_without_a_change_does_nothing(person, hemisphere, coarse):
+def test_the_panel_of_every_stage_opens_and_ok_without_a_change_does_nothing(
+    person, hemisphere, coarse
+):
     doc = hemisphere.Document
     stages = api.make_all(doc, hemisphere)
     steps, keys = doc.UndoCount, [obj.Key for obj in stages]
@@ -218,7 +241,9 @@ def test_inputs_and_the_name_can_be_changed_in_the_panel(person, hemisphere, coa
     panel = person.panel("RoboticAM_Program")
     person.type(panel, "ProgramName", "not a name")
     person.press("Ok")
-    assert "cannot be a program's name" in person.panel_error(panel) and program.ProgramName == "CUP"
+    assert (
+        "cannot be a program's name" in person.panel_error(panel) and program.ProgramName == "CUP"
+    )
     person.type(panel, "ProgramName", "MUG")
     person.press("Ok")
     person.panel_closed()
@@ -251,7 +276,11 @@ def test_errors_of_a_recompute_are_one_line_each_in_the_report_view(person, hemi
     person.gui.runCommand("Std_Refresh")
     person.idle()
     assert [obj.Status for obj in api.stages_of(doc)] == ["failed", "failed"]
-    lines = [line for line in person.console().splitlines() if "error[BAD_VALUE] Feature.LayerHeight" in line]
+    lines = [
+        line
+        for line in person.console().splitlines()
+        if "error[BAD_VALUE] Feature.LayerHeight" in line
+    ]
     assert len(lines) == 1
     feature.LayerHeight = 20
     person.gui.runCommand("Std_Refresh")
@@ -269,13 +298,19 @@ def test_the_program_is_exported_from_its_window(person, hemisphere, coarse, tmp
     window = person.panel("RoboticAM_ProgramText")
     for name in sorted(program.Files):
         person.choose(window, "file", name)
-        assert person.field(window, "text").toPlainText().startswith("/PROG  " + name.removesuffix(".LS"))
+        assert (
+            person.field(window, "text")
+            .toPlainText()
+            .startswith("/PROG  " + name.removesuffix(".LS"))
+        )
     assert person.field(window, "text").isReadOnly()
     person.field(window, "export").click()
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == api.result(program).files
     assert str(folder) in person.field(window, "state").text()
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(person.widgets.QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path / "file"))
+    monkeypatch.setattr(
+        person.widgets.QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path / "file")
+    )
     person.field(window, "export").click()
     assert "choose a folder" in person.field(window, "state").text()
     App.closeDocument(doc.Name)
@@ -286,18 +321,29 @@ def test_the_program_is_exported_from_its_window(person, hemisphere, coarse, tmp
 
 def test_a_program_that_failed_asks_for_no_folder(person, hemisphere, coarse, monkeypatch):
     asked, doc = [], hemisphere.Document
-    monkeypatch.setattr(person.widgets.QFileDialog, "getExistingDirectory", lambda *_: asked.append(1) or "")
+    monkeypatch.setattr(
+        person.widgets.QFileDialog, "getExistingDirectory", lambda *_: asked.append(1) or ""
+    )
     program = api.make_all(doc, hemisphere, name="CUP")[-1]
     person.double_click(program)
     button = person.field(person.panel("RoboticAM_ProgramText"), "export")
-    assert button.isEnabled() and button.toolTip() == "Writes all files of the program into a folder"
+    assert (
+        button.isEnabled() and button.toolTip() == "Writes all files of the program into a folder"
+    )
     api.change(doc.Feature, layer_height=1e9)
     assert program.Status == "failed"
     person.until(lambda: not button.isEnabled(), "the button to be grey", 5)
-    assert "no program fits its inputs" in button.toolTip() and "more than the wall is long" in button.toolTip()
+    assert (
+        "no program fits its inputs" in button.toolTip()
+        and "more than the wall is long" in button.toolTip()
+    )
     before = len(person.console())
     assert "no program fits its inputs" in program_window.export(program)  # of the context menu
-    person.until(lambda: "no program fits its inputs" in person.console()[before:], "why, in the report view", 5)
+    person.until(
+        lambda: "no program fits its inputs" in person.console()[before:],
+        "why, in the report view",
+        5,
+    )
     assert not asked
     api.change(doc.Feature, layer_height=15)
     person.until(button.isEnabled, "the button to be lit", 5)
@@ -340,12 +386,22 @@ def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere, n
     person.panel_closed()
     joint_path = hemisphere.Document.JointPath
     assert joint_path.Status == "infeasible"
-    lines = [line for line in person.console()[said:].splitlines() if joint_path.Message.rstrip(".") in line]
+    lines = [
+        line
+        for line in person.console()[said:].splitlines()
+        if joint_path.Message.rstrip(".") in line
+    ]
     assert len(lines) == 1 and lines[0].endswith(f"Joint path is infeasible: {joint_path.Message}")
-    assert person.console().rstrip().endswith("Joint path is infeasible. Double-click a stage in the tree to change it.")
+    assert (
+        person.console()
+        .rstrip()
+        .endswith("Joint path is infeasible. Double-click a stage in the tree to change it.")
+    )
 
 
-def test_what_a_change_makes_impossible_is_told_in_the_report_view(person, hemisphere, coarse, no_remedies):
+def test_what_a_change_makes_impossible_is_told_in_the_report_view(
+    person, hemisphere, coarse, no_remedies
+):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)
     person.double_click(doc.Cell)
@@ -354,6 +410,14 @@ def test_what_a_change_makes_impossible_is_told_in_the_report_view(person, hemis
     person.type(panel, "DepositionPointX", "3 m")
     person.press("Ok")
     person.panel_closed()
-    assert (doc.Cell.Status, doc.JointPath.Status, doc.Program.Status) == ("up to date", "infeasible", "infeasible")
+    assert (doc.Cell.Status, doc.JointPath.Status, doc.Program.Status) == (
+        "up to date",
+        "infeasible",
+        "infeasible",
+    )
     lines = [line for line in person.console()[said:].splitlines() if " is infeasible: " in line]
-    assert len(lines) == 1 and "Joint path is infeasible: layer 0" in lines[0] and "cannot be reached" in lines[0]
+    assert (
+        len(lines) == 1
+        and "Joint path is infeasible: layer 0" in lines[0]
+        and "cannot be reached" in lines[0]
+    )

@@ -13,7 +13,9 @@ pytestmark = pytest.mark.usefixtures("person")
 def test_the_panel_previews_and_makes_a_feature_of_a_wire(person):
     doc = App.newDocument("Curves")
     wire = doc.addObject("Part::Feature", "Wire")
-    wire.Shape = Part.makePolygon([App.Vector(0, 0, 0), App.Vector(30, 0, 0), App.Vector(30, 20, 0)])
+    wire.Shape = Part.makePolygon(
+        [App.Vector(0, 0, 0), App.Vector(30, 0, 0), App.Vector(30, 20, 0)]
+    )
     doc.recompute()
     person.select(wire)
     person.click("RoboticAM_Curves")
@@ -36,13 +38,17 @@ def test_the_panel_previews_and_makes_a_feature_of_a_wire(person):
 
 
 def test_a_table_that_was_opened_is_laid(person, tmp_path):
-    (tmp_path / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n0,5,0,2\n30,5,0,2\n", encoding="utf-8")
+    (tmp_path / "beads.csv").write_text(
+        "x,y,z,bead\n0,0,0,1\n30,0,0,1\n0,5,0,2\n30,5,0,2\n", encoding="utf-8"
+    )
     doc = App.newDocument("Table")
     table = api.open_part(doc, str(tmp_path / "beads.csv"))
     person.select(table)
     person.click("RoboticAM_Curves")
     panel = person.panel("RoboticAM_CurvesFeature")
-    person.until(lambda: "2 curves, 60 mm" in person.field(panel, "preview").text(), "the preview", 30)
+    person.until(
+        lambda: "2 curves, 60 mm" in person.field(panel, "preview").text(), "the preview", 30
+    )
     person.press("Ok")
     person.panel_closed()
     (feature,) = api.stages_of(doc, "feature")

@@ -16,7 +16,11 @@ from freecad_am.gui.simulation import dock as simulations
 from freecad_am.gui.simulation import fields
 from freecad_am.gui.tools.commands import GROUPS
 
-BELOW = {"RoboticAM_Path": paths.NAME, "RoboticAM_Plots": plots.NAME, "RoboticAM_SpinMap": maps.NAME}
+BELOW = {
+    "RoboticAM_Path": paths.NAME,
+    "RoboticAM_Plots": plots.NAME,
+    "RoboticAM_SpinMap": maps.NAME,
+}
 ORDERS = [tuple(list(BELOW)[(start + at) % 3] for at in range(3)) for start in range(3)]
 WIDE, HIGH = 1280, 800
 ALIKE = 3  # pixels
@@ -68,9 +72,16 @@ def in_front(dock):
 def around(person):
     """FreeCAD's docks at the bottom that are seen, by name, with their heights."""
     bottom = person.core.Qt.BottomDockWidgetArea
-    docks = [dock for dock in person.present(person.widgets.QDockWidget)
-             if in_front(dock) and person.window.dockWidgetArea(dock) == bottom]
-    return {dock.objectName(): dock.height() for dock in docks if not dock.objectName().startswith("RoboticAM")}
+    docks = [
+        dock
+        for dock in person.present(person.widgets.QDockWidget)
+        if in_front(dock) and person.window.dockWidgetArea(dock) == bottom
+    ]
+    return {
+        dock.objectName(): dock.height()
+        for dock in docks
+        if not dock.objectName().startswith("RoboticAM")
+    }
 
 
 @pytest.mark.parametrize("order", ORDERS, ids=lambda order: "-".join(name[10:] for name in order))
@@ -83,7 +94,9 @@ def test_a_window_of_1280_by_800_holds_them_as_tabs_with_the_newest_in_front(per
         assert (person.window.width(), person.window.height()) == (WIDE, HIGH)
         assert [in_front(dock) for dock in docks] == [False] * (len(docks) - 1) + [True]
         assert set(person.window.tabifiedDockWidgets(docks[0])) >= set(docks[1:])
-        assert {person.window.dockWidgetArea(dock) for dock in docks} == {person.core.Qt.BottomDockWidgetArea}
+        assert {person.window.dockWidgetArea(dock) for dock in docks} == {
+            person.core.Qt.BottomDockWidgetArea
+        }
         assert in_front(simulation)
     person.screenshot(f"docks-{'-'.join(order)}")
     least = person.window.minimumSizeHint()
@@ -97,12 +110,21 @@ def test_a_window_of_1280_by_800_holds_them_as_tabs_with_the_newest_in_front(per
 
 
 def test_a_window_of_1280_pixels_shows_all_tools(person, path):
-    bar = next(bar for bar in person.present(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM")
+    bar = next(
+        bar for bar in person.present(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM"
+    )
     person.until(lambda: bar.width() >= bar.sizeHint().width(), "room for the toolbar", 5)
     for name in (name for group in GROUPS for name in group):
         button = person.button(f"RoboticAM_{name}")
-        assert bar.rect().contains(button.geometry()) and button.mapTo(person.window, button.rect().topRight()).x() < WIDE
-    rows = {one.y() for one in person.present(person.widgets.QToolBar) if one.isVisible() and one is not bar}
+        assert (
+            bar.rect().contains(button.geometry())
+            and button.mapTo(person.window, button.rect().topRight()).x() < WIDE
+        )
+    rows = {
+        one.y()
+        for one in person.present(person.widgets.QToolBar)
+        if one.isVisible() and one is not bar
+    }
     person.screenshot("toolbar-1280")
     # where it has room beside others it stays where the user puts it
     person.window.removeToolBarBreak(bar)
@@ -122,9 +144,16 @@ def test_where_the_user_has_put_them_they_are_again(person, path):
     still(person)
     close(person, first)
     close(person, second)
-    assert opened(person, path, "RoboticAM_Path") is first and person.window.dockWidgetArea(first) == right
+    assert (
+        opened(person, path, "RoboticAM_Path") is first
+        and person.window.dockWidgetArea(first) == right
+    )
     again = opened(person, path, "RoboticAM_Plots")
-    assert again is second and second.isFloating() and second.geometry().getRect() == (300, 200, 800, 400)
+    assert (
+        again is second
+        and second.isFloating()
+        and second.geometry().getRect() == (300, 200, 800, 400)
+    )
     # the map beside the path at the right, and the simulation at the left
     person.window.addDockWidget(right, third)
     person.window.splitDockWidget(first, third, person.core.Qt.Vertical)
@@ -135,7 +164,11 @@ def test_where_the_user_has_put_them_they_are_again(person, path):
         area = person.window.dockWidgetArea(dock)
         close(person, dock)
         assert opened(person, path, command) is dock and person.window.dockWidgetArea(dock) == area
-    assert in_front(first) and in_front(third) and first not in person.window.tabifiedDockWidgets(third)
+    assert (
+        in_front(first)
+        and in_front(third)
+        and first not in person.window.tabifiedDockWidgets(third)
+    )
     assert first.geometry().bottom() < third.geometry().top()
 
 
@@ -155,7 +188,10 @@ def test_the_height_they_take_is_given_back(person, path, order):
         found = around(person)
         found.update({one.objectName(): one.height() for one in docks if in_front(one)})
         assert set(found) == set(heights[-1])
-        assert all(abs(found[name] - high) <= ALIKE for name, high in heights[-1].items()), (found, heights[-1])
+        assert all(abs(found[name] - high) <= ALIKE for name, high in heights[-1].items()), (
+            found,
+            heights[-1],
+        )
     alone = opened(person, path, order[-1])
     single = alone.height()
     close(person, alone)
@@ -189,9 +225,14 @@ def test_a_click_on_the_map_leaves_it_in_front(person, hand, path):
     person.until(lambda: path.ViewObject.Proxy.shown is not None, "the path to follow", 5)
     assert in_front(dock) and not in_front(paths._dock.dock)
     # and the path's dock tells it when its tab is clicked
-    bar = next(bar for bar in person.present(person.widgets.QTabBar)
-               if bar.isVisible() and dock.windowTitle() in [bar.tabText(at) for at in range(bar.count())])
-    number = next(at for at in range(bar.count()) if bar.tabText(at) == paths._dock.dock.windowTitle())
+    bar = next(
+        bar
+        for bar in person.present(person.widgets.QTabBar)
+        if bar.isVisible() and dock.windowTitle() in [bar.tabText(at) for at in range(bar.count())]
+    )
+    number = next(
+        at for at in range(bar.count()) if bar.tabText(at) == paths._dock.dock.windowTitle()
+    )
     middle = bar.mapToGlobal(bar.tabRect(number).center())
     hand.at((middle.x(), middle.y()))
     assert in_front(paths._dock.dock)
@@ -251,7 +292,9 @@ def test_docks_that_are_open_follow_the_language(person, path, speak):
     title = plot.picture.charts[0].title
     wanted = (
         {"Trajectoire", "Couleurs", "Tout montrer", "Une seule couche", "Point", "tubes"},
-        {"Graphiques", "couches"}, {"Branche", "Courbe", "Degré"}, {"Temps", "Masse", "Mouvements rapides"},
+        {"Graphiques", "couches"},
+        {"Branche", "Courbe", "Degré"},
+        {"Temps", "Masse", "Mouvements rapides"},
     )
     speak("French")
     settled(person)
@@ -261,14 +304,24 @@ def test_docks_that_are_open_follow_the_language(person, path, speak):
         assert dock.windowTitle() not in before
         assert len(before - french) > 8
     assert plot.picture.charts[0].title != title and plot.picture.name == "spacing"
-    assert person.field(path_dock, "single").isChecked() and path.ViewObject.Proxy.shown[:2] == (2, 2)
+    assert person.field(path_dock, "single").isChecked() and path.ViewObject.Proxy.shown[:2] == (
+        2,
+        2,
+    )
     assert "Couche 2" in person.field(path_dock, "facts").text()
     assert person.field(plots_dock, "picture").currentData() == "spacing"
     assert person.field(plots_dock, "from").value() == 1
-    assert not person.field(map_dock, "together").isChecked() and person.field(map_dock, "curve").currentIndex() == 1
+    assert (
+        not person.field(map_dock, "together").isChecked()
+        and person.field(map_dock, "curve").currentIndex() == 1
+    )
     assert person.field(map_dock, "curve").currentText() == "RZ constant"
     assert not one.figures.shows("planned")
-    assert simulation.player.factor == fields.FACTORS[1] == fields.FACTORS[simulation.fields.factor.currentIndex()]
+    assert (
+        simulation.player.factor
+        == fields.FACTORS[1]
+        == fields.FACTORS[simulation.fields.factor.currentIndex()]
+    )
     assert abs(simulation.fields.slider.value() / fields.STEPS - 0.4) < 0.01
     person.screenshot("docks-french")
     speak("English")
@@ -291,7 +344,11 @@ def test_legends_follow_the_language(person, path, speak):
         file = str(person.folder / "legend.png")
         person.gui.activeDocument().activeView().saveImage(file, 600, 450, "White")
         image = person.widgets.QImage(file).convertToFormat(person.widgets.QImage.Format_RGB32)
-        return np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(450, -1, 4)[:220, :130, :3].astype(int)
+        return (
+            np.frombuffer(bytes(image.constBits()), dtype=np.uint8)
+            .reshape(450, -1, 4)[:220, :130, :3]
+            .astype(int)
+        )
 
     english = corner()
     speak("French")

@@ -60,7 +60,10 @@ def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
     person.type(panel, "File", path)
     refused(person)
     note = person.field(panel, "FileNote")
-    assert note.isVisible() and note.text() == f"there is no folder {folder}; make it, or choose another"
+    assert (
+        note.isVisible()
+        and note.text() == f"there is no folder {folder}; make it, or choose another"
+    )
     assert not folder.exists()
     folder.mkdir()
     person.screenshot("export_path")
@@ -76,7 +79,12 @@ def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
 
 def test_waypoints_are_a_table_of_all_points_and_axes(person, job, tmp_path):
     """Of a robot that has no post, with the columns of every robot."""
-    cell = api.make_cell(job.Document, machine="kuka-kr16-2", deposition_point=(1321, 0, 1621, 0, 0, 0), branch="auto")
+    cell = api.make_cell(
+        job.Document,
+        machine="kuka-kr16-2",
+        deposition_point=(1321, 0, 1621, 0, 0, 0),
+        branch="auto",
+    )
     path = api.make_joint_path(job.Document, job, cell)
     person.select(path)
     panel = opened(person)
@@ -99,14 +107,21 @@ def of_menu(job, person):
     """The panel that the entry of the context menu opens."""
     menu = person.widgets.QMenu()
     job.ViewObject.Proxy.setupContextMenu(job.ViewObject, menu)
-    next(action for action in menu.actions() if action.objectName() == "RoboticAM_MenuExportReport").trigger()
+    next(
+        action for action in menu.actions() if action.objectName() == "RoboticAM_MenuExportReport"
+    ).trigger()
     person.idle()
     return person.panel(NAME)
 
 
 def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
     """From the menu of the joint path, of a robot without a program too; what the page says is held in tests/batch."""
-    cell = api.make_cell(job.Document, machine="kuka-kr16-2", deposition_point=(1321, 0, 1621, 0, 0, 0), branch="auto")
+    cell = api.make_cell(
+        job.Document,
+        machine="kuka-kr16-2",
+        deposition_point=(1321, 0, 1621, 0, 0, 0),
+        branch="auto",
+    )
     path = api.make_joint_path(job.Document, job, cell)
     panel = of_menu(path, person)
     assert person.field(panel, "Path").currentText() == path.Label
@@ -116,13 +131,18 @@ def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
     person.type(panel, "File", str(file))
     refused(person)
     note = person.field(panel, "FileNote")
-    assert note.isVisible() and note.text() == f"there is no folder {file.parent}; make it, or choose another"
+    assert (
+        note.isVisible()
+        and note.text() == f"there is no folder {file.parent}; make it, or choose another"
+    )
     file.parent.mkdir()
     person.screenshot("export_report")
     taken(person)
     page = file.read_text(encoding="utf-8")
     assert [entry.name for entry in file.parent.iterdir()] == ["page.html"]
-    assert page.startswith("<!DOCTYPE html>") and page.endswith("</html>\n") and "KUKA KR 16-2" in page
+    assert (
+        page.startswith("<!DOCTYPE html>") and page.endswith("</html>\n") and "KUKA KR 16-2" in page
+    )
     assert f">{len(api.result(path).joint_path.beads)}</b><span>beads" in page
     of_menu(job, person)  # a path without joints has one too
     person.press("Cancel")
@@ -153,7 +173,11 @@ def test_a_report_is_cancelled_and_leaves_nothing(person, job, tmp_path, monkeyp
     person.press("Ok")
     assert begun and "Cancelled" in person.panel_error(panel)
     monkeypatch.undo()
-    person.until(lambda: not any(one.name == "Robotic AM" for one in threading.enumerate()), "the work to end", 60)
+    person.until(
+        lambda: not any(one.name == "Robotic AM" for one in threading.enumerate()),
+        "the work to end",
+        60,
+    )
     assert not any(tmp_path.iterdir())
     person.press("Ok")
     person.panel_closed()
@@ -180,8 +204,10 @@ def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):
 
 def test_cam_path_and_trajectory_are_objects_in_one_step(person, job):
     doc = job.Document
-    for kind, type_name in (("CAM path in this document", "Path::Feature"), (
-            "Robot trajectory in this document", "Robot::TrajectoryObject")):
+    for kind, type_name in (
+        ("CAM path in this document", "Path::Feature"),
+        ("Robot trajectory in this document", "Robot::TrajectoryObject"),
+    ):
         before, steps = len(doc.Objects), doc.UndoCount
         panel = opened(person)
         person.choose(panel, "Kind", kind)

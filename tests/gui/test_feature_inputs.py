@@ -52,7 +52,9 @@ def pixel_of(person, hand, wanted, room=0):
                 infos = (view.getObjectInfo((x + dx, y + dy)) for dx, dy in around)
                 if all(info and wanted(info) for info in infos):
                     where = hand.corner(view) + person.core.QPoint(x, height - 1 - y)
-                    if view.graphicsView().isAncestorOf(person.widgets.QApplication.widgetAt(where)):
+                    if view.graphicsView().isAncestorOf(
+                        person.widgets.QApplication.widgetAt(where)
+                    ):
                         return where.x(), where.y()
     raise AssertionError("it is not to be seen")
 
@@ -99,7 +101,9 @@ def test_a_face_clicked_in_an_assembly_is_a_face_of_its_body(person, hand, scene
     def on_body(info):
         return info["Object"] in ("Body", "Cone") and info["Component"].startswith("Face")
 
-    for _ in range(3):  # where the view still moved, as beside a panel that comes up, a person clicks again
+    for _ in range(
+        3
+    ):  # where the view still moved, as beside a panel that comes up, a person clicks again
         hand.at(pixel_of(person, hand, on_body, 6))
         person.idle(0.5)
         if person.gui.Selection.getSelectionEx(scene.Name, 0):
@@ -132,12 +136,20 @@ def test_an_edge_clicked_in_the_view_is_the_axis(person, hand, scene):
     person.select(scene.Profile)
     panel = open_panel(person, hand)
     assert person.field(panel, "Source").text() == "Profile"
-    names = [f"Edge{k}" for k, edge in enumerate(scene.Box.Shape.Edges, 1) if edge.BoundBox.DiagonalLength == 40.0]
-    (edge,) = [name for name in names if scene.Box.Shape.getElement(name).BoundBox.Center == V(0, 0, -30)]
+    names = [
+        f"Edge{k}"
+        for k, edge in enumerate(scene.Box.Shape.Edges, 1)
+        if edge.BoundBox.DiagonalLength == 40.0
+    ]
+    (edge,) = [
+        name for name in names if scene.Box.Shape.getElement(name).BoundBox.Center == V(0, 0, -30)
+    ]
 
     def in_its_middle(info):
         there = V(info["x"], info["y"], info["z"])  # far from vertices, which are taken first
-        return (info["Object"], info["Component"]) == ("Box", edge) and (there - V(0, 0, -30)).Length < 8.0
+        return (info["Object"], info["Component"]) == ("Box", edge) and (
+            there - V(0, 0, -30)
+        ).Length < 8.0
 
     for _ in range(3):
         person.gui.Selection.clearSelection()
@@ -174,7 +186,13 @@ def test_an_axis_is_taken_away_again(person, hand, scene):
     feature = api.make_feature(scene, sketch, axis=(sketch, "H_Axis"))
     person.double_click(feature)
     panel = person.panel(PANEL)
-    hand.click(next(button for button in panel.findChildren(person.widgets.QToolButton) if button.text() == "Inputs"))
+    hand.click(
+        next(
+            button
+            for button in panel.findChildren(person.widgets.QToolButton)
+            if button.text() == "Inputs"
+        )
+    )
     assert person.field(panel, "Axis").text() == "Profile H_Axis"
     person.gui.Selection.clearSelection()
     use(person, hand, panel, "UseAxis")
@@ -190,7 +208,11 @@ def test_what_cannot_be_taken_is_told_and_what_was_taken_stays(person, hand, sce
     person.select(scene.Body)
     panel = open_panel(person, hand)
     assert person.field(panel, "Source").text() == "Body"
-    for obj, words in ((cell, "belongs to a job"), (table, "has no shape"), (scene.Scan, "is a mesh")):
+    for obj, words in (
+        (cell, "belongs to a job"),
+        (table, "has no shape"),
+        (scene.Scan, "is a mesh"),
+    ):
         click_tree(person, hand, obj.Label)
         use(person, hand, panel, "UseSource")
         assert words in person.panel_error(panel) and person.field(panel, "Source").text() == "Body"

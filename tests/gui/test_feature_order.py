@@ -15,7 +15,9 @@ def feature(doc, name, *place):
     part.Length, part.Width, part.Height = 20, 20, 10
     part.Placement.Base = App.Vector(*place)
     doc.recompute()
-    return api.make_solid_feature(doc, part, label=f"{name} feature", layer_height=5, chord_error=0.2)
+    return api.make_solid_feature(
+        doc, part, label=f"{name} feature", layer_height=5, chord_error=0.2
+    )
 
 
 def labels(toolpath):
@@ -34,7 +36,11 @@ def press(person, panel, name):
 
 def test_selected_features_are_deposited_in_an_order_that_clicks_change(person):
     doc = App.newDocument("Order")
-    first, second, third = feature(doc, "A", 0, 0, 0), feature(doc, "B", 40, 0, 0), feature(doc, "C", 80, 0, 0)
+    first, second, third = (
+        feature(doc, "A", 0, 0, 0),
+        feature(doc, "B", 40, 0, 0),
+        feature(doc, "C", 80, 0, 0),
+    )
     person.select(first)
     FreeCADGui.Selection.addSelection(third)
     person.click("RoboticAM_Toolpath")
@@ -44,7 +50,10 @@ def test_selected_features_are_deposited_in_an_order_that_clicks_change(person):
     while place.objectName() != "qt_scrollarea_viewport":
         place = place.parentWidget()
     # four buttons in a row made it wider
-    person.until(lambda: panel.mapTo(place, panel.rect().topRight()).x() < place.width(), "a panel that is not cut off")
+    person.until(
+        lambda: panel.mapTo(place, panel.rect().topRight()).x() < place.width(),
+        "a panel that is not cut off",
+    )
     press(person, panel, "AddFeature")  # what is selected is there; nothing more
     FreeCADGui.Selection.clearSelection()
     press(person, panel, "AddFeature")
@@ -60,7 +69,11 @@ def test_selected_features_are_deposited_in_an_order_that_clicks_change(person):
     person.press("Ok")
     person.panel_closed()
     (toolpath,) = api.stages_of(doc, "toolpath")
-    assert toolpath.Status == "up to date" and labels(toolpath) == ["B", "A", "C"] and doc.UndoCount == steps + 1
+    assert (
+        toolpath.Status == "up to date"
+        and labels(toolpath) == ["B", "A", "C"]
+        and doc.UndoCount == steps + 1
+    )
     person.double_click(toolpath)
     panel = person.panel("RoboticAM_Toolpath")
     assert listed(panel, person) == ["A feature", "C feature"]
@@ -69,7 +82,11 @@ def test_selected_features_are_deposited_in_an_order_that_clicks_change(person):
     person.choose(panel, "Sequence", "lowest layer first")
     person.press("Ok")
     person.panel_closed()
-    assert labels(toolpath) == ["B", "C", "A"] and toolpath.Sequence == "height" and toolpath.Layers == 6
+    assert (
+        labels(toolpath) == ["B", "C", "A"]
+        and toolpath.Sequence == "height"
+        and toolpath.Layers == 6
+    )
     doc.undo()
     assert labels(toolpath) == ["B", "A", "C"] and toolpath.Sequence == "feature"
     assert not any(part.ViewObject.Visibility for part in (doc.A, doc.B, doc.C))

@@ -24,7 +24,11 @@ def previewed(person):
 
 def told(person, panel, words, seconds=10):
     state = person.field(panel, "preview")
-    person.until(lambda: state.isVisible() and words in state.text(), f"{words}, not {state.text()!r}", seconds)
+    person.until(
+        lambda: state.isVisible() and words in state.text(),
+        f"{words}, not {state.text()!r}",
+        seconds,
+    )
 
 
 def test_layers_are_seen_before_they_are_made_and_go_with_the_panel(person, hand, hemisphere):
@@ -47,7 +51,11 @@ def test_layers_are_seen_before_they_are_made_and_go_with_the_panel(person, hand
     assert bare + 200 < few < many
     hand.enter(panel, "LayerHeight", "100 mm")
     note = person.field(panel, "LayerHeightNote")
-    person.until(lambda: note.isVisible() and "more than the wall is long" in note.text(), "what is wrong", 10)
+    person.until(
+        lambda: note.isVisible() and "more than the wall is long" in note.text(),
+        "what is wrong",
+        10,
+    )
     told(person, panel, "see the field marked")
     assert person.screen_pixels(ORANGE) <= bare + 20
     person.choose(panel, "Path", "spiral")
@@ -88,7 +96,9 @@ def test_without_a_shape_the_panel_says_so_and_waits(person, hand, hemisphere):
     person.select(block)
     hand.click(person.field(panel, "UseSource"))
     told(person, panel, "see the field marked")
-    assert "Block" in person.panel_error(panel) or "revolution" in person.panel_error(panel), person.panel_error(panel)
+    assert "Block" in person.panel_error(panel) or "revolution" in person.panel_error(panel), (
+        person.panel_error(panel)
+    )
     person.select(hemisphere)
     hand.click(person.field(panel, "UseSource"))
     told(person, panel, "Layers: 71")

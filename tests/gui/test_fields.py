@@ -20,7 +20,16 @@ from freecad_am.objects.program import Program
 from freecad_am.objects.surface_feature import SurfaceFeature
 from freecad_am.objects.toolpath import Toolpath
 
-STAGES = (Cell, RevolutionFeature, SurfaceFeature, DevelopableFeature, Toolpath, JointPath, Program, Inspection)
+STAGES = (
+    Cell,
+    RevolutionFeature,
+    SurfaceFeature,
+    DevelopableFeature,
+    Toolpath,
+    JointPath,
+    Program,
+    Inspection,
+)
 # numbers that have no unit: shares, values of an input, what an optimiser stops at
 PURE = {"min_condition", "tolerance", "cooling_zero"}
 
@@ -61,8 +70,14 @@ def test_what_is_typed_is_what_is_read(person, window):
     field = QuantityField(1.0, "mm", "Layer height")
     window.addWidget(field.box)
     assert field.read() == 1.0
-    for text, number in (("2", 2.0), ("0.5 cm", 5.0), ("1+1", 2.0), ("0.1234567891234 mm", 0.1234567891234),
-                         ("2\u202fm", 2000.0), ("2", 2.0)):
+    for text, number in (
+        ("2", 2.0),
+        ("0.5 cm", 5.0),
+        ("1+1", 2.0),
+        ("0.1234567891234 mm", 0.1234567891234),
+        ("2\u202fm", 2000.0),
+        ("2", 2.0),
+    ):
         typed(person, field, text)
         assert field.read() == pytest.approx(number, rel=1e-14), text
     field.box.setFocus()
@@ -74,7 +89,13 @@ def test_what_is_typed_is_what_is_read(person, window):
 def test_a_speed_is_typed_in_any_unit(person, window):
     field = QuantityField(6.0, "mm/s", "Travel speed")
     window.addWidget(field.box)
-    for text, speed in (("360 mm/min", 6.0), ("0.3m/min", 5.0), ("12 in/min", 5.08), ("9", 9.0), ("4 mm/s", 4.0)):
+    for text, speed in (
+        ("360 mm/min", 6.0),
+        ("0.3m/min", 5.0),
+        ("12 in/min", 5.08),
+        ("9", 9.0),
+        ("4 mm/s", 4.0),
+    ):
         typed(person, field, text)
         assert field.read() == pytest.approx(speed, rel=1e-14), text
 
@@ -108,7 +129,9 @@ def test_every_field_shows_another_value_and_an_expression(person):
     assert (text.value, text.changed) == ("30.5 mm", True)
 
 
-@pytest.mark.parametrize(("unit", "text"), [("mm/s", "7 mm"), ("mm/s", "20 s"), ("mm/s", "7 kg"), ("mm", "3 deg")])
+@pytest.mark.parametrize(
+    ("unit", "text"), [("mm/s", "7 mm"), ("mm/s", "20 s"), ("mm/s", "7 kg"), ("mm", "3 deg")]
+)
 def test_a_quantity_of_another_kind_is_refused_as_it_was_typed(person, window, unit, text):
     field = QuantityField(1.0, unit, "Travel speed")
     window.addWidget(field.box)
@@ -123,14 +146,17 @@ def test_a_number_too_long_for_its_field_shows_its_first_digits(person, window):
     field.box.setFixedWidth(75)
     window.addWidget(field.box)
     person.idle(0.2)
-    assert field.line.fontMetrics().boundingRect(field.line.text()).width() > field.line.width() - 30
+    assert (
+        field.line.fontMetrics().boundingRect(field.line.text()).width() > field.line.width() - 30
+    )
     assert field.line.cursorPosition() == 0  # the end that is seen is that of the cursor
     typed(person, field, "654321.5 mm")
     assert field.line.cursorPosition() == 0 and field.read() == 654321.5
 
 
 @pytest.mark.parametrize(
-    "text", ["1,5 mm", "1,000", "abc", "1 inch", "2 mm mm", " ", "1\u202f234 mm", "1\u00a0234", "1’234 mm"]
+    "text",
+    ["1,5 mm", "1,000", "abc", "1 inch", "2 mm mm", " ", "1\u202f234 mm", "1\u00a0234", "1’234 mm"],
 )
 def test_what_the_field_would_change_unseen_is_refused_and_stays_to_be_seen(person, window, text):
     field = QuantityField(1.0, "mm", "Layer height")
@@ -147,17 +173,25 @@ def test_what_is_wrong_is_told_while_typing_and_only_as_long_as_it_is_there(pers
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
     note = person.field(panel, "PlatformDiameterNote")
-    for text, told in (("abc", "'abc' is not understood"), ("-5", "-5 mm is out of range"), ("1e9", "1e+09 mm is out")):
+    for text, told in (
+        ("abc", "'abc' is not understood"),
+        ("-5", "-5 mm is out of range"),
+        ("1e9", "1e+09 mm is out"),
+    ):
         person.type(panel, "PlatformDiameter", text)
         person.until(lambda told=told: note.isVisible() and note.text().startswith(told), told, 5)
     person.press("Ok")  # refused
-    assert note.isVisible() and not any(obj.TypeId.startswith("App::FeatureP") for obj in hemisphere.Document.Objects)
+    assert note.isVisible() and not any(
+        obj.TypeId.startswith("App::FeatureP") for obj in hemisphere.Document.Objects
+    )
     below = person.field(panel, "Mount")
     person.idle(0.5)  # the panel makes room for what is told at its top
     height = below.mapTo(panel, person.core.QPoint(0, 0)).y()
     person.type(panel, "PlatformDiameter", "100 mm")
     person.until(lambda: not note.isVisible(), "the error to go with what was wrong", 5)
-    assert below.mapTo(panel, person.core.QPoint(0, 0)).y() == height  # a click on the next field does not miss it
+    assert (
+        below.mapTo(panel, person.core.QPoint(0, 0)).y() == height
+    )  # a click on the next field does not miss it
     person.press("Cancel")
     person.panel_closed()
 
@@ -172,7 +206,9 @@ def test_an_error_is_told_with_the_name_in_the_panel_and_its_group_opens(person,
     note = person.field(panel, "SeamAngleNote")
     assert note.isVisible() and note.text().startswith("'2 mm' is not understood")
     field = person.field(panel, "SeamAngle")
-    assert field.isVisible() and (field.hasFocus() or field.isAncestorOf(person.widgets.QApplication.focusWidget()))
+    assert field.isVisible() and (
+        field.hasFocus() or field.isAncestorOf(person.widgets.QApplication.focusWidget())
+    )
     assert not person.field(panel, "error").isVisible()
     person.screenshot("panel_error_beside_its_field")
     person.type(panel, "SeamAngle", "0 deg")
@@ -190,23 +226,42 @@ def test_ramps_at_starts_and_ends_of_beads_are_typed(person, hemisphere):
     person.click("RoboticAM_Toolpath")
     panel = person.panel("RoboticAM_Toolpath")
     for name, text in (
-        ("TravelSpeed", "8 mm/s"), ("StartLength", "5 mm"), ("StartTravelSpeed", "3 mm/s"), ("StartRamp", "-1 mm"),
+        ("TravelSpeed", "8 mm/s"),
+        ("StartLength", "5 mm"),
+        ("StartTravelSpeed", "3 mm/s"),
+        ("StartRamp", "-1 mm"),
     ):
         person.type(panel, name, text)
     person.press("Ok")
     assert person.field(panel, "StartRampNote").text().startswith("-1 mm is out of range")
-    for name, text in (("StartRamp", "4 mm"), ("EndLength", "3 mm"), ("EndTravelSpeed", "10 mm/s"), ("EndRamp", "2 mm")):
+    for name, text in (
+        ("StartRamp", "4 mm"),
+        ("EndLength", "3 mm"),
+        ("EndTravelSpeed", "10 mm/s"),
+        ("EndRamp", "2 mm"),
+    ):
         person.type(panel, name, text)
     person.press("Ok")
-    person.until(lambda: "take 14 mm with their ramps" in person.panel_error(panel), "what is too long", 10)
-    for name, text in (("StartLength", "1 mm"), ("StartRamp", "1 mm"), ("EndLength", "0.5 mm"), ("EndRamp", "0.8 mm")):
+    person.until(
+        lambda: "take 14 mm with their ramps" in person.panel_error(panel), "what is too long", 10
+    )
+    for name, text in (
+        ("StartLength", "1 mm"),
+        ("StartRamp", "1 mm"),
+        ("EndLength", "0.5 mm"),
+        ("EndRamp", "0.8 mm"),
+    ):
         person.type(panel, name, text)
     person.press("Ok")
     person.panel_closed()
     made = hemisphere.Document.Toolpath
     assert (made.StartRamp.Value, made.EndRamp.Value) == (1.0, 0.8)
     process = made.Proxy.parameters(made, ProcessParameters)
-    assert (process.start.ramp, process.start.travel_speed, process.end.ramp) == (1.0, 3.0, 0.8) and process.ramped
+    assert (process.start.ramp, process.start.travel_speed, process.end.ramp) == (
+        1.0,
+        3.0,
+        0.8,
+    ) and process.ramped
 
 
 def test_a_panel_stays_with_its_document(person, hemisphere):
@@ -273,7 +328,10 @@ def test_a_field_in_the_place_of_another_one_is_made_anew(person, window, monkey
     """PySide finds what FreeCAD made by its place in memory, and a deleted field there, or a widget of another kind, if
     something still has that."""
     loader = person.gui.UiLoader()
-    made, wrong = [], [loader.createWidget("Gui::QuantitySpinBox" if deleted else "QLabel") for _ in range(3)]
+    made, wrong = (
+        [],
+        [loader.createWidget("Gui::QuantitySpinBox" if deleted else "QLabel") for _ in range(3)],
+    )
     for one in wrong if deleted else ():
         person.qt.delete(one)
 
@@ -305,10 +363,15 @@ def test_every_number_has_its_unit(person):
     for section in (section for stage in STAGES for section in stage.sections):
         for row in rows(section.cls):
             field = fields.make(row, row.default, section=section.prefix)
-            line = field.widget if isinstance(field.widget, person.widgets.QLineEdit) else field.widget.findChild(
-                person.widgets.QLineEdit)
+            line = (
+                field.widget
+                if isinstance(field.widget, person.widgets.QLineEdit)
+                else field.widget.findChild(person.widgets.QLineEdit)
+            )
             labels[row.key] = field.heading
-            if row.form in quantities and not line.text().endswith((" mm", " µm", " nm", " m", "°", " deg", " mm/s", " s")):
+            if row.form in quantities and not line.text().endswith(
+                (" mm", " µm", " nm", " m", "°", " deg", " mm/s", " s")
+            ):
                 bare.append((row.key, line.text()))
             if row.form in numbers and row.key not in PURE and not field.heading.endswith(")"):
                 bare.append((row.key, field.heading))
@@ -316,4 +379,8 @@ def test_every_number_has_its_unit(person):
             if not word and not line.text().endswith(row.unit):
                 bare.append((row.key, line.text()))
     assert bare == [] and len(labels) > 80
-    assert labels["density"] == "Density (g/cm³)" and labels["band"] == "Band" and labels["heights"] == "Heights (mm)"
+    assert (
+        labels["density"] == "Density (g/cm³)"
+        and labels["band"] == "Band"
+        and labels["heights"] == "Heights (mm)"
+    )

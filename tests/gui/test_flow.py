@@ -32,10 +32,16 @@ def new_job(person, turned=True, **texts):
     revolution, whatever is proposed."""
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    person.until(lambda: "Looking" not in person.field(panel, "reason").text(), "the selection to be understood", 20)
+    person.until(
+        lambda: "Looking" not in person.field(panel, "reason").text(),
+        "the selection to be understood",
+        20,
+    )
     if turned:
         person.as_revolution(panel)
-    told = {name: person.field(panel, name).text() for name in ("Source", "Ground", "reason", "error")}
+    told = {
+        name: person.field(panel, name).text() for name in ("Source", "Ground", "reason", "error")
+    }
     told["Kind"] = person.field(panel, "Kind").currentText()
     for name, text in texts.items():
         person.type(panel, name, text)
@@ -53,26 +59,42 @@ def cup(doc):
 
 
 def test_tools_stand_in_the_order_of_the_work(person, hemisphere):
-    bar = next(bar for bar in person.present(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM")
+    bar = next(
+        bar for bar in person.present(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM"
+    )
     actions = bar.actions()
-    names = ["|" if action.isSeparator() else action.objectName() or action.data() for action in actions]
+    names = [
+        "|" if action.isSeparator() else action.objectName() or action.data() for action in actions
+    ]
     there = [name.removeprefix("RoboticAM_") for name in names if name != "|"]
     order = [name for group in GROUPS for name in group]
-    assert there == [name for name in order if name in there] and there[:2] == ["OpenPart", "NewJob"]
+    assert there == [name for name in order if name in there] and there[:2] == [
+        "OpenPart",
+        "NewJob",
+    ]
     for before, after in zip(names, names[1:], strict=False):
-        apart = next(k for k, group in enumerate(GROUPS) if before[10:] in group) if before != "|" else None
+        apart = (
+            next(k for k, group in enumerate(GROUPS) if before[10:] in group)
+            if before != "|"
+            else None
+        )
         if apart is not None and after != "|":
             assert after[10:] in GROUPS[apart]
     menu = next(
-        menu for menu in person.window.menuBar().findChildren(person.widgets.QMenu) if menu.title() == "Robotic AM"
+        menu
+        for menu in person.window.menuBar().findChildren(person.widgets.QMenu)
+        if menu.title() == "Robotic AM"
     )
     help = [True, False]  # below all tools
-    assert [action.isSeparator() for action in menu.actions()] == [name == "|" for name in names] + help
+    assert [action.isSeparator() for action in menu.actions()] == [
+        name == "|" for name in names
+    ] + help
     assert menu.toolTipsVisible()
 
 
 @pytest.mark.parametrize(
-    "how", ["body", "feature", "face in the part", "link", "face of a link", "the part", "twice nested"]
+    "how",
+    ["body", "feature", "face in the part", "link", "face of a link", "the part", "twice nested"],
 )
 @pytest.mark.always("body", "face of a link", "face in the part")
 def test_a_part_of_revolution_however_it_is_selected(person, coarse, how):
@@ -82,17 +104,27 @@ def test_a_part_of_revolution_however_it_is_selected(person, coarse, how):
     link.LinkedObject = body
     link.Placement = App.Placement(V(0, 100, 0), App.Rotation(V(0, 1, 0), 20))
     doc.recompute()
-    side = next(f"Face{k}" for k, face in enumerate(body.Shape.Faces, 1) if face.Surface.TypeId == "Part::GeomCone")
+    side = next(
+        f"Face{k}"
+        for k, face in enumerate(body.Shape.Faces, 1)
+        if face.Surface.TypeId == "Part::GeomCone"
+    )
     select = {
-        "body": (body, ""), "feature": (doc.Cone, ""), "face in the part": (outer, f"Body.Cone.{side}"),
-        "link": (link, ""), "face of a link": (link, f"Cone.{side}"), "the part": (outer, "Body."),
+        "body": (body, ""),
+        "feature": (doc.Cone, ""),
+        "face in the part": (outer, f"Body.Cone.{side}"),
+        "link": (link, ""),
+        "face of a link": (link, f"Cone.{side}"),
+        "the part": (outer, "Body."),
         "twice nested": (outer, f"Body.{side}"),
     }[how]
     person.gui.Selection.clearSelection()
     person.gui.Selection.addSelection(doc.Name, select[0].Name, select[1])
     told = new_job(person)
     assert told["Kind"] == "Part of revolution" and told["error"] == ""
-    assert [obj.Status for obj in api.stages_of(doc)][:3] == ["up to date"] * 3 and doc.Feature.LayerHeight.Value == 5.0
+    assert [obj.Status for obj in api.stages_of(doc)][:3] == [
+        "up to date"
+    ] * 3 and doc.Feature.LayerHeight.Value == 5.0
     wall = api.result(doc.Feature)
     shown = body.Placement if "link" not in how else link.Placement
     frame = (outer.Placement if "link" not in how else App.Placement()).multiply(shown)
@@ -115,7 +147,11 @@ def test_a_wall_on_a_part_is_told_from_its_faces(person, coarse, no_remedies, or
     for k in order:
         person.gui.Selection.addSelection(doc.Name, parts[k].Name, "Face1" if k == 0 else "")
     told = new_job(person, False, Machine="kuka-kr16-2")
-    assert told["Kind"] == "Wall on a part" and parts[1].Label in told["Ground"] and parts[0].Label in told["reason"]
+    assert (
+        told["Kind"] == "Wall on a part"
+        and parts[1].Label in told["Ground"]
+        and parts[0].Label in told["reason"]
+    )
     assert kinds(doc)[:3] == ["cell", "feature", "toolpath"] and doc.Feature.Substrate == parts[1]
     assert doc.Cell.Machine == "kuka-kr16-2"
 
@@ -134,7 +170,11 @@ def test_solids_on_a_hub_are_told_from_what_stands_on_what(person, coarse):
     assert doc.Feature.Substrate == hub and list(doc.Feature.BaseFaces[1]) == ["Face1"]
     assert doc.Cell.Setup == "rotary-table"
     program = api.stages_of(doc, "program")
-    assert [obj.Post for obj in program] == ["siemens"] if doc.JointPath.Status == "up to date" else not program
+    assert (
+        [obj.Post for obj in program] == ["siemens"]
+        if doc.JointPath.Status == "up to date"
+        else not program
+    )
 
 
 def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
@@ -143,10 +183,13 @@ def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
     post = Part.makeBox(20, 20, 40)
     hub = Part.makeCylinder(25, 80)
     shapes = {
-        "Bush": Part.makeCylinder(40, 50).cut(Part.makeCylinder(32, 50)), "Rod": Part.makeCylinder(30, 20),
+        "Bush": Part.makeCylinder(40, 50).cut(Part.makeCylinder(32, 50)),
+        "Rod": Part.makeCylinder(30, 20),
         "Tee": post.fuse(Part.makeBox(90, 20, 12, V(-35, 0, 40))),
         "Wire": Part.makePolygon([V(), V(30, 0, 0), V(30, 20, 0)]),
-        "Rotor": Part.makeCompound([hub, *(Part.makeBox(20, 8, 30, V(x, -4, 20)).cut(hub) for x in (20, -40))]),
+        "Rotor": Part.makeCompound(
+            [hub, *(Part.makeBox(20, 8, 30, V(x, -4, 20)).cut(hub) for x in (20, -40))]
+        ),
     }
     for name, shape in shapes.items():
         doc.addObject("Part::Feature", name).Shape = shape
@@ -157,14 +200,23 @@ def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
     for name in shapes:
         part = doc.getObject(name)
         person.select(part)
-        person.until(lambda name=name: f": {name} " in person.field(panel, "reason").text() or f"of {name} " in person.field(
-            panel, "reason").text(), f"a proposal for {name}", 30)
+        person.until(
+            lambda name=name: (
+                f": {name} " in person.field(panel, "reason").text()
+                or f"of {name} " in person.field(panel, "reason").text()
+            ),
+            f"a proposal for {name}",
+            30,
+        )
         auto = proposed(taken(part), (), None, False, 8.0, True)
         assert auto.reason.split(" (")[0].split(";")[0] in person.field(panel, "reason").text()
         told[name] = person.field(panel, "Kind").currentText()
     assert told == {
-        "Bush": "Part of revolution", "Rod": "Solids in plane layers", "Tee": "Solids without support",
-        "Wire": "Curves as beads", "Rotor": "Solids on a hub",
+        "Bush": "Part of revolution",
+        "Rod": "Solids in plane layers",
+        "Tee": "Solids without support",
+        "Wire": "Curves as beads",
+        "Rotor": "Solids on a hub",
     }
     person.screenshot("new_job_kinds")
     person.press("Cancel")
@@ -180,11 +232,17 @@ def test_what_is_not_of_revolution_asks_for_what_it_grows_on(person):
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     reason = person.field(panel, "reason")
-    person.until(lambda: "not of revolution" in reason.text() and "grows on" in reason.text(), "the question", 30)
+    person.until(
+        lambda: "not of revolution" in reason.text() and "grows on" in reason.text(),
+        "the question",
+        30,
+    )
     person.press("Ok")
     assert "grows on" in person.panel_error(panel) and api.stages_of(doc) == []
     person.gui.Selection.addSelection(doc.Name, block.Name)  # with Ctrl, while the panel is open
-    person.until(lambda: "Block" in person.field(panel, "Ground").text(), "the block to be taken", 5)
+    person.until(
+        lambda: "Block" in person.field(panel, "Ground").text(), "the block to be taken", 5
+    )
     assert person.panel_error(panel) == ""
     person.press("Cancel")
     person.panel_closed()
@@ -204,7 +262,9 @@ def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere, coar
     panel = person.panel("RoboticAM_NewJob")
     assert "Click what is to be deposited" in person.field(panel, "reason").text()
     for obj, words in (
-        (cell, "Cell belongs to a job"), (sheet, "Table has no shape"), (broken, "Nowhere links to nothing"),
+        (cell, "Cell belongs to a job"),
+        (sheet, "Table has no shape"),
+        (broken, "Nowhere links to nothing"),
     ):
         person.select(obj)
         person.idle(0.3)
@@ -227,14 +287,22 @@ def test_what_is_wrong_in_a_new_job_is_told_under_its_field(person, hemisphere, 
     machine, name = (person.field(panel, f"{field}Note") for field in ("Machine", "ProgramName"))
     person.as_revolution(panel)
     for field, note, wrong, words in (
-        ("Machine", machine, "kuka-kr17", "is not known"), ("ProgramName", name, "my part!", "only the letters"),
+        ("Machine", machine, "kuka-kr17", "is not known"),
+        ("ProgramName", name, "my part!", "only the letters"),
     ):
         right = person.field(panel, field)
         right = right.currentText() if field == "Machine" else right.text()
         person.type(panel, field, wrong)
         person.press("Ok")
-        assert note.isVisible() and words in note.text(), (field, note.text(), person.panel_error(panel))
-        assert not person.field(panel, "error").isVisible() and api.stages_of(hemisphere.Document) == []
+        assert note.isVisible() and words in note.text(), (
+            field,
+            note.text(),
+            person.panel_error(panel),
+        )
+        assert (
+            not person.field(panel, "error").isVisible()
+            and api.stages_of(hemisphere.Document) == []
+        )
         person.screenshot(f"new_job_wrong_{field}")
         person.type(panel, field, right)
         assert not note.isVisible()  # it was about what is no more there
@@ -245,7 +313,10 @@ def test_what_is_wrong_in_a_new_job_is_told_under_its_field(person, hemisphere, 
 
 def test_a_wrong_name_of_a_program_is_told_under_its_field(person, hemisphere):
     doc = hemisphere.Document
-    cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+    cell, feature = (
+        api.make_cell(doc, limits="paper"),
+        api.make_feature(doc, hemisphere, layer_height=15),
+    )
     api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
     for obj in (None, "made"):
         if obj is None:
@@ -288,18 +359,24 @@ def test_a_job_is_a_group_that_can_be_left_and_deleted_whole(person, hemisphere,
     person.select(hemisphere)
     new_job(person)
     (job,) = jobs(doc)
-    assert job.Group == api.stages_of(doc) or {obj.Name for obj in job.Group} == {obj.Name for obj in api.stages_of(doc)}
+    assert job.Group == api.stages_of(doc) or {obj.Name for obj in job.Group} == {
+        obj.Name for obj in api.stages_of(doc)
+    }
     assert hemisphere.Label in job.Label
     keys = [obj.Key for obj in api.stages_of(doc)]
     doc.openTransaction("Drag")
     job.removeObject(doc.Toolpath)  # as dragging it to the document does
     doc.commitTransaction()
     doc.recompute()
-    assert doc.JointPath.Toolpath == doc.Toolpath and [obj.Key for obj in api.stages_of(doc)] == keys
+    assert (
+        doc.JointPath.Toolpath == doc.Toolpath and [obj.Key for obj in api.stages_of(doc)] == keys
+    )
     job.addObject(doc.Toolpath)
     doc.recompute()
     assert {obj.Status for obj in api.stages_of(doc)} == {"up to date"}
-    assert not job.ViewObject.Proxy.canDropObject(hemisphere) and job.ViewObject.Proxy.canDropObject(doc.Cell)
+    assert not job.ViewObject.Proxy.canDropObject(
+        hemisphere
+    ) and job.ViewObject.Proxy.canDropObject(doc.Cell)
     person.select(job)
     person.gui.runCommand("Std_Delete")  # asks nothing: else the watch would see it
     person.idle(0.5)
@@ -314,7 +391,9 @@ def test_a_job_is_a_group_that_can_be_left_and_deleted_whole(person, hemisphere,
 def entries(person, obj):
     menu = person.widgets.QMenu()
     obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, menu)
-    return {action.objectName().removeprefix("RoboticAM_Menu"): action for action in menu.actions()}, menu
+    return {
+        action.objectName().removeprefix("RoboticAM_Menu"): action for action in menu.actions()
+    }, menu
 
 
 def test_context_menus_do_what_they_say(person, hemisphere, coarse):
@@ -323,7 +402,9 @@ def test_context_menus_do_what_they_say(person, hemisphere, coarse):
     new_job(person)
     found, _menu = entries(person, doc.JointPath)
     tools = {"Edit", "Renew", "Simulate", "Program", "SpinMap", "Plots", "ExportPath"}
-    assert tools | {"Input_Toolpath", "Input_Cell"} <= set(found) and all(found[name].isEnabled() for name in tools)
+    assert tools | {"Input_Toolpath", "Input_Cell"} <= set(found) and all(
+        found[name].isEnabled() for name in tools
+    )
     found["Input_Toolpath"].trigger()
     assert [obj.Name for obj in person.gui.Selection.getSelection()] == ["Toolpath"]
     doc.Feature.LayerHeight = 3
@@ -350,6 +431,7 @@ def test_context_menus_do_what_they_say(person, hemisphere, coarse):
 
 def test_a_shape_the_kernel_fails_on_is_told(person, hemisphere, monkeypatch):
     """Its faults must not be taken for those of a panel that is gone."""
+
     def fail(*_, **__):
         raise RuntimeError("Bnd_Box is void")
 
@@ -357,7 +439,9 @@ def test_a_shape_the_kernel_fails_on_is_told(person, hemisphere, monkeypatch):
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    person.until(lambda: "Bnd_Box is void" in person.field(panel, "reason").text(), "what is wrong", 10)
+    person.until(
+        lambda: "Bnd_Box is void" in person.field(panel, "reason").text(), "what is wrong", 10
+    )
     person.press("Ok")
     assert person.gui.Control.activeDialog() and hemisphere.Document.Objects == [hemisphere]
     person.press("Cancel")

@@ -23,7 +23,10 @@ FRAMES = 12
 @pytest.fixture
 def joint_path(hemisphere):
     doc = hemisphere.Document
-    feature, cell = api.make_feature(doc, hemisphere, layer_height=5), api.make_cell(doc, limits="paper")
+    feature, cell = (
+        api.make_feature(doc, hemisphere, layer_height=5),
+        api.make_cell(doc, limits="paper"),
+    )
     return api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
 
 
@@ -32,7 +35,10 @@ class Turns:
     a dock are painted and laid out meanwhile."""
 
     def __init__(self, person, inside):
-        kind, watched = person.core.QEvent, [person.window, inside, *inside.findChildren(person.widgets.QWidget)]
+        kind, watched = (
+            person.core.QEvent,
+            [person.window, inside, *inside.findChildren(person.widgets.QWidget)],
+        )
 
         class Seen(person.core.QObject):
             def eventFilter(self, widget, event, turns=self):
@@ -136,7 +142,11 @@ def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path)
             texts[name].add(label.text())
             assert label.sizeHint().width() <= label.width()
     assert {name: (label.width(), label.height()) for name, label in labels.items()} == sizes
-    assert len(texts["place"]) > 100 and any("instead of" in text for text in texts["speed"]) and len(texts["doing"]) > 1
+    assert (
+        len(texts["place"]) > 100
+        and any("instead of" in text for text in texts["speed"])
+        and len(texts["doing"]) > 1
+    )
     person.idle(0.2)
     assert not simulation.scroll.horizontalScrollBar().isVisible()
     # a text that nobody has thought of is shown whole
@@ -170,8 +180,16 @@ def path():
     up, made = np.array([0.0, 0.0, 1.0]), []
     for points in beads():
         n = len(points)
-        made.append(Bead(points=points, build=np.tile(up, (n, 1)), tool=np.tile(up, (n, 1)), parameter=np.arange(float(n)),
-                         speed=np.full(n, 8.0), closed=False))
+        made.append(
+            Bead(
+                points=points,
+                build=np.tile(up, (n, 1)),
+                tool=np.tile(up, (n, 1)),
+                parameter=np.arange(float(n)),
+                speed=np.full(n, 8.0),
+                closed=False,
+            )
+        )
     return Rows.of(made, range(len(made)), 1.5, lambda: 1.0)
 
 
@@ -186,8 +204,13 @@ def area(nodes):
                     continue
                 child = child.getChild(0)
             shape = child.getChild(0)
-            vertices = np.array([point.getValue() for point in shape.vertexProperty.getValue().vertex.getValues()])
-            found += area_of(vertices, np.array(list(shape.coordIndex.getValues()), dtype=int).reshape(-1, 4)[:, :3])
+            vertices = np.array(
+                [point.getValue() for point in shape.vertexProperty.getValue().vertex.getValues()]
+            )
+            found += area_of(
+                vertices,
+                np.array(list(shape.coordIndex.getValues()), dtype=int).reshape(-1, 4)[:, :3],
+            )
     return found
 
 
@@ -209,7 +232,11 @@ def test_tubes_that_grow_are_whole_at_every_row(person):
         mesh, _ = rows.tube(0, int(end))
         whole = area_of(mesh.points, mesh.triangles)
         more = area(nodes) - whole
-        assert -1e-3 * whole < more < 2 * 1.5 * 1.0 * 4 + 5.0 * 2 * steps[max(end - 130, 0) : end].max() + 1e-3 * whole
+        assert (
+            -1e-3 * whole
+            < more
+            < 2 * 1.5 * 1.0 * 4 + 5.0 * 2 * steps[max(end - 130, 0) : end].max() + 1e-3 * whole
+        )
 
 
 def test_tubes_that_grow_give_coin_only_what_has_grown(person):
@@ -240,5 +267,7 @@ def test_what_is_to_come_is_drawn_from_where_the_deposit_ends(person, joint_path
         simulation.show()
         done = scene.deposit.end
         assert scene.to_come.end == len(scene.to_come.rows)
-        assert scene.to_come.first == (done if done in starts and done < scene.to_come.end else done - 1)
+        assert scene.to_come.first == (
+            done if done in starts and done < scene.to_come.end else done - 1
+        )
     simulation.close()

@@ -46,8 +46,14 @@ def cut_off(person, form):
             if not widget.isVisible() or not text:
                 continue
             wraps = isinstance(widget, person.widgets.QLabel) and widget.wordWrap()
-            needed = widget.heightForWidth(widget.width()) if wraps else widget.minimumSizeHint().height()
-            if widget.height() < needed or (not wraps and widget.width() < widget.minimumSizeHint().width()):
+            needed = (
+                widget.heightForWidth(widget.width())
+                if wraps
+                else widget.minimumSizeHint().height()
+            )
+            if widget.height() < needed or (
+                not wraps and widget.width() < widget.minimumSizeHint().width()
+            ):
                 found.append(text)
     return found
 
@@ -56,7 +62,9 @@ def test_tools_say_in_french_what_is_missing(french):
     App.newDocument("Window")
     button = french.button("RoboticAM_Toolpath")
     french.until(
-        lambda: re.search(r"Découpe un élément.*Faites d'abord un élément", button.toolTip()), "what is missing", 5
+        lambda: re.search(r"Découpe un élément.*Faites d'abord un élément", button.toolTip()),
+        "what is missing",
+        5,
     )
     texts = [action.text() for action in french.gui.Command.get("RoboticAM_JointPath").getAction()]
     assert texts == ["Trajectoire articulaire…"]
@@ -67,16 +75,24 @@ def test_a_panel_its_help_and_its_errors_are_french(french, hand, hemisphere):
     french.click("RoboticAM_Feature")
     panel = french.panel("RoboticAM_RevolutionFeature")
     french.idle(0.6)
-    labels = {label.text() for label in panel.findChildren(french.widgets.QLabel) if label.isVisible()}
+    labels = {
+        label.text() for label in panel.findChildren(french.widgets.QLabel) if label.isVisible()
+    }
     assert {"Source", "Axe", "Hauteur de couche", "Erreur de corde"} <= labels
     height = french.field(panel, "LayerHeight")
     assert height.toolTip() == "Distance entre couches voisines."
     assert f"Permis{NO_BREAK}: plus de 0" in height.whatsThis().replace("&nbsp;", NO_BREAK)
     choices = french.field(panel, "Wall")
-    assert [choices.itemText(at) for at in range(choices.count())] == ["extérieure", "intérieure", "milieu"]
+    assert [choices.itemText(at) for at in range(choices.count())] == [
+        "extérieure",
+        "intérieure",
+        "milieu",
+    ]
     hand.enter(panel, "LayerHeight", "0 mm")
     french.press("Ok")
-    french.until(lambda: "hors de la plage" in french.panel_error(panel), "the error under its field", 5)
+    french.until(
+        lambda: "hors de la plage" in french.panel_error(panel), "the error under its field", 5
+    )
     assert french.panel_error(panel) == f"0 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
     french.screenshot("french-feature")
     assert cut_off(french, panel) == []
@@ -85,7 +101,9 @@ def test_a_panel_its_help_and_its_errors_are_french(french, hand, hemisphere):
     french.press("Ok")
     french.panel_closed()
     made = api.stages_of(App.ActiveDocument, "feature")[0]
-    assert made.Spacing == "iso-height" and made.LayerHeight.Value == 2.0  # documents know no language
+    assert (
+        made.Spacing == "iso-height" and made.LayerHeight.Value == 2.0
+    )  # documents know no language
     assert made.Status in ("up to date", "stale")
 
 
@@ -103,7 +121,9 @@ def commas(french):
 
 def test_plain_numbers_have_the_comma_that_the_language_has(french, commas, hand, hemisphere):
     doc = hemisphere.Document
-    toolpath = api.make_toolpath(doc, api.make_feature(doc, hemisphere, layer_height=15), temperature=150.5)
+    toolpath = api.make_toolpath(
+        doc, api.make_feature(doc, hemisphere, layer_height=15), temperature=150.5
+    )
     french.open_workbench()
     french.double_click(toolpath)
     panel = french.panel("RoboticAM_Toolpath")
@@ -125,10 +145,23 @@ def test_plain_numbers_have_the_comma_that_the_language_has(french, commas, hand
 
 @pytest.mark.parametrize(
     ("text", "told"),
-    [("7,85", "7.85"), (",5", ".5"), ("-1,5e-3 deg/mm", "-1.5e-3 deg/mm"), ("auto", "auto"), ("1,2,3", "1,2,3"),
-     ("1,2 3,4 5", "1.2 3.4 5"), ("10,5 -,5\t30", "10.5 -.5 30"), ("10,5, 20", "10,5, 20"), ("10,5,20", "10,5,20"),
-     ("1\u202f234,5", "1\u202f234,5"), ("1\u202f234,5 0", "1\u202f234,5 0"),
-     ("=a,1", "=a,1"), ("12", "12"), ("1,5mm", "1.5mm"), ("", "")],
+    [
+        ("7,85", "7.85"),
+        (",5", ".5"),
+        ("-1,5e-3 deg/mm", "-1.5e-3 deg/mm"),
+        ("auto", "auto"),
+        ("1,2,3", "1,2,3"),
+        ("1,2 3,4 5", "1.2 3.4 5"),
+        ("10,5 -,5\t30", "10.5 -.5 30"),
+        ("10,5, 20", "10,5, 20"),
+        ("10,5,20", "10,5,20"),
+        ("1\u202f234,5", "1\u202f234,5"),
+        ("1\u202f234,5 0", "1\u202f234,5 0"),
+        ("=a,1", "=a,1"),
+        ("12", "12"),
+        ("1,5mm", "1.5mm"),
+        ("", ""),
+    ],
 )
 def test_numbers_with_blanks_between_have_their_point_changed(text, told):
     assert fields._with_point(text, ",", ".") == told
@@ -136,23 +169,33 @@ def test_numbers_with_blanks_between_have_their_point_changed(text, told):
 
 def test_the_numbers_of_a_pose_and_a_list_have_the_comma_of_the_language(french, commas):
     lines = {}
-    for cls, key, value in ((CellParameters, "platform", (10.5, 20.5, 30.5, 0.0, 0.0, 0.0)),
-                            (ProgramParameters, "origin", (1.5, 2.0, 3.0, 0.0, 0.0, 0.0)),
-                            (InspectionParameters, "heights", ("10.5", "20"))):
+    for cls, key, value in (
+        (CellParameters, "platform", (10.5, 20.5, 30.5, 0.0, 0.0, 0.0)),
+        (ProgramParameters, "origin", (1.5, 2.0, 3.0, 0.0, 0.0, 0.0)),
+        (InspectionParameters, "heights", ("10.5", "20")),
+    ):
         row = next(row for row in rows(cls) if row.key == key)
         field = lines[key] = fields.make(row, value)
         assert row.inner(field.value, key) == value and not field.changed
     assert lines["platform"].widget.text() == "10,5 20,5 30,5 0,0 0,0 0,0"
     assert lines["heights"].widget.text() == "10,5 20"
     for key, text, read in (
-        ("platform", "10,5 20,5 31,5", (10.5, 20.5, 31.5, 0.0, 0.0, 0.0)), ("platform", "100,5 mm", 100.5),
-        ("platform", "1,2,3", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0)), ("platform", "10.5 20,5 3", (10.5, 20.5, 3.0, 0.0, 0.0, 0.0)),
-        ("origin", "1,5 2,5 3,5", (1.5, 2.5, 3.5, 0.0, 0.0, 0.0)), ("heights", "10,5 20,5", ("10.5", "20.5")),
-        ("heights", "10,5", ("10.5",)), ("heights", "10, 5, 20", ("10", "5", "20")),
+        ("platform", "10,5 20,5 31,5", (10.5, 20.5, 31.5, 0.0, 0.0, 0.0)),
+        ("platform", "100,5 mm", 100.5),
+        ("platform", "1,2,3", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0)),
+        ("platform", "10.5 20,5 3", (10.5, 20.5, 3.0, 0.0, 0.0, 0.0)),
+        ("origin", "1,5 2,5 3,5", (1.5, 2.5, 3.5, 0.0, 0.0, 0.0)),
+        ("heights", "10,5 20,5", ("10.5", "20.5")),
+        ("heights", "10,5", ("10.5",)),
+        ("heights", "10, 5, 20", ("10", "5", "20")),
     ):
         lines[key].widget.setText(text)
         assert lines[key].row.inner(lines[key].value, key) == read, text
-    for key, text in (("platform", "10,5, 20,5, 3"), ("heights", "10,5, 20"), ("heights", "1\u202f234 20")):
+    for key, text in (
+        ("platform", "10,5, 20,5, 3"),
+        ("heights", "10,5, 20"),
+        ("heights", "1\u202f234 20"),
+    ):
         lines[key].widget.setText(text)
         with pytest.raises(api.InputError, match=r"may be read in two ways.*10\.5 20\.5"):
             lines[key].row.inner(lines[key].value, key)
@@ -186,10 +229,15 @@ def test_findings_and_docks_are_french(french, hemisphere):
         french.click(command)
         dock = french.panel(name)
         french.idle(2.0)
-        seen = {label.text().rstrip(f":{NO_BREAK}") for label in dock.findChildren(french.widgets.QLabel)}
+        seen = {
+            label.text().rstrip(f":{NO_BREAK}")
+            for label in dock.findChildren(french.widgets.QLabel)
+        }
         assert words <= seen, sorted(seen)
         french.screenshot(f"french-{name}")
-    assert path.Message == "" or re.search(r" (is|are|the) ", path.Message)  # what documents hold stays English
+    assert path.Message == "" or re.search(
+        r" (is|are|the) ", path.Message
+    )  # what documents hold stays English
 
 
 def test_freecad_that_starts_in_french_shows_ours(tmp_path):
@@ -205,13 +253,18 @@ def test_freecad_that_starts_in_french_shows_ours(tmp_path):
         "    texts += [action.text() for action in Gui.Command.get('RoboticAM_NewJob').getAction()]\n"
         f"    open({str(told)!r}, 'w', encoding='utf-8').write('\\n'.join(texts))\n"
         "    os._exit(0)\n"
-        "QtCore.QTimer.singleShot(1000, look)\n", encoding="utf-8",
+        "QtCore.QTimer.singleShot(1000, look)\n",
+        encoding="utf-8",
     )
     with tempfile.TemporaryDirectory() as folder:
         env = run.private_home(Path(folder))
         profile = Path(folder) / "user.cfg"
-        profile.write_text(profile.read_text(encoding="utf-8").replace(">English<", ">French<"), encoding="utf-8")
-        subprocess.run([str(program), str(script)], env=env, timeout=120, check=False, capture_output=True)
+        profile.write_text(
+            profile.read_text(encoding="utf-8").replace(">English<", ">French<"), encoding="utf-8"
+        )
+        subprocess.run(
+            [str(program), str(script)], env=env, timeout=120, check=False, capture_output=True
+        )
     lines = told.read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("Couches, trajectoires articulaires et programmes vérifiés")
     assert lines[1:] == ["Nouveau travail…"]

@@ -16,7 +16,9 @@ def paths(person, hemisphere):
     """A toolpath and its joint path, both seen, with the dock of paths open."""
     document = hemisphere.Document
     cell = api.make_cell(document)
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=5), cell
+    )
     made = toolpath, api.make_joint_path(document, toolpath, cell)
     toolpath.ViewObject.Visibility = True
     person.click("RoboticAM_Path")

@@ -51,7 +51,11 @@ def blades(person, rotor):
 
 def cone(hub):
     """The face of the cone."""
-    faces = [f"Face{number}" for number, face in enumerate(hub.Shape.Faces, start=1) if face.Surface.TypeId.endswith("Cone")]
+    faces = [
+        f"Face{number}"
+        for number, face in enumerate(hub.Shape.Faces, start=1)
+        if face.Surface.TypeId.endswith("Cone")
+    ]
     return faces[0]
 
 
@@ -75,7 +79,9 @@ def noted_for(person, panel, entry, as_wanted):
                 return
             person.idle(0.05)
     note = person.field(panel, "LayerHeightNote")
-    raise AssertionError(f"{entry}: {note.text()!r}, {note.isVisible()}; {person.field(panel, 'preview').text()!r}")
+    raise AssertionError(
+        f"{entry}: {note.text()!r}, {note.isVisible()}; {person.field(panel, 'preview').text()!r}"
+    )
 
 
 def ok(person, hand, name="Ok"):
@@ -116,7 +122,10 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     half = np.degrees(np.arctan((FOOT - TIP) / TALL))
     assert "2 solids on Hub" in told and f"half angle {half:.4g}°" in told and "2 contours" in told
     assert person.screen_pixels(ORANGE) > 150
-    assert (set(document.Objects), document.UndoCount) == (set(blades), steps)  # nothing is made yet
+    assert (set(document.Objects), document.UndoCount) == (
+        set(blades),
+        steps,
+    )  # nothing is made yet
     assert not person.field(panel, "Mode").isEnabled() and person.field(panel, "Lead").isEnabled()
     hand.enter(panel, "LayerHeight", "5 mm")
     person.type(panel, "BeadSpacing", "4 mm")
@@ -134,7 +143,11 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     hand.redo()
     assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
     console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
-    call = console[console.rindex("am.make_developable_feature("):].split("\n>>>")[0].replace("\n", " ")
+    call = (
+        console[console.rindex("am.make_developable_feature(") :]
+        .split("\n>>>")[0]
+        .replace("\n", " ")
+    )
     again = eval(call, {"App": App, "am": api})
     assert again.Key == key  # the recorded call makes the same
     document.removeObject(again.Name)
@@ -146,11 +159,17 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     person.choose(panel, "BeadModel", "csw")
     plot = person.field(panel, "BeadModelPlot")
     person.until(lambda: plot.isVisible() and plot.ready, "the plot", 10)
-    person.until(lambda: not person.field(panel, "BeadModelFit").visibleRegion().isEmpty(), "the fit to be scrolled to", 5)
+    person.until(
+        lambda: not person.field(panel, "BeadModelFit").visibleRegion().isEmpty(),
+        "the fit to be scrolled to",
+        5,
+    )
     person.screenshot("panel_bead_model")
     ok(person, hand)
     toolpath = document.Toolpath
-    assert toolpath.Status == "up to date" and not (first.ViewObject.Visibility or second.ViewObject.Visibility)
+    assert toolpath.Status == "up to date" and not (
+        first.ViewObject.Visibility or second.ViewObject.Visibility
+    )
     toolpath.ViewObject.Colouring = "width"
     person.idle()
     widths = np.concatenate([bead.width for _, _, bead in api.result(toolpath)])
@@ -162,8 +181,12 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     made(person, "RoboticAM_JointPath")
     assert document.JointPath.Status == "up to date", document.JointPath.Message
     made(person, "RoboticAM_Program", ProgramName="ROTOR")
-    assert (document.Program.Post, document.Program.Status) == ("siemens", "up to date"), document.Program.Message
-    text = "".join(content.decode("latin-1") for content in api.result(document.Program).files.values())
+    assert (document.Program.Post, document.Program.Status) == ("siemens", "up to date"), (
+        document.Program.Message
+    )
+    text = "".join(
+        content.decode("latin-1") for content in api.result(document.Program).files.values()
+    )
     assert re.search(r"X=?-?[\d.]+.* A=?-?[\d.]+ C=?", text)
 
     keys = [stage.Key for stage in api.stages_of(document)]
@@ -172,7 +195,9 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     opened = App.openDocument(str(tmp_path / "rotor.FCStd"))
     person.idle(0.4)
     stages = api.stages_of(opened)
-    assert [stage.Key for stage in stages] == keys and {stage.Status for stage in stages} == {"up to date"}
+    assert [stage.Key for stage in stages] == keys and {stage.Status for stage in stages} == {
+        "up to date"
+    }
     assert opened.Toolpath.ViewObject.Colouring == "width"
     assert [scale.title for scale in legend.shown(opened)] == ["joint margin"]
 
@@ -182,12 +207,16 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     document, steps = hub.Document, hub.Document.UndoCount
     hand.click(person.button("RoboticAM_SolidsOnHub"))
     panel = person.panel(PANEL)
-    person.until(lambda: "Solids are missing" in person.field(panel, "preview").text(), "what is missing", 5)
+    person.until(
+        lambda: "Solids are missing" in person.field(panel, "preview").text(), "what is missing", 5
+    )
     hand.click_face(first, "Face2")
     hand.click_face(second, "Face6")  # its upper side
     assert texts(person, panel) == ["Blade 1, Blade 2", ""]
     note = person.field(panel, "InputHubNote")
-    person.until(lambda: note.isVisible() and "name the hub" in note.text(), "that a hub is needed", 10)
+    person.until(
+        lambda: note.isVisible() and "name the hub" in note.text(), "that a hub is needed", 10
+    )
     hand.click(person.field(panel, "PickHub"))
     hand.click_face(hub, cone(hub))
     assert texts(person, panel) == ["Blade 1, Blade 2", f"Hub {cone(hub)}"]
@@ -199,19 +228,33 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     wrong = person.field(panel, "LayerHeightNote")
     person.until(lambda: wrong.isVisible() and "more than 0 mm" in wrong.text(), "the note", 5)
     person.until(lambda: person.screen_pixels(ORANGE) == 0, "that nothing is previewed", 5)
-    for entry, why in (("0.000001 mm", "20,000 cannot be worked with"), ("4 mm", "")):  # of solids that are known by now
-        noted_for(person, panel, entry, lambda why=why: why in wrong.text() and wrong.isVisible() == bool(why))
+    for entry, why in (
+        ("0.000001 mm", "20,000 cannot be worked with"),
+        ("4 mm", ""),
+    ):  # of solids that are known by now
+        noted_for(
+            person,
+            panel,
+            entry,
+            lambda why=why: why in wrong.text() and wrong.isVisible() == bool(why),
+        )
     previewed(person, panel)
     person.type(panel, "BeadSpacing", "0.00001 mm")
     wrong = person.field(panel, "BeadSpacingNote")
-    person.until(lambda: "points, and more than 50,000,000 cannot be worked with" in wrong.text(), "the note", 30)
+    person.until(
+        lambda: "points, and more than 50,000,000 cannot be worked with" in wrong.text(),
+        "the note",
+        30,
+    )
     ok(person, hand, "Cancel")
     assert (set(document.Objects), document.UndoCount) == (set(blades), steps)
     person.gui.Selection.addSelection(first)  # nobody listens any more
     person.idle()
 
 
-def test_a_field_that_is_typed_into_stays_in_place_while_nothing_can_be_previewed(person, hand, blades):
+def test_a_field_that_is_typed_into_stays_in_place_while_nothing_can_be_previewed(
+    person, hand, blades
+):
     hub, first, second = blades
     person.gui.Selection.addSelection(hub.Document.Name, first.Name)
     person.gui.Selection.addSelection(hub.Document.Name, second.Name)
@@ -268,13 +311,24 @@ def test_a_feature_is_changed_and_its_hub_may_be_a_face_of_its_only_solid(person
     person.press("Ok")
     person.panel_closed()
     assert (feature.Status, document.UndoCount) == ("up to date", steps + 1)
-    assert (feature.Source, feature.Further, feature.Substrate) == ((fused, [cone(fused)]), [], None)
+    assert (feature.Source, feature.Further, feature.Substrate) == (
+        (fused, [cone(fused)]),
+        [],
+        None,
+    )
 
 
 def test_beads_are_told_by_kind_and_layers_by_solid(person, rotor):
     hub, first, second = rotor
     feature = api.make_developable_feature(
-        hub.Document, first, hub, further=[second], layer_height=5, bead_spacing=4, fill="lines", order="feature"
+        hub.Document,
+        first,
+        hub,
+        further=[second],
+        layer_height=5,
+        bead_spacing=4,
+        fill="lines",
+        order="feature",
     )
     toolpath = api.make_toolpath(hub.Document, feature)
     path = api.result(toolpath)
@@ -282,9 +336,14 @@ def test_beads_are_told_by_kind_and_layers_by_solid(person, rotor):
     assert numbers == [*range(len(numbers) // 2)] * 2  # both rotor alike, each from the hub up
     colours, scale = colouring.coloured(path, "kind of bead", 0.2)
     closed = np.concatenate([np.full(len(bead), bead.closed) for _, _, bead in path])
-    assert closed.any() and not closed.all() and [one for one, _ in scale.classes] == [
-        colouring.CLOSED[0], colouring.OPEN[0]]
-    assert (colours[closed] == colouring.CLOSED[1]).all() and (colours[~closed] == colouring.OPEN[1]).all()
+    assert (
+        closed.any()
+        and not closed.all()
+        and [one for one, _ in scale.classes] == [colouring.CLOSED[0], colouring.OPEN[0]]
+    )
+    assert (colours[closed] == colouring.CLOSED[1]).all() and (
+        colours[~closed] == colouring.OPEN[1]
+    ).all()
     toolpath.ViewObject.Colouring = "kind of bead"
     person.idle()
     person.look()
@@ -305,7 +364,11 @@ def test_a_bead_model_is_seen_by_its_fit(person, rotor, tmp_path, monkeypatch):
     person.choose(panel, "BeadModel", "csw")
     person.until(lambda: plot.isVisible() and plot.ready, "the plot", 10)
     model = bead_table.load("csw")
-    for number in (f"{model.width.m:.4g}", f"{model.width.r_squared:.4f}", f"{model.height.rmse:.3f}"):
+    for number in (
+        f"{model.width.m:.4g}",
+        f"{model.width.r_squared:.4f}",
+        f"{model.height.rmse:.3f}",
+    ):
         assert number in fit.text()
     assert "12 beads, 300 to 900 mm/min" in fit.text()
     before = pixels(person, plot)
@@ -314,10 +377,15 @@ def test_a_bead_model_is_seen_by_its_fit(person, rotor, tmp_path, monkeypatch):
     person.until(lambda: not plot.isVisible(), "the plot to go", 5)
     assert "cannot be read" in person.field(panel, "BeadModelNote").text()
     rows = ["radius_mm,wire_feed_m_min,travel_speed_mm_min,width_mm,height_mm"]
-    rows += [f"{r},5,{v},{40 / v ** (1 / 3) + 20 / r + 1},2.5" for r in (20, 40) for v in (200, 400, 800)]
+    rows += [
+        f"{r},5,{v},{40 / v ** (1 / 3) + 20 / r + 1},2.5" for r in (20, 40) for v in (200, 400, 800)
+    ]
     (tmp_path / "own.csv").write_text("\n".join(rows))
     monkeypatch.setattr(
-        person.widgets.QFileDialog, "getOpenFileName", staticmethod(lambda *_: (str(tmp_path / "own.csv"), "")))
+        person.widgets.QFileDialog,
+        "getOpenFileName",
+        staticmethod(lambda *_: (str(tmp_path / "own.csv"), "")),
+    )
     person.field(panel, "ChooseBeadTable").click()
     person.until(plot.isVisible, "the plot", 5)
     assert "Width = 40 v^(-1/3) + 20/r + 1 mm" in fit.text() and "R² 1.0000" in fit.text()
@@ -336,14 +404,19 @@ def pixels(person, widget):
 def test_a_cell_follows_its_machine(person, rotor):
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
-    fields = {name: person.field(panel, name) for name in ("Setup", "Branch", "DepositionPoint", "Machine", "MachineNote")}
+    fields = {
+        name: person.field(panel, name)
+        for name in ("Setup", "Branch", "DepositionPoint", "Machine", "MachineNote")
+    }
     fields["ArmClearance"] = person.field(panel, "ArmClearance")
     assert fields["Branch"].isVisible() and fields["ArmClearance"].isVisible()
     assert fields["Setup"].currentData() == "part-on-robot"
     person.type(panel, "Machine", "table-xyzbc")
     person.until(lambda: fields["Setup"].currentData() == "rotary-table", "the set-up to follow", 5)
     of_robots = [fields[name] for name in ("Setup", "Branch", "DepositionPoint", "ArmClearance")]
-    person.until(lambda: not any(field.isVisible() for field in of_robots), "the fields of robots to go", 5)
+    person.until(
+        lambda: not any(field.isVisible() for field in of_robots), "the fields of robots to go", 5
+    )
     person.screenshot("panel_cell_table")
     person.type(panel, "Machine", "table-xyz")
     person.until(fields["MachineNote"].isVisible, "what is wrong with the machine", 5)
@@ -351,7 +424,11 @@ def test_a_cell_follows_its_machine(person, rotor):
     person.type(panel, "Machine", "kuka-kr16-2")
     person.until(fields["Branch"].isVisible, "the branch to be there again", 5)
     assert fields["Setup"].currentData() == "part-on-robot"
-    person.until(lambda: not fields["MachineNote"].isVisible(), "the preview to find nothing wrong any more", 10)
+    person.until(
+        lambda: not fields["MachineNote"].isVisible(),
+        "the preview to find nothing wrong any more",
+        10,
+    )
     person.type(panel, "Machine", "table-xyzac")
     person.press("Ok")  # before the panel has followed by itself
     person.panel_closed()

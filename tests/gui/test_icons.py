@@ -14,7 +14,10 @@ GROUNDS = {"light": (240, 240, 240), "dark": (43, 43, 43)}
 CONTRAST, SHARE = 3.0, 1.0 / 6.0
 ACROSS = 10  # px that what stands out reaches over, of 16
 APART = 12.0  # mean difference of two icons, of 255
-SAME = {"preferences-robotic_am", "workbench"}  # one for FreeCAD's preferences, under the name it asks for
+SAME = {
+    "preferences-robotic_am",
+    "workbench",
+}  # one for FreeCAD's preferences, under the name it asks for
 
 
 def on(person, icon, ground):
@@ -26,7 +29,11 @@ def on(person, icon, ground):
     painter = person.widgets.QPainter(image)
     QtSvg.QSvgRenderer(str(icon)).render(painter)
     painter.end()
-    return np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(SIZE, SIZE, 4)[..., 2::-1].astype(float)
+    return (
+        np.frombuffer(bytes(image.constBits()), dtype=np.uint8)
+        .reshape(SIZE, SIZE, 4)[..., 2::-1]
+        .astype(float)
+    )
 
 
 def luminance(colours):
@@ -47,13 +54,17 @@ def test_every_icon_stands_out_at_sixteen_pixels(person, ground):
     for icon in sorted(ICONS.glob("*.svg")):
         out = seen(on(person, icon, GROUNDS[ground]), GROUNDS[ground])
         rows, columns = np.flatnonzero(out.any(axis=1)), np.flatnonzero(out.any(axis=0))
-        print(f"{icon.stem}: {out.mean():.2f} of the pixels, {np.ptp(columns) + 1} x {np.ptp(rows) + 1}")
+        print(
+            f"{icon.stem}: {out.mean():.2f} of the pixels, {np.ptp(columns) + 1} x {np.ptp(rows) + 1}"
+        )
         assert out.mean() > SHARE, icon.stem
         assert min(np.ptp(columns), np.ptp(rows)) + 1 >= ACROSS, icon.stem
 
 
 def test_no_two_icons_look_alike_at_sixteen_pixels(person):
-    pictures = {icon.stem: on(person, icon, GROUNDS["light"]) for icon in sorted(ICONS.glob("*.svg"))}
+    pictures = {
+        icon.stem: on(person, icon, GROUNDS["light"]) for icon in sorted(ICONS.glob("*.svg"))
+    }
     assert len(pictures) > 12
     for (one, first), (other, second) in itertools.combinations(pictures.items(), 2):
         apart = np.abs(first - second).mean()

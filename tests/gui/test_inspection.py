@@ -47,7 +47,10 @@ def green_and_red(person):
     """How many pixels have the colours of what is within tolerance, and of what is most outside."""
     colours = {band.text: 255.0 * np.array(band.colour) for band in bands(0.05)}
     pixels = person.picture()
-    return [int((np.abs(pixels - colours[name]).max(axis=1) < 12).sum()) for name in ("within ±0.05", "0.05 … 0.1")]
+    return [
+        int((np.abs(pixels - colours[name]).max(axis=1) < 12).sum())
+        for name in ("within ±0.05", "0.05 … 0.1")
+    ]
 
 
 def test_inspected_by_clicks_undone_saved_and_opened_again(person, hand, part, points, tmp_path):
@@ -101,10 +104,19 @@ def test_a_long_message_is_seen_whole_in_a_narrow_panel(person, part, tmp_path):
     (tmp_path / "commas.csv").write_text("1,5,2,5,3,5\n2,5,3,5,4,5\n")
     (tmp_path / "words.csv").write_text("a;b;c\n")
     note = person.field(panel, "FileNote")
-    for name in (str(tmp_path / "commas.csv"), "nowhere.csv", str(tmp_path / "words.csv"), str(tmp_path / "commas.csv")):
+    for name in (
+        str(tmp_path / "commas.csv"),
+        "nowhere.csv",
+        str(tmp_path / "words.csv"),
+        str(tmp_path / "commas.csv"),
+    ):
         person.type(panel, "File", name)
         person.press("Ok")
-        person.until(lambda: note.isVisible() and note.height() >= note.heightForWidth(note.width()), f"all about {name}", 5)
+        person.until(
+            lambda: note.isVisible() and note.height() >= note.heightForWidth(note.width()),
+            f"all about {name}",
+            5,
+        )
         assert note.height() > 2 * note.fontMetrics().lineSpacing()
         assert note.parentWidget().height() >= note.geometry().bottom()
     person.press("Cancel")
@@ -123,11 +135,19 @@ def test_what_is_wrong_is_told_beside_its_field_and_nothing_is_left(person, part
     (tmp_path / "scan.docx").write_text("1 2 3")
     (tmp_path / "words.csv").write_text("a;b;c\n")
     note = person.field(panel, "FileNote")
-    for name, told in (("nowhere.csv", "cannot be read"), ("empty.csv", "empty"), ("scan.docx", "not read as points"),
-                       ("words.csv", "three numbers")):
+    for name, told in (
+        ("nowhere.csv", "cannot be read"),
+        ("empty.csv", "empty"),
+        ("scan.docx", "not read as points"),
+        ("words.csv", "three numbers"),
+    ):
         person.type(panel, "File", str(tmp_path / name))
         person.press("Ok")
-        assert note.isVisible() and told in note.text(), (name, note.text(), person.panel_error(panel))
+        assert note.isVisible() and told in note.text(), (
+            name,
+            note.text(),
+            person.panel_error(panel),
+        )
         assert document.getObject("Inspection") is None
     person.type(panel, "File", points)
     person.type(panel, "Heights", "high")
@@ -199,7 +219,9 @@ def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand,
     person.look()
     shades = {band.text: 255.0 * np.array(band.colour) for band in bands(1.0)}
     pixels = person.picture()
-    assert max(int((np.abs(pixels - shade).max(axis=1) < 12).sum()) for shade in shades.values()) > 500
+    assert (
+        max(int((np.abs(pixels - shade).max(axis=1) < 12).sum()) for shade in shades.values()) > 500
+    )
     person.screenshot("predicted-deposit")
     person.press("Ok")
     person.panel_closed()
@@ -207,7 +229,9 @@ def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand,
     assert run.deposit is not None and len(run.deposit) == len(found.laid)
     beads = _beads(run)
     low = found.laid[found.laid[:, 3] == 0]
-    assert float(beads[0].height.mean()) == pytest.approx(float(np.maximum(low[:, 4], 1e-3).mean()), rel=0.02)
+    assert float(beads[0].height.mean()) == pytest.approx(
+        float(np.maximum(low[:, 4], 1e-3).mean()), rel=0.02
+    )
     path.BeadWidth = 5  # another deposit, of which nothing is known
     assert run_of(joints).deposit is None
 

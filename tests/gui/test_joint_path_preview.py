@@ -42,7 +42,9 @@ def drawn(person):
 
 def previewed_colours(person):
     """Colours (n, 3) of these points."""
-    return np.array([tuple(colour) for colour in first_of(person, "SoMaterial").diffuseColor.getValues()])
+    return np.array(
+        [tuple(colour) for colour in first_of(person, "SoMaterial").diffuseColor.getValues()]
+    )
 
 
 def told(person, panel, words, seconds=60):
@@ -52,7 +54,11 @@ def told(person, panel, words, seconds=60):
 
 
 def threads_end(person):
-    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
+    person.until(
+        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        "the threads to end",
+        10,
+    )
 
 
 def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, monkeypatch):
@@ -67,7 +73,9 @@ def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, mo
     assert text.endswith("Preview of all points; OK looks at the rapid moves too.")
     figures = [float(number) for number in re.findall(r": (-?[\d.]+)", text)]
     assert len(drawn(person)) >= api.result(toolpath).point_count
-    assert toolpath.ViewObject.Proxy.switch.whichChild.getValue() == -1  # the preview lies where it does
+    assert (
+        toolpath.ViewObject.Proxy.switch.whichChild.getValue() == -1
+    )  # the preview lies where it does
     person.look()
     person.screenshot("joint_path_preview")
     assert document.UndoCount == steps and document.getObject("JointPath") is None
@@ -77,13 +85,18 @@ def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, mo
     planned = api.result(document.JointPath).joint_path
     machine = machines.load(cell.Machine)
     found = judged(planned.beads, machine.limits("maker"), machine.max_speed)
-    shown = [round(100.0 * found.worst_margin.value, 1), round(found.worst_condition.value, 3),
-             round(100.0 * found.worst_ratio.value)]
+    shown = [
+        round(100.0 * found.worst_margin.value, 1),
+        round(found.worst_condition.value, 3),
+        round(100.0 * found.worst_ratio.value),
+    ]
     assert figures == shown
     assert found.worst_condition.value == pytest.approx(document.JointPath.SmallestCondition)
 
 
-def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(person, hand, stages, monkeypatch):
+def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(
+    person, hand, stages, monkeypatch
+):
     toolpath, cell = stages
     monkeypatch.setattr(joint_path_panel, "MAX_POINTS", 300)
     document = toolpath.Document
@@ -152,18 +165,28 @@ def test_what_is_missing_is_told_and_a_stale_toolpath_too(person, stages):
     assert "Toolpath is out of date; this is of what it was." in text
     toolpath.Document.recompute()
     state = person.field(panel, "preview")
-    person.until(lambda: "All deposit points" in state.text() and "out of date" not in state.text(), "what it is now", 30)
+    person.until(
+        lambda: "All deposit points" in state.text() and "out of date" not in state.text(),
+        "what it is now",
+        30,
+    )
     toolpath.Document.removeObject(toolpath.Name)
     text = told(person, panel, "No preview: see the field marked.")
     note = person.field(panel, "InputToolpathNote")
-    assert note.isVisible() and "Toolpath is missing" in note.text() and "Error" not in text + note.text()
+    assert (
+        note.isVisible()
+        and "Toolpath is missing" in note.text()
+        and "Error" not in text + note.text()
+    )
     assert len(drawn(person)) == 0
     person.press("Cancel")
     person.panel_closed()
     threads_end(person)
 
 
-def test_inputs_deleted_while_the_preview_is_computed_are_told_as_missing(person, stages, monkeypatch):
+def test_inputs_deleted_while_the_preview_is_computed_are_told_as_missing(
+    person, stages, monkeypatch
+):
     toolpath, _ = stages
     begun, go_on, seen = threading.Event(), threading.Event(), []
     tried = joint_path_panel._tried
@@ -176,16 +199,22 @@ def test_inputs_deleted_while_the_preview_is_computed_are_told_as_missing(person
     monkeypatch.setattr(joint_path_panel, "_tried", held)
     say = joint_path_panel.JointPathPanel._say
     monkeypatch.setattr(
-        joint_path_panel.JointPathPanel, "_say", lambda panel, text, *more: (seen.append(text), say(panel, text, *more))
+        joint_path_panel.JointPathPanel,
+        "_say",
+        lambda panel, text, *more: (seen.append(text), say(panel, text, *more)),
     )
-    monkeypatch.setattr(joint_path_panel.JointPathPanel, "_entered", lambda panel: "the same")  # what ends before a look
+    monkeypatch.setattr(
+        joint_path_panel.JointPathPanel, "_entered", lambda panel: "the same"
+    )  # what ends before a look
     person.select(toolpath)
     person.click("RoboticAM_JointPath")
     panel = person.panel(PANEL)
     person.until(begun.is_set, "the preview to begin", 10)
     toolpath.Document.removeObject(toolpath.Name)
     go_on.set()
-    person.until(lambda: any("deposit points" in text for text in seen), f"the preview, not {seen}", 30)
+    person.until(
+        lambda: any("deposit points" in text for text in seen), f"the preview, not {seen}", 30
+    )
     assert not [text for text in seen if "Error" in text]
     monkeypatch.undo()
     told(person, panel, "No preview: see the field marked.")
@@ -200,7 +229,9 @@ def test_apply_renews_the_preview_and_the_toolpath_stays_back(person, stages, mo
     made = api.make_joint_path(toolpath.Document, toolpath, cell)
     begun = []
     tried = joint_path_panel._tried
-    monkeypatch.setattr(joint_path_panel, "_tried", lambda job: (begun.append(job.parameters.degree), tried(job))[1])
+    monkeypatch.setattr(
+        joint_path_panel, "_tried", lambda job: (begun.append(job.parameters.degree), tried(job))[1]
+    )
     person.double_click(made)
     panel = person.panel(PANEL)
     first = told(person, panel, "Nothing stands against it so far.")
@@ -211,9 +242,17 @@ def test_apply_renews_the_preview_and_the_toolpath_stays_back(person, stages, mo
     own = toolpath.ViewObject.Proxy.switch, made.ViewObject.Proxy.switch
     assert [switch.whichChild.getValue() for switch in own] == [-1, -1]
     state, count = person.field(panel, "preview"), len(begun)
-    person.until(lambda: len(begun) > count or begun.count(0) > 1, "the preview of what was made", 10)
-    person.until(lambda: state.text() not in (first, "The preview is being computed."), "its figures", 30)
-    assert "Cannot be carried out:" in state.text() and "Preview of one point" in state.text() and len(drawn(person)) > 100
+    person.until(
+        lambda: len(begun) > count or begun.count(0) > 1, "the preview of what was made", 10
+    )
+    person.until(
+        lambda: state.text() not in (first, "The preview is being computed."), "its figures", 30
+    )
+    assert (
+        "Cannot be carried out:" in state.text()
+        and "Preview of one point" in state.text()
+        and len(drawn(person)) > 100
+    )
     assert [switch.whichChild.getValue() for switch in own] == [-1, -1]
     person.press("Ok")
     person.panel_closed()
@@ -230,8 +269,14 @@ def test_a_table_has_no_condition_and_is_told_of_all_the_same(person, stages):
     person.double_click(made)
     panel = person.panel(PANEL)
     text = told(person, panel, "Preview of all points")
-    assert "Least joint margin: " in text and "Largest joint speed: " in text and "condition" not in text
+    assert (
+        "Least joint margin: " in text
+        and "Largest joint speed: " in text
+        and "condition" not in text
+    )
     colours = previewed_colours(person)
-    assert len(np.unique(colours, axis=0)) == 8  # by margin, which is that of the layer: there is no other
+    assert (
+        len(np.unique(colours, axis=0)) == 8
+    )  # by margin, which is that of the layer: there is no other
     person.press("Cancel")
     person.panel_closed()

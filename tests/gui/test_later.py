@@ -26,7 +26,10 @@ def failing(person, kind):
     """What ends with an error of a kind."""
     if kind == "deleted field":
         return gone(person).text
-    error = {"of FreeCAD": RuntimeError("Recompute failed"), "of Python": RuntimeError("dictionary changed size")}[kind]
+    error = {
+        "of FreeCAD": RuntimeError("Recompute failed"),
+        "of Python": RuntimeError("dictionary changed size"),
+    }[kind]
 
     def fail():
         raise error
@@ -64,6 +67,9 @@ def test_a_field_that_is_gone_is_passed_over_and_nothing_else(person, form, act)
     with pytest.raises(RuntimeError, match="deleted"):
         gone(person).text()
     act(person, form, "deleted field")
-    for kind, text in (("of FreeCAD", "Recompute failed"), ("of Python", "dictionary changed size")):
+    for kind, text in (
+        ("of FreeCAD", "Recompute failed"),
+        ("of Python", "dictionary changed size"),
+    ):
         with pytest.raises(RuntimeError, match=text):
             act(person, form, kind)

@@ -26,7 +26,11 @@ def test_one_face_clicked_is_the_whole_part_for_a_new_job_and_several_are_faces(
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     field = {name: person.field(panel, name) for name in ("Source", "reason", "left_out")}
-    person.until(lambda: "would leave out" in field["reason"].text(), "that a wall of one bead is not proposed", 30)
+    person.until(
+        lambda: "would leave out" in field["reason"].text(),
+        "that a wall of one bead is not proposed",
+        30,
+    )
     assert person.field(panel, "Kind").currentText() == "Solids in plane layers"
     person.as_revolution(panel)
     person.until(lambda: field["left_out"].text(), "what would be left out", 30)
@@ -34,7 +38,9 @@ def test_one_face_clicked_is_the_whole_part_for_a_new_job_and_several_are_faces(
     assert "of the 113 cm3 of Rod are not deposited" in field["left_out"].text()
     select(rod.Document.Name, rod.Name, "Face2")
     person.until(lambda: field["Source"].text() == "Rod Face1 Face2", "faces to be taken", 10)
-    person.until(lambda: "Looking" not in field["reason"].text(), "the selection to be understood", 20)
+    person.until(
+        lambda: "Looking" not in field["reason"].text(), "the selection to be understood", 20
+    )
     assert "The whole of" not in field["reason"].text()
     person.press("Cancel")
 

@@ -24,7 +24,9 @@ def toolpath(person, hemisphere):
 def shown(person):
     """The legends to be seen, each as title and unit."""
     document = App.ActiveDocument
-    return [] if document is None else [(scale.title, scale.unit) for scale in legend.shown(document)]
+    return (
+        [] if document is None else [(scale.title, scale.unit) for scale in legend.shown(document)]
+    )
 
 
 def test_each_colouring_has_its_legend(person, toolpath):
@@ -76,7 +78,11 @@ def bar(person):
     path = str(person.folder / "corner.png")
     person.gui.activeDocument().activeView().saveImage(path, 800, 600, "White")
     image = person.widgets.QImage(path).convertToFormat(person.widgets.QImage.Format_RGB32)
-    rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(600, -1, 4)[:230, :40, 2::-1].astype(int)
+    rows = (
+        np.frombuffer(bytes(image.constBits()), dtype=np.uint8)
+        .reshape(600, -1, 4)[:230, :40, 2::-1]
+        .astype(int)
+    )
     colours = np.rint(255 * ramp(np.linspace(0, 1, 256))).astype(int)
     return (np.abs(rows[:, :, None] - colours).max(axis=-1) < 3).any(axis=-1)
 
@@ -104,7 +110,10 @@ def test_two_legends_stand_side_by_side_with_their_names(person, toolpath):
     person.idle()
     assert [scale.title for scale in legend.shown(document)] == ["layer", "layer"]
     first, other = toolpath.ViewObject.Proxy.legend, second.ViewObject.Proxy.legend
-    assert (first.entry[0], other.entry[0]) == (("Toolpath",), ("Other",)) and other.left > first.left == 0
+    assert (first.entry[0], other.entry[0]) == (
+        ("Toolpath",),
+        ("Other",),
+    ) and other.left > first.left == 0
     person.screenshot("two_legends")
     second.ViewObject.Visibility = False
     person.idle()
@@ -145,9 +154,11 @@ def test_tilt_is_from_the_vertical_of_the_part(person, toolpath):
 @pytest.mark.parametrize(
     ("low", "high", "texts"),
     [
-        (0, 70, ["0", "20", "40", "60"]), (11.2, 88.9, ["20", "40", "60", "80"]),
+        (0, 70, ["0", "20", "40", "60"]),
+        (11.2, 88.9, ["20", "40", "60", "80"]),
         (0.01, 0.013, ["0.010", "0.011", "0.012", "0.013"]),
-        (-3, 2, ["-3", "-2", "-1", "0", "1", "2"]), (6, 6, ["6"]),
+        (-3, 2, ["-3", "-2", "-1", "0", "1", "2"]),
+        (6, 6, ["6"]),
     ],
 )
 def test_numbers_beside_the_bar_are_round_and_true(person, low, high, texts):
@@ -158,4 +169,7 @@ def test_numbers_beside_the_bar_are_round_and_true(person, low, high, texts):
 
 
 def test_layers_are_whole_numbers(person):
-    assert [text for _, text in colouring.automatic(np.array([0.0, 1.0]), "layer", "").ticks] == ["0", "1"]
+    assert [text for _, text in colouring.automatic(np.array([0.0, 1.0]), "layer", "").ticks] == [
+        "0",
+        "1",
+    ]

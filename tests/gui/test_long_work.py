@@ -77,7 +77,8 @@ def state(document):
     return {
         obj.Name: [
             re.sub(" at 0x[0-9a-f]+", "", str(getattr(obj, name)))
-            for name in sorted(obj.PropertiesList) if name not in left_out
+            for name in sorted(obj.PropertiesList)
+            if name not in left_out
         ]
         for obj in document.Objects
     }
@@ -85,7 +86,11 @@ def state(document):
 
 def wind_down(person):
     """Until no work goes on that was cancelled."""
-    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the work to end", LONG)
+    person.until(
+        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        "the work to end",
+        LONG,
+    )
 
 
 def test_cancel_ends_the_work_and_leaves_the_document_as_it_was(person, long_job):
@@ -117,6 +122,7 @@ def test_cancel_ends_the_work_and_leaves_the_document_as_it_was(person, long_job
 
 def endless(monkeypatch, stage, entered=None):
     """Let the work of a stage go on until it is cancelled, telling its progress."""
+
     def prepare(self, obj):
         def work():
             if entered is not None:
@@ -148,6 +154,7 @@ def by_esc(person):
 
 def by_mouse(person):
     """Click on Cancel, as the mouse would."""
+
     def press(dialog):
         button = person.field(dialog, "cancel")
         place = button.mapToGlobal(button.rect().center())
@@ -157,7 +164,9 @@ def by_mouse(person):
 
 
 @pytest.mark.parametrize("way", [by_esc, by_mouse])
-def test_ok_is_cancelled_and_the_panel_stays_with_what_was_entered(person, feature, monkeypatch, way):
+def test_ok_is_cancelled_and_the_panel_stays_with_what_was_entered(
+    person, feature, monkeypatch, way
+):
     document, steps = feature.Document, feature.Document.UndoCount
     before = state(document)
     endless(monkeypatch, Toolpath)
@@ -168,7 +177,9 @@ def test_ok_is_cancelled_and_the_panel_stays_with_what_was_entered(person, featu
     person.press("Ok")
     watcher.stop()
     assert watcher.acted and state(document) == before and document.UndoCount == steps
-    assert "Cancelled" in person.panel_error(panel) and person.field(panel, "TravelSpeed").isVisible()
+    assert (
+        "Cancelled" in person.panel_error(panel) and person.field(panel, "TravelSpeed").isVisible()
+    )
     monkeypatch.undo()
     person.press("Ok")
     person.panel_closed()
@@ -176,7 +187,9 @@ def test_ok_is_cancelled_and_the_panel_stays_with_what_was_entered(person, featu
 
 
 @pytest.mark.parametrize("way", [by_esc, by_mouse])
-def test_a_recompute_of_freecad_is_cancelled_and_what_follows_waits(person, feature, monkeypatch, way):
+def test_a_recompute_of_freecad_is_cancelled_and_what_follows_waits(
+    person, feature, monkeypatch, way
+):
     document = feature.Document
     toolpath = api.make_toolpath(document, feature)
     layers, key = toolpath.Layers, toolpath.Key
@@ -187,12 +200,20 @@ def test_a_recompute_of_freecad_is_cancelled_and_what_follows_waits(person, feat
     person.gui.runCommand("Std_Refresh")
     watcher.stop()
     assert watcher.acted and len(entered) == 1 and entered[0] is not threading.main_thread()
-    assert (toolpath.Layers, toolpath.Key) == (layers, key) and feature.Proxy.value(feature) is not None
+    assert (toolpath.Layers, toolpath.Key) == (layers, key) and feature.Proxy.value(
+        feature
+    ) is not None
     assert (feature.Status, toolpath.Status) == ("stale", "stale")
-    assert "cancelled" in person.console() and "error[" not in person.console().rpartition("watching")[2]
+    assert (
+        "cancelled" in person.console()
+        and "error[" not in person.console().rpartition("watching")[2]
+    )
     monkeypatch.undo()
     person.gui.runCommand("Std_Refresh")
-    assert (feature.Status, toolpath.Status) == ("up to date", "up to date") and toolpath.Layers > layers
+    assert (feature.Status, toolpath.Status) == (
+        "up to date",
+        "up to date",
+    ) and toolpath.Layers > layers
 
 
 def test_a_document_closed_while_computing_drops_the_work(person, feature, monkeypatch):
@@ -214,7 +235,9 @@ def test_a_document_closed_while_computing_drops_the_work(person, feature, monke
         person.press("Cancel")
 
 
-def test_what_events_bring_about_meanwhile_is_refused_and_fails_nothing(person, feature, monkeypatch):
+def test_what_events_bring_about_meanwhile_is_refused_and_fails_nothing(
+    person, feature, monkeypatch
+):
     toolpath = api.make_toolpath(feature.Document, feature)
     endless(monkeypatch, RevolutionFeature)
     refused = []
@@ -230,7 +253,10 @@ def test_what_events_bring_about_meanwhile_is_refused_and_fails_nothing(person, 
     with pytest.raises(Cancelled):
         api.change(feature, layer_height=5)
     watcher.stop()
-    assert refused == ["BUSY"] and (feature.LayerHeight.Value, feature.Status) == (10.0, "up to date")
+    assert refused == ["BUSY"] and (feature.LayerHeight.Value, feature.Status) == (
+        10.0,
+        "up to date",
+    )
     assert toolpath.Status == "up to date"
 
 
@@ -241,7 +267,13 @@ def test_progress_is_shown_with_words(person, feature, monkeypatch):
     def look(dialog):
         def read():
             bar = person.field(dialog, "bar")
-            seen.append((person.field(dialog, "text").text(), bar.value(), bar.geometry().right() < dialog.rect().right()))
+            seen.append(
+                (
+                    person.field(dialog, "text").text(),
+                    bar.value(),
+                    bar.geometry().right() < dialog.rect().right(),
+                )
+            )
             person.screenshot("progress")
             person.field(dialog, "cancel").click()
 
@@ -298,7 +330,9 @@ def test_nothing_of_the_window_is_deleted_in_the_thread_of_work(person, cancelle
 
         def work():
             while not go_on.is_set():
-                len([[held, number] for number in range(20_000)])  # many times what Python collects cycles after
+                len(
+                    [[held, number] for number in range(20_000)]
+                )  # many times what Python collects cycles after
                 time.sleep(0.01)
 
         return Worker(work)

@@ -31,7 +31,8 @@ def shown_menu(person, vobj):
 
 
 MACHINES = {
-    "robot": {}, "tool": {"setup": "tool-on-robot", "deposition_point": (900, 0, -100, 0, 0, 0)},
+    "robot": {},
+    "tool": {"setup": "tool-on-robot", "deposition_point": (900, 0, -100, 0, 0, 0)},
     "kuka": {"machine": "kuka-kr16-2", "deposition_point": (1100, 0, 600, 0, 0, 0)},
     "trunnion": {"machine": "table-xyzac", "setup": "rotary-table"},
     "head": {"machine": "head-table-xyzbc", "setup": "rotary-table"},
@@ -89,7 +90,9 @@ def test_a_machine_that_is_shown_is_there_when_the_document_is_opened_again(pers
 @pytest.fixture
 def own_machine(tmp_path):
     """A copy of a machine file with a STEP for the base, an STL in m for link 2, and a file for link 3 that is not there."""
-    content = json.loads((machines.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
+    content = json.loads(
+        (machines.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
+    )
     content["id"], folder = "mine", Path(tmp_path)
     Part.makeBox(600, 600, 300, App.Vector(-300, -300, 0)).exportStep(str(folder / "base.step"))
     Mesh.createBox(0.3, 0.3, 0.9).write(str(folder / "arm.stl"))

@@ -9,11 +9,16 @@ from tests.batch.test_auto_jobs import tee
 
 
 @pytest.mark.parametrize("chosen", [False, True])
-def test_planes_are_laid_where_curved_layers_that_were_proposed_cannot_be(person, hand, doc, monkeypatch, chosen):
+def test_planes_are_laid_where_curved_layers_that_were_proposed_cannot_be(
+    person, hand, doc, monkeypatch, chosen
+):
     make = api.make_feature_of
     coarse = {"layer_height": 8.0, "chord_error": 0.4, "bead_spacing": 6.0}
-    monkeypatch.setattr(api, "make_feature_of", lambda *given, values, **named: make(
-        *given, values={**coarse, **values}, **named))
+    monkeypatch.setattr(
+        api,
+        "make_feature_of",
+        lambda *given, values, **named: make(*given, values={**coarse, **values}, **named),
+    )
     part = doc.addObject("Part::Feature", "Tee")
     part.Shape = tee()
     doc.recompute()
@@ -26,7 +31,9 @@ def test_planes_are_laid_where_curved_layers_that_were_proposed_cannot_be(person
         for one in ("solid", "geodesic"):
             person.choose(panel, "Kind", one)
             kind.activated.emit(kind.currentIndex())
-        person.until(lambda: "as you chose" in person.field(panel, "reason").text(), "that it was chosen", 5)
+        person.until(
+            lambda: "as you chose" in person.field(panel, "reason").text(), "that it was chosen", 5
+        )
     hand.enter(panel, "Machine", "kuka-kr16-2")
     before, steps = len(person.console()), doc.UndoCount
     person.press("Ok")
@@ -35,7 +42,10 @@ def test_planes_are_laid_where_curved_layers_that_were_proposed_cannot_be(person
     said, status = person.console()[before:], person.window.statusBar().currentMessage()
     assert doc.UndoCount == steps + 1
     if chosen:
-        assert (feature.Layers, path.Status) == ("geodesic", "infeasible") and "Joint path is infeasible" in status
+        assert (feature.Layers, path.Status) == (
+            "geodesic",
+            "infeasible",
+        ) and "Joint path is infeasible" in status
     else:
         assert (feature.Layers, path.Status) == ("planes", "up to date"), said
         assert "layers: planes, for geodesic ones end with " in said

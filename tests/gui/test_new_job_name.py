@@ -31,7 +31,9 @@ def test_the_name_follows_the_machine_until_another_one_is_typed(person, hand, h
             fold.click()
             assert not note.isVisible()
         person.press("Ok")
-        assert note.isVisible() and fold.isChecked() and api.stages_of(doc) == []  # nothing was planned
+        assert (
+            note.isVisible() and fold.isChecked() and api.stages_of(doc) == []
+        )  # nothing was planned
     person.type(panel, "ProgramName", "STAGE_2")
     person.until(lambda: not note.isVisible(), "the note to go", 5)
     hand.enter(panel, "Machine", "fanuc-arcmate120ic")
@@ -39,12 +41,16 @@ def test_the_name_follows_the_machine_until_another_one_is_typed(person, hand, h
     hand.enter(panel, "Machine", "no-such-machine")
     fold.click()
     person.press("Ok")
-    assert fold.isChecked() and person.field(panel, "MachineNote").isVisible()  # so is what is found out on the way
+    assert (
+        fold.isChecked() and person.field(panel, "MachineNote").isVisible()
+    )  # so is what is found out on the way
     person.press("Cancel")
     person.panel_closed()
 
 
-def test_a_program_is_called_so_that_the_controller_of_its_machine_takes_it(person, hemisphere, coarse, no_remedies):
+def test_a_program_is_called_so_that_the_controller_of_its_machine_takes_it(
+    person, hemisphere, coarse, no_remedies
+):
     doc = hemisphere.Document
     hemisphere.Label = "Nozzle of the second stage"
     for machine, name in (("", "NOZZLE_OF_THE_SECOND"), ("abb-irb140", "NOZZLE_OF")):
@@ -53,7 +59,9 @@ def test_a_program_is_called_so_that_the_controller_of_its_machine_takes_it(pers
         person.click("RoboticAM_Program")
         panel = person.panel("RoboticAM_Program")
         assert person.field(panel, "ProgramName").text() == name
-        person.until(lambda panel=panel: person.field(panel, "FirstLines").isVisible(), "how it begins", 20)
+        person.until(
+            lambda panel=panel: person.field(panel, "FirstLines").isVisible(), "how it begins", 20
+        )
         assert not person.field(panel, "ProgramNameNote").isVisible()
         person.press("Cancel")
         person.panel_closed()

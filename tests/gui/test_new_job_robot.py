@@ -12,11 +12,18 @@ from freecad_am.core.parameters.external import externals
 ROBOT = "kuka-kr8-r2100-2-arc-hw"
 
 
-def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(person, hand, hemisphere, monkeypatch):
+def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(
+    person, hand, hemisphere, monkeypatch
+):
     doc = hemisphere.Document
     steps, make = doc.UndoCount, api.make_feature_of
-    monkeypatch.setattr(api, "make_feature_of", lambda *given, values, **named: make(
-        *given, values={"layer_height": 15.0, "chord_error": 0.3, **values}, **named))
+    monkeypatch.setattr(
+        api,
+        "make_feature_of",
+        lambda *given, values, **named: make(
+            *given, values={"layer_height": 15.0, "chord_error": 0.3, **values}, **named
+        ),
+    )
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
@@ -47,7 +54,9 @@ def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(person
     assert joints.shape[1] == 8 and np.ptp(joints[:, 6:], axis=0).max() > math.radians(20.0)
 
 
-def test_a_set_up_is_proposed_in_which_a_program_is_written_and_that_of_the_last_cell_is_kept(person, hand, hemisphere):
+def test_a_set_up_is_proposed_in_which_a_program_is_written_and_that_of_the_last_cell_is_kept(
+    person, hand, hemisphere
+):
     doc = hemisphere.Document
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
@@ -55,13 +64,21 @@ def test_a_set_up_is_proposed_in_which_a_program_is_written_and_that_of_the_last
     setup, without = person.field(panel, "Setup"), person.field(panel, "no_post")
     assert setup.currentData() == "part-on-robot"
     hand.enter(panel, "Machine", "kuka-kr16-2")
-    person.until(lambda: setup.currentData() == "tool-on-robot", "a set-up that programs are written in", 5)
+    person.until(
+        lambda: setup.currentData() == "tool-on-robot", "a set-up that programs are written in", 5
+    )
     assert not without.isVisible()
     hand.enter(panel, "Machine", "abb-irb140")
-    person.until(lambda: setup.currentData() == "part-on-robot", "the usual one of a robot that has programs of it", 5)
+    person.until(
+        lambda: setup.currentData() == "part-on-robot",
+        "the usual one of a robot that has programs of it",
+        5,
+    )
     hand.enter(panel, "Machine", "kuka-kr16-2")
     person.choose(panel, "Setup", "part-on-robot")
-    person.until(without.isVisible, "that no program is written", 5)  # what is chosen all the same stays
+    person.until(
+        without.isVisible, "that no program is written", 5
+    )  # what is chosen all the same stays
     assert setup.currentData() == "part-on-robot" and "need the tool on the robot" in without.text()
     person.press("Cancel")
     person.panel_closed()

@@ -27,7 +27,11 @@ def wizard(person):
     person.click("RoboticAM_NewMachine")
     shown = person.panel(NAME)
     yield shown
-    for path in (os.path.join(folder, name) for folder in user_machines.folders() for name in os.listdir(folder)):
+    for path in (
+        os.path.join(folder, name)
+        for folder in user_machines.folders()
+        for name in os.listdir(folder)
+    ):
         os.remove(path)
     for left in list(module._open):
         left._to_be_lost = lambda: True
@@ -79,7 +83,9 @@ def fill(table, values, column=0, row=0):
     """Paste figures, as from a spreadsheet."""
     from PySide import QtGui
 
-    QtGui.QApplication.clipboard().setText("\n".join("\t".join(f"{value:.10g}" for value in line) for line in values))
+    QtGui.QApplication.clipboard().setText(
+        "\n".join("\t".join(f"{value:.10g}" for value in line) for line in values)
+    )
     table.setCurrentCell(row, column)
     table.paste()
 
@@ -116,7 +122,7 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     figures = pendant_poses()
     type_row(person, hand, poses, 0, figures[0])
     for row in (1, 2, 3):
-        fill(poses, figures[row:row + 1], row=row)
+        fill(poses, figures[row : row + 1], row=row)
     verdict = person.field(wizard, "verdict")
     person.until(lambda: "It would if" in verdict.text(), "the verdict")
     assert "does not give them" in refused(person, hand, wizard)
@@ -136,13 +142,17 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     hand.click(person.field(wizard, "post_fanuc"))
     person.screenshot("machine_6_name")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
-    person.until(lambda: user_machines.folders() and os.listdir(user_machines.folders()[0]), "the file")
+    person.until(
+        lambda: user_machines.folders() and os.listdir(user_machines.folders()[0]), "the file"
+    )
     made = machine.load("fanuc-of-hall-3", user_machines.folders())
     q = np.random.default_rng(1).uniform(-2, 2, (20, 6))
     np.testing.assert_allclose(made.chain.forward(q), arm.chain.forward(q), atol=1e-9)
     np.testing.assert_allclose(made.to_controller(q), arm.to_controller(q), atol=1e-12)
     np.testing.assert_allclose(made.base, arm.base)
-    assert made.posts == ("fanuc",) and np.degrees(made.limits("maker").lower[1]) == pytest.approx(-95.0)
+    assert made.posts == ("fanuc",) and np.degrees(made.limits("maker").lower[1]) == pytest.approx(
+        -95.0
+    )
     # it can be chosen at once
     App.newDocument("Cell")
     person.click("RoboticAM_Cell")
@@ -158,7 +168,9 @@ def test_a_file_that_is_no_machine_hinders_no_cell(person, broken):
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
     person.choose(panel, "Machine", "broken")
-    person.until(lambda: "cannot be read as a machine file" in person.panel_error(panel), "what is wrong", 5)
+    person.until(
+        lambda: "cannot be read as a machine file" in person.panel_error(panel), "what is wrong", 5
+    )
     person.choose(panel, "Machine", "kuka-kr16-2")
     person.press("Ok")
     person.panel_closed()
@@ -183,13 +195,20 @@ def test_a_copy_keeps_its_poses_and_a_name_that_is_taken_is_refused(person, hand
     assert "gives all" in person.field(wizard, "verdict").text()
     go_on(person, hand, wizard, "NamePage")
     hand.enter(wizard, "machineName", "kuka-kr16-2")
-    assert "there is a machine 'kuka-kr16-2' already" in refused(person, hand, wizard, "FinishButton")
+    assert "there is a machine 'kuka-kr16-2' already" in refused(
+        person, hand, wizard, "FinishButton"
+    )
     hand.enter(wizard, "machineName", "Große Kuka")
-    assert refused(person, hand, wizard, "FinishButton").startswith("Name in jobs: 'Große Kuka' cannot be the name")
+    assert refused(person, hand, wizard, "FinishButton").startswith(
+        "Name in jobs: 'Große Kuka' cannot be the name"
+    )
     hand.enter(wizard, "machineName", "big-kuka")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
     made = machine.load("big-kuka", user_machines.folders())
-    assert made.opw == machine.load("kuka-kr16-2").opw or made.opw.c2 == machine.load("kuka-kr16-2").opw.c2
+    assert (
+        made.opw == machine.load("kuka-kr16-2").opw
+        or made.opw.c2 == machine.load("kuka-kr16-2").opw.c2
+    )
     file = os.path.join(user_machines.folders()[0], "big-kuka.json")
     with open(file, encoding="utf-8") as text:
         assert json.load(text)["sources"][0] == "copy of kuka-kr16-2"
@@ -204,8 +223,14 @@ def test_figures_with_a_wrong_sign_are_found_out(person, hand, wizard):
     fill(person.field(wizard, "opwTurns"), [np.degrees(arm.opw.offsets), signs])
     for expected in ("LimitsPage", "FramesPage", "PosesPage"):
         go_on(person, hand, wizard, expected)
-    person.choose(wizard, "convention", next(
-        f"{figures}   {who}" for figures, who in [pose_figures.CONVENTIONS[pose_figures.STAUBLI]]))
+    person.choose(
+        wizard,
+        "convention",
+        next(
+            f"{figures}   {who}"
+            for figures, who in [pose_figures.CONVENTIONS[pose_figures.STAUBLI]]
+        ),
+    )
     figures = pendant_poses("staubli-tx60", convention=pose_figures.STAUBLI)
     fill(person.field(wizard, "poses"), figures)
     verdict = person.field(wizard, "verdict")
@@ -225,15 +250,25 @@ def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, h
 
     person.choose(wizard, "source", "A table of Denavit and Hartenberg")
     table = dh.table_of(machine.load("kuka-kr6-r900-2").chain)
-    rows = np.array([[np.degrees(row.theta), row.d, row.a, np.degrees(row.alpha), 1] for row in table.rows])
+    rows = np.array(
+        [[np.degrees(row.theta), row.d, row.a, np.degrees(row.alpha), 1] for row in table.rows]
+    )
     offset = rows.copy()
     offset[3, 2] += 30.0  # axes 4 and 5 no longer meet, which no inverse of ours can follow
     fill(person.field(wizard, "dhTable"), offset)
     ends = person.field(wizard, "dhEnds")
     from freecad_am.core.geometry import frames
 
-    fill(ends, [[*pose[:3, 3], *np.degrees(-frames.to_bryant(pose[:3, :3].T))] for pose in (table.before, table.after)])
-    assert "neither is the wrist spherical nor do axes 4 and 5 meet" in refused(person, hand, wizard)
+    fill(
+        ends,
+        [
+            [*pose[:3, 3], *np.degrees(-frames.to_bryant(pose[:3, :3].T))]
+            for pose in (table.before, table.after)
+        ],
+    )
+    assert "neither is the wrist spherical nor do axes 4 and 5 meet" in refused(
+        person, hand, wizard
+    )
     type_row(person, hand, person.field(wizard, "dhTable"), 3, [rows[3, 2]], column=2)
     person.screenshot("machine_1_table")
     go_on(person, hand, wizard, "LimitsPage")
@@ -257,23 +292,43 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
     person.choose(wizard, "source", "A table of Denavit and Hartenberg")
     tool = machine.load("table-xyzac")
     table = dh.table_of(tool.chain)
-    rows = [[np.degrees(row.theta), row.d, row.a, np.degrees(row.alpha), row.sign, row.sliding] for row in table.rows]
+    rows = [
+        [np.degrees(row.theta), row.d, row.a, np.degrees(row.alpha), row.sign, row.sliding]
+        for row in table.rows
+    ]
     shown = person.field(wizard, "dhTable")
     fill(shown, rows)
     for column in range(6):  # a machine tool has five axes
         shown.item(5, column).setText("")
-    ends = [[*pose[:3, 3], *np.degrees(-frames.to_bryant(pose[:3, :3].T))] for pose in (table.before, table.after)]
+    ends = [
+        [*pose[:3, 3], *np.degrees(-frames.to_bryant(pose[:3, :3].T))]
+        for pose in (table.before, table.after)
+    ]
     fill(person.field(wizard, "dhEnds"), ends)
     go_on(person, hand, wizard, "LimitsPage")
     limits = person.field(wizard, "limits")
     assert limits.rowCount() == 5 and limits.verticalHeaderItem(0).text() == "joint_1 (mm)"
     assert "an axis that slides has two ends" in refused(person, hand, wizard)
-    fill(limits, [[-500, 500, 200], [-500, 500, 200], [-300, 700, 200, 900, 8000], [-120, 120, 90, 400, 5000]])
+    fill(
+        limits,
+        [
+            [-500, 500, 200],
+            [-500, 500, 200],
+            [-300, 700, 200, 900, 8000],
+            [-120, 120, 90, 400, 5000],
+        ],
+    )
     go_on(person, hand, wizard, "FramesPage")
     go_on(person, hand, wizard, "PosesPage")
-    values = np.array([[0, 0, 0, 0, 0], [10, 20, 30, 40, 50], [-15, 25, -35, 45, -55], [100, -90, 80, -70, 60]], float)
+    values = np.array(
+        [[0, 0, 0, 0, 0], [10, 20, 30, 40, 50], [-15, 25, -35, 45, -55], [100, -90, 80, -70, 60]],
+        float,
+    )
     poses = tool.chain.forward(values * tool.unit_values)
-    fill(person.field(wizard, "poses"), np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))))
+    fill(
+        person.field(wizard, "poses"),
+        np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))),
+    )
     verdict = person.field(wizard, "verdict")
     person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
     go_on(person, hand, wizard, "NamePage")
@@ -282,7 +337,9 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
     made = machine.load("trunnion", user_machines.folders())
     assert not made.free and made.opw is None and np.isinf(made.limits("maker").upper[4])
-    np.testing.assert_allclose(made.max_acceleration, [np.inf, np.inf, 900, np.radians(400), np.inf])
+    np.testing.assert_allclose(
+        made.max_acceleration, [np.inf, np.inf, 900, np.radians(400), np.inf]
+    )
     np.testing.assert_allclose(made.max_jerk, [np.inf, np.inf, 8000, np.radians(5000), np.inf])
     np.testing.assert_allclose(made.chain.forward(values), tool.chain.forward(values), atol=1e-6)
 
@@ -324,15 +381,22 @@ def test_a_robot_on_its_track_begins_with_the_robot(person, hand, wizard, tmp_pa
     base = person.field(wizard, "baseLink")
     assert base.currentText() == "carriage"  # proposed
     person.choose(wizard, "baseLink", "base_link")
-    assert "its first axis slides and carries the six that turn, as a track does" in refused(person, hand, wizard)
+    assert "its first axis slides and carries the six that turn, as a track does" in refused(
+        person, hand, wizard
+    )
     person.choose(wizard, "baseLink", "carriage")
     go_on(person, hand, wizard, "LimitsPage")
     assert person.field(wizard, "limits").rowCount() == 6
 
 
-def test_a_defective_urdf_is_called_by_its_name_and_quaternions_are_seen_whole(person, hand, wizard, tmp_path):
+def test_a_defective_urdf_is_called_by_its_name_and_quaternions_are_seen_whole(
+    person, hand, wizard, tmp_path
+):
     path = tmp_path / "arm.urdf"
-    path.write_text(urdf_text.text(machine.load("abb-irb140")).replace("</joint>", "</jonit>", 1), encoding="utf-8")
+    path.write_text(
+        urdf_text.text(machine.load("abb-irb140")).replace("</joint>", "</jonit>", 1),
+        encoding="utf-8",
+    )
     hand.enter(wizard, "file", str(path))
     assert person.field(wizard.currentPage(), "error").text().startswith("arm.urdf: line ")
     path.write_text(urdf_text.text(machine.load("abb-irb140")), encoding="utf-8")
@@ -349,17 +413,28 @@ def test_a_defective_urdf_is_called_by_its_name_and_quaternions_are_seen_whole(p
     for column in range(9, 13):
         item = poses.item(0, column)
         assert item.text() == "-0.408248"
-        assert poses.visualItemRect(item).width() > poses.fontMetrics().boundingRect(item.text()).width() + 6
+        assert (
+            poses.visualItemRect(item).width()
+            > poses.fontMetrics().boundingRect(item.text()).width() + 6
+        )
 
 
 def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_path):
     path = tmp_path / "cell.urdf"
     box = '<collision><origin xyz="0 0 0.1"/><geometry><box size="0.4 0.5 0.2"/></geometry></collision>'
-    path.write_text(urdf_cells.whole_cell().replace(
-        '<link name="positioner_base_link"/>', f'<link name="positioner_base_link">{box}</link>'), encoding="utf-8")
+    path.write_text(
+        urdf_cells.whole_cell().replace(
+            '<link name="positioner_base_link"/>', f'<link name="positioner_base_link">{box}</link>'
+        ),
+        encoding="utf-8",
+    )
     hand.enter(wizard, "file", str(path))
     mechanism = person.field(wizard, "mechanism")
-    assert [mechanism.itemText(row) for row in range(mechanism.count())] == ["Robot", "Track", "Positioner"]
+    assert [mechanism.itemText(row) for row in range(mechanism.count())] == [
+        "Robot",
+        "Track",
+        "Positioner",
+    ]
     base, tip = person.field(wizard, "baseLink"), person.field(wizard, "tipLink")
     assert (base.currentText(), tip.currentText()) == ("robot_base_link", "robot_tool0")
     person.choose(wizard, "mechanism", "Positioner")
@@ -367,22 +442,32 @@ def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_
     person.screenshot("machine_8_positioner")
     go_on(person, hand, wizard, "LimitsPage")
     assert person.field(wizard, "limits").rowCount() == 2
-    said = " ".join(label.text() for label in wizard.currentPage().findChildren(person.widgets.QLabel))
+    said = " ".join(
+        label.text() for label in wizard.currentPage().findChildren(person.widgets.QLabel)
+    )
     assert "NAME at 1400 50 -56 0 0 22.9183118052 carries part" in said
     go_on(person, hand, wizard, "FramesPage")
     go_on(person, hand, wizard, "PosesPage")
     given = external.load("motoman-motopos-d500")
     values = np.array([[0, 0], [30, 90], [-100, -170]], float)
     poses = KdlArm(given).forward(np.radians(values))
-    fill(person.field(wizard, "poses"), np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))))
-    person.until(lambda: "gives all 3 poses" in person.field(wizard, "verdict").text(), "the mechanism to give its poses")
+    fill(
+        person.field(wizard, "poses"),
+        np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))),
+    )
+    person.until(
+        lambda: "gives all 3 poses" in person.field(wizard, "verdict").text(),
+        "the mechanism to give its poses",
+    )
     go_on(person, hand, wizard, "NamePage")
     hand.enter(wizard, "machineTitle", "Table 7")
     hand.enter(wizard, "poseSource", "pendant")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
     made = external.load("table-7", user_machines.folders())
     ((piece,), tilt, table) = made.bodies
-    np.testing.assert_allclose([piece.points.min(axis=0), piece.points.max(axis=0)], [[-200, -250, 0], [200, 250, 200]])
+    np.testing.assert_allclose(
+        [piece.points.min(axis=0), piece.points.max(axis=0)], [[-200, -250, 0], [200, 250, 200]]
+    )
     assert (tilt, table) == ((), ())
     q = np.random.default_rng(3).uniform(-2, 2, (30, 2))
     np.testing.assert_allclose(made.chain.forward(q), given.chain.forward(q), atol=1e-6)

@@ -26,6 +26,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "resources" / "examples"
 
 # what the other process is asked for; it imports this file
 
+
 def waiting(path, *_):
     Path(path).with_suffix(".pid").write_text(str(os.getpid()), encoding="utf-8")
     time.sleep(3600)
@@ -62,7 +63,9 @@ def chosen(person, monkeypatch):
     """Chooses a file in the dialog of the tool."""
 
     def choose(path):
-        monkeypatch.setattr(person.widgets.QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+        monkeypatch.setattr(
+            person.widgets.QFileDialog, "getOpenFileName", lambda *_: (str(path), "")
+        )
         person.click("RoboticAM_OpenPart")
 
     return choose
@@ -83,11 +86,17 @@ def crash(tmp_path):
     pytest.skip("this kernel crashes on none of them")
 
 
-def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(person, chosen, crash, monkeypatch):
+def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(
+    person, chosen, crash, monkeypatch
+):
     told = []
-    monkeypatch.setattr(person.widgets.QMessageBox, "warning", lambda *given: told.append(given[-1]))
+    monkeypatch.setattr(
+        person.widgets.QMessageBox, "warning", lambda *given: told.append(given[-1])
+    )
     chosen(crash)
-    assert len(told) == 1 and told[0].startswith("damaged.step: it is damaged: FreeCAD crashes on it"), told
+    assert len(told) == 1 and told[0].startswith(
+        "damaged.step: it is damaged: FreeCAD crashes on it"
+    ), told
     assert not App.listDocuments()  # the one that was made for it is gone
     chosen(EXAMPLES / "hemisphere.step")  # and FreeCAD is there
     part = App.ActiveDocument.Objects[0]
@@ -95,26 +104,34 @@ def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(person
     assert [obj.Name for obj in person.gui.Selection.getSelection()] == [part.Name]
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    person.until(lambda: person.field(panel, "Source").text() == "hemisphere", "the part to be taken", 10)
+    person.until(
+        lambda: person.field(panel, "Source").text() == "hemisphere", "the part to be taken", 10
+    )
     person.press("Cancel")
     person.panel_closed()
 
 
 def test_a_table_of_points_is_opened_and_laid_as_beads(person, chosen, tmp_path):
-    from freecad_am.gui.tools import open_part  # not above: the other process imports this file, and its memory is measured
+    from freecad_am.gui.tools import (
+        open_part,  # not above: the other process imports this file, and its memory is measured
+    )
 
     (tmp_path / "beads.csv").write_text("x,y,z\n0,0,0\n40,0,0\n40,30,0\n", encoding="utf-8")
     chosen(tmp_path / "beads.csv")
     assert ".csv" in open_part.ENDINGS  # of the files that the dialog shows
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    person.until(lambda: "laid as beads" in person.field(panel, "reason").text(), "the proposal", 20)
+    person.until(
+        lambda: "laid as beads" in person.field(panel, "reason").text(), "the proposal", 20
+    )
     assert person.field(panel, "Kind").currentText() == "Curves as beads"
     assert person.field(panel, "Source").text() == "beads"
     person.press("Ok")
     person.until(lambda: not person.gui.Control.activeDialog(), "the job to be made", 60)
     toolpath = api.stages_of(App.ActiveDocument, "toolpath")[0]
-    assert toolpath.Status == "up to date" and api.result(toolpath).layers[0].beads[0].length == pytest.approx(70.0)
+    assert toolpath.Status == "up to date" and api.result(toolpath).layers[0].beads[
+        0
+    ].length == pytest.approx(70.0)
 
 
 def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path):
@@ -124,17 +141,24 @@ def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path
     here = Part.Shape()
     here.read(str(EXAMPLES / "hemisphere.step"))
     document = App.newDocument("Files")
-    assert read_shape(EXAMPLES / "hemisphere.step").exportBrepToString() == here.exportBrepToString()  # to the last digit
+    assert (
+        read_shape(EXAMPLES / "hemisphere.step").exportBrepToString() == here.exportBrepToString()
+    )  # to the last digit
     assert api.open_part(document, str(EXAMPLES / "hemisphere.step")).Shape.Volume == here.Volume
     in_unit(tmp_path / "inches.step", Part.makeCone(20, 10, 30), 25.4, "INCH")
-    assert api.open_part(document, str(tmp_path / "inches.step")).Shape.BoundBox.ZLength == pytest.approx(762.0)
+    assert api.open_part(
+        document, str(tmp_path / "inches.step")
+    ).Shape.BoundBox.ZLength == pytest.approx(762.0)
     MeshPart.meshFromShape(here, 1.0).write(str(tmp_path / "bowl.stl"))
     assert api.open_part(document, str(tmp_path / "bowl.stl"), scale=2.0).Mesh.CountFacets > 10
     document.saveAs(str(tmp_path / "both.FCStd"))
     App.closeDocument(document.Name)
     document = App.newDocument("Files")
     again = api.open_part(document, str(tmp_path / "both.FCStd"), "hemisphere")
-    assert again.Shape.Volume == pytest.approx(here.Volume, rel=1e-12) and len(App.listDocuments()) == 1
+    assert (
+        again.Shape.Volume == pytest.approx(here.Volume, rel=1e-12)
+        and len(App.listDocuments()) == 1
+    )
 
 
 @pytest.mark.parametrize(("read", "says"), [
@@ -147,10 +171,15 @@ def test_limits_are_told_in_the_window_too(person, monkeypatch, tmp_path, read, 
     monkeypatch.setattr(apart, "LONGER", 2.0 if read is waiting else 100.0)
     with pytest.raises(InputError) as told:
         apart.apart(read, tmp_path / "part.step")
-    assert (told.value.code, told.value.where) == ("BAD_FILE", "part.step") and says in told.value.message
+    assert (told.value.code, told.value.where) == (
+        "BAD_FILE",
+        "part.step",
+    ) and says in told.value.message
 
 
-def test_reading_that_takes_long_can_be_cancelled_and_leaves_no_process(person, monkeypatch, tmp_path):
+def test_reading_that_takes_long_can_be_cancelled_and_leaves_no_process(
+    person, monkeypatch, tmp_path
+):
     from freecad_am.brep.files import read
 
     monkeypatch.setattr(read, "_shape", waiting)

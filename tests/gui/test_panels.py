@@ -33,7 +33,11 @@ def test_apply_makes_then_changes_in_a_step_each_and_cancel_leaves_it(person, he
     assert note.isVisible() and "more than 0 mm" in note.text() and document.UndoCount == steps + 1
     person.type(panel, "LayerHeight", "6 mm")
     person.press("Apply")
-    assert (feature.LayerHeight.Value, document.UndoCount, note.isVisible()) == (6.0, steps + 2, False)
+    assert (feature.LayerHeight.Value, document.UndoCount, note.isVisible()) == (
+        6.0,
+        steps + 2,
+        False,
+    )
     person.type(panel, "LayerHeight", "3 mm")
     person.screenshot("panel_apply")
     person.press("Cancel")
@@ -49,13 +53,19 @@ def test_after_undo_and_redo_the_fields_show_what_the_document_has(person, hand,
     cell = api.make_cell(document, deposition_point="1000 50 900")
     person.double_click(cell)
     panel, steps = person.panel("RoboticAM_Cell"), document.UndoCount
-    y, branch, diameter = (person.field(panel, name) for name in ("DepositionPointY", "Branch", "PlatformDiameter"))
+    y, branch, diameter = (
+        person.field(panel, name) for name in ("DepositionPointY", "Branch", "PlatformDiameter")
+    )
     first = branch.currentText()
     hand.enter(panel, "DepositionPointY", "60 mm")
     person.type(panel, "Branch", "front up flip")
     hand.click(applies(person))  # which has the keys then
     person.until(lambda: document.UndoCount == steps + 1, "what is applied", 10)
-    assert (cell.DepositionPoint.Base.y, cell.Branch, document.UndoCount) == (60.0, "front up flip", steps + 1)
+    assert (cell.DepositionPoint.Base.y, cell.Branch, document.UndoCount) == (
+        60.0,
+        "front up flip",
+        steps + 1,
+    )
     person.type(panel, "PlatformDiameter", "410 mm")  # and not applied
     hand.undo()
     person.until(lambda: y.property("rawValue") == 50.0, "what the document has", 5)
@@ -67,13 +77,21 @@ def test_after_undo_and_redo_the_fields_show_what_the_document_has(person, hand,
     hand.enter(panel, "DepositionPointY", "60 mm")
     person.press("Ok")
     person.panel_closed()
-    assert (cell.DepositionPoint.Base.y, cell.Branch, cell.PlatformDiameter.Value) == (60.0, first, 410.0)
+    assert (cell.DepositionPoint.Base.y, cell.Branch, cell.PlatformDiameter.Value) == (
+        60.0,
+        first,
+        410.0,
+    )
 
 
-def test_undo_shows_every_kind_of_field_and_input_as_a_panel_that_is_opened_then_does(person, hemisphere):
+def test_undo_shows_every_kind_of_field_and_input_as_a_panel_that_is_opened_then_does(
+    person, hemisphere
+):
     """Expressions, flags, counts, choices, lists, links and names."""
     document = hemisphere.Document
-    first, second = (api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5) for _ in range(2))
+    first, second = (
+        api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5) for _ in range(2)
+    )
     cell = api.make_cell(document)
     toolpath = api.make_toolpath(document, first, cell)
     path = api.make_joint_path(document, toolpath, cell)
@@ -115,7 +133,8 @@ def test_undo_shows_what_solids_claddings_and_curves_are_made_of(person):
     document.recompute()
     coarse = {"layer_height": 5}
     for make, first, fixtures in (
-        (api.make_solid_feature, (boxes[0],), [boxes[1]]), (api.make_cladding_feature, (boxes[0], ["Face6"]), [boxes[1]]),
+        (api.make_solid_feature, (boxes[0],), [boxes[1]]),
+        (api.make_cladding_feature, (boxes[0], ["Face6"]), [boxes[1]]),
         (api.make_curves_feature, (boxes[0], ["Edge1"]), [boxes[1]]),
     ):
         obj = make(document, *first, **({} if make is api.make_curves_feature else coarse))
@@ -126,9 +145,17 @@ def test_undo_shows_what_solids_claddings_and_curves_are_made_of(person):
         api.change(obj, fixtures=fixtures)
         person.gui.runCommand("Std_Undo")
         person.gui.runCommand("Std_Redo")
-        person.until(lambda panel=panel: person.field(panel, "Fixtures").text() == "Box1", "what is done again", 5)
+        person.until(
+            lambda panel=panel: person.field(panel, "Fixtures").text() == "Box1",
+            "what is done again",
+            5,
+        )
         person.gui.runCommand("Std_Undo")
-        person.until(lambda panel=panel, before=before: person.field(panel, "Fixtures").text() == before, "undone", 5)
+        person.until(
+            lambda panel=panel, before=before: person.field(panel, "Fixtures").text() == before,
+            "undone",
+            5,
+        )
         steps = document.UndoCount
         person.press("Ok")
         person.panel_closed()
@@ -144,11 +171,20 @@ def applies(person):
 def held(person, panel):
     """What the fields of a panel show."""
     w = person.widgets
-    kinds = {w.QLineEdit: "text", w.QComboBox: "currentText", w.QCheckBox: "isChecked", w.QSpinBox: "value"}
+    kinds = {
+        w.QLineEdit: "text",
+        w.QComboBox: "currentText",
+        w.QCheckBox: "isChecked",
+        w.QSpinBox: "value",
+    }
     found = {}
     for kind, read in kinds.items():
         for widget in panel.findChildren(kind):
-            name = widget.objectName() if not widget.objectName().startswith("qt_") else widget.parent().objectName()
+            name = (
+                widget.objectName()
+                if not widget.objectName().startswith("qt_")
+                else widget.parent().objectName()
+            )
             if name and not name.startswith("qt_") and not name.endswith("Shown"):
                 found[name, read] = getattr(widget, read)()
     for one in panel.findChildren(w.QListWidget, "FeatureOrder"):
@@ -156,7 +192,9 @@ def held(person, panel):
     return found
 
 
-def test_apply_tells_in_the_panel_which_of_the_stages_that_follow_failed_and_why(person, hand, hemisphere):
+def test_apply_tells_in_the_panel_which_of_the_stages_that_follow_failed_and_why(
+    person, hand, hemisphere
+):
     document = hemisphere.Document
     feature = api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5)
     api.make_joint_path(document, api.make_toolpath(document, feature), api.make_cell(document))
@@ -166,8 +204,12 @@ def test_apply_tells_in_the_panel_which_of_the_stages_that_follow_failed_and_why
     assert not following.isVisible()
     hand.enter(panel, "LayerHeight", "1e9 mm")
     person.press("Apply")
-    assert following.isVisible() and following.text().startswith("Toolpath failed: "), following.text()
-    assert "more than the wall is long" in following.text() and "\n" not in following.text()  # the joint path waits for it
+    assert following.isVisible() and following.text().startswith("Toolpath failed: "), (
+        following.text()
+    )
+    assert (
+        "more than the wall is long" in following.text() and "\n" not in following.text()
+    )  # the joint path waits for it
     assert findings.text() == "Status: up to date"  # the feature is
     hand.enter(panel, "LayerHeight", "15 mm")
     person.press("Apply")
@@ -186,7 +228,9 @@ def test_an_expression_is_typed_into_a_field_and_given_up_again(person, hand, he
     panel = person.panel(PANEL)
     hand.enter(panel, "LayerHeight", "=Sheet.height/2")
     note = person.field(panel, "LayerHeightNote")
-    person.until(lambda: note.isVisible() and note.text() == "= 8.00 mm", "what the expression gives", 5)
+    person.until(
+        lambda: note.isVisible() and note.text() == "= 8.00 mm", "what the expression gives", 5
+    )
     hand.enter(panel, "ChordError", "=Sheet.hieght")
     wrong = person.field(panel, "ChordErrorNote")
     person.until(lambda: wrong.isVisible() and "not understood" in wrong.text(), "what is wrong", 5)
@@ -198,13 +242,19 @@ def test_an_expression_is_typed_into_a_field_and_given_up_again(person, hand, he
     person.press("Ok")
     person.panel_closed()
     feature = document.Feature
-    assert (feature.LayerHeight.Value, dict(feature.ExpressionEngine)) == (8.0, {"LayerHeight": "Sheet.height / 2"})
+    assert (feature.LayerHeight.Value, dict(feature.ExpressionEngine)) == (
+        8.0,
+        {"LayerHeight": "Sheet.height / 2"},
+    )
     sheet.height = 20
     person.gui.runCommand("Std_Refresh")
     assert (feature.LayerHeight.Value, feature.Status) == (10.0, "up to date")
     person.double_click(feature)
     panel = person.panel(PANEL)
-    assert person.field(panel, "LayerHeight").findChild(person.widgets.QLineEdit).text() == "=Sheet.height / 2"
+    assert (
+        person.field(panel, "LayerHeight").findChild(person.widgets.QLineEdit).text()
+        == "=Sheet.height / 2"
+    )
     person.press("Ok")
     person.panel_closed()
     assert dict(feature.ExpressionEngine) == {"LayerHeight": "Sheet.height / 2"}
@@ -216,27 +266,49 @@ def test_an_expression_is_typed_into_a_field_and_given_up_again(person, hand, he
 
 
 @pytest.mark.parametrize(
-    "command", ["Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Toolpath", "JointPath", "Program", "Inspect"]
+    "command",
+    [
+        "Cell",
+        "Feature",
+        "WallOnPart",
+        "Solid",
+        "SolidsOnHub",
+        "Toolpath",
+        "JointPath",
+        "Program",
+        "Inspect",
+    ],
 )
 def test_every_field_has_help(person, hemisphere, command):
     if command in ("Toolpath", "JointPath", "Program"):  # tools that act on earlier stages
         feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=15)
         cell = api.make_cell(hemisphere.Document)
-        api.make_joint_path(hemisphere.Document, api.make_toolpath(hemisphere.Document, feature, cell), cell)
+        api.make_joint_path(
+            hemisphere.Document, api.make_toolpath(hemisphere.Document, feature, cell), cell
+        )
     person.click(f"RoboticAM_{command}")
     panel = next(
-        one for one in person.present(person.widgets.QWidget)
+        one
+        for one in person.present(person.widgets.QWidget)
         if one.objectName().startswith("RoboticAM_") and one.isVisible()
     )
-    kinds = (person.widgets.QLineEdit, person.widgets.QComboBox, person.widgets.QCheckBox, person.widgets.QAbstractSpinBox)
+    kinds = (
+        person.widgets.QLineEdit,
+        person.widgets.QComboBox,
+        person.widgets.QCheckBox,
+        person.widgets.QAbstractSpinBox,
+    )
     fields = [one for kind in kinds for one in panel.findChildren(kind)]
     bare = [
-        one.objectName() for one in fields
+        one.objectName()
+        for one in fields
         if not one.objectName().startswith("qt_") and not (one.toolTip() or one.parent().toolTip())
     ]
     mute = [
-        one.objectName() for one in fields
-        if not one.objectName().startswith("qt_") and not (one.whatsThis() or one.parent().whatsThis())
+        one.objectName()
+        for one in fields
+        if not one.objectName().startswith("qt_")
+        and not (one.whatsThis() or one.parent().whatsThis())
     ]
     assert len(fields) > 3
     assert (bare, mute) == ([], [])
@@ -244,7 +316,9 @@ def test_every_field_has_help(person, hemisphere, command):
     person.panel_closed()
 
 
-def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(person, root, monkeypatch):
+def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(
+    person, root, monkeypatch
+):
     document = App.newDocument("Bend")
     pipe = document.addObject("Part::Cylinder", "Pipe")
     pipe.Radius, pipe.Height = 32, 160
@@ -276,7 +350,9 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(p
     state = person.field(panel, "preview")
     person.until(lambda: state.text().startswith("First layer"), "the preview", 60)
     person.type(panel, "LayerHeight", "2 mm")
-    person.until(lambda: "being computed" in state.text() and 2.0 in begun, "the preview that goes on", 10)
+    person.until(
+        lambda: "being computed" in state.text() and 2.0 in begun, "the preview that goes on", 10
+    )
     person.type(panel, "LayerHeight", "3 mm")
     person.until(lambda: state.text().startswith("First layer"), "the newer preview", 60)
     assert ended[-2:] == [2.0, 3.0]
@@ -285,35 +361,64 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(p
     person.press("Cancel")  # while it is computed
     person.panel_closed()
     person.until(lambda: ended[-1] == 2.0, "its end", 10)
-    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
+    person.until(
+        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        "the threads to end",
+        10,
+    )
 
 
-@pytest.mark.parametrize(("command", "entries"), [
-    ("Cell", (("Machine", "kuka-kr16-2"), ("Machine", "nothing"), ("Machine", "table-xyzac"), ("Limits", "paper"))),
-    ("JointPath", (("MinCondition", "2"), ("MinCondition", "0.1"))),
-    ("Program", (("ProgramName", "1CUP"), ("ProgramName", "MUG"), ("Post", "none"))),
-])
+@pytest.mark.parametrize(
+    ("command", "entries"),
+    [
+        (
+            "Cell",
+            (
+                ("Machine", "kuka-kr16-2"),
+                ("Machine", "nothing"),
+                ("Machine", "table-xyzac"),
+                ("Limits", "paper"),
+            ),
+        ),
+        ("JointPath", (("MinCondition", "2"), ("MinCondition", "0.1"))),
+        ("Program", (("ProgramName", "1CUP"), ("ProgramName", "MUG"), ("Post", "none"))),
+    ],
+)
 @pytest.mark.always("JointPath-entries1")
-def test_a_closed_panel_that_has_previewed_leaves_nothing_behind(person, joint_path, command, entries):
+def test_a_closed_panel_that_has_previewed_leaves_nothing_behind(
+    person, joint_path, command, entries
+):
     """Neither widgets, which would be taken for later ones, nor threads, nor steps of undo."""
     document, steps = joint_path.Document, joint_path.Document.UndoCount
 
     def shown(kind):
         """Not by what the main window finds, which it keeps."""
-        return [one for one in person.widgets.QApplication.allWidgets() if isinstance(one, kind) and one.isVisible()]
+        return [
+            one
+            for one in person.widgets.QApplication.allWidgets()
+            if isinstance(one, kind) and one.isVisible()
+        ]
 
     def dead():
         wrappers = [one for one in gc.get_objects() if isinstance(one, person.core.QObject)]
         return [one for one in wrappers if not person.qt.isValid(one)]
 
     def enter(name, text):
-        line = next(one for kind in (person.widgets.QComboBox, person.widgets.QLineEdit) for one in shown(kind)
-                    if one.objectName() == name)
+        line = next(
+            one
+            for kind in (person.widgets.QComboBox, person.widgets.QLineEdit)
+            for one in shown(kind)
+            if one.objectName() == name
+        )
         (line.setEditText if hasattr(line, "setEditText") else line.setText)(text)
 
     def cancel():
         wanted = person.widgets.QDialogButtonBox.Cancel
-        next(box.button(wanted) for box in shown(person.widgets.QDialogButtonBox) if box.button(wanted) is not None).click()
+        next(
+            box.button(wanted)
+            for box in shown(person.widgets.QDialogButtonBox)
+            if box.button(wanted) is not None
+        ).click()
 
     person.idle(0.5)
     gc.collect()
@@ -329,7 +434,11 @@ def test_a_closed_panel_that_has_previewed_leaves_nothing_behind(person, joint_p
         cancel()
         person.panel_closed()
         person.until(lambda: len(dead()) <= before, "widgets to go with their panel", 10)
-        person.until(lambda: "Robotic AM" not in [one.name for one in threading.enumerate()], "the threads to end", 10)
+        person.until(
+            lambda: "Robotic AM" not in [one.name for one in threading.enumerate()],
+            "the threads to end",
+            10,
+        )
     finally:
         gc.enable()
     assert document.UndoCount == steps and len(api.stages_of(document)) == 4
@@ -344,7 +453,11 @@ def test_the_wheel_scrolls_a_panel_and_changes_no_field(person, hand, hemisphere
     combo, spin = person.field(panel, "Direction"), person.field(panel, "TravelSpeed")
     for field in (combo, spin):
         hand.reveal(field)
-        before = combo.currentText(), spin.property("rawValue"), field.mapToGlobal(person.core.QPoint(0, 0))
+        before = (
+            combo.currentText(),
+            spin.property("rawValue"),
+            field.mapToGlobal(person.core.QPoint(0, 0)),
+        )
         place = field.mapToGlobal(field.rect().center())
         for button in (5, 4, 4, 5):
             hand.do("mousemove", place.x(), place.y(), "click", button)
@@ -352,11 +465,17 @@ def test_the_wheel_scrolls_a_panel_and_changes_no_field(person, hand, hemisphere
         assert not field.hasFocus()
     hand.do("mousemove", place.x(), place.y(), "click", 5)
     hand.do("mousemove", place.x(), place.y(), "click", 5)
-    assert field.mapToGlobal(person.core.QPoint(0, 0)).y() < before[2].y(), "the panel has not scrolled"
+    assert field.mapToGlobal(person.core.QPoint(0, 0)).y() < before[2].y(), (
+        "the panel has not scrolled"
+    )
 
 
 def test_a_tooltip_begins_with_the_name_of_its_tool(person, hemisphere):
-    for command, name in (("NewJob", "New Job"), ("WallOnPart", "Wall on Part"), ("Simulate", "Simulate")):
+    for command, name in (
+        ("NewJob", "New Job"),
+        ("WallOnPart", "Wall on Part"),
+        ("Simulate", "Simulate"),
+    ):
         button = person.button(f"RoboticAM_{command}")
         person.until(lambda: f"<b>{name}</b>" in button.toolTip(), f"the name of {command}", 5)  # noqa: B023
         assert not button.statusTip().startswith("<")
@@ -396,7 +515,10 @@ def test_what_changes_the_deposit_is_read_as_a_panel_opens(person, hemisphere):
     panel = person.panel("RoboticAM_Toolpath")
     told, box = person.field(panel, "findings"), person.field(panel, "messages")
     assert "directions are tilted back" in told.text() and "are not deposited" in told.text()
-    assert box.verticalScrollBar().maximum() == 0 and told.visibleRegion().boundingRect().height() == told.height()
+    assert (
+        box.verticalScrollBar().maximum() == 0
+        and told.visibleRegion().boundingRect().height() == told.height()
+    )
     person.screenshot("toolpath_panel_told")
     below = person.field(panel, "TravelSpeed").mapTo(panel, person.core.QPoint(0, 0)).y()
     assert box.mapTo(panel, person.core.QPoint(0, box.height())).y() <= below
@@ -404,9 +526,13 @@ def test_what_changes_the_deposit_is_read_as_a_panel_opens(person, hemisphere):
     person.panel_closed()
 
 
-@pytest.mark.parametrize("command", ["Cell", "Feature", "Solid", "WallOnPart", "Toolpath", "JointPath", "Program"])
+@pytest.mark.parametrize(
+    "command", ["Cell", "Feature", "Solid", "WallOnPart", "Toolpath", "JointPath", "Program"]
+)
 @pytest.mark.always("JointPath", "Feature", "WallOnPart")
-def test_what_an_empty_field_wants_is_read_whole_in_a_narrow_panel(person, hemisphere, coarse, command):
+def test_what_an_empty_field_wants_is_read_whole_in_a_narrow_panel(
+    person, hemisphere, coarse, command
+):
     if command in ("JointPath", "Program"):
         api.make_all(hemisphere.Document, hemisphere)
     elif command == "Toolpath":
@@ -416,7 +542,9 @@ def test_what_an_empty_field_wants_is_read_whole_in_a_narrow_panel(person, hemis
         person.select(hemisphere)
     person.click(f"RoboticAM_{command}")
     person.idle(0.5)
-    for fold in person.window.findChild(person.widgets.QDockWidget, "Combo View").findChildren(person.widgets.QToolButton):
+    for fold in person.window.findChild(person.widgets.QDockWidget, "Combo View").findChildren(
+        person.widgets.QToolButton
+    ):
         if fold.isVisible() and fold.isCheckable() and not fold.isChecked() and fold.text():
             fold.click()
     person.idle(0.3)

@@ -43,7 +43,11 @@ def test_layers_and_points_by_sliders_and_numbers(person, hand, joint_path):
     front(person)
     whole = drawn(person)
     to, point = person.field(panel, "to_slider"), person.field(panel, "point_slider")
-    assert (to.minimum(), to.maximum(), to.value()) == (0, rows.layer_count - 1, rows.layer_count - 1)
+    assert (to.minimum(), to.maximum(), to.value()) == (
+        0,
+        rows.layer_count - 1,
+        rows.layer_count - 1,
+    )
     hand.click(person.field(panel, "to_back"))
     assert to.value() == rows.layer_count - 2
     hand.click(person.field(panel, "to_spin"))
@@ -65,7 +69,9 @@ def test_layers_and_points_by_sliders_and_numbers(person, hand, joint_path):
     assert 0 < drawn(person).sum() < alone.sum()
     text = person.field(panel, "facts").text()
     row = low + (high - low) // 2
-    assert f"point {point.value()} (0 to {high - low - 1})" in text  # the field and the text count alike
+    assert (
+        f"point {point.value()} (0 to {high - low - 1})" in text
+    )  # the field and the text count alike
     assert person.field(panel, "point_spin").value() == point.value()
     told = joint_path.ViewObject.Proxy.scale.text_at(row)
     assert told.startswith("joint margin ") and told.endswith(" %")
@@ -126,7 +132,9 @@ def test_tubes_are_as_wide_and_as_high_as_they_are(person, joint_path):
     first = drawn(person)
     person.screenshot("tubes")
     across, down = np.flatnonzero(first.any(axis=0)), np.flatnonzero(first.any(axis=1))
-    assert np.ptp(across) + 1 == pytest.approx(scale * (90.0 + 8.0), abs=3)  # the part, and half a width on both sides
+    assert np.ptp(across) + 1 == pytest.approx(
+        scale * (90.0 + 8.0), abs=3
+    )  # the part, and half a width on both sides
     assert np.ptp(down) + 1 == pytest.approx(scale * 5.0, abs=3)
     vobj.Proxy.show(None)
     assert drawn(person).sum() > 3 * lines.sum()
@@ -136,8 +144,17 @@ def test_each_kind_of_bead_is_told(person, joint_path):
     bead = joint_path.ViewObject.Proxy.rows.beads[0]
     kinds = ("", "contour", "zigzag", "line", "spiral", "centre", "closing")
     found = [colouring.class_of(dataclasses.replace(bead, kind=kind)) for kind in kinds]
-    assert found == [colouring.CLOSED, colouring.CLOSED, *3 * [colouring.OPEN], colouring.CENTRE, colouring.CLOSING]
-    told = [facts(Rows.of([dataclasses.replace(bead, kind=kind)], [0], 8.0, lambda: 1.0), 3) for kind in kinds]
+    assert found == [
+        colouring.CLOSED,
+        colouring.CLOSED,
+        *3 * [colouring.OPEN],
+        colouring.CENTRE,
+        colouring.CLOSING,
+    ]
+    told = [
+        facts(Rows.of([dataclasses.replace(bead, kind=kind)], [0], 8.0, lambda: 1.0), 3)
+        for kind in kinds
+    ]
     assert len(set(told)) == len(kinds) and "in the middle" in told[5]
 
 
@@ -147,7 +164,10 @@ def test_of_several_beads_the_point_is_told_as_the_dock_counts(person, joint_pat
     first, second = map(len, beads)
     told = facts(rows, first + 3)
     assert "bead 1 (0 to 1), closed" in told
-    assert f"point {first + 3} (0 to {first + second - 1}) of the layer, of the bead point 3 (0 to {second - 1}) at" in told
+    assert (
+        f"point {first + 3} (0 to {first + second - 1}) of the layer, of the bead point 3 (0 to {second - 1}) at"
+        in told
+    )
 
 
 def test_directions_and_rapids_are_of_what_is_shown(person, joint_path):
@@ -173,7 +193,9 @@ def test_a_stretch_of_a_large_path_changes_little(person, joint_path):
     """Whole pieces are kept; only the two at the ends are made anew."""
     document = joint_path.Document
     path = api.result(document.Toolpath)
-    layers = tuple(Layer(layer.beads) for _ in range(-(-30_000 // path.point_count)) for layer in path.layers)
+    layers = tuple(
+        Layer(layer.beads) for _ in range(-(-30_000 // path.point_count)) for layer in path.layers
+    )
     many = dataclasses.replace(path, layers=layers)
     toolpath = document.Toolpath
     toolpath.ViewObject.Visibility = True
@@ -181,19 +203,28 @@ def test_a_stretch_of_a_large_path_changes_little(person, joint_path):
     view.draw(toolpath, many)
     view.path.paint(np.full((len(view.rows), 3), 0.5))
     cuts = view.rows.cuts
-    assert len(cuts) > 6 and np.diff(cuts).max() < 2 * PIECE and (cuts[0], cuts[-1]) == (0, len(view.rows))
+    assert (
+        len(cuts) > 6
+        and np.diff(cuts).max() < 2 * PIECE
+        and (cuts[0], cuts[-1]) == (0, len(view.rows))
+    )
     pieces = [view.path.lines.pieces.getChild(k).getChild(0) for k in range(len(cuts) - 1)]
     for look, first, block in ((view.path.lines, 1, 0), (view.path.tubes, 0, BLOCK)):
         view.path.look(look is view.path.tubes)
         made = []
         make = look.make
-        look.make = lambda first, end, made=made, make=make: made.append((first, end)) or make(first, end)
+        look.make = lambda first, end, made=made, make=make: (
+            made.append((first, end)) or make(first, end)
+        )
         for last in range(view.rows.layer_count - 1, 0, -3):
             view.show((first, last, 5))
         # but for what lies before the first piece, no more than the last segment, of tubes the last block, is made anew
         before = view.rows.of_layers(first, first)[0]
         assert max(end - start for start, end in made) < 2 * PIECE
-        assert max((end - start for start, end in made if start not in (before, *cuts)), default=0) < 9 + block
+        assert (
+            max((end - start for start, end in made if start not in (before, *cuts)), default=0)
+            < 9 + block
+        )
         view.show(None)
         made.clear()
         for end in range(len(view.rows) - 300, len(view.rows)):  # as a simulation grows
@@ -211,9 +242,18 @@ def test_every_row_of_a_stretch_is_drawn_once(person, joint_path, first):
     """Line sets of pieces and of ends, put together, are the polylines of the rows."""
     path = api.result(joint_path.Document.Toolpath)
     bead = path.layers[0].beads[0]
-    long = dataclasses.replace(bead, **{
-        name: np.tile(getattr(bead, name), (150, 1))[:14000] for name in ("points", "build", "tool")},
-        parameter=np.arange(14000.0), speed=np.full(14000, 8.0), closed=False, width=None, tangents=None)
+    long = dataclasses.replace(
+        bead,
+        **{
+            name: np.tile(getattr(bead, name), (150, 1))[:14000]
+            for name in ("points", "build", "tool")
+        },
+        parameter=np.arange(14000.0),
+        speed=np.full(14000, 8.0),
+        closed=False,
+        width=None,
+        tangents=None,
+    )
     rows = Rows.of([bead, long, bead], [0, 1, 2], 8.0, lambda: 1.0)
     view = joint_path.Document.Toolpath.ViewObject.Proxy
     view.rows = rows
@@ -221,7 +261,9 @@ def test_every_row_of_a_stretch_is_drawn_once(person, joint_path, first):
     view.path.paint(np.full((len(rows), 3), 0.5))
     for end in (first + 2, 5001, 9000, len(rows)):
         view.path.show(first, end)
-        drawn_edges = sorted(edge for node in shown_nodes(view.path.lines) for edge in edges(node, rows))
+        drawn_edges = sorted(
+            edge for node in shown_nodes(view.path.lines) for edge in edges(node, rows)
+        )
         bead_of = np.searchsorted(rows.starts, np.arange(len(rows)), side="right")
         wanted = [row for row in range(first, end - 1) if bead_of[row] == bead_of[row + 1]]
         assert len(drawn_edges) == len(wanted)
@@ -293,9 +335,16 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
         row = rows.of_layers(layer, layer)[0] + count - 1
         # as seen a pixel or two away, where points of the dome's side are close to each other; beads are 5 mm apart
         away = np.subtract(where(view, hand, aim[row]), where(view, hand, aim[wanted]))
-        assert np.abs(away).max() <= 3 and np.linalg.norm(rows.points[row] - rows.points[wanted]) < 3.0 and first == 0
+        assert (
+            np.abs(away).max() <= 3
+            and np.linalg.norm(rows.points[row] - rows.points[wanted]) < 3.0
+            and first == 0
+        )
         assert layer == rows.layers[rows.bead_of(int(wanted))]
-        assert person.field(panel, "to_spin").value() == layer and person.field(panel, "point_spin").value() == count - 1
+        assert (
+            person.field(panel, "to_spin").value() == layer
+            and person.field(panel, "point_spin").value() == count - 1
+        )
         assert facts(rows, row) in person.field(panel, "facts").text()
     person.screenshot(f"path_clicked_{look}")
     # what is hidden is not hit: with the lower layers alone a click on a higher one does nothing
@@ -320,7 +369,11 @@ def test_nothing_of_a_path_is_kept_once_its_document_is_closed(person, joint_pat
     front(person)
     views = [obj.ViewObject.Proxy for obj in (document.Toolpath, joint_path)]
     assert all(len(view.rows) for view in views)
-    kept = [weakref.ref(one) for view in views for one in (view, view.rows, view.clicks, view.path, view.legend)]
+    kept = [
+        weakref.ref(one)
+        for view in views
+        for one in (view, view.rows, view.clicks, view.path, view.legend)
+    ]
     del views
     gc.collect()
     assert all(one() is not None for one in kept)  # the document has them

@@ -24,7 +24,9 @@ def marked(joint_path):
 
 def tip(cell):
     """Where the nozzle's tip is drawn (3,)."""
-    return np.array(cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue())[3, :3]
+    return np.array(cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue())[
+        3, :3
+    ]
 
 
 def test_marks_of_what_is_wrong_go_and_come_back_with_undo_and_redo(person, toolpath, no_remedies):
@@ -48,7 +50,9 @@ def test_marks_of_what_is_wrong_go_and_come_back_with_undo_and_redo(person, tool
 
 
 @pytest.mark.parametrize("named", [True, False])
-def test_the_nozzle_stands_where_the_deposit_ends_wherever_that_is(person, toolpath, hemisphere, named):
+def test_the_nozzle_stands_where_the_deposit_ends_wherever_that_is(
+    person, toolpath, hemisphere, named
+):
     """Of a toolpath that names the cell, and of one that a joint path is planned of in it."""
     cell = api.make_cell(toolpath.Document)
     assert np.array_equal(tip(cell), np.zeros(3))
@@ -58,11 +62,15 @@ def test_the_nozzle_stands_where_the_deposit_ends_wherever_that_is(person, toolp
         api.make_joint_path(toolpath.Document, toolpath, cell)
 
     def ends_there():
-        return np.allclose(tip(cell), api.result(toolpath).layers[-1].beads[-1].points[-1], atol=1e-4)
+        return np.allclose(
+            tip(cell), api.result(toolpath).layers[-1].beads[-1].points[-1], atol=1e-4
+        )
 
     person.until(ends_there, "the nozzle at the end of the deposit", 5)
     before = tip(cell)
-    hemisphere.Placement = App.Placement(App.Vector(40, -30, 20), App.Rotation(App.Vector(1, 0, 0), 20))
+    hemisphere.Placement = App.Placement(
+        App.Vector(40, -30, 20), App.Rotation(App.Vector(1, 0, 0), 20)
+    )
     toolpath.Document.recompute()
     person.until(ends_there, "the nozzle at the end of the moved deposit", 5)
     assert np.linalg.norm(tip(cell) - before) > 20
@@ -84,7 +92,9 @@ def test_the_colours_of_tubes_stay_when_their_path_is_selected(person, toolpath)
 def test_another_cell_that_leaves_a_toolpath_as_it_is_is_drawn_where_that_is(person, hemisphere):
     document = hemisphere.Document
     first = api.make_cell(document)
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=15), first)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=15), first
+    )
     key, other = toolpath.Key, api.make_cell(document, deposition_point=[900, 50, 600, 0, 5, 0])
     person.idle()
     assert (other.ViewObject.Proxy.stands_on, first.ViewObject.Proxy.stands_on) == ("", key)

@@ -21,9 +21,20 @@ def test_joint_paths_are_coloured_by_what_the_machine_has_left(person, joint_pat
     planned = api.result(joint_path)
     motion, machine = planned.motion, machines.load(document.Cell.Machine)
     limits = machine.limits(planned.joint_path.limits)
-    share = np.nanmin(np.concatenate([
-        margins(motion.joints, limits.lower, limits.upper),
-        margins(motion.joints @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)], axis=1), axis=1)
+    share = np.nanmin(
+        np.concatenate(
+            [
+                margins(motion.joints, limits.lower, limits.upper),
+                margins(
+                    motion.joints @ limits.coefficients.T,
+                    limits.coupled_lower,
+                    limits.coupled_upper,
+                ),
+            ],
+            axis=1,
+        ),
+        axis=1,
+    )
     scale = vobj.Proxy.scale
     assert (scale.title, scale.unit) == ("joint margin", "%")
     assert scale.least == pytest.approx(100 * share[motion.deposit].min())
@@ -45,24 +56,35 @@ def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
     values = np.array([np.nan, -0.1, 0.0, 0.5, 1.0, 1.4])
     colours, scale = colouring.by_machine(values, colouring.MARGIN)
     assert (colours[0] == colouring.UNREACHABLE).all() and (colours[1] == colouring.TOO_NEAR).all()
-    assert scale.text_at(0) == "joint margin unreachable" and scale.text_at(3) == "joint margin 50 %"
+    assert (
+        scale.text_at(0) == "joint margin unreachable" and scale.text_at(3) == "joint margin 50 %"
+    )
     assert scale.without == "unreachable" and scale.below == "beyond a limit" and not scale.above
     colours, scale = colouring.by_machine(values, colouring.RATIO)
-    assert (colours[5] == colouring.TOO_FAR).all() and scale.above == "faster than it can" and not scale.below
+    assert (
+        (colours[5] == colouring.TOO_FAR).all()
+        and scale.above == "faster than it can"
+        and not scale.below
+    )
     assert np.array_equal(colours[[2, 3, 4]], ramp(np.array([0.1, 0.6, 1.1]) / 1.1))
     # where nothing can be told, no number is: neither 0 nor a ramp
     scale = colouring.by_machine(np.full(3, np.nan), colouring.CONDITION)[1]
     assert scale.classes == (("unreachable", colouring.UNREACHABLE),) and scale.ticks == ()
     assert scale.text_at(1) == "condition unreachable"
     scale = colouring.by_machine(np.array([np.nan, -0.2]), colouring.MARGIN)[1]
-    assert scale.classes == (("beyond a limit", colouring.TOO_NEAR), ("unreachable", colouring.UNREACHABLE))
+    assert scale.classes == (
+        ("beyond a limit", colouring.TOO_NEAR),
+        ("unreachable", colouring.UNREACHABLE),
+    )
     assert scale.ticks == () and scale.text_at(1) == "joint margin -20 %"
 
 
 def test_unreachable_points_are_red(person, hemisphere, no_remedies):
     document = hemisphere.Document
     cell = api.make_cell(document, limits="paper")
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=5), cell
+    )
     joint_path = api.make_joint_path(document, toolpath, cell, method="constant")
     assert joint_path.Status == "infeasible"
     person.look()
@@ -75,11 +97,17 @@ def test_unreachable_points_are_red(person, hemisphere, no_remedies):
 def test_the_legend_of_what_is_out_of_reach_altogether_says_so(person, hemisphere, kind):
     document = hemisphere.Document
     cell = api.make_cell(document, limits="paper", deposition_point=(9000, 0, 0, 0, 0, 0))
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=9), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=9), cell
+    )
     path = api.make_joint_path(document, toolpath, cell)
     path.ViewObject.Colouring = kind
     person.idle(0.3)
-    scale, = legend.shown(document)
-    assert scale.title == kind and scale.ticks == () and scale.classes == (("unreachable", colouring.UNREACHABLE),)
+    (scale,) = legend.shown(document)
+    assert (
+        scale.title == kind
+        and scale.ticks == ()
+        and scale.classes == (("unreachable", colouring.UNREACHABLE),)
+    )
     person.screenshot(f"legend_unreachable_{kind.replace(' ', '_')}")
     assert person.screen_pixels(RED, 4) > 100  # its mark in the legend

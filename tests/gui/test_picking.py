@@ -38,14 +38,20 @@ def assembly():
 
 
 def same_place(one, other):
-    return (one.CenterOfMass - other.CenterOfMass).Length < 1e-9 and abs(one.Area - other.Area) < 1e-9
+    return (one.CenterOfMass - other.CenterOfMass).Length < 1e-9 and abs(
+        one.Area - other.Area
+    ) < 1e-9
 
 
 @pytest.mark.parametrize(
     ("top", "path", "name"),
     [
-        ("Part", "Body.Bore.Face{}", "Body"), ("Part", "Body.Pad.Face{}", "Pad"), ("Loose", "Hull.Face{}", "Loose"),
-        ("BodyLink", "Bore.Face{}", "BodyLink"), ("PartLink", "Body.Bore.Face{}", "PartLink"), ("Block", "Face{}", "Block"),
+        ("Part", "Body.Bore.Face{}", "Body"),
+        ("Part", "Body.Pad.Face{}", "Pad"),
+        ("Loose", "Hull.Face{}", "Loose"),
+        ("BodyLink", "Bore.Face{}", "BodyLink"),
+        ("PartLink", "Body.Bore.Face{}", "PartLink"),
+        ("Block", "Face{}", "Block"),
     ],
 )
 def test_a_face_is_the_same_face_of_the_object_it_belongs_to(person, assembly, top, path, name):
@@ -65,7 +71,12 @@ def test_a_selection_in_an_assembly(person, assembly):
     person.gui.Selection.addSelection("Assembly", "Part", "Body.Bore.Face2")
     person.gui.Selection.addSelection("Assembly", "Ball")
     wall, substrate, unclear = picking.proposal(picking.selected(assembly))
-    assert (wall.obj, len(wall.names), substrate, unclear) == (assembly.Body, 2, Pick(assembly.Ball), "")
+    assert (wall.obj, len(wall.names), substrate, unclear) == (
+        assembly.Body,
+        2,
+        Pick(assembly.Ball),
+        "",
+    )
 
 
 def test_which_is_the_wall(person, assembly):

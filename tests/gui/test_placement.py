@@ -72,7 +72,9 @@ def test_the_best_pose_is_entered_and_planned(person, hand, no_remedies, path):
     hand.click(person.field(panel, "use"))
     person.until(lambda: path.Status == "up to date", "the plan", LONG)
     assert tuple(api.result(path.Cell).deposition_point) == pytest.approx(found.pose(found.best))
-    recorded = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
+    recorded = person.window.findChild(
+        person.widgets.QPlainTextEdit, "Python console"
+    ).toPlainText()
     assert "am.change(App.ActiveDocument.getObject('Cell'), deposition_point=(" in recorded
     path.Document.undo()
     assert api.result(path.Cell).deposition_point == pytest.approx(HIGH)
@@ -86,7 +88,9 @@ def test_cancelled_refused_and_stale(person, hand, no_remedies, path):
     told = person.field(panel, "told")
     entered(person, panel, Step="16 mm")  # 15,625 poses: far more than a click takes
     hand.click(person.field(panel, "compute"))
-    person.until(lambda: one.work.runs and one.work.background.worker.fraction is not None, "the work", LONG)
+    person.until(
+        lambda: one.work.runs and one.work.background.worker.fraction is not None, "the work", LONG
+    )
     assert person.field(panel, "compute").text() == "Cancel"
     hand.click(person.field(panel, "compute"))
     person.idle()

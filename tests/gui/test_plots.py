@@ -39,15 +39,24 @@ def panel(person, planned):
 def seen(person):
     dock = docks._dock
     timers = (dock.soon.timer, dock.changed.timer)
-    person.until(lambda: dock.building.worker is None and dock.canvas.ready and not any(one.isActive() for one in timers),
-                 "the picture", 20)
+    person.until(
+        lambda: (
+            dock.building.worker is None
+            and dock.canvas.ready
+            and not any(one.isActive() for one in timers)
+        ),
+        "the picture",
+        20,
+    )
     person.idle(0.05)
     return dock
 
 
 def shown(person, as_wanted):
     """The range of the first chart, once it is as wanted."""
-    person.until(lambda: as_wanted(*docks._dock.canvas.drawn.places[0].across), "the range that is shown", 5)
+    person.until(
+        lambda: as_wanted(*docks._dock.canvas.drawn.places[0].across), "the range that is shown", 5
+    )
     return seen(person).canvas.drawn.places[0].across
 
 
@@ -61,7 +70,9 @@ def colours(person, widget, least=80):
     """How many pixels of a widget have the colour of a curve, of a limit, of bars or of beads over each other; with a lower
     `least` difference of red, green and blue also of single beads."""
     image = widget.grab().toImage().convertToFormat(person.widgets.QImage.Format_RGB32)
-    seen = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)[:, : image.width(), :3]
+    seen = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)[
+        :, : image.width(), :3
+    ]
     return int((np.ptp(seen.astype(int), axis=2) > least).sum())
 
 
@@ -73,7 +84,11 @@ def test_every_picture_is_seen(person, planned, panel):
         if name in ("angles", "deposit", "spacing", "fit"):
             person.screenshot(f"plots_{name}")
         if name in ("heights", "spread", "fit"):
-            assert dock.picture is None and "bead model" in dock.canvas.text and not person.field(panel, "save").isEnabled()
+            assert (
+                dock.picture is None
+                and "bead model" in dock.canvas.text
+                and not person.field(panel, "save").isEnabled()
+            )
         elif name in ("volumes", "section"):
             assert dock.picture is None and "plane layers" in dock.canvas.text
         else:
@@ -87,7 +102,9 @@ def test_every_picture_is_seen(person, planned, panel):
         np.testing.assert_allclose(drawn, motion.joints[:, axis], atol=1e-12)
 
 
-def test_layers_chosen_of_one_job_are_not_those_of_another_with_its_names(person, planned, coarse, panel):
+def test_layers_chosen_of_one_job_are_not_those_of_another_with_its_names(
+    person, planned, coarse, panel
+):
     first, last = person.field(panel, "from"), person.field(panel, "to")
     last.setValue(1)
     first.setValue(1)
@@ -112,8 +129,11 @@ def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
     place = canvas.drawn.places[0]
 
     def at(share, up=0.5):
-        where = canvas.mapToGlobal(person.core.QPoint(int(place.left + share * place.width),
-                                                      int(place.top + (1 - up) * place.height)))
+        where = canvas.mapToGlobal(
+            person.core.QPoint(
+                int(place.left + share * place.width), int(place.top + (1 - up) * place.height)
+            )
+        )
         return where.x(), where.y()
 
     hand.do("mousemove", *at(0.25))
@@ -123,18 +143,39 @@ def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
     nearest = int(np.abs(curve.x - x).argmin())
     text = person.field(panel, "reading").text()
     value = float(text.split(curve.name + " ")[1].split()[0])
-    assert abs(value - curve.y[max(nearest - 2, 0) : nearest + 3]).min() < 1e-3 and text.startswith("layer ")
+    assert abs(value - curve.y[max(nearest - 2, 0) : nearest + 3]).min() < 1e-3 and text.startswith(
+        "layer "
+    )
     hand.do("mousemove", *at(0.5), "click", 4, "click", 4)
-    low, high = shown(person, lambda low, high: high - low == pytest.approx((whole[1] - whole[0]) / 1.25**2, rel=1e-6))
+    low, high = shown(
+        person,
+        lambda low, high: high - low == pytest.approx((whole[1] - whole[0]) / 1.25**2, rel=1e-6),
+    )
     assert canvas.drawn.places[1].across == (low, high)  # all charts together
     hand.do("mousemove", *at(0.5), "mousedown", 1, "mousemove", *at(0.4), "mouseup", 1)
     shown(person, lambda start, end: start > low and end - start == pytest.approx(high - low))
     hand.click(person.field(panel, "whole"))
     shown(person, lambda *ends: ends == whole)
     hand.click(person.field(panel, "rectangle"))
-    hand.do("mousemove", *at(0.3, 0.9), "mousedown", 1, "mousemove", *at(0.5, 0.5), "mousemove", *at(0.6, 0.2), "mouseup", 1)
+    hand.do(
+        "mousemove",
+        *at(0.3, 0.9),
+        "mousedown",
+        1,
+        "mousemove",
+        *at(0.5, 0.5),
+        "mousemove",
+        *at(0.6, 0.2),
+        "mouseup",
+        1,
+    )
     width = whole[1] - whole[0]
-    shown(person, lambda *ends: ((np.array(ends) - whole[0]) / width).tolist() == pytest.approx([0.3, 0.6], abs=0.01))
+    shown(
+        person,
+        lambda *ends: (
+            ((np.array(ends) - whole[0]) / width).tolist() == pytest.approx([0.3, 0.6], abs=0.01)
+        ),
+    )
     assert 0 in canvas.up
     person.screenshot("plots_zoomed")
     hand.click(person.field(panel, "rectangle"))
@@ -153,10 +194,18 @@ def test_layers_path_and_files(person, panel, planned, tmp_path, monkeypatch):
     dock = seen(person)
     assert dock.picture.charts[0].x.name == "path"
     person.screenshot("plots_two_layers")
-    for ending, begins in (("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF"), ("csv", b"path_mm,layer,")):
+    for ending, begins in (
+        ("png", b"\x89PNG"),
+        ("svg", b"<?xml"),
+        ("pdf", b"%PDF"),
+        ("csv", b"path_mm,layer,"),
+    ):
         path = tmp_path / f"plot.{ending}"
-        monkeypatch.setattr(person.widgets.QFileDialog, "getSaveFileName",
-                            staticmethod(lambda *_, path=path: (str(path), "")))
+        monkeypatch.setattr(
+            person.widgets.QFileDialog,
+            "getSaveFileName",
+            staticmethod(lambda *_, path=path: (str(path), "")),
+        )
         person.field(panel, "save").click()
         person.until(path.exists, f"the {ending}", 10)
         person.idle(0.1)
@@ -165,10 +214,15 @@ def test_layers_path_and_files(person, panel, planned, tmp_path, monkeypatch):
     curve = dock.picture.charts[1].curves[0]
     column = [row[3] for row in table[1:]]
     np.testing.assert_allclose([float(value) for value in column], curve.y, rtol=1e-9)
-    monkeypatch.setattr(person.widgets.QFileDialog, "getSaveFileName",
-                        staticmethod(lambda *_: (str(tmp_path / "none" / "plot.png"), "")))
+    monkeypatch.setattr(
+        person.widgets.QFileDialog,
+        "getSaveFileName",
+        staticmethod(lambda *_: (str(tmp_path / "none" / "plot.png"), "")),
+    )
     person.field(panel, "save").click()
-    person.until(lambda: "cannot be written" in person.window.statusBar().currentMessage(), "the message", 10)
+    person.until(
+        lambda: "cannot be written" in person.window.statusBar().currentMessage(), "the message", 10
+    )
 
 
 def test_changes_are_followed(person, planned, panel):
@@ -223,7 +277,11 @@ def test_that_there_is_nothing_to_plot_is_seen(person, planned, panel):
     assert canvas.minimumHeight() == 6 * canvases.PER_CHART
     App.closeDocument(planned.Document.Name)
     person.until(lambda: "nothing to plot" in canvas.text, "the text", 5)
-    person.until(lambda: canvas.visibleRegion().boundingRect().contains(canvas.rect().center()), "the text in sight", 5)
+    person.until(
+        lambda: canvas.visibleRegion().boundingRect().contains(canvas.rect().center()),
+        "the text in sight",
+        5,
+    )
     assert canvas.height() <= canvas.visibleRegion().boundingRect().height()
 
 
@@ -251,7 +309,9 @@ def test_a_solid_in_plane_layers_is_seen_layer_by_layer(person):
     part = document.addObject("Part::Feature", "Block")
     part.Shape = Part.makeBox(60, 40, 22).cut(Part.makeCylinder(9, 22, App.Vector(40, 20, 0)))
     document.recompute()
-    feature = api.make_solid_feature(document, part, layer_height=5, chord_error=0.1, bead_spacing=5)
+    feature = api.make_solid_feature(
+        document, part, layer_height=5, chord_error=0.1, bead_spacing=5
+    )
     docks.show(api.make_toolpath(document, feature))
     panel = person.panel(docks.NAME)
     dock = take(person, panel, "volumes")

@@ -38,14 +38,20 @@ def entries():
 
 
 def test_without_entries_all_is_as_built_in_and_saving_the_page_adds_none(person, page):
-    assert preferences.machine() == "fanuc-arcmate120ic" and preferences.process() == {} and preferences.post() == ""
+    assert (
+        preferences.machine() == "fanuc-arcmate120ic"
+        and preferences.process() == {}
+        and preferences.post() == ""
+    )
     assert preferences.speed_unit() == "mm/s" and preferences.ramp() == "blue to yellow"
     before = entries()  # folders that other tools remember
     page.saveSettings()
     assert entries() == before and not {"Machine", "Post", "SpeedUnit", "Ramp"} & set(before)
 
 
-def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(person, hand, clean, hemisphere, tmp_path):
+def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(
+    person, hand, clean, hemisphere, tmp_path
+):
     """The dialog is modal: what is done in it is done by timers."""
     done = []
 
@@ -65,7 +71,9 @@ def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(pers
             form.findChild(person.widgets.QLineEdit, "programsFolder").setText(str(tmp_path))
             person.screenshot("preferences")
         finally:
-            dialog.findChild(person.widgets.QDialogButtonBox).button(person.widgets.QDialogButtonBox.Ok).click()
+            dialog.findChild(person.widgets.QDialogButtonBox).button(
+                person.widgets.QDialogButtonBox.Ok
+            ).click()
 
     person.core.QTimer.singleShot(300, act)
     person.watch.awaited = (person.widgets.QDialog,)
@@ -73,7 +81,9 @@ def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(pers
     person.watch.awaited = ()
     person.idle(0.3)
     assert done == [True]
-    assert preferences.machine() == "kuka-kr16-2" and preferences.process() == {"travel_speed": 12.0}
+    assert preferences.machine() == "kuka-kr16-2" and preferences.process() == {
+        "travel_speed": 12.0
+    }
     assert preferences.programs_folder() == str(tmp_path)
     # a cell, and a toolpath with its speed in m/min
     person.click("RoboticAM_Cell")
@@ -107,10 +117,16 @@ def test_a_new_job_takes_machine_process_and_post(person, clean, hemisphere, coa
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    assert person.field(panel, "Machine").currentText() .startswith("FANUC ARC Mate 120iC/10L")
+    assert person.field(panel, "Machine").currentText().startswith("FANUC ARC Mate 120iC/10L")
     person.as_revolution(panel)
-    person.until(lambda: person.field(panel, "Name").text() if panel.findChild(
-        person.widgets.QLineEdit, "Name") else True, "a name")
+    person.until(
+        lambda: (
+            person.field(panel, "Name").text()
+            if panel.findChild(person.widgets.QLineEdit, "Name")
+            else True
+        ),
+        "a name",
+    )
     person.press("Ok")
     person.until(lambda: api.stages_of(hemisphere.Document, "joint path"), "the job", 60)
     person.panel_closed()
@@ -174,8 +190,15 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
 
     def drawn():
         dock = plots._dock
-        person.until(lambda: dock.building.worker is None and dock.picture is not None and dock.picture.name == "travel",
-                     "the picture", 20)
+        person.until(
+            lambda: (
+                dock.building.worker is None
+                and dock.picture is not None
+                and dock.picture.name == "travel"
+            ),
+            "the picture",
+            20,
+        )
         return dock.picture.charts[0]
 
     simulation = _simulated(person, path)
@@ -186,7 +209,11 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
         file = str(person.folder / "legend.png")
         person.gui.activeDocument().activeView().saveImage(file, 600, 450, "White")
         image = person.widgets.QImage(file).convertToFormat(person.widgets.QImage.Format_RGB32)
-        corner = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(450, -1, 4)[:220, :60, :3].astype(int)
+        corner = (
+            np.frombuffer(bytes(image.constBits()), dtype=np.uint8)
+            .reshape(450, -1, 4)[:220, :60, :3]
+            .astype(int)
+        )
         return int((np.ptp(corner, axis=2) > 40).sum())
 
     simulation.close()  # which hides the path, and its legend
@@ -210,8 +237,12 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
     told = np.stack([view.path.colours >> shift & 255 for shift in (24, 16, 8)], axis=1)
     assert (told == wanted).all() and (view.path.colours != colours).mean() > 0.9
     for links in (simulation.scene.machine, cell.ViewObject.Proxy.nodes.machine):
-        plain = [material for link in links.materials for material, colour in link if colour is None]
-        assert plain and all(np.allclose(one.diffuseColor[0].getValue(), (0.2, 0.4, 0.8), atol=1e-6) for one in plain)
+        plain = [
+            material for link in links.materials for material, colour in link if colour is None
+        ]
+        assert plain and all(
+            np.allclose(one.diffuseColor[0].getValue(), (0.2, 0.4, 0.8), atol=1e-6) for one in plain
+        )
     person.screenshot("preferences_at_once")
     simulation.close()
     assert coloured() < 20
@@ -248,5 +279,7 @@ def test_without_a_window_preferences_count_for_nothing(person, clean, root, tmp
         "print(FreeCAD.ParamGet(p.GROUP).GetString('Machine', ''), p.machine(), p.process())"
     )
     python = "/usr/bin/python3" if "freecad" in sys.executable.lower() else sys.executable
-    done = subprocess.run([python, "-c", code, str(root)], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [python, "-c", code, str(root)], capture_output=True, text=True, timeout=60
+    )
     assert done.stdout.split() == ["kuka-kr16-2", "fanuc-arcmate120ic", "{}"], done.stderr

@@ -16,7 +16,9 @@ from tests.gui.test_path import where
 def program(person, hemisphere):
     document = hemisphere.Document
     cell = api.make_cell(document)
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=10), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=10), cell
+    )
     joint_path = api.make_joint_path(document, toolpath, cell)
     made = api.make_program(document, joint_path, name="CUP", post="fanuc", max_points=150)
     person.idle()
@@ -59,7 +61,9 @@ def test_a_click_on_a_line_shows_its_point_and_a_click_on_the_path_its_line(pers
         layer, bead, point = map(int, found.groups())
         assert proxy.shown[1] == layer and proxy.shown[2] == point + 1 and bead == 0
         row = np.flatnonzero(motion.deposit & (motion.layer == layer) & (motion.point == point))[0]
-        assert np.degrees(motion.joints[row, 0]) == pytest.approx(first_axis(content, line), abs=1e-3)
+        assert np.degrees(motion.joints[row, 0]) == pytest.approx(
+            first_axis(content, line), abs=1e-3
+        )
     person.screenshot("program_line")
     # back: a click on the path marks the line that leads there
     proxy.show(None)
@@ -74,12 +78,18 @@ def test_a_click_on_a_line_shows_its_point_and_a_click_on_the_path_its_line(pers
     rows, toward = proxy.rows, np.array(view.getViewDirection())
     facing = np.flatnonzero((rows.points @ toward < -12.0) & (rows.points[:, 2] > 20.0))
     places = {int(row): where(view, hand, rows.points[row]) for row in facing[::7]}
-    beside = [row for row, (x, _) in places.items() if not window.frameGeometry().contains(x, places[row][1])]
+    beside = [
+        row
+        for row, (x, _) in places.items()
+        if not window.frameGeometry().contains(x, places[row][1])
+    ]
     assert beside
     before = place.text()
     hand.at(places[beside[0]])
     person.until(lambda: place.text() != before, "the line of the point", 10)
-    line, layer, point = map(int, re.fullmatch(r"Line (\d+): layer (\d+) bead 0 point (\d+)", place.text()).groups())
+    line, layer, point = map(
+        int, re.fullmatch(r"Line (\d+): layer (\d+) bead 0 point (\d+)", place.text()).groups()
+    )
     row = np.flatnonzero(motion.deposit & (motion.layer == layer) & (motion.point == point))[0]
     assert np.linalg.norm(motion.position[row] - rows.points[beside[0]]) < 3.0
     shown = text.toPlainText()

@@ -22,7 +22,9 @@ def joint_path(person, hemisphere):
     """A joint path that can be carried out."""
     document = hemisphere.Document
     cell = api.make_cell(document)
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=10), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=10), cell
+    )
     made = api.make_joint_path(document, toolpath, cell)
     person.idle()
     return made
@@ -49,7 +51,9 @@ def test_the_first_lines_are_those_that_are_written(person, hand, joint_path):
     assert person.field(panel, "FirstLines").isVisible()
     person.screenshot("program_preview")
     hand.enter(panel, "MaxPoints", "300")
-    person.until(lambda: any("CALL CUP01" in line for line in lines(person, panel)), "calls of parts", 20)
+    person.until(
+        lambda: any("CALL CUP01" in line for line in lines(person, panel)), "calls of parts", 20
+    )
     parts = told(person, panel, "Begins with CUP.LS.")
     assert document.UndoCount == steps and document.getObject("Program") is None
     begins = lines(person, panel)
@@ -65,11 +69,16 @@ def test_the_first_lines_are_those_that_are_written(person, hand, joint_path):
     assert len(first) == FIRST and first == written[:FIRST]
     minutes, seconds = divmod(document.JointPath.TotalTime, 60.0)
     assert f"Lines: {len(written)}, files: 1" in text
-    assert f"Time: {int(minutes)}:{int(seconds * 10) / 10:04.1f}" in text or f"Time: {int(minutes)}:{seconds:04.1f}" in text
+    assert (
+        f"Time: {int(minutes)}:{int(seconds * 10) / 10:04.1f}" in text
+        or f"Time: {int(minutes)}:{seconds:04.1f}" in text
+    )
     assert f"mass: {document.JointPath.DepositMass:.1f} g" in text
 
 
-def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(person, hand, joint_path):
+def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(
+    person, hand, joint_path
+):
     document = joint_path.Document
     program = api.make_program(document, joint_path, name="CUP", post="fanuc")
     key = program.Key
@@ -80,16 +89,21 @@ def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(per
     for fold in ("FoldInputs", "FoldStartat"):
         hand.click(person.field(panel, fold))
     for name, text, words in (
-        ("ProgramName", "1CUP", "it must start with a letter"), ("Post", "siemens", "does not read siemens"),
+        ("ProgramName", "1CUP", "it must start with a letter"),
+        ("Post", "siemens", "does not read siemens"),
         ("StartAtLayer", "99", "there is no bead 0 in a layer 99"),
     ):
         before = person.field(panel, name)
         was = before.currentText() if hasattr(before, "currentText") else before.text()
         hand.enter(panel, name, text)
         note = person.field(panel, f"{name}Note")
-        person.until(lambda note=note, words=words: note.isVisible() and words in note.text(), words, 10)
+        person.until(
+            lambda note=note, words=words: note.isVisible() and words in note.text(), words, 10
+        )
         told(person, panel, "see the field marked")
-        assert lines(person, panel) == [] and person.field(panel, "FirstLines").isVisible()  # no field moves away
+        assert (
+            lines(person, panel) == [] and person.field(panel, "FirstLines").isVisible()
+        )  # no field moves away
         if name == "ProgramName":
             person.screenshot("program_name_refused")
         hand.enter(panel, name, was)
@@ -99,8 +113,17 @@ def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(per
     told(person, panel, "Without a post no file is written.")
     person.press("Cancel")
     person.panel_closed()
-    assert (program.Key, program.Status, program.ProgramName, program.Post) == (key, "up to date", "CUP", "fanuc")
-    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
+    assert (program.Key, program.Status, program.ProgramName, program.Post) == (
+        key,
+        "up to date",
+        "CUP",
+        "fanuc",
+    )
+    person.until(
+        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        "the threads to end",
+        10,
+    )
 
 
 def test_a_dry_run_deposits_nothing_and_a_later_start_is_shorter(person, joint_path):
@@ -126,17 +149,27 @@ def test_what_is_made_anew_beside_the_panel_is_seen_and_what_is_deleted_is_told(
     document.Feature.LayerHeight = "15 mm"
     told(person, panel, "Joint path is out of date; this is of what it was.")
     document.recompute()
-    person.until(lambda: "Begins with" in state.text() and "out of date" not in state.text(), "what it is now", 30)
+    person.until(
+        lambda: "Begins with" in state.text() and "out of date" not in state.text(),
+        "what it is now",
+        30,
+    )
     assert state.text() != before
     document.removeObject(joint_path.Name)
     told(person, panel, "No preview: see the field marked.")
     note = person.field(panel, "InputJointPathNote")
-    assert note.isVisible() and "JointPath is missing" in note.text() and "Error" not in state.text() + note.text()
+    assert (
+        note.isVisible()
+        and "JointPath is missing" in note.text()
+        and "Error" not in state.text() + note.text()
+    )
     person.press("Cancel")
     person.panel_closed()
 
 
-def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(person, hand, joint_path):
+def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(
+    person, hand, joint_path
+):
     document = joint_path.Document
     program = api.make_program(document, joint_path, name="CUP", post="fanuc")
     registry.edit(program)
@@ -165,22 +198,35 @@ def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(p
     hand.enter(panel, "MaxPoints", "300")
     person.until(
         lambda: any(
-            promises.item(row).text().startswith("? The text takes the tool") for row in range(promises.count())
-        ), "a text that was not read back", 20,
+            promises.item(row).text().startswith("? The text takes the tool")
+            for row in range(promises.count())
+        ),
+        "a text that was not read back",
+        20,
     )
 
 
-@pytest.mark.parametrize(("machine", "setup", "preferred", "shown"), [
-    ("kuka-kr16-2", "tool-on-robot", "kuka", ("kuka", "cartesian")),
-    ("kuka-kr16-2", "tool-on-robot", "", ("kuka", "cartesian")),
-    ("kuka-kr16-2", "part-on-robot", "kuka", ("", "")), ("kuka-kr16-2", "part-on-robot", "", ("none", "")),
-    ("abb-irb2400-12-155", "tool-on-robot", "abb", ("", "")), ("abb-irb2400-12-155", "tool-on-robot", "", ("abb", "joint")),
-    ("fanuc-crx10ia", "part-on-robot", "", ("", "")), ("no-such-machine", "tool-on-robot", "kuka", ("", "")),
-])
-def test_a_new_program_is_shown_with_the_motion_that_its_controller_has(monkeypatch, machine, setup, preferred, shown):
+@pytest.mark.parametrize(
+    ("machine", "setup", "preferred", "shown"),
+    [
+        ("kuka-kr16-2", "tool-on-robot", "kuka", ("kuka", "cartesian")),
+        ("kuka-kr16-2", "tool-on-robot", "", ("kuka", "cartesian")),
+        ("kuka-kr16-2", "part-on-robot", "kuka", ("", "")),
+        ("kuka-kr16-2", "part-on-robot", "", ("none", "")),
+        ("abb-irb2400-12-155", "tool-on-robot", "abb", ("", "")),
+        ("abb-irb2400-12-155", "tool-on-robot", "", ("abb", "joint")),
+        ("fanuc-crx10ia", "part-on-robot", "", ("", "")),
+        ("no-such-machine", "tool-on-robot", "kuka", ("", "")),
+    ],
+)
+def test_a_new_program_is_shown_with_the_motion_that_its_controller_has(
+    monkeypatch, machine, setup, preferred, shown
+):
     """As New Job writes it: joint moves of KRL cannot keep a speed."""
     monkeypatch.setattr(suggestions.preferences, "post", lambda: preferred)
     settings = dataclasses.replace(CellParameters(), machine=machine, setup=setup)
     proxy = SimpleNamespace(parameters=lambda cell, kind: settings)
     assert suggestions.post_for(SimpleNamespace(Cell=SimpleNamespace(Proxy=proxy))) == shown
-    assert suggestions.post_for(None) == suggestions.post_for(SimpleNamespace(Cell=None)) == ("", "")
+    assert (
+        suggestions.post_for(None) == suggestions.post_for(SimpleNamespace(Cell=None)) == ("", "")
+    )

@@ -40,7 +40,9 @@ def opened(person, path):
     panel = person.panel(NAME)
     one = docks._open[0]
     person.until(lambda: one.canvas.painted is not None, "the cells", LONG)
-    person.until(lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG)
+    person.until(
+        lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG
+    )
     person.idle(0.2)
     return panel, one
 
@@ -49,7 +51,9 @@ def on_screen(canvas, column, value):
     """Where a column and a value are on the screen."""
     from PySide import QtCore
 
-    place = canvas.mapToGlobal(QtCore.QPoint(round(float(canvas.x_of(column))), round(float(canvas.y_of(value)))))
+    place = canvas.mapToGlobal(
+        QtCore.QPoint(round(float(canvas.x_of(column))), round(float(canvas.y_of(value))))
+    )
     return place.x(), place.y()
 
 
@@ -88,12 +92,20 @@ def test_the_picture_is_what_core_computes(person, hemisphere):
     assert canvas.curves == []
     seen = grabbed(canvas)
     random = np.random.default_rng(4)
-    for column, row in zip(random.integers(2, len(one.board.columns) - 2, 80), random.integers(3, 177, 80)):
+    for column, row in zip(
+        random.integers(2, len(one.board.columns) - 2, 80), random.integers(3, 177, 80)
+    ):
         if np.abs(canvas.seams - column).min() <= 2:
             continue  # lines are drawn there
-        x, y = round(float(canvas.x_of(column))), round(float(canvas.y_of(one.board.map.values[row])))
-        wanted = canvas.painted.colours[row - 3:row + 4, column - 1:column + 2].astype(int)
-        hatch = canvas.painted.hatched[row - 3:row + 4, column - 1:column + 2].any() and (seen[y, x] == 20).all()
+        x, y = (
+            round(float(canvas.x_of(column))),
+            round(float(canvas.y_of(one.board.map.values[row]))),
+        )
+        wanted = canvas.painted.colours[row - 3 : row + 4, column - 1 : column + 2].astype(int)
+        hatch = (
+            canvas.painted.hatched[row - 3 : row + 4, column - 1 : column + 2].any()
+            and (seen[y, x] == 20).all()
+        )
         assert hatch or np.abs(seen[y, x] - wanted).max(axis=2).min() <= 3, (row, column)
     for cells, colour in ((picture.beyond, TOO_NEAR), (~picture.reachable, NONE)):
         if cells.any():
@@ -117,7 +129,8 @@ def test_a_plan_that_moves_seams_is_shown_as_it_runs(person, hemisphere, overlap
     planned = api.result(path).joint_path
     toolpath = api.result(path.Toolpath)
     moved = [
-        (other.layer, other.index) for (_, _, bead), other in zip(toolpath, planned.beads)
+        (other.layer, other.index)
+        for (_, _, bead), other in zip(toolpath, planned.beads)
         if np.linalg.norm(bead.points[0] - other.bead.points[0]) > 1.0
     ]
     assert moved
@@ -128,7 +141,9 @@ def test_a_plan_that_moves_seams_is_shown_as_it_runs(person, hemisphere, overlap
     for bead, start, end in zip(planned.beads, one.source.starts, one.source.starts[1:]):
         shown = followed.joints[start:end]
         np.testing.assert_allclose(shown[0], bead.joints[0], atol=1e-9)
-        if not overlap:  # else the plan runs on past the seam; between the ends it may have more points
+        if (
+            not overlap
+        ):  # else the plan runs on past the seam; between the ends it may have more points
             np.testing.assert_allclose(shown[-1], bead.joints[-1], atol=1e-9)
     assert one.draft.full.points.closed.all()
 
@@ -142,7 +157,8 @@ def test_a_certificate_is_told_of_the_plan(person, hemisphere):
     assert told == (
         f"Certificate: {found['objective']:.4g} as planned, no rotation goes below {found['bound']:.4g}: a gap of "
         f"{100 * found['gap']:.1f} %, {100 * found['worst']['gap']:.1f} % in layer {found['worst']['layer']} bead "
-        f"{found['worst']['bead']}")
+        f"{found['worst']['bead']}"
+    )
 
 
 def test_what_the_mouse_is_over_is_told(person, hemisphere, hand):
@@ -153,16 +169,23 @@ def test_what_the_mouse_is_over_is_told(person, hemisphere, hand):
         hand.do("mousemove", *on_screen(one.canvas, column, value))
         person.idle(0.1)
         told = label.text()
-        near = [k for k in (column - 1, column, column + 1)  # a column may be narrower than a pixel
-                if told.startswith("Layer {} bead {} point {} ".format(*one.board.place(k)))]
+        near = [
+            k
+            for k in (column - 1, column, column + 1)  # a column may be narrower than a pixel
+            if told.startswith("Layer {} bead {} point {} ".format(*one.board.place(k)))
+        ]
         assert len(near) == 1
         rz = float(told.split("RZ ")[1].split("°")[0])
         pixel = np.degrees(one.canvas.high - one.canvas.low) / one.canvas.area().height()
         assert rz == pytest.approx(np.degrees(value), abs=1.5 * pixel)
         shown = [float(text.split()[-1].rstrip("°")) for text in told.splitlines()[1].split("   ")]
         tool = one.board.columns.points.tool[near]
-        phi = float(spin_map.rotation_of(one.source.cell, tool, np.array([np.radians(rz)]), "rz")[0])
-        q = spin_map.joints_at(one.source.task(one.draft.branch), one.board.columns, near[0], phi)[one.draft.branch]
+        phi = float(
+            spin_map.rotation_of(one.source.cell, tool, np.array([np.radians(rz)]), "rz")[0]
+        )
+        q = spin_map.joints_at(one.source.task(one.draft.branch), one.board.columns, near[0], phi)[
+            one.draft.branch
+        ]
         assert shown == pytest.approx(np.degrees(q), abs=0.6)
 
 
@@ -172,16 +195,26 @@ def test_where_a_link_touches_the_map_is_hatched_and_says_what(person, hemispher
     person.screenshot("spin_map_touching")
     board, branch = one.board, one.draft.branch
     picture = board.pictures[branch]
-    assert picture.arm.any() and (one.canvas.painted.hatched == (picture.forbidden | picture.arm)).all()
-    known = spin_map.arm_touched(one.source.task(branch), board.map, branch, one.source.arm, board.moment)
+    assert (
+        picture.arm.any()
+        and (one.canvas.painted.hatched == (picture.forbidden | picture.arm)).all()
+    )
+    known = spin_map.arm_touched(
+        one.source.task(branch), board.map, branch, one.source.arm, board.moment
+    )
     assert (picture.arm == known).all()
     free = picture.feasible & ~picture.hatched
     inside = {}
-    for name, cells in (("touching", picture.arm), ("free", free)):  # cells whose neighbours are like them
+    for name, cells in (
+        ("touching", picture.arm),
+        ("free", free),
+    ):  # cells whose neighbours are like them
         same = cells[2:-2, 1:-1].copy()
         for rows in range(5):
             for columns in range(3):
-                same &= cells[rows:cells.shape[0] - 4 + rows, columns:cells.shape[1] - 2 + columns]
+                same &= cells[
+                    rows : cells.shape[0] - 4 + rows, columns : cells.shape[1] - 2 + columns
+                ]
         inside[name] = np.argwhere(same) + [2, 1]
         assert len(inside[name])
     label = person.field(panel, "readout")
@@ -189,7 +222,9 @@ def test_where_a_link_touches_the_map_is_hatched_and_says_what(person, hemispher
         row, column = places[len(places) // 2]
         hand.do("mousemove", *on_screen(one.canvas, int(column), float(board.map.values[row])))
         person.idle(0.2)
-        assert ("the link of q4 touches the platform" in label.text()) == (name == "touching"), label.text()
+        assert ("the link of q4 touches the platform" in label.text()) == (name == "touching"), (
+            label.text()
+        )
 
 
 def test_the_curve_is_dragged_and_becomes_the_plan(person, hemisphere, hand):
@@ -224,10 +259,18 @@ def test_the_curve_is_dragged_and_becomes_the_plan(person, hemisphere, hand):
     doc.undo()
     person.idle(0.5)
     assert path.Given == []
-    assert np.allclose([bead.coefficients for bead in path.Proxy.value(path).joint_path.beads], planned)
-    person.until(lambda: np.allclose(one.draft.coefficients, planned), "the map to follow the undo", LONG)
+    assert np.allclose(
+        [bead.coefficients for bead in path.Proxy.value(path).joint_path.beads], planned
+    )
+    person.until(
+        lambda: np.allclose(one.draft.coefficients, planned), "the map to follow the undo", LONG
+    )
     doc.redo()
-    person.until(lambda: np.allclose(one.draft.coefficients, wanted, atol=1e-9), "the map to follow the redo", LONG)
+    person.until(
+        lambda: np.allclose(one.draft.coefficients, wanted, atol=1e-9),
+        "the map to follow the redo",
+        LONG,
+    )
     name = doc.FileName
     App.closeDocument(doc.Name)
     person.idle(0.2)
@@ -235,8 +278,11 @@ def test_the_curve_is_dragged_and_becomes_the_plan(person, hemisphere, hand):
     again = App.openDocument(name)
     person.idle(0.3)
     read = given_polynomials(tuple(again.getObject("JointPath").Given))
-    assert read and np.allclose([read.get((layer, index), read.get(None)) for layer, index in one.source.places], wanted,
-                                atol=1e-8)
+    assert read and np.allclose(
+        [read.get((layer, index), read.get(None)) for layer, index in one.source.places],
+        wanted,
+        atol=1e-8,
+    )
 
 
 def test_handles_bend_the_polynomial_of_one_bead(person, hemisphere, hand):
@@ -257,7 +303,9 @@ def test_handles_bend_the_polynomial_of_one_bead(person, hemisphere, hand):
     assert np.array_equal(after[others], before[others])
     at = one.draft.handles(bead)
     change = np.polynomial.polynomial.polyval(at, after[bead] - before[bead])
-    assert change[[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-9) and change[1] == pytest.approx(0.6, abs=0.08)
+    assert change[[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-9) and change[1] == pytest.approx(
+        0.6, abs=0.08
+    )
     # the numbers say the same, and can be typed
     shown = [person.field(panel, f"c{k}").value() for k in range(3)]
     assert shown == pytest.approx(np.degrees(after[bead] * TURN ** np.arange(3)), abs=1e-3)
@@ -282,7 +330,9 @@ def test_one_rz_for_all_is_dragged_and_used(person, hemisphere, hand):
     hand.click(person.field(panel, "use"))
     person.until(lambda: path.Rz != "20.0 deg", "the plan", LONG)
     person.idle(0.3)
-    assert path.Method == "constant" and float(path.Rz.split()[0]) == pytest.approx(np.degrees(wanted), abs=1e-6)
+    assert path.Method == "constant" and float(path.Rz.split()[0]) == pytest.approx(
+        np.degrees(wanted), abs=1e-6
+    )
     assert (path.Status == "up to date") == (sums.lost == 0)
     person.screenshot("spin_map_constant")
     hand.click(person.field(panel, "free"))
@@ -314,22 +364,34 @@ def test_methods_side_by_side(person, hemisphere, hand):
     person.screenshot("spin_map_compared")
     table = person.field(panel, "figures")
     assert [table.item(row, 0).text() for row in range(5)] == [
-        "This curve", "As planned", "layer-by-layer", "point-by-point", "constant"]
+        "This curve",
+        "As planned",
+        "layer-by-layer",
+        "point-by-point",
+        "constant",
+    ]
     assert len(one.canvas.curves) == 5
     own, by_layer = (table.item(row, 5).text().split()[0] for row in (1, 2))
     assert float(own) == pytest.approx(float(by_layer), rel=1e-2)
-    for row, method in enumerate(("layer-by-layer", "point-by-point", "constant"), 2):  # each as its own stage has it
+    for row, method in enumerate(
+        ("layer-by-layer", "point-by-point", "constant"), 2
+    ):  # each as its own stage has it
         plan = api.make_joint_path(path.Document, path.Toolpath, path.Cell, method=method)
         made, shown = api.result(plan).joint_path, one.compared[row - 2]
         assert made.branch == api.result(path).joint_path.branch and shown.name == method
         for drawn, bead in zip(shown.paths, made.beads, strict=True):
-            ends = [np.exp(1j * one.joints[[0, -1]]) for one in (drawn, bead)]  # whole turns and added points aside
+            ends = [
+                np.exp(1j * one.joints[[0, -1]]) for one in (drawn, bead)
+            ]  # whole turns and added points aside
             assert np.allclose(*ends, atol=1e-9)
         least = min(float(bead.condition.min()) for bead in shown.paths)
         assert table.item(row, 3).text() == f"{least:.4f}"
         assert (table.item(row, 1).text() == "0") == made.feasible
     curves = [np.concatenate([bead.phi for bead in method.paths]) for method in one.compared]
-    assert min(np.abs(curves[one] - curves[other]).max() for one, other in ((0, 1), (0, 2), (1, 2))) > 0.01
+    assert (
+        min(np.abs(curves[one] - curves[other]).max() for one, other in ((0, 1), (0, 2), (1, 2)))
+        > 0.01
+    )
     table.item(3, 0).setCheckState(person.core.Qt.Unchecked)
     person.idle(0.1)
     assert len(one.canvas.curves) == 4
@@ -352,7 +414,10 @@ def test_a_click_takes_the_simulation_and_the_path_there(person, hemisphere, han
     moment = simulations._open[0].player.moment()
     motion = simulations._open[0].run.motion
     assert motion.layer[moment.row] == layer
-    assert np.linalg.norm(motion.position[moment.row] - one.board.columns.points.position[column]) < 1e-6
+    assert (
+        np.linalg.norm(motion.position[moment.row] - one.board.columns.points.position[column])
+        < 1e-6
+    )
     assert path.ViewObject.Proxy.shown[1] == layer
     assert paths._dock.view() is path.ViewObject.Proxy
     assert one.bead == int(one.board.columns.bead[column])
@@ -374,7 +439,9 @@ def test_a_path_from_point_to_point_is_smoothed(person, hemisphere, hand):
     panel, one = opened(person, path)
     gap = np.abs(values_of(one) - one.board.path_values(one.draft, one.source.planned.beads))
     assert person.field(panel, "use").isEnabled() and gap.max() < 0.1
-    low, high = (np.degrees(end(one.consequences.followed.joints[:, 1])) for end in (np.min, np.max))
+    low, high = (
+        np.degrees(end(one.consequences.followed.joints[:, 1])) for end in (np.min, np.max)
+    )
     assert f"q2&nbsp;{low:.1f}…{high:.1f}°" in person.field(panel, "joints").text()
     hand.click(person.field(panel, "use"))
     person.until(lambda: path.Method == "layer-by-layer", "the plan", LONG)
@@ -398,7 +465,11 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkey
     board = one.board
     np.testing.assert_allclose(
         board.columns.points.external,
-        [one.source.planned.beads[k].joints[n, 6:] for k, n in zip(board.columns.bead, board.columns.point)], atol=1e-9,
+        [
+            one.source.planned.beads[k].joints[n, 6:]
+            for k, n in zip(board.columns.bead, board.columns.point)
+        ],
+        atol=1e-9,
     )
     column = int(np.flatnonzero(board.columns.bead == 1)[5])
     free = float(values_of(one)[column]) + 0.9  # beside the curve
@@ -409,8 +480,12 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkey
     person.choose(panel, "across", "e2")
     box = person.field(panel, "across")
     box.activated.emit(box.currentIndex())
-    person.until(lambda: one.board.across == 1 and one.canvas.painted is not None, "e2 across", LONG)
-    person.until(lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG)
+    person.until(
+        lambda: one.board.across == 1 and one.canvas.painted is not None, "e2 across", LONG
+    )
+    person.until(
+        lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG
+    )
     planned = one.source.planned.beads[1].joints[point]
     assert one.board.place(0) == (*one.source.places[1], point)
     here = one.board.marks[1]
@@ -419,12 +494,17 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkey
     # where the plan is, the map has the plan's joints
     phi = one.source.planned.beads[1].phi[point]
     at = spin_across.across(one.source.beads, one.source.cell, (1, point), 1, planned[[7]])
-    found = spin_map.joints_at(one.source.task(one.source.branch), at, 0, float(phi))[one.source.branch]
+    found = spin_map.joints_at(one.source.task(one.source.branch), at, 0, float(phi))[
+        one.source.branch
+    ]
     turns = (found - planned) / TURN
     np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
     person.screenshot("map_e2_across")
     assert one.board.title.startswith("e2 at layer ")
-    hand.do("mousemove", *on_screen(one.canvas, here, float(board.values(np.full(len(board.columns), phi))[column])))
+    hand.do(
+        "mousemove",
+        *on_screen(one.canvas, here, float(board.values(np.full(len(board.columns), phi))[column])),
+    )
     person.until(lambda: "   e2 " in one.form.readout.text(), "the axes under the mouse")
     _saved(person, panel, one, monkeypatch, tmp_path / "e2")
     _two_against_each_other(person, hand, one, panel, point)
@@ -432,7 +512,9 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkey
     box = person.field(panel, "axis")
     person.choose(panel, "axis", "RZ")
     box.activated.emit(box.currentIndex())
-    person.until(lambda: one.board.up is None and one.canvas.painted is not None, "RZ upwards", LONG)
+    person.until(
+        lambda: one.board.up is None and one.canvas.painted is not None, "RZ upwards", LONG
+    )
     assert one.canvas.heights is None and one.canvas.curves
     box = person.field(panel, "across")
     person.choose(panel, "across", "the path")
@@ -444,9 +526,20 @@ def _coloured_by_all_axes(path, cell):
     """Beads of the view by the share that robot and positioner have left, and by speeds: the positioner's count."""
     motion, limits, view = api.result(path).motion, cell.limits, path.ViewObject
     assert motion.joints.shape[1] == 8
-    share = np.nanmin(np.concatenate([
-        margins(motion.joints, limits.lower, limits.upper),
-        margins(motion.joints @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)], axis=1), axis=1)
+    share = np.nanmin(
+        np.concatenate(
+            [
+                margins(motion.joints, limits.lower, limits.upper),
+                margins(
+                    motion.joints @ limits.coefficients.T,
+                    limits.coupled_lower,
+                    limits.coupled_upper,
+                ),
+            ],
+            axis=1,
+        ),
+        axis=1,
+    )
     view.Colouring = "joint margin"
     assert view.Proxy.scale.least == pytest.approx(100.0 * share[motion.deposit].min())
     assert view.Proxy.scale.most == pytest.approx(100.0 * share[motion.deposit].max())
@@ -463,12 +556,25 @@ def _two_against_each_other(person, hand, one, panel, point):
     person.choose(panel, "axis", "e1")
     box.activated.emit(box.currentIndex())
     person.until(lambda: one.board.up == 0 and one.canvas.painted is not None, "e1 upwards", LONG)
-    person.until(lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG)
+    person.until(
+        lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG
+    )
     planned = one.source.planned.beads[1]
     pair, picture = one.board.pair, one.board.pictures[one.draft.branch]
-    assert picture.margin.shape == (len(pair.values), len(one.board.offsets)) == one.canvas.painted.hatched.shape
-    assert one.board.title.startswith("e2 against e1 at layer ") and not one.canvas.curves and not one.canvas.handles
-    assert pair.values[0] <= planned.joints[point, 6] <= pair.values[-1] and pair.phi == planned.phi[point]
+    assert (
+        picture.margin.shape
+        == (len(pair.values), len(one.board.offsets))
+        == one.canvas.painted.hatched.shape
+    )
+    assert (
+        one.board.title.startswith("e2 against e1 at layer ")
+        and not one.canvas.curves
+        and not one.canvas.handles
+    )
+    assert (
+        pair.values[0] <= planned.joints[point, 6] <= pair.values[-1]
+        and pair.phi == planned.phi[point]
+    )
     texts, height = one.canvas.heights
     low, high = (float(text.rstrip("°")) for text in (texts[0][1], texts[-1][1]))
     where = low + (height + np.pi) / TURN * (high - low)
@@ -481,10 +587,16 @@ def _two_against_each_other(person, hand, one, panel, point):
 
     def told():
         words = one.form.readout.text().split()
-        found = [float(words[words.index(name) + 1].rstrip("°")) for name in ("e1", "e2") if name in words]
+        found = [
+            float(words[words.index(name) + 1].rstrip("°"))
+            for name in ("e1", "e2")
+            if name in words
+        ]
         return len(found) == 2 and np.abs(np.array(found) - wanted).max() < 5.0
 
-    person.until(lambda: told() or "out of reach" in one.form.readout.text(), "the axes under the mouse")
+    person.until(
+        lambda: told() or "out of reach" in one.form.readout.text(), "the axes under the mouse"
+    )
     person.screenshot("map_e2_against_e1")
 
 
@@ -492,8 +604,11 @@ def _saved(person, panel, one, monkeypatch, name):
     """The map in files: a row for each cell, whose margin is that of joints worked out anew; the drawing has its words."""
     for ending in ("png", "svg", "csv"):
         path = name.with_suffix(f".{ending}")
-        monkeypatch.setattr(person.widgets.QFileDialog, "getSaveFileName",
-                            staticmethod(lambda *_, path=path: (str(path), "")))
+        monkeypatch.setattr(
+            person.widgets.QFileDialog,
+            "getSaveFileName",
+            staticmethod(lambda *_, path=path: (str(path), "")),
+        )
         person.field(panel, "save").click()
         person.until(path.exists, f"the {ending}", LONG)
         person.idle(0.1)
@@ -503,22 +618,40 @@ def _saved(person, panel, one, monkeypatch, name):
         rows = list(csv.DictReader(file))
     board, limits = one.board, one.source.cell.limits
     count = len(board.map.values) if board.pair is None else len(board.pair.values)
-    assert len(rows) == count * len(board.offsets) and {row["point"] for row in rows} == {str(board.place(0)[2])}
+    assert len(rows) == count * len(board.offsets) and {row["point"] for row in rows} == {
+        str(board.place(0)[2])
+    }
     picture = board.pictures[one.draft.branch]
     for index in np.random.default_rng(5).integers(0, len(rows), 40):
         row, column = rows[index], index // count
-        height = 2.0 * np.pi * (index % count) / (count - 1) - np.pi if board.pair is not None else float(
-            board.map.values[index % count])
+        height = (
+            2.0 * np.pi * (index % count) / (count - 1) - np.pi
+            if board.pair is not None
+            else float(board.map.values[index % count])
+        )
         cell = board.cell(one.draft.branch, int(column), height)
         assert (row["joint_margin_percent"] == "") == bool(np.isnan(cell.joints).any())
         assert float(row["e2_deg"]) == pytest.approx(np.degrees(board.offsets[column]), abs=1e-6)
         if board.pair is not None:
-            assert float(row["e1_deg"]) == pytest.approx(np.degrees(board.pair.values[index % count]), abs=1e-6)
+            assert float(row["e1_deg"]) == pytest.approx(
+                np.degrees(board.pair.values[index % count]), abs=1e-6
+            )
         if not np.isnan(cell.joints).any():
-            assert float(row["e2_deg"]) == pytest.approx(np.degrees(cell.joints[7]) % 360.0, abs=1e-6) or float(
-                row["e2_deg"]) == pytest.approx(np.degrees(cell.joints[7]), abs=1e-6)
-            share = float(np.nanmin(np.r_[margins(cell.joints[None], limits.lower, limits.upper)[0], margins(
-                cell.joints[None] @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)[0]]))
+            assert float(row["e2_deg"]) == pytest.approx(
+                np.degrees(cell.joints[7]) % 360.0, abs=1e-6
+            ) or float(row["e2_deg"]) == pytest.approx(np.degrees(cell.joints[7]), abs=1e-6)
+            share = float(
+                np.nanmin(
+                    np.r_[
+                        margins(cell.joints[None], limits.lower, limits.upper)[0],
+                        margins(
+                            cell.joints[None] @ limits.coefficients.T,
+                            limits.coupled_lower,
+                            limits.coupled_upper,
+                        )[0],
+                    ]
+                )
+            )
             assert float(row["joint_margin_percent"]) == pytest.approx(100.0 * share, abs=1e-6)
     states = np.array([row["state"] for row in rows]).reshape(len(board.offsets), count).T
     assert (states == "unreachable").sum() == (~picture.reachable).sum()

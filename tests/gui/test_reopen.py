@@ -31,7 +31,9 @@ document.saveAs({path!r})
 def columns(document):
     motion = api.result(document.JointPath).motion
     beads = [bead.points for _, _, bead in api.result(document.Toolpath)]
-    return [motion.joints, motion.position, motion.duration, *beads], api.result(document.Program).files
+    return [motion.joints, motion.position, motion.duration, *beads], api.result(
+        document.Program
+    ).files
 
 
 def assert_shown(person, document):
@@ -91,8 +93,12 @@ def test_opening_reads_what_is_drawn_alone(person, hemisphere, coarse, tmp_path,
     whole = Rows.of([one.bead for one in paths], [one.layer for one in paths], 8.0, lambda: 1.0)
     for name in ("points", "starts", "layers", "width"):
         assert np.array_equal(getattr(rows, name), getattr(whole, name)), name
-    assert len(rows.beads) == len(paths) and all(one is path.bead for one, path in zip(rows.beads, paths, strict=True))
-    assert facts(rows, len(rows) - 2) == told and facts(rows, 0) != told  # as when the bead was read alone
+    assert len(rows.beads) == len(paths) and all(
+        one is path.bead for one, path in zip(rows.beads, paths, strict=True)
+    )
+    assert (
+        facts(rows, len(rows) - 2) == told and facts(rows, 0) != told
+    )  # as when the bead was read alone
     assert margin.shape == (len(rows),) and 0.0 < margin.min() < margin.max() <= 100.0
 
 
@@ -117,7 +123,9 @@ def test_a_document_made_without_a_window_shows_its_path(person, root, tmp_path)
 def test_directions_and_infeasible_points_are_drawn_on_demand(person, hemisphere, no_remedies):
     document = hemisphere.Document
     cell = api.make_cell(document, limits="paper")
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=5), cell
+    )
 
     def pixels(colour):
         return int((np.abs(person.picture() - np.array(colour)).max(axis=1) < 25).sum())

@@ -21,7 +21,17 @@ from freecad_am.gui.new_job import proposal as job_proposal
 from freecad_am.gui.picking.picking import Pick
 from freecad_am.objects.job_group import is_group
 
-TOOLS = ("NewJob", "Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Toolpath", "JointPath", "Program")
+TOOLS = (
+    "NewJob",
+    "Cell",
+    "Feature",
+    "WallOnPart",
+    "Solid",
+    "SolidsOnHub",
+    "Toolpath",
+    "JointPath",
+    "Program",
+)
 EARLIER = Path(__file__).parent / "data" / "earlier.FCStd"
 
 
@@ -29,7 +39,10 @@ EARLIER = Path(__file__).parent / "data" / "earlier.FCStd"
 def job(hemisphere):
     """The document of a job of few layers."""
     doc = hemisphere.Document
-    cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+    cell, feature = (
+        api.make_cell(doc, limits="paper"),
+        api.make_feature(doc, hemisphere, layer_height=15),
+    )
     toolpath = api.make_toolpath(doc, feature, cell)
     api.make_program(doc, api.make_joint_path(doc, toolpath, cell), name="CUP")
     return doc
@@ -51,14 +64,21 @@ def use_everything(person, doc, renewed=None):
         menu = person.widgets.QMenu()
         obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, menu)
         for action in menu.actions():
-            wanted = ["RoboticAM_MenuSimulate", *["RoboticAM_MenuRenew"] * (obj in renewed)]  # which is a step of undo
+            wanted = [
+                "RoboticAM_MenuSimulate",
+                *["RoboticAM_MenuRenew"] * (obj in renewed),
+            ]  # which is a step of undo
             if action.objectName() in wanted and action.isEnabled():
                 action.trigger()
                 person.idle(0.1)
         for name in ("Colouring", "ShowMachine"):
             if hasattr(obj.ViewObject, name):
                 value = getattr(obj.ViewObject, name)
-                values = obj.ViewObject.getEnumerationsOfProperty(name) if isinstance(value, str) else [True, False]
+                values = (
+                    obj.ViewObject.getEnumerationsOfProperty(name)
+                    if isinstance(value, str)
+                    else [True, False]
+                )
                 for one in [*values, value]:
                     setattr(obj.ViewObject, name, one)
     person.gui.runCommand("RoboticAM_Path")
@@ -74,7 +94,9 @@ def test_a_deleted_part_is_missing_everywhere_and_comes_back(person, job):
     asked = person.will_answer("Yes")
     person.gui.runCommand("Std_Delete")
     person.idle(0.3)
-    assert len(asked) == 1 and "Feature" in asked[0]  # FreeCAD's own question, which names what needs it
+    assert (
+        len(asked) == 1 and "Feature" in asked[0]
+    )  # FreeCAD's own question, which names what needs it
     assert job.Feature.Status == "failed" and "Source is missing" in job.Feature.Message
     job.recompute()
     assert statuses(job) == ["up to date", *["failed"] * 4]
@@ -167,7 +189,9 @@ def test_files_and_folders_that_cannot_be_written(person, job, tmp_path, monkeyp
         (Path(App.getTempPath()) / "no folder").write_text("a file", encoding="utf-8")
         unwritable = str(Path(App.getTempPath()) / "no folder")  # to root, too
         monkeypatch.setattr(
-            person.widgets.QFileDialog, "getExistingDirectory", staticmethod(lambda *_: os.path.join(unwritable, "out"))
+            person.widgets.QFileDialog,
+            "getExistingDirectory",
+            staticmethod(lambda *_: os.path.join(unwritable, "out")),
         )
         person.double_click(doc.Program)
         panel = person.panel("RoboticAM_ProgramText")
@@ -214,13 +238,23 @@ def test_closed_panels_leave_nothing_behind(person, job, coarse):
     def dead():
         """Their types: who has them has the rest of their panel."""
         held = [*(one() for one in old), *wrappers()]
-        return [type(obj).__name__ for obj in held if obj is not None and not person.qt.isValid(obj)]
+        return [
+            type(obj).__name__ for obj in held if obj is not None and not person.qt.isValid(obj)
+        ]
 
     def press(name):
         """Not by what the main window finds, which it keeps."""
         wanted = getattr(person.widgets.QDialogButtonBox, name)
-        boxes = [box for box in person.widgets.QApplication.allWidgets() if isinstance(box, person.widgets.QDialogButtonBox)]
-        next(box.button(wanted) for box in boxes if box.isVisible() and box.button(wanted) is not None).click()
+        boxes = [
+            box
+            for box in person.widgets.QApplication.allWidgets()
+            if isinstance(box, person.widgets.QDialogButtonBox)
+        ]
+        next(
+            box.button(wanted)
+            for box in boxes
+            if box.isVisible() and box.button(wanted) is not None
+        ).click()
         person.idle()
 
     person.idle(0.5)
@@ -278,7 +312,9 @@ def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monke
 
 
 def test_a_machine_file_that_is_gone(person, hemisphere, coarse, tmp_path, monkeypatch):
-    content = json.loads((machines.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
+    content = json.loads(
+        (machines.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
+    )
     content["id"] = "mine"
     from freecad_am.objects import user_machines
 
@@ -296,7 +332,9 @@ def test_a_machine_file_that_is_gone(person, hemisphere, coarse, tmp_path, monke
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     person.idle(0.5)
-    assert person.field(person.panel("RoboticAM_NewJob"), "Machine").currentText() == "mine"  # as the cell before
+    assert (
+        person.field(person.panel("RoboticAM_NewJob"), "Machine").currentText() == "mine"
+    )  # as the cell before
     person.press("Ok")
     assert "mine" in person.panel_error(person.panel("RoboticAM_NewJob"))
     person.press("Cancel")
@@ -384,12 +422,16 @@ def test_undo_and_redo_across_recomputes(person, job):
     job.undo()
     person.idle()
     job.recompute()
-    assert [obj.Key for obj in api.stages_of(job)] == keys[0] and statuses(job) == ["up to date"] * 5
+    assert [obj.Key for obj in api.stages_of(job)] == keys[0] and statuses(job) == [
+        "up to date"
+    ] * 5
     for k in (1, 2):
         job.redo()
         person.idle()
         job.recompute()
-        assert [obj.Key for obj in api.stages_of(job)] == keys[k] and statuses(job) == ["up to date"] * 5
+        assert [obj.Key for obj in api.stages_of(job)] == keys[k] and statuses(job) == [
+            "up to date"
+        ] * 5
     assert len(api.result(job.Toolpath).layers) == job.Toolpath.Layers
     use_everything(person, job, renewed=api.stages_of(job))
 
@@ -400,10 +442,20 @@ def test_a_document_of_an_earlier_version(person, tmp_path):
     shutil.copy(EARLIER, path)
     doc = App.openDocument(path)
     person.idle(0.5)
-    assert [obj.Proxy.kind for obj in api.stages_of(doc)] == ["cell", "feature", "toolpath", "joint path", "program"]
+    assert [obj.Proxy.kind for obj in api.stages_of(doc)] == [
+        "cell",
+        "feature",
+        "toolpath",
+        "joint path",
+        "program",
+    ]
     with zipfile.ZipFile(EARLIER) as file:
-        named = set(re.findall(r'module="(freecad_am\.gui\.[^"]+)"', file.read("GuiDocument.xml").decode()))
-    assert len(named) == 5 and named <= sys.modules.keys()  # view providers are found, under whatever name they had
+        named = set(
+            re.findall(r'module="(freecad_am\.gui\.[^"]+)"', file.read("GuiDocument.xml").decode())
+        )
+    assert (
+        len(named) == 5 and named <= sys.modules.keys()
+    )  # view providers are found, under whatever name they had
     assert len(api.result(doc.Toolpath).layers) == doc.Toolpath.Layers > 0
     use_everything(person, doc)
     doc.recompute()

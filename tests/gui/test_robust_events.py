@@ -20,7 +20,10 @@ DOCKS = ("Path", "Plots", "SpinMap", "Simulate")
 def job(person, hemisphere):
     """The document of a job of few layers, in its group."""
     doc = hemisphere.Document
-    cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+    cell, feature = (
+        api.make_cell(doc, limits="paper"),
+        api.make_feature(doc, hemisphere, layer_height=15),
+    )
     toolpath = api.make_toolpath(doc, feature, cell)
     api.make_program(doc, api.make_joint_path(doc, toolpath, cell), name="CUP")
     grouped(doc, "Job of a cup", api.stages_of(doc))
@@ -32,8 +35,11 @@ def statuses(doc):
 
 
 def docks(person):
-    return [dock for dock in person.present(person.widgets.QDockWidget)
-            if dock.objectName().startswith("RoboticAM") and dock.isVisible()]
+    return [
+        dock
+        for dock in person.present(person.widgets.QDockWidget)
+        if dock.objectName().startswith("RoboticAM") and dock.isVisible()
+    ]
 
 
 @pytest.fixture
@@ -57,7 +63,10 @@ def focus(person, hand):
 
 
 def test_undo_and_redo_of_all_stages_under_open_docks(person, hand, watched):
-    names, keys = [obj.Name for obj in api.stages_of(watched)], [obj.Key for obj in api.stages_of(watched)]
+    names, keys = (
+        [obj.Name for obj in api.stages_of(watched)],
+        [obj.Key for obj in api.stages_of(watched)],
+    )
     assert len(docks(person)) >= 3
     steps = watched.UndoCount
     for _ in range(steps):
@@ -72,7 +81,9 @@ def test_undo_and_redo_of_all_stages_under_open_docks(person, hand, watched):
         person.idle(0.3)
     assert [obj.Name for obj in api.stages_of(watched)] == names
     watched.recompute()
-    assert [obj.Key for obj in api.stages_of(watched)] == keys and set(statuses(watched)) == {"up to date"}
+    assert [obj.Key for obj in api.stages_of(watched)] == keys and set(statuses(watched)) == {
+        "up to date"
+    }
     person.idle(0.5)
 
 
@@ -116,7 +127,11 @@ def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatc
         person.gui.Selection.addSelection(doc.Name, part.Name)
     person.click("RoboticAM_SolidsOnHub")
     panel = person.panel("RoboticAM_DevelopableFeature")
-    person.until(lambda: [one for one in threading.enumerate() if one.name == "Kernel process"], "the preview to begin", 20)
+    person.until(
+        lambda: [one for one in threading.enumerate() if one.name == "Kernel process"],
+        "the preview to begin",
+        20,
+    )
     App.newDocument("Other")
     App.closeDocument(doc.Name)
     person.idle(0.5)
@@ -124,7 +139,11 @@ def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatc
         person.press("Cancel")
     person.panel_closed()
     del panel
-    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the work to end", 20)
+    person.until(
+        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        "the work to end",
+        20,
+    )
     assert len(kernel_process._idle) <= 1 and not kernel_process._unable
 
 
@@ -153,10 +172,14 @@ def test_a_preview_after_the_kernel_process_has_left(person, monkeypatch):
         person.click("RoboticAM_WallOnPart")
         panel = person.panel("RoboticAM_SurfaceFeature")
         note = person.field(panel, "preview")
-        person.until(lambda: note.isVisible() and note.text().startswith("First layer: "), "the preview", 60)
+        person.until(
+            lambda: note.isVisible() and note.text().startswith("First layer: "), "the preview", 60
+        )
         person.press("Cancel")
         person.panel_closed()
-        return person.until(lambda: [process.popen for process in kernel_process._idle], "the kernel to be free", 20)
+        return person.until(
+            lambda: [process.popen for process in kernel_process._idle], "the kernel to be free", 20
+        )
 
     before = previewed()
     for popen in before:
@@ -194,7 +217,11 @@ def test_a_job_copied_by_keys_into_another_document(person, hand, job):
     person.idle(0.5)
     timer.stop()
     other.recompute()
-    assert len(asked) <= 1 and len(api.stages_of(other)) == 5 and set(statuses(other)) == {"up to date"}
+    assert (
+        len(asked) <= 1
+        and len(api.stages_of(other)) == 5
+        and set(statuses(other)) == {"up to date"}
+    )
     assert all(link.Document == other for obj in api.stages_of(other) for link in obj.OutList)
     App.closeDocument(job.Name)
     person.idle(0.3)

@@ -29,7 +29,13 @@ def test_a_sample_is_there_at_once(person, root, tmp_path, monkeypatch, name):
     assert [(stage.Proxy.kind, stage.Status) for stage in stages] == [
         (stage.Proxy.kind, "up to date") for stage in stages
     ]
-    assert {stage.Proxy.kind for stage in stages} == {"cell", "feature", "toolpath", "joint path", "program"}
+    assert {stage.Proxy.kind for stage in stages} == {
+        "cell",
+        "feature",
+        "toolpath",
+        "joint path",
+        "program",
+    }
     # FreeCAD 1.0 touches imported shapes of earlier versions, for its names of faces; our stages stay as they are
     assert computed == [] and [stage.Label for stage in stages if "Touched" in stage.State] == []
     assert document.Toolpath.Layers == len(api.result(document.Toolpath).layers) == SAMPLES[name]
@@ -44,5 +50,12 @@ def test_a_sample_is_there_at_once(person, root, tmp_path, monkeypatch, name):
 @pytest.mark.parametrize("name", SAMPLES)
 def test_a_sample_tells_nothing_of_where_it_was_made(root, name):
     with zipfile.ZipFile(root / "resources" / "examples" / "samples" / f"{name}.FCStd") as archive:
-        text = b"".join(archive.read(entry) for entry in archive.namelist() if entry.endswith(".xml"))
-    assert b"/tmp" not in text and b"/root" not in text and b"/work" not in text and b"/home" not in text
+        text = b"".join(
+            archive.read(entry) for entry in archive.namelist() if entry.endswith(".xml")
+        )
+    assert (
+        b"/tmp" not in text
+        and b"/root" not in text
+        and b"/work" not in text
+        and b"/home" not in text
+    )

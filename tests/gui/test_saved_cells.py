@@ -10,11 +10,19 @@ from freecad_am.objects.fields import saved_cells
 from tests.gui.test_flow import entries
 
 
-def test_a_saved_cell_is_chosen_by_name_in_new_job(person, hemisphere, coarse, no_remedies, monkeypatch, tmp_path):
+def test_a_saved_cell_is_chosen_by_name_in_new_job(
+    person, hemisphere, coarse, no_remedies, monkeypatch, tmp_path
+):
     doc = hemisphere.Document
     monkeypatch.setattr(saved_cells, "own_folder", lambda: str(tmp_path / "cells"))
-    cell = api.make_cell(doc, machine="kuka-kr16-2", setup="tool-on-robot", deposition_point=(1000, 0, 300, 0, 0, 30),
-                         branch="auto", nozzle_tool=(0, 0, 150, 0, 0, 0))
+    cell = api.make_cell(
+        doc,
+        machine="kuka-kr16-2",
+        setup="tool-on-robot",
+        deposition_point=(1000, 0, 300, 0, 0, 30),
+        branch="auto",
+        nozzle_tool=(0, 0, 150, 0, 0, 0),
+    )
     wanted = api.result(cell)
     asked = []
 
@@ -47,7 +55,10 @@ def test_a_frame_is_typed_as_its_pendant_shows_it(person, hemisphere):
     doc = hemisphere.Document
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
-    choice, line = person.field(panel, "DepositionPointPendant"), person.field(panel, "DepositionPointShown")
+    choice, line = (
+        person.field(panel, "DepositionPointPendant"),
+        person.field(panel, "DepositionPointShown"),
+    )
     assert not line.isVisible()
     choice.setCurrentIndex(choice.findData("kuka"))
     assert line.isVisible() and line.placeholderText() == "X Y Z A B C"
@@ -57,7 +68,9 @@ def test_a_frame_is_typed_as_its_pendant_shows_it(person, hemisphere):
     x, y, z, *shown = map(float, line.text().split())
     # R = Rz(90) Ry(30): half angles of 45 and 15 deg
     wanted = Rotation.from_euler("ZY", [90.0, 30.0], degrees=True)
-    assert (x, y, z) == (1000.0, -20.0, 300.0) and np.allclose(shown, np.roll(wanted.as_quat(), 1), atol=1e-6)
+    assert (x, y, z) == (1000.0, -20.0, 300.0) and np.allclose(
+        shown, np.roll(wanted.as_quat(), 1), atol=1e-6
+    )
     person.type(panel, "DepositionPointShown", "1000 -20 300 0.9 0.9 0 0")
     line.editingFinished.emit()
     assert "quaternion" in line.toolTip()  # and the fields stay as they are
@@ -65,4 +78,5 @@ def test_a_frame_is_typed_as_its_pendant_shows_it(person, hemisphere):
     person.panel_closed()
     pose = api.result(doc.Cell).deposition_point
     assert np.allclose(pose[:3], (1000.0, -20.0, 300.0)) and np.allclose(
-        Rotation.from_euler("XYZ", pose[3:]).as_matrix(), wanted.as_matrix(), atol=1e-9)
+        Rotation.from_euler("XYZ", pose[3:]).as_matrix(), wanted.as_matrix(), atol=1e-9
+    )

@@ -18,9 +18,14 @@ def stages(person, hemisphere):
     doc = hemisphere.Document
     made = []
     for name in ("First", "Second"):
-        cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+        cell, feature = (
+            api.make_cell(doc, limits="paper"),
+            api.make_feature(doc, hemisphere, layer_height=15),
+        )
         toolpath = api.make_toolpath(doc, feature, cell)
-        made.append(dict(zip(KINDS, (cell, feature, toolpath, api.make_joint_path(doc, toolpath, cell)))))
+        made.append(
+            dict(zip(KINDS, (cell, feature, toolpath, api.make_joint_path(doc, toolpath, cell))))
+        )
         for kind, stage in made[-1].items():
             stage.Label = f"{name} {kind}"
     person.open_workbench()
@@ -30,7 +35,10 @@ def stages(person, hemisphere):
 @pytest.fixture
 def jobs(stages):
     """The groups of the two jobs."""
-    return [grouped(of["cell"].Document, name, list(of.values())) for name, of in zip(("First", "Second"), stages)]
+    return [
+        grouped(of["cell"].Document, name, list(of.values()))
+        for name, of in zip(("First", "Second"), stages)
+    ]
 
 
 @pytest.fixture
@@ -58,7 +66,10 @@ def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
     name = jobs[which].Label
     person.select(jobs[which])
     person.click("RoboticAM_ExportPath")
-    assert person.field(person.panel("RoboticAM_ExportPath"), "Path").currentText() == f"{name} joint path"
+    assert (
+        person.field(person.panel("RoboticAM_ExportPath"), "Path").currentText()
+        == f"{name} joint path"
+    )
     person.press("Cancel")
     person.panel_closed()
     person.click("RoboticAM_JointPath")
@@ -74,8 +85,14 @@ def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
     person.panel_closed()
     person.click("RoboticAM_Plots")
     panel = person.panel(plots.NAME)
-    person.until(lambda: person.field(panel, "plotted").currentText() == f"{name} joint path", "the path of the job", 5)
-    person.until(lambda: plots._dock.building.worker is None and plots._dock.canvas.ready, "the picture", 20)
+    person.until(
+        lambda: person.field(panel, "plotted").currentText() == f"{name} joint path",
+        "the path of the job",
+        5,
+    )
+    person.until(
+        lambda: plots._dock.building.worker is None and plots._dock.canvas.ready, "the picture", 20
+    )
     panel.close()
     person.idle()
 
@@ -96,12 +113,16 @@ def tools_take(person, stage, kind, name, opened):
     person.click("RoboticAM_Simulate")
     person.click("RoboticAM_SpinMap")
     assert opened == [f"{name} joint path"] * 2
-    assert inputs_of(person, "RoboticAM_Program", "RoboticAM_Program", "JointPath") == [f"{name} joint path"]
+    assert inputs_of(person, "RoboticAM_Program", "RoboticAM_Program", "JointPath") == [
+        f"{name} joint path"
+    ]
     shown = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
     assert shown == [f"{name} toolpath", f"{name} cell"]
     person.click("RoboticAM_ExportPath")
     path = "toolpath" if kind == "toolpath" else "joint path"
-    assert person.field(person.panel("RoboticAM_ExportPath"), "Path").currentText() == f"{name} {path}"
+    assert (
+        person.field(person.panel("RoboticAM_ExportPath"), "Path").currentText() == f"{name} {path}"
+    )
     person.press("Cancel")
     person.panel_closed()
 
@@ -152,7 +173,9 @@ def test_tools_tell_what_the_job_lacks_and_take_no_other(person, stages, jobs, o
 
 
 @pytest.mark.parametrize("which, name, post", [(0, "PART", "staubli"), (1, "BALL", "fanuc")])
-def test_a_program_is_proposed_for_part_and_machine_of_its_job(person, stages, jobs, which, name, post):
+def test_a_program_is_proposed_for_part_and_machine_of_its_job(
+    person, stages, jobs, which, name, post
+):
     first, second = stages
     first["feature"].Source[0].Label = "part"
     ball = first["cell"].Document.addObject("Part::Sphere", "Ball")
@@ -212,5 +235,8 @@ def test_a_new_job_is_seen_alone(person, hemisphere, coarse):
         person.panel_closed()
         made.append([stage for stage in api.stages_of(doc) if stage not in before])
     seen = [[stage.Name for stage in stages if stage.ViewObject.Visibility] for stages in made]
-    assert seen[0] == [] and {doc.getObject(name).Proxy.kind for name in seen[1]} >= {"cell", "joint path"}
+    assert seen[0] == [] and {doc.getObject(name).Proxy.kind for name in seen[1]} >= {
+        "cell",
+        "joint path",
+    }
     assert other.ViewObject.Visibility is False  # as of any job: the path lies in its surface

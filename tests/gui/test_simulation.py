@@ -54,11 +54,16 @@ def opened(person, path):
 
 def where(view):
     """The camera but for its clipping planes, which follow what is to be seen."""
-    return [line for line in view.getCamera().splitlines() if "Distance" not in line or "focal" in line]
+    return [
+        line for line in view.getCamera().splitlines() if "Distance" not in line or "focal" in line
+    ]
 
 
 def names_of(graph):
-    return [graph.getChild(index).getTypeId().getName().getString() for index in range(graph.getNumChildren())]
+    return [
+        graph.getChild(index).getTypeId().getName().getString()
+        for index in range(graph.getNumChildren())
+    ]
 
 
 @pytest.mark.parametrize("setup", CELLS)
@@ -88,7 +93,10 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
         tip, axis = cell.tip_in_part(flange[None])
         part, nozzle = matrix(scene.part), matrix(scene.nozzle)
         in_part = frames.inverse(part) @ nozzle
-        assert np.abs(in_part[:3, 3] - tip[0]).max() < 2e-3 and np.abs(in_part[:3, 2] - axis[0]).max() < 1e-5
+        assert (
+            np.abs(in_part[:3, 3] - tip[0]).max() < 2e-3
+            and np.abs(in_part[:3, 2] - axis[0]).max() < 1e-5
+        )
         if motion.deposit[int(state.row)]:  # in rapid moves the tip goes where the joints take it
             assert np.linalg.norm(tip[0] - state.position) < 0.2
         base, last = matrix(scene.machine.transforms[0]), matrix(scene.machine.transforms[-1])
@@ -98,9 +106,14 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
         deposited = int(motion.deposit[: row if not state.standing else row + 1].sum())
         assert scene.deposit.end == deposited
         bars = person.field(panel, "joints")
-        assert all(bars.texts(axis)[1].endswith(("°", " mm", "∞")) for axis in range(len(bars.names)))
+        assert all(
+            bars.texts(axis)[1].endswith(("°", " mm", "∞")) for axis in range(len(bars.names))
+        )
         assert np.abs(bars.values * cell.machine.unit_values - state.joints).max() < 1e-12
-        assert np.allclose(bars.margins * cell.machine.unit_values, cell.limits.margin(state.joints)[: len(bars.margins)])
+        assert np.allclose(
+            bars.margins * cell.machine.unit_values,
+            cell.limits.margin(state.joints)[: len(bars.margins)],
+        )
         seen.append((part, nozzle))
     parts, nozzles = (np.array(column) for column in zip(*seen))
     still = {"part-on-robot": nozzles, "tool-on-robot": parts}.get(setup)
@@ -133,7 +146,9 @@ def test_it_leaves_the_view_and_the_document_as_they_were(person, hemisphere):
     assert docks._open == [] and names_of(graph) == nodes
     assert where(view) == camera
     assert {obj.Name: obj.ViewObject.Visibility for obj in doc.Objects} == visible
-    assert {obj.Name: obj.ViewObject.SwitchNode.whichChild.getValue() for obj in doc.Objects} == switches
+    assert {
+        obj.Name: obj.ViewObject.SwitchNode.whichChild.getValue() for obj in doc.Objects
+    } == switches
     assert doc.UndoCount == undo and person.gui.activeDocument().Modified == modified
     after = person.folder / "after.png"
     view.saveImage(str(after), 500, 400, "White")
@@ -166,8 +181,12 @@ def test_steps_go_by_points_and_layers(person, hemisphere):
     assert simulation.player.time < times.arrive[row]
     place = person.field(panel, "place").text()
     layers = simulation.run.times.layers
-    assert place.startswith(f"Layer {motion.layer[simulation.player.row]} (0 to {layers[-1]}), bead ")
-    texts = [label.text() for label in person.field(panel, "totals").findChildren(person.widgets.QLabel)]
+    assert place.startswith(
+        f"Layer {motion.layer[simulation.player.row]} (0 to {layers[-1]}), bead "
+    )
+    texts = [
+        label.text() for label in person.field(panel, "totals").findChildren(person.widgets.QLabel)
+    ]
     sums = simulation.run.totals
     assert f"{sums.mass:.1f} g" in texts and f"{sums.length / 1000:.3f} m" in texts
     assert sums.time == pytest.approx(times.total) and sums.wait_time > 4.0
@@ -182,7 +201,10 @@ def violated(path):
     far = rows[60:80]
     joints[far, 4] = np.radians(136.0)
     joints[rows[200:], 5] += 40.0
-    path.Proxy._kept = (path.Key, Planned(value.joint_path, dataclasses.replace(motion, joints=joints)))
+    path.Proxy._kept = (
+        path.Key,
+        Planned(value.joint_path, dataclasses.replace(motion, joints=joints)),
+    )
     return far, rows[200]
 
 
@@ -211,7 +233,9 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     person.idle(0.3)
     person.screenshot("simulation_past_limit")
     touching = int(simulation.run.watch.touching[far[5]])  # so far bent the forearm is in the way
-    assert simulation.scene.machine.bad.tolist() == [k in (5, touching) for k in range(7)] and touching in (-1, 4)
+    assert simulation.scene.machine.bad.tolist() == [
+        k in (5, touching) for k in range(7)
+    ] and touching in (-1, 4)
     assert person.field(panel, "joints").bad.tolist() == [False] * 4 + [True, False]
     assert person.field(panel, "joints").margins[4] == pytest.approx(-1.0)
     assert red_pixels(person) > calm + 60
@@ -232,7 +256,10 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     person.screenshot("simulation_too_fast")
     kept = achievable_feed(simulation.run.motion, simulation.run.cell.machine.max_speed)
     assert kept.slowed[fast] and kept.axis[fast] == 5
-    assert person.field(panel, "speed").text() == f"{kept.achieved[fast]:.3g} mm/s instead of {kept.asked[fast]:.3g} mm/s"
+    assert (
+        person.field(panel, "speed").text()
+        == f"{kept.achieved[fast]:.3g} mm/s instead of {kept.asked[fast]:.3g} mm/s"
+    )
     assert simulation.scene.machine.bad[6]
     # on the path, past the limit red, too fast orange
     on_path = np.flatnonzero(simulation.run.motion.deposit)
@@ -270,7 +297,12 @@ def test_what_is_near_a_singularity_turns_red(person, hemisphere):
     said = []
     for _ in run.watch.findings:  # each at its worst place
         person.field(panel, "next_finding").click()
-        said.append((bool(near[simulation.player.row]), "Near a singularity" in person.field(panel, "finding").text()))
+        said.append(
+            (
+                bool(near[simulation.player.row]),
+                "Near a singularity" in person.field(panel, "finding").text(),
+            )
+        )
     assert (True, True) in said and (False, True) not in said
 
 
@@ -328,39 +360,61 @@ def test_a_program_that_resumes_plays_only_what_it_runs(person, hemisphere):
     assert run.motion.layer.min() == 2 and run.times.layers[0] == 2
     whole = run_of(path)
     assert run.totals.length == pytest.approx(
-        sum(bead.length for layer, _, bead in api.result(path.Toolpath) if layer >= 2))
+        sum(bead.length for layer, _, bead in api.result(path.Toolpath) if layer >= 2)
+    )
     assert run.totals.length < whole.totals.length
-    program.ViewObject.Proxy.doubleClicked(program.ViewObject)  # the text, and under it what this part of the job takes
+    program.ViewObject.Proxy.doubleClicked(
+        program.ViewObject
+    )  # the text, and under it what this part of the job takes
     window = person.panel("RoboticAM_ProgramText")
     sums = person.field(window, "sums").text()
-    assert f"Deposit: {run.totals.length / 1000:.3f} m" in sums and f"Mass: {run.totals.mass:.1f} g" in sums
+    assert (
+        f"Deposit: {run.totals.length / 1000:.3f} m" in sums
+        and f"Mass: {run.totals.mass:.1f} g" in sums
+    )
     person.screenshot("program_sums")
     person.field(window, "close").click()
     panel, simulation = opened(person, program)
     assert simulation.run.title == program.Label
-    assert person.panel("RoboticAM_Simulation").windowTitle() == f"Simulation of {program.Label} ({program.Document.Label})"
+    assert (
+        person.panel("RoboticAM_Simulation").windowTitle()
+        == f"Simulation of {program.Label} ({program.Document.Label})"
+    )
     person.field(panel, "layer_on").click()
     person.screenshot("simulation_program")
 
 
 def test_a_program_of_linear_moves_plays_the_points_they_get(hemisphere):
     doc = hemisphere.Document
-    path = job(hemisphere, machine="staubli-rx60bl", deposition_point=(300, 0, 300, 180, 0, 0), platform_diameter=60,
-               nozzle_length=60)
+    path = job(
+        hemisphere,
+        machine="staubli-rx60bl",
+        deposition_point=(300, 0, 300, 180, 0, 0),
+        platform_diameter=60,
+        nozzle_length=60,
+    )
     run = run_of(api.make_program(doc, path, "LINES", motion="cartesian", post="staubli"))
     planned, toolpath = api.result(path), api.result(path.Toolpath)
     beads = [one.bead for one in planned.joint_path.beads]
-    motion = moving_tool.refined_to_chord_error(planned.motion, run.cell, toolpath.chord_error, beads)
+    motion = moving_tool.refined_to_chord_error(
+        planned.motion, run.cell, toolpath.chord_error, beads
+    )
     assert len(run.motion) == len(motion) > len(planned.motion)
-    assert np.array_equal(run.motion.joints, motion.joints) and np.array_equal(run.motion.point, motion.point)
+    assert np.array_equal(run.motion.joints, motion.joints) and np.array_equal(
+        run.motion.point, motion.point
+    )
     whole = run_of(path)
     assert run.totals.length > whole.totals.length  # of the arcs instead of their chords
-    same = [np.flatnonzero((run.motion.position == place).all(axis=1))[-1] for place in whole.motion.position[200:240]]
+    same = [
+        np.flatnonzero((run.motion.position == place).all(axis=1))[-1]
+        for place in whole.motion.position[200:240]
+    ]
     assert np.array_equal(run.watch.condition[same], whole.watch.condition[200:240])
     issue = Issue(WARNING, "X", "seen", 1, 0, 7)
     path.Issues = json.dumps([issue.as_dict()])
     found, told = (
-        next(one for one in made.watch.findings if one.kind == ISSUE) for made in (run_of(path), run_of(doc.Program))
+        next(one for one in made.watch.findings if one.kind == ISSUE)
+        for made in (run_of(path), run_of(doc.Program))
     )
     assert told.row > found.row
     assert np.array_equal(run.motion.position[told.row], whole.motion.position[found.row])
@@ -400,7 +454,11 @@ def test_it_ends_by_itself_when_what_it_plays_goes_or_changes(person, hemisphere
         person.idle(0.2)
     if what != "view":
         assert docks._open == []
-        docs = [dock for dock in person.present(person.widgets.QDockWidget, docks.NAME) if dock.isVisible()]
+        docs = [
+            dock
+            for dock in person.present(person.widgets.QDockWidget, docks.NAME)
+            if dock.isVisible()
+        ]
         assert docs == []
     for one in docks._open:
         one.close()
@@ -421,7 +479,9 @@ def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(perso
     App.newDocument("Empty")
     person.idle()
     person.gui.Selection.clearSelection()
-    person.until(lambda: not person.button("RoboticAM_Simulate").isEnabled(), "the tool to be greyed", 5)
+    person.until(
+        lambda: not person.button("RoboticAM_Simulate").isEnabled(), "the tool to be greyed", 5
+    )
     assert "make a joint path" in person.button("RoboticAM_Simulate").toolTip()
     tool.simulate()  # as a macro may
     assert docks._open == []
@@ -435,7 +495,9 @@ def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphe
     scene, links, times = simulation.scene, simulation.scene.external_links, simulation.run.times
     numbers = [link.link for link in links.links]
     assert {0, 1, 2} <= set(numbers)
-    own = KdlArm(external.load("motoman-motopos-d500"))  # the positioner alone, as its own file has it
+    own = KdlArm(
+        external.load("motoman-motopos-d500")
+    )  # the positioner alone, as its own file has it
     turned, to_face, to_part = [], [], []
     for share in (0.1, 0.3, 0.45, 0.7, 0.9):
         person.field(panel, "time").setValue(round(share * fields.STEPS))

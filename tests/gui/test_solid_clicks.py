@@ -33,16 +33,24 @@ def test_the_panel_previews_and_makes_a_feature(person):
     person.press("Ok")
     person.panel_closed()
     (feature,) = api.stages_of(doc, "feature")
-    assert (feature.Status, feature.Height.Value, feature.Source[0]) == ("up to date", pytest.approx(60.0), part)
+    assert (feature.Status, feature.Height.Value, feature.Source[0]) == (
+        "up to date",
+        pytest.approx(60.0),
+        part,
+    )
 
 
 def elbow(doc):
     up, over = App.Vector(0, 0, 1), App.Vector(30 * 0.5**0.5, 0, 30 - 30 * 0.5**0.5)
-    bend = Part.Arc(App.Vector(), App.Vector(30, 0, 0) - App.Vector(over.x, 0, -over.x), App.Vector(30, 0, 30)).toShape()
+    bend = Part.Arc(
+        App.Vector(), App.Vector(30, 0, 0) - App.Vector(over.x, 0, -over.x), App.Vector(30, 0, 30)
+    ).toShape()
     spine = doc.addObject("Part::Feature", "Spine")
     spine.Shape = bend
     part = doc.addObject("Part::Feature", "Elbow")
-    part.Shape = Part.Wire(bend).makePipeShell([Part.Wire(Part.makeCircle(8, App.Vector(), up))], True, False)
+    part.Shape = Part.Wire(bend).makePipeShell(
+        [Part.Wire(Part.makeCircle(8, App.Vector(), up))], True, False
+    )
     doc.recompute()
     return part, spine
 
@@ -61,7 +69,9 @@ def test_layers_along_a_guide_that_is_picked_or_found(person):
     person.field(panel, "PickGuide").click()
     person.select(spine)
     guide = person.field(panel, "Guide")
-    person.until(lambda: "Spine" in guide.text() and "centre line" not in told.text(), "the guide", 30)
+    person.until(
+        lambda: "Spine" in guide.text() and "centre line" not in told.text(), "the guide", 30
+    )
     person.screenshot("solid_panel_guide")
     person.press("Ok")
     person.panel_closed()
@@ -82,14 +92,22 @@ def test_faces_that_the_first_layer_lies_on_are_picked_and_taken_back(person):
     person.gui.Selection.addSelection(part, "Face1")
     chosen = person.field(panel, "StartFaces")
     person.until(lambda: "Face1" in chosen.text(), "the face", 10)
-    person.until(lambda: "have no start faces" in all_text(person, panel), "that planes have none", 10)
+    person.until(
+        lambda: "have no start faces" in all_text(person, panel), "that planes have none", 10
+    )
     person.choose(panel, "Layers", "geodesic")
-    person.until(lambda: "have no start faces" not in all_text(person, panel), "that curved layers have", 30)
+    person.until(
+        lambda: "have no start faces" not in all_text(person, panel), "that curved layers have", 30
+    )
     person.screenshot("solid_panel_start")
     person.press("Ok")
     person.panel_closed()
     (feature,) = api.stages_of(doc, "feature")
-    assert (feature.Status, feature.StartFaces, feature.Layers) == ("up to date", (part, ["Face1"]), "geodesic")
+    assert (feature.Status, feature.StartFaces, feature.Layers) == (
+        "up to date",
+        (part, ["Face1"]),
+        "geodesic",
+    )
     person.double_click(feature)
     panel = person.panel("RoboticAM_SolidFeature")
     person.field(panel, "ClearStartFaces").click()
@@ -100,7 +118,9 @@ def test_faces_that_the_first_layer_lies_on_are_picked_and_taken_back(person):
 
 def all_text(person, panel):
     """What the labels say that are seen."""
-    return " ".join(label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible())
+    return " ".join(
+        label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible()
+    )
 
 
 def test_new_job_fills_what_is_no_wall(person, coarse):
@@ -114,7 +134,9 @@ def test_new_job_fills_what_is_no_wall(person, coarse):
     assert person.field(panel, "Kind").currentText() == "Solids in plane layers"
     for name in ("Face1", "Face2"):
         person.gui.Selection.addSelection(doc.Name, part.Name, name)
-    person.until(lambda: "so they are covered" in reason.text(), "faces to be proposed for cladding", 30)
+    person.until(
+        lambda: "so they are covered" in reason.text(), "faces to be proposed for cladding", 30
+    )
     assert person.field(panel, "Kind").currentText() == "Cladding of faces"
     assert person.field(panel, "Source").text() == f"{part.Label} Face1 Face2"
     person.press("Cancel")
@@ -124,12 +146,18 @@ def test_new_job_fills_what_is_no_wall(person, coarse):
 def test_a_mesh_is_proposed_to_be_filled(person):
     doc = App.newDocument("Mesh")
     scan = doc.addObject("Mesh::Feature", "Scan")
-    scan.Mesh = MeshPart.meshFromShape(Shape=Part.makeBox(20, 20, 20), LinearDeflection=1, AngularDeflection=1)
+    scan.Mesh = MeshPart.meshFromShape(
+        Shape=Part.makeBox(20, 20, 20), LinearDeflection=1, AngularDeflection=1
+    )
     doc.recompute()
     person.select(scan)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    person.until(lambda: "is a mesh, which is filled" in person.field(panel, "reason").text(), "the proposal", 20)
+    person.until(
+        lambda: "is a mesh, which is filled" in person.field(panel, "reason").text(),
+        "the proposal",
+        20,
+    )
     person.press("Cancel")
     person.panel_closed()
 
@@ -143,17 +171,26 @@ def test_the_slider_shows_what_leans_out_before_anything_is_sliced(person):
     doc = App.newDocument("Overhang")
     part = doc.addObject("Part::Feature", "Table")
     foot = Part.makeBox(20, 20, 20, App.Vector(-10, -10, 0))
-    half = 10 + 10 * 3 ** -0.5 * 1.0
-    low, high = (Part.makePolygon([App.Vector(*place) for place in (
-        (-r, -r, z), (r, -r, z), (r, r, z), (-r, r, z), (-r, -r, z))]) for r, z in ((10, 20), (half, 30)))
-    part.Shape = foot.fuse([Part.makeLoft([low, high], True, True), Part.makeBox(60, 60, 5, App.Vector(-30, -30, 30))])
+    half = 10 + 10 * 3**-0.5 * 1.0
+    low, high = (
+        Part.makePolygon(
+            [
+                App.Vector(*place)
+                for place in ((-r, -r, z), (r, -r, z), (r, r, z), (-r, r, z), (-r, -r, z))
+            ]
+        )
+        for r, z in ((10, 20), (half, 30))
+    )
+    part.Shape = foot.fuse(
+        [Part.makeLoft([low, high], True, True), Part.makeBox(60, 60, 5, App.Vector(-30, -30, 30))]
+    )
     doc.recompute()
     person.select(part)
     person.click("RoboticAM_Solid")
     panel = person.panel("RoboticAM_SolidFeature")
     slider, told = person.field(panel, "OverhangAngle"), person.field(panel, "OverhangArea")
-    ceiling = 60 ** 2 - (2 * half) ** 2
-    chamfer = 4 * (10 + half) * 10 / 0.75 ** 0.5
+    ceiling = 60**2 - (2 * half) ** 2
+    chamfer = 4 * (10 + half) * 10 / 0.75**0.5
 
     def area():
         return float(told.text().split(": ")[1].split(" ")[0]) * 100
@@ -172,7 +209,9 @@ def test_the_slider_shows_what_leans_out_before_anything_is_sliced(person):
     assert red(person) > some + 500
     slider.setValue(89)
     assert area() == pytest.approx(ceiling, rel=2e-3)
-    person.type(panel, "Direction", "0 0 -1")  # upside down nothing but the foot's underside is over something
+    person.type(
+        panel, "Direction", "0 0 -1"
+    )  # upside down nothing but the foot's underside is over something
     person.until(lambda: area() == 0.0, "nothing that leans out", 20)
     person.idle(0.3)
     assert red(person) < 0.2 * some  # nothing but marks of FreeCAD's own

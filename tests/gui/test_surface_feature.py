@@ -21,7 +21,9 @@ def on_a_pipe(hemisphere):
     branch = document.addObject("Part::Cylinder", "Branch")
     branch.Radius, branch.Height = 12, 60
     document.recompute()
-    feature = api.make_surface_feature(document, branch, ["Face1"], pipe, layer_height=5, clearance="none")
+    feature = api.make_surface_feature(
+        document, branch, ["Face1"], pipe, layer_height=5, clearance="none"
+    )
     return document, feature
 
 
@@ -30,7 +32,10 @@ def test_a_wall_on_a_substrate_is_shown_and_its_panel_opens(person, hemisphere):
     toolpath = api.make_toolpath(document, feature)
     assert feature.Status == toolpath.Status == "up to date"
     view = feature.ViewObject.Proxy.wall
-    assert view.first.coordinates.point.getNum() > 100 and view.faces.triangles.coordIndex.getNum() > 20
+    assert (
+        view.first.coordinates.point.getNum() > 100
+        and view.faces.triangles.coordIndex.getNum() > 20
+    )
     before = feature.Key
     registry.edit(feature)
     panel = person.panel("RoboticAM_SurfaceFeature")
@@ -64,11 +69,17 @@ def test_the_first_layers_of_any_wall_are_drawn(person):
     """Closed ones join up, open ones do not, and each is a line of its own."""
     turn = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
     ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(12)], axis=1)
-    curves = (FirstCurve(ring, ring, ring, True), FirstCurve(ring[:5] + 3.0, ring[:5], ring[:5], False))
+    curves = (
+        FirstCurve(ring, ring, ring, True),
+        FirstCurve(ring[:5] + 3.0, ring[:5], ring[:5], False),
+    )
     drawn = first_curves(SimpleNamespace(first=curves))
     assert [len(curve) for curve in drawn] == [13, 5]
     assert np.array_equal(drawn[0][-1], ring[0]) and np.array_equal(drawn[1], ring[:5] + 3.0)
     nodes = WallNodes(pickable=True)
     nodes.set_first(drawn)
     for lines in (nodes.first, nodes.hidden):
-        assert list(lines.lines.numVertices.getValues()) == [13, 5] and lines.coordinates.point.getNum() == 18
+        assert (
+            list(lines.lines.numVertices.getValues()) == [13, 5]
+            and lines.coordinates.point.getNum() == 18
+        )

@@ -15,7 +15,10 @@ def job(person, hemisphere):
     """The document of a job of few layers, in its group."""
     doc = hemisphere.Document
     hemisphere.Label = "Cup"
-    cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+    cell, feature = (
+        api.make_cell(doc, limits="paper"),
+        api.make_feature(doc, hemisphere, layer_height=15),
+    )
     toolpath = api.make_toolpath(doc, feature, cell)
     api.make_program(doc, api.make_joint_path(doc, toolpath, cell), name="CUP")
     grouped(doc, "Job of a cup", api.stages_of(doc))
@@ -61,7 +64,12 @@ def click_soon(person, button_of):
         if not isinstance(box, person.widgets.QDialog):
             return
         timer.stop()
-        asked.append(" ".join(str(getattr(box, name, str)()) for name in ("text", "informativeText", "detailedText")))
+        asked.append(
+            " ".join(
+                str(getattr(box, name, str)())
+                for name in ("text", "informativeText", "detailedText")
+            )
+        )
         button = button_of(box)
         place = button.mapToGlobal(button.rect().center())
         subprocess.Popen(["xdotool", "mousemove", str(place.x()), str(place.y()), "click", "1"])
@@ -82,11 +90,17 @@ def yes_by_mouse(person):
 def delete(person, hand, label):
     """Select an object in the tree and press Delete; the questions that were asked, each answered with Yes."""
     hand.click_tree(label)
-    person.until(lambda: [obj.Label for obj in person.gui.Selection.getSelection()] == [label], f"{label} to be selected", 5)
+    person.until(
+        lambda: [obj.Label for obj in person.gui.Selection.getSelection()] == [label],
+        f"{label} to be selected",
+        5,
+    )
     (obj,) = person.gui.Selection.getSelection()
     document, name = obj.Document, obj.Name
     asked = yes_by_mouse(person)
-    for _ in range(3):  # on a busy machine the click may still be at work when the key comes: a person presses it again
+    for _ in range(
+        3
+    ):  # on a busy machine the click may still be at work when the key comes: a person presses it again
         hand.do("key", "Delete")
         end = time.monotonic() + 4.0
         while document.getObject(name) is not None and time.monotonic() < end:
@@ -203,7 +217,9 @@ def test_what_a_macro_puts_into_a_job_stays_and_a_paste_comes_beside_it(person, 
     hand.click_tree(group.Label)
     there = {obj.Name for obj in job.Objects}
     person.gui.runCommand("Std_Paste")
-    (pasted,) = person.until(lambda: [obj for obj in job.Objects if obj.Name not in there], "the copy", 5)
+    (pasted,) = person.until(
+        lambda: [obj for obj in job.Objects if obj.Name not in there], "the copy", 5
+    )
     assert pasted not in group.Group and body in group.Group and len(group.Group) == stages + 1
     group.removeObject(job.Toolpath)
     assert body in group.Group and len(group.Group) == stages
@@ -214,8 +230,12 @@ def test_a_job_pasted_while_it_is_selected_comes_beside_it(person, hand, job):
     group, before = group_of(job), state(job)
     held, names = [obj.Name for obj in group.Group], {obj.Name for obj in job.Objects}
     hand.click_tree(group.Label)
-    asked = click_soon(person, lambda box: box.findChild(person.widgets.QDialogButtonBox).button(
-        person.widgets.QDialogButtonBox.Ok))
+    asked = click_soon(
+        person,
+        lambda box: box.findChild(person.widgets.QDialogButtonBox).button(
+            person.widgets.QDialogButtonBox.Ok
+        ),
+    )
     person.gui.runCommand("Std_Copy")  # asks what goes along
     asked.pop(0).stop()
     person.gui.runCommand("Std_Paste")

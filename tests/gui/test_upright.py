@@ -6,7 +6,11 @@ import pytest
 
 def around(person, panel):
     """The one area that scrolls a panel."""
-    (area,) = [one for one in person.present(person.widgets.QScrollArea) if one.isVisible() and one.isAncestorOf(panel)]
+    (area,) = [
+        one
+        for one in person.present(person.widgets.QScrollArea)
+        if one.isVisible() and one.isAncestorOf(panel)
+    ]
     return area
 
 
@@ -15,7 +19,11 @@ def narrow(person, panel):
     area = around(person, panel)
     area.widget().setMinimumWidth(area.viewport().width() + 40)
     panel.setMinimumHeight(2 * area.viewport().height())
-    person.until(lambda: area.horizontalScrollBar().maximum() > 0 and area.verticalScrollBar().maximum() > 0, "room", 5)
+    person.until(
+        lambda: area.horizontalScrollBar().maximum() > 0 and area.verticalScrollBar().maximum() > 0,
+        "room",
+        5,
+    )
     return area
 
 
@@ -44,10 +52,13 @@ def test_a_new_job_is_as_wide_as_what_is_seen_of_it(person, hand, hemisphere, ma
     person.panel_closed()
 
 
-@pytest.mark.parametrize(("tool", "name", "field"), [
-    ("RoboticAM_NewJob", "RoboticAM_NewJob", "ProgramName"),
-    ("RoboticAM_Feature", "RoboticAM_RevolutionFeature", "LayerHeight"),
-])
+@pytest.mark.parametrize(
+    ("tool", "name", "field"),
+    [
+        ("RoboticAM_NewJob", "RoboticAM_NewJob", "ProgramName"),
+        ("RoboticAM_Feature", "RoboticAM_RevolutionFeature", "LayerHeight"),
+    ],
+)
 def test_a_panel_is_not_scrolled_sideways(person, hand, hemisphere, tool, name, field):
     person.select(hemisphere)
     person.click(tool)

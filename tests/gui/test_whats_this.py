@@ -12,11 +12,17 @@ def shown(person):
     """What the window for help shows: the first line of its page, and the note above."""
 
     def look():
-        windows = [one for one in person.present(person.widgets.QDialog, whats_this.NAME) if one.isVisible()]
+        windows = [
+            one
+            for one in person.present(person.widgets.QDialog, whats_this.NAME)
+            if one.isVisible()
+        ]
         if not windows:
             return None
         note = person.field(windows[0], "note")
-        return person.field(windows[0], "page").toPlainText().splitlines()[0], note.text() if note.isVisible() else ""
+        return person.field(windows[0], "page").toPlainText().splitlines()[
+            0
+        ], note.text() if note.isVisible() else ""
 
     yield look
     for one in whats_this._windows:
@@ -36,12 +42,17 @@ def test_every_command_has_its_page():
 
 
 def test_a_tool_leads_to_its_page(person, hand, hemisphere, shown):
-    for command, title in (("Cell", "Cell"), ("SpinMap", "Free Rotation Map")):  # the second is greyed
+    for command, title in (
+        ("Cell", "Cell"),
+        ("SpinMap", "Free Rotation Map"),
+    ):  # the second is greyed
         ask(person, hand, person.button(f"RoboticAM_{command}"))
         person.until(lambda: shown() == (title, ""), f"the page of {command}", 5)  # noqa: B023
         assert not person.widgets.QWhatsThis.inWhatsThisMode()
         person.screenshot("whats_this_tool")
-        whats_this._windows[-1].window.close()  # it lies over the toolbar where there is no window manager
+        whats_this._windows[
+            -1
+        ].window.close()  # it lies over the toolbar where there is no window manager
 
 
 def test_a_field_leads_to_the_page_of_its_panel_and_is_told(person, hand, hemisphere, shown):
@@ -52,7 +63,11 @@ def test_a_field_leads_to_the_page_of_its_panel_and_is_told(person, hand, hemisp
     ask(person, hand, field)
     person.until(lambda: shown() is not None, "the page", 5)
     title, note = shown()
-    assert title == "Feature" and note and note in (field.whatsThis(), field.parentWidget().whatsThis())
+    assert (
+        title == "Feature"
+        and note
+        and note in (field.whatsThis(), field.parentWidget().whatsThis())
+    )
     person.screenshot("whats_this_field")
     person.press("Cancel")
     person.panel_closed()
@@ -86,7 +101,11 @@ def test_tables_of_the_help_begin_with_what_they_say(person, shown):
         whats_this.show(page)
         person.idle(0.1)
         document = whats_this._windows[-1].text.document()
-        tables = [one for one in document.rootFrame().childFrames() if isinstance(one, person.widgets.QTextTable)]
+        tables = [
+            one
+            for one in document.rootFrame().childFrames()
+            if isinstance(one, person.widgets.QTextTable)
+        ]
         assert tables, page
         for table in tables:
             cells = [table.cellAt(0, column) for column in range(table.columns())]

@@ -11,7 +11,14 @@ from freecad_am.gui.texts.field_names import as_in_panels
 
 pytestmark = pytest.mark.gui
 
-OF_ROBOTS = ("Method", "Degree", "Objective", "MinCondition", "RotationRangeLow", "RotationRangeHigh")
+OF_ROBOTS = (
+    "Method",
+    "Degree",
+    "Objective",
+    "MinCondition",
+    "RotationRangeLow",
+    "RotationRangeHigh",
+)
 OF_TABLES = ("Lock", "LockAt", "MaxResidual")
 
 
@@ -20,7 +27,9 @@ def cells(hemisphere):
     """A toolpath with a robot's cell, and a cell of a five-axis machine."""
     document = hemisphere.Document
     robot = api.make_cell(document)
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5), robot)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5), robot
+    )
     return toolpath, robot, api.make_cell(document, machine="table-xyzac", setup="rotary-table")
 
 
@@ -53,28 +62,40 @@ def test_fields_away_from_the_heading_of_their_group_name_it(person, cells):
     person.double_click(cells[0])
     panel = person.panel("RoboticAM_Toolpath")
     labels = [label.text() for label in panel.findChildren(QtGui.QLabel)]
-    assert {"Start, ramp", "End, ramp", "Cooling, gain (1/°C)", "Material, source", "Weave"} <= set(labels)
+    assert {"Start, ramp", "End, ramp", "Cooling, gain (1/°C)", "Material, source", "Weave"} <= set(
+        labels
+    )
     assert not {"Ramp", "Gain (1/°C)", "Zero", "Source"} & set(labels)
     person.press("Cancel")
     person.panel_closed()
-    assert as_in_panels("use a shorter program.trigger.lead", str) == "use a shorter “Trigger, lead”"
+    assert (
+        as_in_panels("use a shorter program.trigger.lead", str) == "use a shorter “Trigger, lead”"
+    )
 
 
 def test_warnings_of_a_job_that_is_ready_are_pointed_to(person, hemisphere):
     document = hemisphere.Document
-    feature, cell = api.make_feature(document, hemisphere, layer_height=5), api.make_cell(document, limits="paper")
+    feature, cell = (
+        api.make_feature(document, hemisphere, layer_height=5),
+        api.make_cell(document, limits="paper"),
+    )
     toolpath = api.make_toolpath(document, feature, cell)
     path = api.make_joint_path(document, toolpath, cell)
     assert "are not deposited" in toolpath.Message
     after.tell_next([cell, feature, toolpath, path])
-    assert "Read the warnings first: double-click Toolpath." in person.window.statusBar().currentMessage()
+    assert (
+        "Read the warnings first: double-click Toolpath."
+        in person.window.statusBar().currentMessage()
+    )
 
 
 def test_any_part_of_a_machine_s_name_offers_it(person, hand, hemisphere):
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     machine = person.field(person.panel("RoboticAM_NewJob"), "Machine")
-    assert machine.itemText(machine.currentIndex()) == machine.currentText()  # the list opens at the one that is chosen
+    assert (
+        machine.itemText(machine.currentIndex()) == machine.currentText()
+    )  # the list opens at the one that is chosen
     hand.click(machine.lineEdit())
     hand.do("key", "ctrl+a")
     hand.do("type", "--delay", "20", "4600")
@@ -96,13 +117,19 @@ def test_a_joint_path_has_the_fields_of_its_machine(person, cells):
     panel = person.panel("RoboticAM_JointPath")
     assert shown(person, panel, (*OF_ROBOTS, *OF_TABLES)) == set(OF_ROBOTS)
     method = person.field(panel, "Method")
-    assert [method.itemText(row) for row in range(3)] == ["layer by layer", "point by point", "constant"]
+    assert [method.itemText(row) for row in range(3)] == [
+        "layer by layer",
+        "point by point",
+        "constant",
+    ]
     assert shown(person, panel, ("Degree", "Rz")) == {"Degree"}
     person.choose(panel, "Method", "constant")
     assert shown(person, panel, ("Degree", "Rz")) == {"Rz"}
     person.choose(panel, "InputCell", table.Label)
     assert shown(person, panel, OF_TABLES) == set(OF_TABLES)
-    assert shown(person, panel, OF_ROBOTS) == {"Method"}  # it holds another one than at first: it stays to be seen
+    assert shown(person, panel, OF_ROBOTS) == {
+        "Method"
+    }  # it holds another one than at first: it stays to be seen
     person.press("Cancel")
     person.panel_closed()
 
@@ -117,7 +144,9 @@ def test_a_cell_has_the_fields_of_its_set_up(person, cells):
     person.choose(panel, "Setup", "tool on robot")
     assert shown(person, panel, names) == {"NozzleTool", "External"}
     person.type(panel, "External", "motoman-motopos-d500 at 1500 0 0 0 0 0 carries part")
-    person.until(lambda: shown(person, panel, names) == set(names), "the platform of the positioner", 5)
+    person.until(
+        lambda: shown(person, panel, names) == set(names), "the platform of the positioner", 5
+    )
     person.press("Cancel")
     person.panel_closed()
     person.double_click(table)
@@ -165,7 +194,9 @@ def test_a_machine_without_a_post_is_told_as_it_is_chosen(person, hemisphere):
     assert not told.isVisible()
     person.choose(panel, "Machine", "kuka-kr16-2")
     setup = person.field(panel, "Setup")
-    assert setup.currentData() == "tool-on-robot" and not told.isVisible()  # for which its programs are
+    assert (
+        setup.currentData() == "tool-on-robot" and not told.isVisible()
+    )  # for which its programs are
     person.choose(panel, "Setup", "part-on-robot")
     assert told.isVisible() and "no program is written" in told.text()
     person.choose(panel, "Machine", "table-xyzac")
@@ -177,7 +208,8 @@ def test_a_machine_without_a_post_is_told_as_it_is_chosen(person, hemisphere):
 def test_what_may_be_chosen_is_read_whole_in_a_narrow_panel(person, cells):
     toolpath, robot, _ = cells
     for stage, panel_name, names in (
-        (toolpath, "RoboticAM_Toolpath", ("Direction",)), (robot, "RoboticAM_Cell", ("Setup", "Branch")),
+        (toolpath, "RoboticAM_Toolpath", ("Direction",)),
+        (robot, "RoboticAM_Cell", ("Setup", "Branch")),
     ):
         person.double_click(stage)
         panel = person.panel(panel_name)
@@ -185,9 +217,13 @@ def test_what_may_be_chosen_is_read_whole_in_a_narrow_panel(person, cells):
             box = person.field(panel, name)
             style, option = box.style(), person.widgets.QStyleOptionComboBox()
             box.initStyleOption(option)
-            room = style.subControlRect(style.CC_ComboBox, option, style.SC_ComboBoxEditField, box).width()
+            room = style.subControlRect(
+                style.CC_ComboBox, option, style.SC_ComboBoxEditField, box
+            ).width()
             widest = max((box.itemText(row) for row in range(box.count())), key=len)
-            assert box.fontMetrics().boundingRect(widest).width() < room or "positioner" in widest, (name, widest, room)
+            assert (
+                box.fontMetrics().boundingRect(widest).width() < room or "positioner" in widest
+            ), (name, widest, room)
         person.screenshot(f"choices-{panel_name}")
         person.press("Cancel")
         person.panel_closed()
@@ -197,8 +233,10 @@ def test_a_machine_without_a_post_gets_none_proposed(person, hemisphere, no_reme
     document = hemisphere.Document
     feature = api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5)
     for machine, setup, post, motion in (
-        ("kuka-kr16-2", "part-on-robot", "none", "joint"), ("kuka-kr16-2", "tool-on-robot", "kuka", "cartesian"),
-        ("staubli-tx2-60l", "part-on-robot", "staubli", "joint"), ("fanuc-arcmate120ic", "part-on-robot", "fanuc", "joint"),
+        ("kuka-kr16-2", "part-on-robot", "none", "joint"),
+        ("kuka-kr16-2", "tool-on-robot", "kuka", "cartesian"),
+        ("staubli-tx2-60l", "part-on-robot", "staubli", "joint"),
+        ("fanuc-arcmate120ic", "part-on-robot", "fanuc", "joint"),
     ):
         cell = api.make_cell(document, parameters=cell_of(machine, (), setup))
         toolpath = api.make_toolpath(document, feature, cell)

@@ -30,7 +30,11 @@ def job():
     part.Placement = App.Placement(App.Vector(100, -50, 20), App.Rotation(App.Vector(1, 2, 3), 20))
     doc.recompute()
     with pytest.MonkeyPatch.context() as few:
-        few.setattr(api, "make_feature_of", functools.partial(api.make_feature_of, values={"layer_height": 15.0}))
+        few.setattr(
+            api,
+            "make_feature_of",
+            functools.partial(api.make_feature_of, values={"layer_height": 15.0}),
+        )
         joint_path = api.make_all(doc, part)[3]
     yield joint_path
     App.closeDocument(doc.Name)
@@ -65,8 +69,13 @@ def polylines(path):
 
 def test_motion_and_toolpath_give_the_same_beads(job):
     planned = api.result(job)
-    ours, theirs = of_toolpath(api.result(job.Toolpath)), [line for line in of_motion(planned.motion) if line.deposit]
-    names, others = ([(line.layer, line.bead, line.closed) for line in lines] for lines in (ours, theirs))
+    ours, theirs = (
+        of_toolpath(api.result(job.Toolpath)),
+        [line for line in of_motion(planned.motion) if line.deposit],
+    )
+    names, others = (
+        [(line.layer, line.bead, line.closed) for line in lines] for lines in (ours, theirs)
+    )
     assert names == others
     for one, other in zip(ours, theirs, strict=True):
         gaps = np.linalg.norm(one.points[:, None] - other.points[None], axis=2).min(axis=1)
@@ -91,7 +100,9 @@ def test_step_read_back_has_every_point_of_every_bead(job, tmp_path):
     for edge, points in zip(edges, wanted, strict=True):
         for point in points[:: max(1, len(points) // 40)]:
             assert edge.distToShape(Part.Vertex(App.Vector(*point)))[0] < 1e-6
-        assert edge.Length == pytest.approx(np.linalg.norm(np.diff(points, axis=0), axis=1).sum(), abs=1e-4)
+        assert edge.Length == pytest.approx(
+            np.linalg.norm(np.diff(points, axis=0), axis=1).sum(), abs=1e-4
+        )
     with open(path, encoding="utf-8") as stream:
         assert "'Layer 000" in stream.read()
 
@@ -104,7 +115,9 @@ def test_dxf_is_the_beads_to_the_last_written_digit(job, tmp_path):
     for index, (polyline, points) in enumerate(zip(found, beads(job), strict=True)):
         assert polyline["flag"] == 8
         assert np.abs(np.array(polyline["points"]) - points).max() <= 0.5000001e-6
-        assert polyline["layer"].startswith("LAYER_") and (index or polyline["layer"] == "LAYER_000")
+        assert polyline["layer"].startswith("LAYER_") and (
+            index or polyline["layer"] == "LAYER_000"
+        )
     api.export_wires(job, path, rapids=True)
     assert {"RAPID"} < {polyline["layer"] for polyline in polylines(path)}
 
@@ -117,7 +130,9 @@ def test_dxf_is_read_by_freecad(job, tmp_path):
     document = App.newDocument("Read")
     try:
         Import.readDXF(path)
-        shapes = [obj.Shape for obj in document.Objects if hasattr(obj, "Shape") and obj.Shape.Edges]
+        shapes = [
+            obj.Shape for obj in document.Objects if hasattr(obj, "Shape") and obj.Shape.Edges
+        ]
         length = sum(shape.Length for shape in shapes)
     finally:
         App.closeDocument(document.Name)
@@ -166,11 +181,17 @@ def test_trajectory_keeps_within_what_was_asked_and_survives_saving(job, tmp_pat
     lines = of_motion(api.result(job).motion)
     assert 2 < len(waypoints) < 0.8 * sum(len(line.points) for line in lines)
     at = np.array([list(waypoint.Pos.Base) for waypoint in waypoints])
-    nozzle = np.array([list(waypoint.Pos.Rotation.multVec(App.Vector(0, 0, 1))) for waypoint in waypoints])
+    nozzle = np.array(
+        [list(waypoint.Pos.Rotation.multVec(App.Vector(0, 0, 1))) for waypoint in waypoints]
+    )
     starts, along = at[:-1], np.diff(at, axis=0)
     for line in lines:
         for point, tool in zip(line.points[::5], line.tool[::5], strict=True):
-            share = np.clip(((point - starts) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-30), 0.0, 1.0)
+            share = np.clip(
+                ((point - starts) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-30),
+                0.0,
+                1.0,
+            )
             off = np.linalg.norm(starts + share[:, None] * along - point, axis=1)
             near = off < 0.05 + 1e-6
             assert near.any()
@@ -183,7 +204,9 @@ def test_trajectory_keeps_within_what_was_asked_and_survives_saving(job, tmp_pat
     copy = App.openDocument(path, True)
     try:
         again = copy.getObject(made.Name).Trajectory
-        assert len(again.Waypoints) == len(waypoints) and again.Length == pytest.approx(made.Trajectory.Length, rel=1e-6)
+        assert len(again.Waypoints) == len(waypoints) and again.Length == pytest.approx(
+            made.Trajectory.Length, rel=1e-6
+        )
     finally:
         App.closeDocument(copy.Name)
         App.setActiveDocument(doc.Name)
@@ -204,7 +227,10 @@ def test_thinning_keeps_every_point_within_the_tolerance(seed):
         for k in range(first, last + 1):
             share = np.clip((points[k] - points[first]) @ chord / (chord @ chord), 0.0, 1.0)
             assert np.linalg.norm(points[first] + share * chord - points[k]) <= 0.5
-            assert min(abs(tilt[k] - tilt[first]), abs(tilt[k] - tilt[last])) <= math.radians(3.0) + 1e-9
+            assert (
+                min(abs(tilt[k] - tilt[first]), abs(tilt[k] - tilt[last]))
+                <= math.radians(3.0) + 1e-9
+            )
 
 
 def test_the_nozzle_points_against_the_tool_axis_and_hardly_turns_about_it():
@@ -214,13 +240,20 @@ def test_the_nozzle_points_against_the_tool_axis_and_hardly_turns_about_it():
     turned = attitudes(tool)
     assert np.abs(turned[:, :, 2] + tool).max() < 1e-12
     assert np.abs(np.linalg.det(turned) - 1.0).max() < 1e-12
-    assert np.abs(attitudes(np.array([[0.0, 0.0, 1.0]]))[0] - np.diag([1.0, -1.0, -1.0])).max() < 1e-15
+    assert (
+        np.abs(attitudes(np.array([[0.0, 0.0, 1.0]]))[0] - np.diag([1.0, -1.0, -1.0])).max() < 1e-15
+    )
 
 
 @pytest.mark.parametrize(
     ("path", "code"),
-    [("wires.iges", "UNSUPPORTED_FILE"), ("wires", "UNSUPPORTED_FILE"), ("file/wires.dxf", "NO_FOLDER"),
-     ("new/wires.step", "NO_FOLDER"), ("full.dxf", "NOT_WRITABLE")],
+    [
+        ("wires.iges", "UNSUPPORTED_FILE"),
+        ("wires", "UNSUPPORTED_FILE"),
+        ("file/wires.dxf", "NO_FOLDER"),
+        ("new/wires.step", "NO_FOLDER"),
+        ("full.dxf", "NOT_WRITABLE"),
+    ],
 )
 def test_what_cannot_be_written_is_refused_and_leaves_nothing(job, tmp_path, path, code):
     (tmp_path / "file").write_text("in the way")
@@ -228,13 +261,19 @@ def test_what_cannot_be_written_is_refused_and_leaves_nothing(job, tmp_path, pat
     with pytest.raises(InputError) as caught:
         api.export_wires(job, str(tmp_path / path))
     assert caught.value.code == code
-    assert sorted(os.listdir(tmp_path)) == ["file", "full.dxf"] and os.listdir(tmp_path / "full.dxf") == []
+    assert (
+        sorted(os.listdir(tmp_path)) == ["file", "full.dxf"]
+        and os.listdir(tmp_path / "full.dxf") == []
+    )
     if code == "NO_FOLDER":
         assert str((tmp_path / path).parent) in caught.value.message
 
 
 def test_only_paths_are_exported(job, tmp_path):
-    for call in (lambda: api.export_wires(job.Cell, str(tmp_path / "a.dxf")), lambda: api.make_cam_path(job.Cell)):
+    for call in (
+        lambda: api.export_wires(job.Cell, str(tmp_path / "a.dxf")),
+        lambda: api.make_cam_path(job.Cell),
+    ):
         with pytest.raises(InputError, match="no path"):
             call()
     with pytest.raises(InputError, match="not above 0"):
@@ -248,13 +287,20 @@ def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
     Part.makeBox(1200, 800, 30).exportStep(str(tmp_path / "a table.step"))
     Part.makeBox(4, 4, 90, App.Vector(-2, -2, -100)).exportStep(str(tmp_path / "a torch.step"))
     given = CellParameters(
-        machine=f"ur-ur10e calibration={tmp_path / 'robot 1.yaml'}", setup="tool-on-robot", branch="auto",
-        platform=(1.0, 2.0, 3.0, 0.1, -0.2, 0.3), platform_diameter=250.0, mount="part", world_up="0 0.5 1",
+        machine=f"ur-ur10e calibration={tmp_path / 'robot 1.yaml'}",
+        setup="tool-on-robot",
+        branch="auto",
+        platform=(1.0, 2.0, 3.0, 0.1, -0.2, 0.3),
+        platform_diameter=250.0,
+        mount="part",
+        world_up="0 0.5 1",
         arm_clearance=12.5,
         obstacles=f"table = {tmp_path / 'a table.step'} at 300 -400 -230 0 0 15; "
         "le post = box 60 50.5 400 at 900 -200 0 0 0 0",
         nozzle=NozzleParameters(
-            half_angle=0.3, tool=(1.5, 0.0, 210.0, 0.0, 0.4, 0.0), shape=str(tmp_path / "a torch.step"),
+            half_angle=0.3,
+            tool=(1.5, 0.0, 210.0, 0.0, 0.4, 0.0),
+            shape=str(tmp_path / "a torch.step"),
         ),
         external="motoman-motopos-d500 at 900 10.5 -200 0 0 30 carries part",
     )
@@ -266,13 +312,22 @@ def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
     assert api.make_cell(doc, parameters=again).Status == cell.Status == "up to date"
     for field in ("platform", "nozzle"):
         one, other = getattr(again, field), getattr(given, field)
-        one, other = (np.hstack(dataclasses.astuple(of)[:4] if field == "nozzle" else of) for of in (one, other))
+        one, other = (
+            np.hstack(dataclasses.astuple(of)[:4] if field == "nozzle" else of)
+            for of in (one, other)
+        )
         assert np.allclose(one, other, atol=1e-12)
     assert again.nozzle.shape == given.nozzle.shape
     same = {"platform": given.platform, "nozzle": given.nozzle}
     assert dataclasses.replace(again, **same) == dataclasses.replace(given, **same)
-    assert job_cell.read(api.export_cell(api.make_cell(doc), str(tmp_path / "usual.yaml")), "/") == CellParameters()
-    for wrong, where in ((cell, "cell.txt"), (doc.addObject("App::FeaturePython", "Nothing"), "cell.yaml")):
+    assert (
+        job_cell.read(api.export_cell(api.make_cell(doc), str(tmp_path / "usual.yaml")), "/")
+        == CellParameters()
+    )
+    for wrong, where in (
+        (cell, "cell.txt"),
+        (doc.addObject("App::FeaturePython", "Nothing"), "cell.yaml"),
+    ):
         with pytest.raises(InputError):
             api.export_cell(wrong, str(tmp_path / where))
     App.closeDocument(doc.Name)

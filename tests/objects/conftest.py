@@ -35,6 +35,12 @@ def job(doc, part):
         joint_path = api.make_joint_path(doc, toolpath, cell)
         program = api.make_program(doc, joint_path, name="CUP")
     return SimpleNamespace(
-        doc=doc, part=part, cell=cell, feature=feature, toolpath=toolpath, joint_path=joint_path, program=program,
+        doc=doc,
+        part=part,
+        cell=cell,
+        feature=feature,
+        toolpath=toolpath,
+        joint_path=joint_path,
+        program=program,
         stages=(cell, feature, toolpath, joint_path, program),
     )

@@ -28,8 +28,14 @@ LABEL = "Hémisphère n° 1"
 
 def test_keywords_are_in_outer_units(doc):
     cell = api.make_cell(
-        doc, "Ma cellule", nozzle_half_angle="0.5 rad", nozzle_length=80, deposition_point=(1000, 0, 700, 0, 90, 0),
-        platform="1 cm", branch="front up noflip", platform_diameter=App.Units.Quantity("12 cm"),
+        doc,
+        "Ma cellule",
+        nozzle_half_angle="0.5 rad",
+        nozzle_length=80,
+        deposition_point=(1000, 0, 700, 0, 90, 0),
+        platform="1 cm",
+        branch="front up noflip",
+        platform_diameter=App.Units.Quantity("12 cm"),
     )
     parameters = api.result(cell)
     assert parameters.nozzle.half_angle == pytest.approx(0.5) and parameters.nozzle.length == 80
@@ -42,10 +48,15 @@ def test_keywords_are_in_outer_units(doc):
 
 def test_dataclasses_and_keywords_together(doc, part):
     feature = api.make_feature(
-        doc, part, strategy=RevolutionParameters(layer_height=7.0, spacing="iso-height"),
-        build_direction=BuildDirectionParameters(max_tilt=1.0), chord_error=0.02,
+        doc,
+        part,
+        strategy=RevolutionParameters(layer_height=7.0, spacing="iso-height"),
+        build_direction=BuildDirectionParameters(max_tilt=1.0),
+        chord_error=0.02,
     )
-    assert feature.Proxy.parameters(feature, RevolutionParameters) == RevolutionParameters(7.0, 0.02, "iso-height")
+    assert feature.Proxy.parameters(feature, RevolutionParameters) == RevolutionParameters(
+        7.0, 0.02, "iso-height"
+    )
     assert feature.MaxTilt.Value == pytest.approx(math.degrees(1.0))
     cell = api.make_cell(doc, parameters=CellParameters(platform_diameter=60.0))
     assert api.result(cell) == CellParameters(platform_diameter=60.0)
@@ -89,7 +100,11 @@ def test_a_step_in_which_nothing_changed_is_not_left_open(job):
         with pytest.raises(InputError):
             api.change(job.feature, layer_height=refused)
         assert App.getActiveTransaction() is None and job.doc.UndoCount == 0
-        assert (job.feature.LayerHeight.Value, job.feature.Status, job.feature.State) == (10.0, "up to date", ["Up-to-date"])
+        assert (job.feature.LayerHeight.Value, job.feature.Status, job.feature.State) == (
+            10.0,
+            "up to date",
+            ["Up-to-date"],
+        )
     api.change(job.feature)
     assert App.getActiveTransaction() is None
     api.change(job.feature, layer_height=20)
@@ -98,8 +113,12 @@ def test_a_step_in_which_nothing_changed_is_not_left_open(job):
 
 
 def test_missing_inputs_are_told(doc, part):
-    for make in (lambda: api.make_feature(doc, None), lambda: api.make_toolpath(doc, None),
-                 lambda: api.make_joint_path(doc, None, None), lambda: api.make_program(doc, None)):
+    for make in (
+        lambda: api.make_feature(doc, None),
+        lambda: api.make_toolpath(doc, None),
+        lambda: api.make_joint_path(doc, None, None),
+        lambda: api.make_program(doc, None),
+    ):
         with pytest.raises(InputError, match="is missing; choose"):
             make()
     with pytest.raises(InputError, match="no shape"):
@@ -110,15 +129,24 @@ def test_missing_inputs_are_told(doc, part):
 
 def test_what_is_not_a_document_or_a_path_is_refused_by_name(doc, part):
     for call, where in (
-        (lambda: api.open_part("a.step", doc), "doc"), (lambda: api.open_part(doc, part), "path"),
-        (lambda: api.open_part(None, "a.csv"), "doc"), (lambda: api.make_cell(part), "doc"),
-        (lambda: api.make_surface_feature(part, ["Face1"], part), "doc"), (lambda: api.make_toolpath(part, doc), "doc"),
-        (lambda: api.make_all(part, doc), "doc"), (lambda: api.make_all(doc, part, cell=part), "cell"),
-        (lambda: api.make_scan(part, doc, "a.ply"), "doc"), (lambda: api.make_scan(doc, "a.ply", part), "file"),
-        (lambda: api.inspect(doc, "a.csv", part), "file"), (lambda: api.read_cell(part), "cell"),
-        (lambda: api.stages_of(part), "doc"), (lambda: api.recompute("Feature"), "target"),
-        (lambda: api.export("out", part), "folder"), (lambda: api.export_cell("a.yaml", part), "path"),
-        (lambda: api.export_wires("a.dxf", part), "path"), (lambda: api.export_waypoints("a.csv", part), "path"),
+        (lambda: api.open_part("a.step", doc), "doc"),
+        (lambda: api.open_part(doc, part), "path"),
+        (lambda: api.open_part(None, "a.csv"), "doc"),
+        (lambda: api.make_cell(part), "doc"),
+        (lambda: api.make_surface_feature(part, ["Face1"], part), "doc"),
+        (lambda: api.make_toolpath(part, doc), "doc"),
+        (lambda: api.make_all(part, doc), "doc"),
+        (lambda: api.make_all(doc, part, cell=part), "cell"),
+        (lambda: api.make_scan(part, doc, "a.ply"), "doc"),
+        (lambda: api.make_scan(doc, "a.ply", part), "file"),
+        (lambda: api.inspect(doc, "a.csv", part), "file"),
+        (lambda: api.read_cell(part), "cell"),
+        (lambda: api.stages_of(part), "doc"),
+        (lambda: api.recompute("Feature"), "target"),
+        (lambda: api.export("out", part), "folder"),
+        (lambda: api.export_cell("a.yaml", part), "path"),
+        (lambda: api.export_wires("a.dxf", part), "path"),
+        (lambda: api.export_waypoints("a.csv", part), "path"),
         (lambda: api.export_report("a.html", part), "path"),
     ):
         with pytest.raises(InputError) as caught:
@@ -127,7 +155,8 @@ def test_what_is_not_a_document_or_a_path_is_refused_by_name(doc, part):
     with pytest.raises(InputError) as caught:
         api.open_part("cup.step", doc)
     assert caught.value.line() == (
-        "error[BAD_INPUT] doc: 'cup.step' is not a document; give one, such as FreeCAD.ActiveDocument")
+        "error[BAD_INPUT] doc: 'cup.step' is not a document; give one, such as FreeCAD.ActiveDocument"
+    )
     with pytest.raises(InputError, match=f"path: {part.Label} is not a path; give one as a text"):
         api.open_part(doc, part)
     assert [obj.Name for obj in doc.Objects] == [part.Name]
@@ -144,14 +173,26 @@ def test_all_stages_at_once(doc, part):
     part.Radius = 15  # fewer layers at the defaults
     doc.recompute()
     made = api.make_all(doc, part)
-    assert [obj.Proxy.kind for obj in made] == ["cell", "feature", "toolpath", "joint path", "program"]
+    assert [obj.Proxy.kind for obj in made] == [
+        "cell",
+        "feature",
+        "toolpath",
+        "joint path",
+        "program",
+    ]
     assert made[-1].ProgramName == "HEMISPHERE_N_1" and made[-1].Status == "up to date"
     assert api.stages_of(doc, "program") == [made[-1]]
 
 
 @pytest.mark.parametrize(
     ("text", "name"),
-    [("Hémisphère n° 1", "HEMISPHERE_N_1"), ("cup", "CUP"), ("12", "P12"), ("ω", "P"), ("a" * 50, "A" * 20)],
+    [
+        ("Hémisphère n° 1", "HEMISPHERE_N_1"),
+        ("cup", "CUP"),
+        ("12", "P12"),
+        ("ω", "P"),
+        ("a" * 50, "A" * 20),
+    ],
 )
 def test_proposed_names(text, name):
     assert api.proposed_name(text) == name
@@ -162,7 +203,9 @@ def test_progress_is_told_and_may_cancel(job):
     with api.told_to(lambda fraction, text: told.append(fraction)):
         api.change(job.joint_path, tolerance=1e-7)
     falls = sum(later < earlier for earlier, later in zip(told, told[1:]))
-    assert told and falls == 1 and min(told) >= 0.0 and max(told) <= 1.0  # joint path, then the program
+    assert (
+        told and falls == 1 and min(told) >= 0.0 and max(told) <= 1.0
+    )  # joint path, then the program
 
     def cancel(fraction, text):
         raise KeyboardInterrupt
@@ -187,7 +230,11 @@ def test_what_is_found_on_the_way_is_told():
 def test_export_writes_the_files(job, tmp_path):
     paths = api.export(job.program, str(tmp_path / "new" / "folder"))
     files = api.result(job.program).files
-    assert {os.path.basename(path) for path in paths} == set(files) == set(os.listdir(tmp_path / "new" / "folder"))
+    assert (
+        {os.path.basename(path) for path in paths}
+        == set(files)
+        == set(os.listdir(tmp_path / "new" / "folder"))
+    )
     for path in paths:
         with open(path, "rb") as file:
             assert file.read() == files[os.path.basename(path)]
@@ -204,7 +251,9 @@ def test_parts_from_files(doc, tmp_path, ending):
     part = api.open_part(doc, path)
     assert part.Label == "Été" and part.State == ["Up-to-date"]
     assert part.Shape.BoundBox.ZMax == pytest.approx(30, abs=1e-3)
-    assert api.make_feature(doc, part, layer_height=5).WallLength.Value == pytest.approx(15 * math.pi, rel=1e-5)
+    assert api.make_feature(doc, part, layer_height=5).WallLength.Value == pytest.approx(
+        15 * math.pi, rel=1e-5
+    )
 
 
 def test_parts_from_documents_are_taken_where_they_stand(doc, part, tmp_path):
@@ -217,7 +266,9 @@ def test_parts_from_documents_are_taken_where_they_stand(doc, part, tmp_path):
     try:
         for closed in (False, True):
             found = api.open_part(target, str(tmp_path / "part.FCStd"), LABEL)
-            assert found.Shape.BoundBox.ZMin == pytest.approx(7, abs=1e-6) and found.Label.startswith("Hémisphère n°")
+            assert found.Shape.BoundBox.ZMin == pytest.approx(
+                7, abs=1e-6
+            ) and found.Label.startswith("Hémisphère n°")
             assert App.ActiveDocument.Name == target.Name
             assert (doc_name in App.listDocuments()) is not closed
             if not closed:
@@ -247,8 +298,13 @@ def test_a_mesh_of_a_document_is_taken_where_it_stands(doc, tmp_path):
     target = App.newDocument("Target")
     try:
         found = api.open_part(target, str(tmp_path / "scan.FCStd"))
-        low, high = np.array(found.Mesh.Topology[0]).min(axis=0), np.array(found.Mesh.Topology[0]).max(axis=0)
-        assert low == pytest.approx([-15, 0, 0], abs=1e-4) and high == pytest.approx([5, 20, 20], abs=1e-4)
+        low, high = (
+            np.array(found.Mesh.Topology[0]).min(axis=0),
+            np.array(found.Mesh.Topology[0]).max(axis=0),
+        )
+        assert low == pytest.approx([-15, 0, 0], abs=1e-4) and high == pytest.approx(
+            [5, 20, 20], abs=1e-4
+        )
         assert found.Label == "Scan" and len(found.Mesh.Topology[1]) == 12
     finally:
         App.closeDocument(target.Name)
@@ -315,15 +371,21 @@ def test_a_solid_drawn_above_the_platform_is_put_on_it_by_a_new_job(doc):
     box.Placement.Base = (40, 10, 20)
     doc.recompute()
     cell, _, toolpath, *_ = api.make_all(doc, box, kind="solid")
-    assert cell.Mount == "feature" and not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {one.code for one in api.issues(toolpath)}
+    assert cell.Mount == "feature" and not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {
+        one.code for one in api.issues(toolpath)
+    }
     api.change(cell, mount="part")
     found = {one.code: one for one in api.issues(toolpath)}
-    assert {"ABOVE_PLATFORM", "UNSUPPORTED"} <= set(found) and "20 mm above" in found["ABOVE_PLATFORM"].message
+    assert {"ABOVE_PLATFORM", "UNSUPPORTED"} <= set(found) and "20 mm above" in found[
+        "ABOVE_PLATFORM"
+    ].message
     api.change(cell, platform_diameter=0)  # nobody knows what stands there
     assert not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {one.code for one in api.issues(toolpath)}
 
 
-@pytest.mark.parametrize(("layers", "low"), [("", 0.0), ("", 4.0), ("", 20.0), ("", -4.0), ("offset", 9.0)])
+@pytest.mark.parametrize(
+    ("layers", "low"), [("", 0.0), ("", 4.0), ("", 20.0), ("", -4.0), ("offset", 9.0)]
+)
 def test_a_new_job_plans_its_layers_once_wherever_the_part_is(doc, monkeypatch, layers, low):
     """Layers may take minutes. What comes of it is what comes where the toolpath is asked whether it lies over nothing."""
     box = doc.addObject("Part::Box", "Box")
@@ -336,7 +398,11 @@ def test_a_new_job_plans_its_layers_once_wherever_the_part_is(doc, monkeypatch, 
     assert len(planned) == 1
     monkeypatch.setattr(suit, "_is_above", lambda cell, features: False)
     other, _, asked, *_ = api.make_all(doc, box, kind="solid", layers=layers)
-    assert (cell.Mount, toolpath.Status, toolpath.Issues) == (other.Mount, asked.Status, asked.Issues)
+    assert (cell.Mount, toolpath.Status, toolpath.Issues) == (
+        other.Mount,
+        asked.Status,
+        asked.Issues,
+    )
     assert toolpath.ResultData == asked.ResultData
 
 
@@ -344,7 +410,9 @@ def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypat
     """Its file lies in FreeCAD's folder of user data; a change of the file makes the cell stale at the next recompute."""
     folder = tmp_path / "RoboticAM" / "machines"
     folder.mkdir(parents=True)
-    text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
+    text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(
+        encoding="utf-8"
+    )
     own = folder / "our-arm.json"
     own.write_text(text.replace('"id": "fanuc-arcmate120ic"', '"id": "our-arm"'), encoding="utf-8")
     monkeypatch.setattr(App, "getUserAppDataDir", lambda: str(tmp_path) + os.sep)
@@ -354,7 +422,9 @@ def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypat
     joint_path = api.make_joint_path(doc, toolpath, cell)
     assert api.result(joint_path).joint_path.feasible
     key = cell.Key
-    own.write_text(own.read_text(encoding="utf-8").replace("(= M-20iA", "(ours, = M-20iA"), encoding="utf-8")
+    own.write_text(
+        own.read_text(encoding="utf-8").replace("(= M-20iA", "(ours, = M-20iA"), encoding="utf-8"
+    )
     api.recompute(doc)
     assert cell.Key != key and "ours" in cell.MachineTitle
 
@@ -372,7 +442,11 @@ def test_a_new_job_of_another_robot_can_be_carried_out(doc, monkeypatch, machine
     part.Radius, part.Angle1 = 30, 0
     doc.recompute()
     cell, feature, toolpath, joint_path = api.make_all(doc, part, machine=machine)[:4]
-    assert (joint_path.Status, cell.Machine, feature.LayerHeight.Value) == ("up to date", machine, 5.0)
+    assert (joint_path.Status, cell.Machine, feature.LayerHeight.Value) == (
+        "up to date",
+        machine,
+        5.0,
+    )
     like_default = api.make_cell(doc, machine=machine)
     assert api.make_joint_path(doc, toolpath, like_default).Status == "infeasible"
 
@@ -390,27 +464,50 @@ def test_a_new_job_puts_a_part_that_lies_about_its_origin_on_the_platform(doc):
     assert files_of(program) == files_of(above)
 
 
-@pytest.mark.parametrize(("machine", "long"), [("fanuc-crx10ia", True), ("fanuc-lrmate200id", False)])
-def test_remedies_that_take_long_are_told_before_they_are_looked_for(doc, part, monkeypatch, machine, long):
+@pytest.mark.parametrize(
+    ("machine", "long"), [("fanuc-crx10ia", True), ("fanuc-lrmate200id", False)]
+)
+def test_remedies_that_take_long_are_told_before_they_are_looked_for(
+    doc, part, monkeypatch, machine, long
+):
     """On an arm with an offset wrist, each of whose poses is searched for."""
-    cell = api.make_cell(doc, machine=machine, deposition_point=(5000, 0, 0, 0, 0, 0))  # out of reach
-    toolpath = api.make_toolpath(doc, api.make_feature(doc, part, layer_height=15, chord_error=0.5), cell)
-    monkeypatch.setattr(size, "SECONDS_A_REMEDY", size.LARGE_SECONDS)  # one point takes as long as that
+    cell = api.make_cell(
+        doc, machine=machine, deposition_point=(5000, 0, 0, 0, 0, 0)
+    )  # out of reach
+    toolpath = api.make_toolpath(
+        doc, api.make_feature(doc, part, layer_height=15, chord_error=0.5), cell
+    )
+    monkeypatch.setattr(
+        size, "SECONDS_A_REMEDY", size.LARGE_SECONDS
+    )  # one point takes as long as that
     told, looked = [], []
-    monkeypatch.setattr("freecad_am.objects.joint_path.remedies", lambda *_: looked.append(list(told)) or [])
+    monkeypatch.setattr(
+        "freecad_am.objects.joint_path.remedies", lambda *_: looked.append(list(told)) or []
+    )
     with api.told_to(lambda *_: None, lambda issue: told.append(issue.code)):
         path = api.make_joint_path(doc, toolpath, cell)
     assert any(issue.level == "error" for issue in api.issues(path))
     assert looked == [["LARGE"] if long else []]
 
 
-@pytest.mark.parametrize(("machine", "setup", "written"), [
-    ("kuka-kr16-2", "tool-on-robot", ("kuka", "cartesian")),  # joint moves of KRL cannot keep a speed
-    ("kuka-kr16-2", "part-on-robot", ("", "")),
-    ("kuka-lbr-iisy11-r1300", "tool-on-robot", ("", "")),  # its wrist has no names for positions
-    ("abb-irb2400-12-155", "tool-on-robot", ("abb", "joint")),
-    ("fanuc-crx10ia", "part-on-robot", ("fanuc", "joint")),
-])
+@pytest.mark.parametrize(
+    ("machine", "setup", "written"),
+    [
+        (
+            "kuka-kr16-2",
+            "tool-on-robot",
+            ("kuka", "cartesian"),
+        ),  # joint moves of KRL cannot keep a speed
+        ("kuka-kr16-2", "part-on-robot", ("", "")),
+        (
+            "kuka-lbr-iisy11-r1300",
+            "tool-on-robot",
+            ("", ""),
+        ),  # its wrist has no names for positions
+        ("abb-irb2400-12-155", "tool-on-robot", ("abb", "joint")),
+        ("fanuc-crx10ia", "part-on-robot", ("fanuc", "joint")),
+    ],
+)
 def test_a_new_job_is_written_in_the_motion_that_the_controller_has(machine, setup, written):
     settings = dataclasses.replace(CellParameters(), machine=machine, setup=setup)
     assert controllers.post_of(settings, "", ()) == written
@@ -418,8 +515,13 @@ def test_a_new_job_is_written_in_the_motion_that_the_controller_has(machine, set
 
 def test_a_new_job_of_a_kuka_robot_with_the_torch_ends_with_a_program(doc, part, monkeypatch):
     make = api.make_feature_of
-    monkeypatch.setattr(api, "make_feature_of", lambda *given, values, **named: make(
-        *given, values={"layer_height": 15.0, "chord_error": 0.5, **values}, **named))
+    monkeypatch.setattr(
+        api,
+        "make_feature_of",
+        lambda *given, values, **named: make(
+            *given, values={"layer_height": 15.0, "chord_error": 0.5, **values}, **named
+        ),
+    )
     *_, program = api.make_all(doc, part, machine="kuka-kr16-2", setup="tool-on-robot")
     assert (program.Status, program.Post, program.Motion) == ("up to date", "kuka", "cartesian")
     assert any(b"LIN " in content for content in files_of(program).values())

@@ -16,7 +16,9 @@ COARSE = {"layer_height": 2.0, "chord_error": 0.1, "bead_spacing": 6.0, "layers"
 
 
 def warnings(feature):
-    return [issue["message"] for issue in json.loads(feature.Issues) if issue["code"] == "FACES_CHANGED"]
+    return [
+        issue["message"] for issue in json.loads(feature.Issues) if issue["code"] == "FACES_CHANGED"
+    ]
 
 
 def block(doc, shape):
@@ -65,14 +67,21 @@ def test_another_number_of_the_chosen_face_is_told(doc, seed):
     middle = obj.Shape.getElement(feature.Source[1][0]).CenterOfMass
     put(obj, shape)
     (name,) = feature.Source[1]
-    followed = name == f"Face{chosen + 1}" and (obj.Shape.getElement(name).CenterOfMass - middle).Length < 1e-6
-    assert len(warnings(feature)) == (0 if followed else 1)  # FreeCAD 1.0 and later may have followed the face
+    followed = (
+        name == f"Face{chosen + 1}"
+        and (obj.Shape.getElement(name).CenterOfMass - middle).Length < 1e-6
+    )
+    assert len(warnings(feature)) == (
+        0 if followed else 1
+    )  # FreeCAD 1.0 and later may have followed the face
 
 
 def test_a_feature_that_fails_for_another_face_tells_both(doc):
     """Its own error, and that the face is not the one that was chosen, which is why."""
     shape = Part.makeBox(60, 60, 5).fuse(Part.makeCylinder(20, 40, App.Vector(30, 30, 5)))
-    side = next(k for k, face in enumerate(shape.Faces) if face.Surface.TypeId == "Part::GeomCylinder")
+    side = next(
+        k for k, face in enumerate(shape.Faces) if face.Surface.TypeId == "Part::GeomCylinder"
+    )
     obj = block(doc, shape)
     feature = api.make_feature(doc, obj, [f"Face{side + 1}"], layer_height=5)
     walls = [k for k, face in enumerate(shape.Faces) if len(face.Edges) == 4 and k != side]
@@ -82,8 +91,14 @@ def test_a_feature_that_fails_for_another_face_tells_both(doc):
         put(obj, numbered(shape, order))
     error, there = caught.value, walls[0] + 1
     assert error.code not in ("FACES_CHANGED", "BAD_FACES") and feature.Status == "failed"
-    wanted = f"Face{side + 1} of Block is not the face that was chosen: that face is Face{there} now"
-    assert wanted in error.message and not error.message.startswith(wanted) and wanted in feature.Message
+    wanted = (
+        f"Face{side + 1} of Block is not the face that was chosen: that face is Face{there} now"
+    )
+    assert (
+        wanted in error.message
+        and not error.message.startswith(wanted)
+        and wanted in feature.Message
+    )
     feature.Source = (obj, [f"Face{there}"])
     api.recompute(doc)
     assert (feature.Status, feature.Message) == ("up to date", "")
@@ -123,7 +138,9 @@ def test_a_part_that_grows_or_moves_has_the_same_faces(doc):
     feature = api.make_cladding_feature(doc, obj, ["Face6"], **COARSE)
     for height in (25, 60, 12):
         obj.Height, obj.Length = height, 2 * height
-        obj.Placement = App.Placement(App.Vector(height, 1, 2), App.Rotation(App.Vector(0, 0, 1), height))
+        obj.Placement = App.Placement(
+            App.Vector(height, 1, 2), App.Rotation(App.Vector(0, 0, 1), height)
+        )
         api.recompute(doc)
         assert feature.Status == "up to date" and warnings(feature) == []
 
@@ -138,11 +155,16 @@ def test_a_fillet_that_numbers_faces_anew(doc, face):
     chosen = box.Shape.getElement(f"Face{face}").normalAt(0, 0)
     feature = api.make_cladding_feature(doc, part, [f"Face{face}"], **COARSE)
     others = 0
-    for edge in box.Shape.Edges[face % 2::2]:
+    for edge in box.Shape.Edges[face % 2 :: 2]:
         put_quietly(part, box.Shape.makeFillet(3.0, [edge]))
-        if feature.Source[1][0].startswith("?"):  # FreeCAD 1.0 and later say themselves that it is lost
+        if feature.Source[1][0].startswith(
+            "?"
+        ):  # FreeCAD 1.0 and later say themselves that it is lost
             others += 1
-            assert feature.Status == "failed" and f"Face{face} is not there any more" in feature.Message
+            assert (
+                feature.Status == "failed"
+                and f"Face{face} is not there any more" in feature.Message
+            )
             put_quietly(part, box.Shape)
             api.change(feature, source=part, faces=[f"Face{face}"])
             continue
@@ -170,14 +192,24 @@ def test_faces_that_only_change_places_or_stand_farther_apart_are_those_that_wer
     api.recompute(doc)
     put_quietly(part, numbered(tube, order))
     assert warnings(feature) == []
-    pattern = block(doc, Part.makeCompound([Part.makeBox(8, 8, 8, App.Vector(10 * x, 0, 0)) for x in range(4)]))
+    pattern = block(
+        doc, Part.makeCompound([Part.makeBox(8, 8, 8, App.Vector(10 * x, 0, 0)) for x in range(4)])
+    )
     boxes = api.make_cladding_feature(doc, pattern, ["Face18"], **COARSE)
-    put_quietly(pattern, Part.makeCompound([Part.makeBox(8, 8, 8, App.Vector(20 * x, 0, 0)) for x in range(4)]))
+    put_quietly(
+        pattern,
+        Part.makeCompound([Part.makeBox(8, 8, 8, App.Vector(20 * x, 0, 0)) for x in range(4)]),
+    )
     assert boxes.Status == "up to date" and warnings(boxes) == []
 
 
 def test_a_face_that_a_fillet_beside_it_makes_smaller_and_gives_another_number_is_told(doc):
-    steps = Part.makeBox(40, 30, 20).fuse(Part.makeBox(40, 15, 32)).fuse(Part.makeBox(15, 15, 45)).removeSplitter()
+    steps = (
+        Part.makeBox(40, 30, 20)
+        .fuse(Part.makeBox(40, 15, 32))
+        .fuse(Part.makeBox(15, 15, 45))
+        .removeSplitter()
+    )
     obj = doc.addObject("Part::Feature", "Steps")
     told = 0
     for k, n in ((9, 12), (9, 2), (10, 18), (9, 14)):
@@ -188,7 +220,9 @@ def test_a_face_that_a_fillet_beside_it_makes_smaller_and_gives_another_number_i
         with contextlib.suppress(AmError):
             api.recompute(doc)
         name, chosen = feature.Source[1][0], steps.Faces[k - 1]
-        right = name.startswith("?") or rounded.getElement(name).common(chosen).Area > 0.5 * chosen.Area
+        right = (
+            name.startswith("?") or rounded.getElement(name).common(chosen).Area > 0.5 * chosen.Area
+        )
         assert len(warnings(feature)) == (not right), (k, n)
         told += not right
         doc.removeObject(feature.Name)

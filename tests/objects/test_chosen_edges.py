@@ -18,7 +18,9 @@ CURVES = {"chord_error": 0.1}
 
 
 def warnings(feature):
-    return [(one["code"], one["message"]) for one in json.loads(feature.Issues) if one["code"] in CODES]
+    return [
+        (one["code"], one["message"]) for one in json.loads(feature.Issues) if one["code"] in CODES
+    ]
 
 
 def name_at(shape, kind, place):
@@ -35,7 +37,9 @@ def in_another_order(shape, name, draw):
 
     def way(of):
         form = of.Surface if kind == "Face" else of.Curve
-        return form.TypeId, [round(abs(part), 9) for part in getattr(form, "Axis", getattr(form, "Direction", None))]
+        return form.TypeId, [
+            round(abs(part), 9) for part in getattr(form, "Axis", getattr(form, "Direction", None))
+        ]
 
     for _ in range(5000):
         other = numbered(shape, draw.sample(range(count), count))
@@ -49,7 +53,11 @@ def in_another_order(shape, name, draw):
 def test_another_number_of_an_edge_that_is_laid_is_told(doc, seed):
     draw = random.Random(seed)
     shape = Part.makeBox(40, 30, 20).cut(Part.makeCylinder(5, 20, App.Vector(20, 15, 0)))
-    straight = [k for k, edge in enumerate(shape.Edges, 1) if edge.Curve.TypeId == "Part::GeomLine" and edge.Length > 25]
+    straight = [
+        k
+        for k, edge in enumerate(shape.Edges, 1)
+        if edge.Curve.TypeId == "Part::GeomLine" and edge.Length > 25
+    ]
     name = f"Edge{draw.choice(straight)}"
     part = block(doc, shape)
     feature = api.make_curves_feature(doc, part, [name], **CURVES)
@@ -59,8 +67,11 @@ def test_another_number_of_an_edge_that_is_laid_is_told(doc, seed):
     if feature.Source[1] != [name]:  # FreeCAD 1.0 and later may have followed the edge
         assert warnings(feature) == [] and feature.Source[1] == [new]
         return
-    (code, said), = warnings(feature)
-    assert code == "EDGES_CHANGED" and f"{name} of Block is not the edge that was chosen: that edge is {new} now" in said
+    ((code, said),) = warnings(feature)
+    assert (
+        code == "EDGES_CHANGED"
+        and f"{name} of Block is not the edge that was chosen: that edge is {new} now" in said
+    )
     part.Placement = App.Placement()
     api.recompute(doc)
     assert len(warnings(feature)) == 1  # until they are chosen again
@@ -77,7 +88,13 @@ def of_axis(doc, draw):
     part = doc.addObject("Part::Feature", "Block")
     part.Shape = box
     doc.recompute()
-    return part, api.make_feature(doc, wire, axis=(part, name), layer_height=10), "Axis", name, {"axis": (part, name)}
+    return (
+        part,
+        api.make_feature(doc, wire, axis=(part, name), layer_height=10),
+        "Axis",
+        name,
+        {"axis": (part, name)},
+    )
 
 
 def of_start_edges(doc, draw):
@@ -93,8 +110,14 @@ def of_start_edges(doc, draw):
 
 
 def of_start_faces(doc, draw):
-    low, high = (Part.Face(Part.makePolygon([App.Vector(x, y, z) for x, y in (
-        (0, 0), (30, 0), (30, 20), (0, 20), (0, 0))])) for z in (0.0, 8.0))
+    low, high = (
+        Part.Face(
+            Part.makePolygon(
+                [App.Vector(x, y, z) for x, y in ((0, 0), (30, 0), (30, 20), (0, 20), (0, 0))]
+            )
+        )
+        for z in (0.0, 8.0)
+    )
     part = doc.addObject("Part::Feature", "Block")
     part.Shape = Part.makeBox(30, 20, 8)
     doc.recompute()
@@ -124,11 +147,13 @@ def test_what_other_links_name_is_told_until_it_is_confirmed(doc, made, tmp_path
     kind = name.rstrip("0123456789")
     other, new = in_another_order(shape, name, random.Random(2))
     put_quietly(part, other)
-    if getattr(feature, link)[1] != [name] or feature.Status == "failed":  # FreeCAD 1.0 may have followed or lost it
+    if (
+        getattr(feature, link)[1] != [name] or feature.Status == "failed"
+    ):  # FreeCAD 1.0 may have followed or lost it
         assert warnings(feature) == [] and App.Version()[0] != "0"
         assert getattr(feature, link)[1] == [new] or "is not there any more" in feature.Message
         return
-    (code, said), = warnings(feature)
+    ((code, said),) = warnings(feature)
     kind = kind.lower()
     assert code == f"{kind.upper()}S_CHANGED"
     assert f"{name} of Block is not the {kind} that was chosen: that {kind} is {new} now" in said
@@ -141,12 +166,21 @@ def test_what_other_links_name_is_told_until_it_is_confirmed(doc, made, tmp_path
         api.change(feature, chord_error=0.2)
         api.recompute(opened, force=True)
         assert warnings(feature) == [(code, said)]
-        api.change(feature, **{key: (part, value[1]) if isinstance(value, tuple) else value for key, value in again.items()})
+        api.change(
+            feature,
+            **{
+                key: (part, value[1]) if isinstance(value, tuple) else value
+                for key, value in again.items()
+            },
+        )
         assert warnings(feature) == []
         put_quietly(part, shape)
         followed = App.Version()[0] != "0" and (
-            getattr(feature, link)[1] != [name] or feature.Source[1][0].startswith("?"))
-        assert [code for code, _ in warnings(feature)] == [code] or followed  # what was confirmed is another one now
+            getattr(feature, link)[1] != [name] or feature.Source[1][0].startswith("?")
+        )
+        assert [code for code, _ in warnings(feature)] == [
+            code
+        ] or followed  # what was confirmed is another one now
     finally:
         App.closeDocument(opened.Name)
 
@@ -157,7 +191,9 @@ def test_edges_of_a_part_that_grows_or_moves_are_those_that_were_chosen(doc, see
     box = doc.addObject("Part::Box", "Box")
     box.Length, box.Width, box.Height = 40, 30, 20
     doc.recompute()
-    feature = api.make_curves_feature(doc, box, [f"Edge{draw.randint(1, 12)}", f"Edge{draw.randint(1, 12)}"], **CURVES)
+    feature = api.make_curves_feature(
+        doc, box, [f"Edge{draw.randint(1, 12)}", f"Edge{draw.randint(1, 12)}"], **CURVES
+    )
     for _ in range(4):
         box.Length, box.Width, box.Height = (draw.uniform(10, 60) for _ in range(3))
         turned = App.Rotation(App.Vector(1, 2, 3), draw.uniform(0, 90))
@@ -173,15 +209,21 @@ def test_a_straight_edge_that_became_a_circle_and_one_that_turned_are_told(doc):
     doc.recompute()
     feature = api.make_curves_feature(doc, part, ["Edge1"], **CURVES)
     put(part, Part.Wire([Part.makeCircle(20, App.Vector(0, 0, 5))]))
-    (code, said), = warnings(feature)
-    assert code == "EDGES_CHANGED" and "Edge1 of Block was a straight line when it was chosen and is a circle now" in said
+    ((code, said),) = warnings(feature)
+    assert (
+        code == "EDGES_CHANGED"
+        and "Edge1 of Block was a straight line when it was chosen and is a circle now" in said
+    )
     put(part, Part.makePolygon(ends[::-1]))
     assert warnings(feature) == []  # it has no sense
     put(part, Part.makePolygon((App.Vector(0, 9, 5), App.Vector(40, 11, 5))))
     assert warnings(feature) == []  # there is no other
     put(part, Part.makePolygon((App.Vector(0, 9, 5), App.Vector(40, 19, 5), App.Vector(40, 30, 5))))
-    (code, said), = warnings(feature)
-    assert code == "EDGES_CHANGED" and "Edge1 of Block lies another way than when it was chosen" in said
+    ((code, said),) = warnings(feature)
+    assert (
+        code == "EDGES_CHANGED"
+        and "Edge1 of Block lies another way than when it was chosen" in said
+    )
 
 
 def test_a_line_of_a_sketch_that_is_drawn_by_an_end_is_the_one_that_was_chosen(doc):
@@ -201,7 +243,9 @@ def test_a_line_of_a_sketch_that_is_drawn_by_an_end_is_the_one_that_was_chosen(d
     sketch.delGeometry(0)
     sketch.addGeometry(Part.LineSegment(App.Vector(90, 0, 0), App.Vector(90, 40, 0)), False)
     api.recompute(doc)
-    assert len(warnings(feature)) == 1 or feature.Source[1] == ["Edge1"]  # the next one has its number
+    assert len(warnings(feature)) == 1 or feature.Source[1] == [
+        "Edge1"
+    ]  # the next one has its number
 
 
 def test_an_edge_that_a_fillet_beside_it_makes_shorter_and_gives_another_number_is_told(doc):
@@ -219,8 +263,12 @@ def test_an_edge_that_a_fillet_beside_it_makes_shorter_and_gives_another_number_
             put_quietly(part, box.makeFillet(3, [box.Edges[n - 1]]))
             shape = part.Shape.copy()
             shape.Placement = App.Placement()
-            lies = [one for one, edge in enumerate(shape.Edges, 1) if edge.Curve.TypeId == "Part::GeomLine"
-                    and ((edge.CenterOfMass - middle).cross(way)).Length < 1e-6]
+            lies = [
+                one
+                for one, edge in enumerate(shape.Edges, 1)
+                if edge.Curve.TypeId == "Part::GeomLine"
+                and ((edge.CenterOfMass - middle).cross(way)).Length < 1e-6
+            ]
             named = int(feature.Source[1][0].lstrip("?")[4:])
             right = named in lies or feature.Source[1][0].startswith("?")
             assert len(warnings(feature)) == (not right), (k, n, lies)
@@ -236,7 +284,11 @@ def test_the_same_names_of_another_part_are_chosen_anew(doc):
     shape = Part.makeBox(40, 30, 20)
     again = numbered(shape, [3, 5, 1, 0, 2, 4])
     pairs = enumerate(zip(shape.Edges, again.Edges), 1)
-    name = next(f"Edge{k}" for k, (one, another) in pairs if one.Curve.Direction.cross(another.Curve.Direction).Length > 0.1)
+    name = next(
+        f"Edge{k}"
+        for k, (one, another) in pairs
+        if one.Curve.Direction.cross(another.Curve.Direction).Length > 0.1
+    )
     part, other = block(doc, shape), block(doc, again)
     feature = api.make_curves_feature(doc, part, [name], **CURVES)
     feature.Source = (other, [name])
@@ -298,7 +350,10 @@ def test_an_edge_without_a_length_and_a_sphere_have_marks(doc):
 def test_an_edge_that_freecad_knows_to_be_lost_is_told(doc):
     part, feature, _, name, _ = of_axis(doc, None)
     feature.Axis = (part, [f"?{name}"])
-    with pytest.raises(InputError, match=f"{name} is not there any more since the part changed; choose the edges again"):
+    with pytest.raises(
+        InputError,
+        match=f"{name} is not there any more since the part changed; choose the edges again",
+    ):
         api.recompute(doc)
     assert feature.Status == "failed"
     feature.Axis = (part, [name])

@@ -17,7 +17,11 @@ def cone(doc):
     obj = doc.addObject("Part::Feature", "Cone")
     obj.Shape = Part.makeCone(30, 18, 40)
     doc.recompute()
-    side = next(f"Face{k}" for k, face in enumerate(obj.Shape.Faces, 1) if face.Surface.TypeId == "Part::GeomCone")
+    side = next(
+        f"Face{k}"
+        for k, face in enumerate(obj.Shape.Faces, 1)
+        if face.Surface.TypeId == "Part::GeomCone"
+    )
     return obj, side
 
 
@@ -26,7 +30,9 @@ def heights(toolpath):
     points = np.vstack([bead.points for _, _, bead in toolpath])
     layer = np.concatenate([np.full(len(bead), i) for i, _, bead in toolpath])
     slope = np.arctan(12.0 / 40.0)
-    away = (np.hypot(points[:, 0], points[:, 1]) - 30.0) * np.cos(slope) + points[:, 2] * np.sin(slope)
+    away = (np.hypot(points[:, 0], points[:, 1]) - 30.0) * np.cos(slope) + points[:, 2] * np.sin(
+        slope
+    )
     return away, 2.0 * layer
 
 

@@ -10,7 +10,10 @@ from freecad_am.core.issues import InfeasibleError, InputError
 from freecad_am.posts.fanuc import post as fanuc
 
 DAMAGES = {
-    "an angle": (rb"(J1=\s*)(-?\d+)\.", lambda found: found[1] + str(int(found[2]) + 1).encode() + b"."),
+    "an angle": (
+        rb"(J1=\s*)(-?\d+)\.",
+        lambda found: found[1] + str(int(found[2]) + 1).encode() + b".",
+    ),
     "a stop": (rb"FINE", lambda found: b"CNT50"),
     "an output": (rb"DO\[1\]=ON", lambda found: b"DO[1]=OFF"),
 }

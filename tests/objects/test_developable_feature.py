@@ -21,9 +21,14 @@ FAST = {"layer_height": 6, "chord_error": 0.1, "bead_spacing": 5}
 
 def hub_shape(way=1.0):
     """A cylinder of 50 mm and, on it, the lower part of a cone, along Z or against it."""
-    low, cone = Part.makeCylinder(HUB, 50.0), Part.makeCone(HUB, HUB * 0.5, 0.5 * HEIGHT, App.Vector(0, 0, 50))
+    low, cone = (
+        Part.makeCylinder(HUB, 50.0),
+        Part.makeCone(HUB, HUB * 0.5, 0.5 * HEIGHT, App.Vector(0, 0, 50)),
+    )
     shape = low.fuse(cone).removeSplitter()
-    shape.Placement = App.Placement(App.Vector(), App.Rotation(App.Vector(1, 0, 0), 0 if way > 0 else 180))
+    shape.Placement = App.Placement(
+        App.Vector(), App.Rotation(App.Vector(1, 0, 0), 0 if way > 0 else 180)
+    )
     return shape
 
 
@@ -52,7 +57,11 @@ def thruster(doc):
 
 
 def faces_of(hub, kind):
-    return [f"Face{k + 1}" for k, face in enumerate(hub.Shape.Faces) if face.Surface.TypeId == f"Part::Geom{kind}"]
+    return [
+        f"Face{k + 1}"
+        for k, face in enumerate(hub.Shape.Faces)
+        if face.Surface.TypeId == f"Part::Geom{kind}"
+    ]
 
 
 def off(points, layer, height=6.0):
@@ -84,8 +93,12 @@ def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, monkeyp
     """Blades grown until they meet, one after the other: the nozzle touches the one before."""
     hub = hub_shape()
     blades = add(doc, Part.Compound(blade_shapes(hub, (8.0,), 12)), "Blades")
-    feature = api.make_developable_feature(doc, blades, add(doc, hub, "Hub"), order="feature", margin=6, **FAST)
-    monkeypatch.setattr(size, "SECONDS_A_TILT", size.LARGE_SECONDS)  # one point takes as long as that
+    feature = api.make_developable_feature(
+        doc, blades, add(doc, hub, "Hub"), order="feature", margin=6, **FAST
+    )
+    monkeypatch.setattr(
+        size, "SECONDS_A_TILT", size.LARGE_SECONDS
+    )  # one point takes as long as that
 
     def told(issue):
         assert issue.code == size.LARGE
@@ -100,7 +113,12 @@ def test_contours_follow_the_exact_solid_not_its_mesh(doc):
     hub = Part.makeCylinder(40.0, 100.0)
     boss = Part.makeCylinder(18.0, 70.0, App.Vector(0, 0, 50), App.Vector(1, 0, 0)).cut(hub)
     feature = api.make_developable_feature(
-        doc, add(doc, boss, "Boss"), add(doc, hub, "Hub"), layer_height=5, bead_spacing=4, chord_error=0.02
+        doc,
+        add(doc, boss, "Boss"),
+        add(doc, hub, "Hub"),
+        layer_height=5,
+        bead_spacing=4,
+        chord_error=0.02,
     )
     path = api.result(api.make_toolpath(doc, feature))
     for index, layer in enumerate(path.layers[:6]):  # the next one runs along the boss' end
@@ -125,15 +143,22 @@ def test_faces_chosen_or_base_given_are_taken(thruster):
     )
     for feature in (chosen, given):
         (group,) = api.result(feature).groups
-        assert (group.base.surface.radius, group.base.surface.height) == pytest.approx((HUB, HEIGHT))
+        assert (group.base.surface.radius, group.base.surface.height) == pytest.approx(
+            (HUB, HEIGHT)
+        )
     one, other = (api.result(api.make_toolpath(doc, feature)) for feature in (chosen, given))
-    assert one.bead_count == other.bead_count and one.length == pytest.approx(other.length, rel=1e-6)
+    assert one.bead_count == other.bead_count and one.length == pytest.approx(
+        other.length, rel=1e-6
+    )
 
 
 def test_a_cone_that_points_down_is_as_good(doc):
     hub = hub_shape(-1.0)
     feature = api.make_developable_feature(
-        doc, add(doc, Part.Compound(blade_shapes(hub, (60.0,))), "Blades"), add(doc, hub, "Hub"), **FAST
+        doc,
+        add(doc, Part.Compound(blade_shapes(hub, (60.0,))), "Blades"),
+        add(doc, hub, "Hub"),
+        **FAST,
     )
     (group,) = api.result(feature).groups
     np.testing.assert_allclose(group.base.frame[:3, 2], [0, 0, -1], atol=1e-12)
@@ -146,8 +171,12 @@ def test_a_cone_that_points_down_is_as_good(doc):
 def test_the_hub_may_be_one_of_the_solids_or_fused_with_them(thruster):
     doc, hub, blades = thruster
     upper = blade_shapes(hub.Shape, (60.0,))
-    separate = api.make_developable_feature(doc, blades, hub, faces_of(hub, "Cone") + faces_of(hub, "Cylinder"), **FAST)
-    among = api.make_developable_feature(doc, add(doc, Part.Compound([hub.Shape, *blades.Shape.Solids]), "All"), **FAST)
+    separate = api.make_developable_feature(
+        doc, blades, hub, faces_of(hub, "Cone") + faces_of(hub, "Cylinder"), **FAST
+    )
+    among = api.make_developable_feature(
+        doc, add(doc, Part.Compound([hub.Shape, *blades.Shape.Solids]), "All"), **FAST
+    )
     paths = [api.result(api.make_toolpath(doc, feature)) for feature in (separate, among)]
     assert paths[0].length == pytest.approx(paths[1].length, rel=1e-6)
     fused = add(doc, hub.Shape.multiFuse(upper), "Fused")
@@ -156,25 +185,36 @@ def test_the_hub_may_be_one_of_the_solids_or_fused_with_them(thruster):
     path = api.result(api.make_toolpath(doc, whole))
     for index, _, bead in path:
         assert off(bead.points, index).max() < 1e-6
-    only = api.result(api.make_toolpath(doc, api.make_developable_feature(
-        doc, add(doc, Part.Compound(upper), "Upper"), hub, **FAST)))
+    only = api.result(
+        api.make_toolpath(
+            doc,
+            api.make_developable_feature(doc, add(doc, Part.Compound(upper), "Upper"), hub, **FAST),
+        )
+    )
     assert path.layers[2].beads[0].length == pytest.approx(only.layers[2].beads[0].length, rel=1e-3)
 
 
 def test_meshes_are_solids_too_and_repairs_are_told(thruster):
     doc, hub, blades = thruster
     mesh = doc.addObject("Mesh::Feature", "Scan")
-    mesh.Mesh = Mesh.Mesh([tuple(map(tuple, triangle)) for solid in blades.Shape.Solids for triangle in loose(solid)])
+    mesh.Mesh = Mesh.Mesh(
+        [tuple(map(tuple, triangle)) for solid in blades.Shape.Solids for triangle in loose(solid)]
+    )
     exact = api.make_developable_feature(doc, blades, hub, **FAST)
     scanned = api.make_developable_feature(doc, mesh, hub, **FAST)
     assert scanned.Solids == 6
     one, other = (api.result(api.make_toolpath(doc, feature)) for feature in (exact, scanned))
     assert one.length == pytest.approx(other.length, rel=1e-3)
-    flipped = [triangle[::-1] if k % 5 == 0 else triangle for k, triangle in enumerate(loose(blades.Shape.Solids[0]))]
+    flipped = [
+        triangle[::-1] if k % 5 == 0 else triangle
+        for k, triangle in enumerate(loose(blades.Shape.Solids[0]))
+    ]
     mesh.Mesh = Mesh.Mesh([tuple(map(tuple, triangle)) for triangle in flipped])
     api.change(scanned, layer_height=7)
     assert [issue.code for issue in api.issues(scanned)] == ["MESH_REPAIRED"]
-    mesh.Mesh = Mesh.Mesh([tuple(map(tuple, triangle)) for triangle in loose(blades.Shape.Solids[0])[4:]])
+    mesh.Mesh = Mesh.Mesh(
+        [tuple(map(tuple, triangle)) for triangle in loose(blades.Shape.Solids[0])[4:]]
+    )
     with pytest.raises(InputError) as caught:
         api.change(scanned, layer_height=6)
     assert caught.value.code == "OPEN_MESH" and "Scan" in caught.value.where
@@ -190,19 +230,34 @@ def test_what_cannot_be_is_refused_where_it_stands(thruster):
     away = add(doc, Part.makeBox(10, 10, 10, App.Vector(80, 0, 10)), "Away")
     bore = add(doc, Part.makeCylinder(60.0, 50.0).cut(Part.makeCylinder(HUB, 50.0)), "Bore")
     sheet = add(doc, blades.Shape.Faces[0], "Sheet")
-    inner = [f"Face{k + 1}" for k, face in enumerate(bore.Shape.Faces)
-             if face.Surface.TypeId == "Part::GeomCylinder" and face.Surface.Radius == HUB]
+    inner = [
+        f"Face{k + 1}"
+        for k, face in enumerate(bore.Shape.Faces)
+        if face.Surface.TypeId == "Part::GeomCylinder" and face.Surface.Radius == HUB
+    ]
     flat = faces_of(hub, "Plane")
     for arguments, code, where in (
-        ((away, hub), "NOT_ON_HUB", "Away"), ((blades, bore, inner), "INNER_FACE", f"Bore {inner[0]}"),
-        ((blades, hub, flat[:1]), "NOT_DEVELOPABLE", f"Hub {flat[0]}"), ((blades, hub, ["Face99"]), "BAD_FACES", ""),
-        ((sheet, hub), "NO_SOLID", "Sheet"), ((away,), "NO_HUB", ""), ((blades, away), "NO_BASE", "Away"),
+        ((away, hub), "NOT_ON_HUB", "Away"),
+        ((blades, bore, inner), "INNER_FACE", f"Bore {inner[0]}"),
+        ((blades, hub, flat[:1]), "NOT_DEVELOPABLE", f"Hub {flat[0]}"),
+        ((blades, hub, ["Face99"]), "BAD_FACES", ""),
+        ((sheet, hub), "NO_SOLID", "Sheet"),
+        ((away,), "NO_HUB", ""),
+        ((blades, away), "NO_BASE", "Away"),
     ):
         with pytest.raises(InputError) as caught:
             api.make_developable_feature(doc, *arguments, **FAST)
         assert caught.value.code == code and where in caught.value.where, caught.value.line()
-    for values in ({"base_radius": 0}, {"base_radius": -5}, {"base_height": 100}, {"base_axis": "0 0 0 0 0 0"},
-                   {"base_axis": "here"}, {"base_radius": "wide"}, {"bead_spacing": 0}, {"layer_height": 0}):
+    for values in (
+        {"base_radius": 0},
+        {"base_radius": -5},
+        {"base_height": 100},
+        {"base_axis": "0 0 0 0 0 0"},
+        {"base_axis": "here"},
+        {"base_radius": "wide"},
+        {"bead_spacing": 0},
+        {"layer_height": 0},
+    ):
         with pytest.raises(InputError) as caught:
             api.make_developable_feature(doc, blades, hub, **{**FAST, **values})
         assert caught.value.code in ("BAD_VALUE", "BAD_UNIT")
@@ -210,14 +265,25 @@ def test_what_cannot_be_is_refused_where_it_stands(thruster):
 
 def test_solids_from_exact_shapes_are_told_what_to_do_with_shapes(thruster):
     doc, hub, blades = thruster
-    far = blades.Shape.copy().transformGeometry(App.Matrix(*(np.diag([1.0, 1.0, 1.0, 25.4]) / 25.4).ravel()))
+    far = blades.Shape.copy().transformGeometry(
+        App.Matrix(*(np.diag([1.0, 1.0, 1.0, 25.4]) / 25.4).ravel())
+    )
     small = add(doc, far, "Small")
     boxes = [Part.makeBox(10, 10, 30, App.Vector(*at)) for at in ((40, 0, 5), (50, 10, 5))]
-    touching = add(doc, Part.makeSolid(Part.makeShell([*boxes[0].Faces, *boxes[1].Faces])), "Touching")
-    bracket = add(doc, Part.makeBox(50, 5, 40).fuse(Part.makeBox(5, 50, 40)).removeSplitter(), "Bracket")
+    touching = add(
+        doc, Part.makeSolid(Part.makeShell([*boxes[0].Faces, *boxes[1].Faces])), "Touching"
+    )
+    bracket = add(
+        doc, Part.makeBox(50, 5, 40).fuse(Part.makeBox(5, 50, 40)).removeSplitter(), "Bracket"
+    )
     for arguments, code, told, untold in (
         ((small, hub), "NOT_ON_HUB", "does not stand on the hub", "unit"),
-        ((touching, hub), "NOT_ON_HUB", "it passes Hub", "mesh"),  # that it touches itself along an edge is mended
+        (
+            (touching, hub),
+            "NOT_ON_HUB",
+            "it passes Hub",
+            "mesh",
+        ),  # that it touches itself along an edge is mended
         ((bracket,), "NO_HUB", "on a flat base is deposited by kind: solid", "mesh"),
     ):
         with pytest.raises(InputError) as caught:
@@ -230,7 +296,10 @@ def test_a_bead_width_that_a_macro_gives_is_meant(thruster):
     doc, hub, blades = thruster
     feature = api.make_developable_feature(doc, blades, hub, **FAST)
     plain, meant = api.make_toolpath(doc, feature), api.make_toolpath(doc, feature, bead_width=8)
-    assert (plain.FillWidth, meant.FillWidth) == ("auto", "bead_width") and plain.BeadWidth == meant.BeadWidth
+    assert (plain.FillWidth, meant.FillWidth) == (
+        "auto",
+        "bead_width",
+    ) and plain.BeadWidth == meant.BeadWidth
     assert api.result(plain).length != api.result(meant).length
     plain.FillWidth = "bead_width"
     assert api.recompute(doc) is None and api.result(plain).length == api.result(meant).length
@@ -239,7 +308,9 @@ def test_a_bead_width_that_a_macro_gives_is_meant(thruster):
 def test_a_document_keeps_the_solids_and_knows_when_they_change(thruster, tmp_path):
     doc, hub, blades = thruster
     feature = api.make_developable_feature(doc, blades, hub, **FAST)
-    toolpath = api.make_toolpath(doc, feature, bead_model="csw", bead_width=9.5, wire_feed="6.5 m/min")
+    toolpath = api.make_toolpath(
+        doc, feature, bead_model="csw", bead_width=9.5, wire_feed="6.5 m/min"
+    )
     length = api.result(toolpath).length
     doc.saveAs(str(tmp_path / "thruster.FCStd"))
     App.closeDocument(doc.Name)
@@ -267,10 +338,14 @@ def test_what_beads_lay_beside_solids_on_a_hub_is_told(doc):
     found = {}
     for thick in (3.0, 24.0):  # the block ends on a cylinder, and is ten layers high
         fin = doc.addObject("Part::Feature", "Fin")
-        whole = Part.makeBox(24.0 if thick == 3.0 else 30.0, thick, 40.0, App.Vector(15.0, -0.5 * thick, 30.0))
+        whole = Part.makeBox(
+            24.0 if thick == 3.0 else 30.0, thick, 40.0, App.Vector(15.0, -0.5 * thick, 30.0)
+        )
         fin.Shape = whole.common(Part.makeCylinder(40.0, 100.0)).cut(rod.Shape)
         spacing = 6.0 if thick == 3.0 else 4.0
-        feature = api.make_developable_feature(doc, fin, rod, layer_height=2.0, bead_spacing=spacing, chord_error=0.1)
+        feature = api.make_developable_feature(
+            doc, fin, rod, layer_height=2.0, bead_spacing=spacing, chord_error=0.1
+        )
         found[thick] = api.result(api.make_toolpath(doc, feature))
     narrow, wide = found[3.0], found[24.0]
     part, left, beside = narrow.volumes
@@ -285,4 +360,7 @@ def test_what_beads_lay_beside_solids_on_a_hub_is_told(doc):
     laid = 2.0 * 4.0 * sum(bead.length for _, _, bead in wide)
     assert wide.twice == pytest.approx(laid - (part - left + beside), rel=1e-6)
     assert ("DEPOSITED_TWICE" in {one.code for one in wide.issues}) == (wide.twice > 0.03 * part)
-    assert part == pytest.approx(sum(24.0 * 40.0 * 2.0 for _ in wide.layers), rel=0.1) and left + beside < 0.03 * part
+    assert (
+        part == pytest.approx(sum(24.0 * 40.0 * 2.0 for _ in wide.layers), rel=0.1)
+        and left + beside < 0.03 * part
+    )

@@ -25,11 +25,43 @@ IN_ROWS = {
 }
 # what there was not then: derived, or None where nobody knows
 ADDED = (
-    "role", "bead_width", "unsupported", "wire_feed", "depths", "on_part", "volumes", "feature_label", "features", "feature",
-    "uneven", "twice", "external", "max_from_vertical", "world_up", "optimality", "certificate", "close_gap", "of_level",
-    "arm_clearance", "obstacles", "bead_class", "classes", "schedule", "ends", "phase", "fitted",
-    "material", "touched", "touched_tolerance", "shape", "halt", "retreat", "min_layer_time",
-    "predicted", "shape_of_deposit", "machining_allowance",
+    "role",
+    "bead_width",
+    "unsupported",
+    "wire_feed",
+    "depths",
+    "on_part",
+    "volumes",
+    "feature_label",
+    "features",
+    "feature",
+    "uneven",
+    "twice",
+    "external",
+    "max_from_vertical",
+    "world_up",
+    "optimality",
+    "certificate",
+    "close_gap",
+    "of_level",
+    "arm_clearance",
+    "obstacles",
+    "bead_class",
+    "classes",
+    "schedule",
+    "ends",
+    "phase",
+    "fitted",
+    "material",
+    "touched",
+    "touched_tolerance",
+    "shape",
+    "halt",
+    "retreat",
+    "min_layer_time",
+    "predicted",
+    "shape_of_deposit",
+    "machining_allowance",
 )
 
 
@@ -61,12 +93,18 @@ def parts(value):
 def equal(one, other):
     """Bit for bit, dataclasses and tuples gone through."""
     if isinstance(one, np.ndarray):
-        return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
+        return (
+            one.dtype == other.dtype
+            and one.shape == other.shape
+            and one.tobytes() == other.tobytes()
+        )
     if isinstance(one, (tuple, list)):
         return len(one) == len(other) and all(map(equal, one, other))
     if dataclasses.is_dataclass(one):
         names = [field.name for field in dataclasses.fields(one)]
-        return type(one) is type(other) and all(equal(getattr(one, name), getattr(other, name)) for name in names)
+        return type(one) is type(other) and all(
+            equal(getattr(one, name), getattr(other, name)) for name in names
+        )
     return one == other or (one != one and other != other)
 
 
@@ -159,7 +197,9 @@ def test_copies_keep_their_own_result(job):
     assert copy.Name != job.toolpath.Name and equal(api.result(copy), api.result(job.toolpath))
     kept = api.result(copy)
     api.change(job.toolpath, seam_angle=30)
-    assert copy.SeamAngle.Value == 0 and equal(api.result(copy), kept) and copy.Status == "up to date"
+    assert (
+        copy.SeamAngle.Value == 0 and equal(api.result(copy), kept) and copy.Status == "up to date"
+    )
     api.change(copy, seam_angle=60)
     assert job.toolpath.SeamAngle.Value == 30
     start = [api.result(obj).layers[0].beads[0].points[0] for obj in (job.toolpath, copy)]
@@ -187,7 +227,10 @@ def test_an_old_document_gets_what_it_lacks(job, tmp_path):
     again = App.openDocument(str(tmp_path / "old.FCStd"))
     try:
         assert again.Feature.MaxTilt.Value == 90 and again.Feature.WallFaces == []
-        assert again.Feature.Status == "up to date" and again.Feature.SchemaVersion == keys.SCHEMA_VERSION
+        assert (
+            again.Feature.Status == "up to date"
+            and again.Feature.SchemaVersion == keys.SCHEMA_VERSION
+        )
         api.recompute(again)
         assert [obj.Status for obj in api.stages_of(again)] == ["up to date"] * 5
     finally:
@@ -197,7 +240,9 @@ def test_an_old_document_gets_what_it_lacks(job, tmp_path):
 def _size_of_results(path):
     """Bytes that the results take in a document, beside all that it says of its objects."""
     with zipfile.ZipFile(path) as files:
-        return sum(one.compress_size for one in files.infolist() if one.filename.startswith("ResultData"))
+        return sum(
+            one.compress_size for one in files.infolist() if one.filename.startswith("ResultData")
+        )
 
 
 def test_results_of_an_old_document_are_read_to_the_last_bit_and_stored_anew(tmp_path, monkeypatch):
@@ -206,11 +251,16 @@ def test_results_of_an_old_document_are_read_to_the_last_bit_and_stored_anew(tmp
     try:
         for name, expected in IN_ROWS.items():
             obj = document.getObject(name)
-            monkeypatch.setattr(type(obj.Proxy), "prepare", lambda self, obj: pytest.fail("computed"))
+            monkeypatch.setattr(
+                type(obj.Proxy), "prepare", lambda self, obj: pytest.fail("computed")
+            )
             assert obj.Status == "up to date" and fingerprint(api.result(obj)) == expected
             if name == "JointPath":
                 motion = api.result(obj).motion
-                assert set(motion.role.tolist()) == {0, 1, 2, 3} and ((motion.role == 0) == motion.deposit).all()
+                assert (
+                    set(motion.role.tolist()) == {0, 1, 2, 3}
+                    and ((motion.role == 0) == motion.deposit).all()
+                )
             obj.ResultData, obj.ResultLayout = store.pack(api.result(obj), obj.Key)
         before = _size_of_results(path)
         document.save()
@@ -226,8 +276,10 @@ def test_results_of_an_old_document_are_read_to_the_last_bit_and_stored_anew(tmp
 def test_class_paths_are_those_of_the_file_format(job):
     paths = [f"{type(obj.Proxy).__module__}.{type(obj.Proxy).__qualname__}" for obj in job.stages]
     assert paths == [
-        "freecad_am.objects.cell.Cell", "freecad_am.objects.feature.RevolutionFeature",
-        "freecad_am.objects.toolpath.Toolpath", "freecad_am.objects.joint_path.JointPath",
+        "freecad_am.objects.cell.Cell",
+        "freecad_am.objects.feature.RevolutionFeature",
+        "freecad_am.objects.toolpath.Toolpath",
+        "freecad_am.objects.joint_path.JointPath",
         "freecad_am.objects.program.Program",
     ]
 
@@ -240,7 +292,9 @@ def test_a_program_of_an_earlier_version_is_not_given_out_until_it_is_recomputed
         stage.Proxy.renew(stage, force=True)
     old = files_of(job.program)
     monkeypatch.undo()
-    assert job.program.Status == "up to date" and api.result(job.program).files == old  # to be looked at
+    assert (
+        job.program.Status == "up to date" and api.result(job.program).files == old
+    )  # to be looked at
     with pytest.raises(api.InputError, match="earlier version"):
         files_of(job.program)
     for stage in job.stages:

@@ -20,11 +20,19 @@ def sheet(doc, part):
 def test_a_parameter_follows_an_expression_until_it_is_given_a_value(doc, part, sheet):
     feature = api.make_feature(doc, part, layer_height="=Sheet.height / 2")
     toolpath = api.make_toolpath(doc, feature, travel_speed="=600 mm/min")
-    assert (feature.LayerHeight.Value, toolpath.Layers, toolpath.TravelSpeed.Value) == (5.0, 15, 10.0)
+    assert (feature.LayerHeight.Value, toolpath.Layers, toolpath.TravelSpeed.Value) == (
+        5.0,
+        15,
+        10.0,
+    )
     assert dict(feature.ExpressionEngine) == {"LayerHeight": "Sheet.height / 2"}
     sheet.height = 20
     doc.recompute()
-    assert (feature.LayerHeight.Value, feature.Status, toolpath.Status) == (10.0, "up to date", "up to date")
+    assert (feature.LayerHeight.Value, feature.Status, toolpath.Status) == (
+        10.0,
+        "up to date",
+        "up to date",
+    )
     assert toolpath.Layers < 10
     api.change(feature, layer_height=7)
     assert feature.ExpressionEngine == [] and feature.LayerHeight.Value == 7.0
@@ -35,8 +43,11 @@ def test_a_parameter_follows_an_expression_until_it_is_given_a_value(doc, part, 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("=", "not understood"), ("=Sheet.heigth", "not understood"), ("=Sheet.height + 1 deg", "not understood"),
-        ("=90 deg", "another dimension"), ("=0 mm * Sheet.height / 1 mm", "more than 0 mm"),
+        ("=", "not understood"),
+        ("=Sheet.heigth", "not understood"),
+        ("=Sheet.height + 1 deg", "not understood"),
+        ("=90 deg", "another dimension"),
+        ("=0 mm * Sheet.height / 1 mm", "more than 0 mm"),
         ("=Sheet.Label", "not a number"),
     ],
 )
@@ -66,7 +77,9 @@ def test_an_expression_that_lost_what_it_follows_is_told_until_it_is_mended(doc,
     doc.removeObject("Sheet")
     doc.recompute()
     assert feature.Status == "failed" and toolpath.Status != "up to date"
-    assert feature.Message.startswith("LayerHeight follows the expression Sheet.height / 2, which gives nothing any more")
+    assert feature.Message.startswith(
+        "LayerHeight follows the expression Sheet.height / 2, which gives nothing any more"
+    )
     with pytest.raises(InputError, match="gives nothing any more"):
         api.recompute(feature)
     api.change(feature, layer_height=7)

@@ -19,7 +19,9 @@ def made(monkeypatch):
     found = []
     for name in ("_of_shape", "body_of"):
         own = getattr(fingerprints, name)
-        monkeypatch.setattr(fingerprints, name, lambda source, own=own: (found.append(source), own(source))[1])
+        monkeypatch.setattr(
+            fingerprints, name, lambda source, own=own: (found.append(source), own(source))[1]
+        )
     return found
 
 
@@ -75,7 +77,11 @@ def edited(mesh):
         (lambda box, mesh, group: moved(mesh), False, True),
         (lambda box, mesh, group: edited(mesh), False, True),
         (lambda box, mesh, group: moved(group), True, True),
-        (lambda box, mesh, group: group.removeObject(box), False, False),  # the group is where the document is
+        (
+            lambda box, mesh, group: group.removeObject(box),
+            False,
+            False,
+        ),  # the group is where the document is
     ],
 )
 def test_every_change_counts(doc, made, change, of_box, of_mesh):

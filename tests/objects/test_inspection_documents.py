@@ -16,7 +16,11 @@ SETTINGS = {"probe_radius": 1.5, "tolerance": 0.1, "heights": "15 25 35"}
 
 @pytest.fixture
 def points(root, tmp_path):
-    lines = (root / "resources" / "examples" / "inspection" / "hemisphere-synthetic.csv").read_text().splitlines()
+    lines = (
+        (root / "resources" / "examples" / "inspection" / "hemisphere-synthetic.csv")
+        .read_text()
+        .splitlines()
+    )
     path = tmp_path / "cmm.csv"
     path.write_text("\n".join([*lines[:3], *lines[3::4]]))
     return path
@@ -35,7 +39,10 @@ def test_feature_toolpath_shape_and_mesh_tell_the_same(doc, feature, points):
     found = {
         name: api.result(api.inspect(doc, planned, str(points), **SETTINGS))
         for name, planned in (
-            ("feature", feature), ("toolpath", api.make_toolpath(doc, feature)), ("shape", shape), ("mesh", mesh),
+            ("feature", feature),
+            ("toolpath", api.make_toolpath(doc, feature)),
+            ("shape", shape),
+            ("mesh", mesh),
         )
     }
     exact = found["feature"]
@@ -44,7 +51,9 @@ def test_feature_toolpath_shape_and_mesh_tell_the_same(doc, feature, points):
         one = found[name]
         assert np.abs(one.deviation - exact.deviation).max() < 2.0 * slack, name
         assert one.ball.zone.zone == pytest.approx(exact.ball.zone.zone, abs=slack), name
-        assert [c.zone.zone for c in one.circles] == pytest.approx([c.zone.zone for c in exact.circles], abs=0.02), name
+        assert [c.zone.zone for c in one.circles] == pytest.approx(
+            [c.zone.zone for c in exact.circles], abs=0.02
+        ), name
 
 
 def test_a_box_is_measured_past_its_edges_too(doc, tmp_path):
@@ -63,7 +72,9 @@ def test_a_box_is_measured_past_its_edges_too(doc, tmp_path):
     assert api.result(made).counted.all()
 
 
-def test_it_is_stale_when_what_was_planned_changes_and_keeps_its_points_without_the_file(doc, feature, points, tmp_path):
+def test_it_is_stale_when_what_was_planned_changes_and_keeps_its_points_without_the_file(
+    doc, feature, points, tmp_path
+):
     made = api.inspect(doc, feature, str(points), **SETTINGS)
     assert (made.Status, made.Points) == ("up to date", 1466)
     assert made.Sphericity.endswith("mm") and len(made.Circularity) == 3
@@ -103,7 +114,9 @@ def test_what_fails_leaves_nothing_behind(doc, feature, points, undo):
     count = len(doc.Objects)
     cell = api.make_cell(doc)
     for planned, file, code in (
-        (feature, "nowhere.csv", "NO_FILE"), (feature, "", "NO_FILE"), (None, str(points), "NO_INPUT"),
+        (feature, "nowhere.csv", "NO_FILE"),
+        (feature, "", "NO_FILE"),
+        (None, str(points), "NO_INPUT"),
         (cell, str(points), "BAD_INPUT"),
     ):
         with pytest.raises(InputError) as caught:
@@ -113,12 +126,15 @@ def test_what_fails_leaves_nothing_behind(doc, feature, points, undo):
 
 
 @pytest.mark.parametrize(
-    ("wall", "ground"), [("tube-on-pipe.step", "pipe.step"), ("walls/elbow.step", "walls/elbow-block.step")],
+    ("wall", "ground"),
+    [("tube-on-pipe.step", "pipe.step"), ("walls/elbow.step", "walls/elbow-block.step")],
 )
 def test_walls_on_parts_are_exact_and_outside_is_a_plus(doc, root, wall, ground):
     examples = root / "resources" / "examples"
     part = api.open_part(doc, str(examples / wall))
-    feature = api.make_surface_feature(doc, part, (), api.open_part(doc, str(examples / ground)), layer_height=5)
+    feature = api.make_surface_feature(
+        doc, part, (), api.open_part(doc, str(examples / ground)), layer_height=5
+    )
     of = surfaces.planned(api.result(feature), "wall")
     inside, normal = of.exact(of.spread)
     feet = of.spread - inside[:, None] * normal
@@ -154,7 +170,9 @@ def test_a_predicted_deposit_is_inspected_as_a_measured_one(doc, root):
     assert sides.sum() > 3000 and np.abs(radius - expected)[sides].max() < 0.4
     for k in np.flatnonzero(sides)[::400]:
         away = exact(Part.Vertex(*found.points[k]))[0]
-        assert away == pytest.approx(found.deviation[k], abs=0.06)  # by the kernel; triangles are within 0.05 mm
+        assert away == pytest.approx(
+            found.deviation[k], abs=0.06
+        )  # by the kernel; triangles are within 0.05 mm
     predicted = api.result(path).predicted
     assert abs(predicted.laid / predicted.fed - 1.0) < 1e-6
     assert predicted.fed == pytest.approx(12.0 * api.result(path).length, rel=1e-9)

@@ -7,7 +7,10 @@ from freecad_am import api
 from freecad_am.core.issues import InputError
 from tests.batch.test_auto_jobs import tee
 
-ROBOT, TOOL = "kuka-kr16-2", "tool-on-robot"  # which turns through its singularity along curved layers of the T
+ROBOT, TOOL = (
+    "kuka-kr16-2",
+    "tool-on-robot",
+)  # which turns through its singularity along curved layers of the T
 
 
 @pytest.fixture
@@ -15,35 +18,57 @@ def coarse_tee(doc, monkeypatch):
     """A T as an object, and features of it in coarse layers."""
     make = api.make_feature_of
     coarse = {"layer_height": 8.0, "chord_error": 0.4, "bead_spacing": 6.0}
-    monkeypatch.setattr(api, "make_feature_of", lambda *given, values, **named: make(
-        *given, values={**coarse, **values}, **named))
+    monkeypatch.setattr(
+        api,
+        "make_feature_of",
+        lambda *given, values, **named: make(*given, values={**coarse, **values}, **named),
+    )
     part = doc.addObject("Part::Feature", "Tee")
     part.Shape = tee()
     return part
 
 
 def test_planes_are_laid_where_curved_layers_cannot_be(doc, coarse_tee, no_remedies):
-    asked = {"kind": "solid", "layers": "geodesic", "machine": ROBOT, "setup": TOOL, "process": {"bead_width": 6.0}}
+    asked = {
+        "kind": "solid",
+        "layers": "geodesic",
+        "machine": ROBOT,
+        "setup": TOOL,
+        "process": {"bead_width": 6.0},
+    }
     doc.UndoMode = 1
     _, feature, _, path = api.make_all(doc, coarse_tee, **asked)
     assert (feature.Layers, path.Status) == ("geodesic", "infeasible")
     doc.undo()
-    _, feature, toolpath, path, program = api.make_all(doc, coarse_tee, **asked, layers_otherwise="planes")
-    assert feature.Layers == "planes" and {one.Status for one in (feature, toolpath, path, program)} == {"up to date"}
+    _, feature, toolpath, path, program = api.make_all(
+        doc, coarse_tee, **asked, layers_otherwise="planes"
+    )
+    assert feature.Layers == "planes" and {
+        one.Status for one in (feature, toolpath, path, program)
+    } == {"up to date"}
     doc.undo()  # all of it is one step
     assert doc.Objects == [coarse_tee]
 
 
 def test_curved_layers_that_can_be_carried_out_stay(doc, coarse_tee):
     made = api.make_all(
-        doc, coarse_tee, kind="solid", layers="geodesic", process={"bead_width": 6.0}, layers_otherwise="planes")
+        doc,
+        coarse_tee,
+        kind="solid",
+        layers="geodesic",
+        process={"bead_width": 6.0},
+        layers_otherwise="planes",
+    )
     assert made[1].Layers == "geodesic" and made[3].Status == "up to date"
 
 
 def test_planes_have_the_cell_that_suits_them(doc, coarse_tee):
     """Curved layers of the T lean more than 30 deg, so that a positioner is put under them; upright ones need none."""
     asked = {
-        "kind": "solid", "machine": ROBOT, "setup": TOOL, "max_from_vertical": "30 deg",
+        "kind": "solid",
+        "machine": ROBOT,
+        "setup": TOOL,
+        "max_from_vertical": "30 deg",
         "process": {"bead_width": 6.0, "travel_speed": 150.0},
     }
     curved = api.make_all(doc, coarse_tee, **asked, layers="geodesic")
@@ -55,10 +80,16 @@ def test_planes_have_the_cell_that_suits_them(doc, coarse_tee):
     assert len(api.stages_of(doc)) == len(curved) + len(planes) + len(instead)
 
 
-@pytest.mark.parametrize(("kind", "layers", "where"), [
-    ("revolution", "planes", "layers_otherwise"), ("solid", "plane", "strategy.layers"),
-])
-def test_layers_that_are_none_are_refused_before_anything_is_made(doc, coarse_tee, kind, layers, where):
+@pytest.mark.parametrize(
+    ("kind", "layers", "where"),
+    [
+        ("revolution", "planes", "layers_otherwise"),
+        ("solid", "plane", "strategy.layers"),
+    ],
+)
+def test_layers_that_are_none_are_refused_before_anything_is_made(
+    doc, coarse_tee, kind, layers, where
+):
     with pytest.raises(InputError) as error:
         api.make_all(doc, coarse_tee, kind=kind, machine=ROBOT, layers_otherwise=layers)
     assert error.value.where == where and doc.Objects == [coarse_tee]

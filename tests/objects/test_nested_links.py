@@ -14,7 +14,10 @@ from freecad_am.objects.shapes.part_file import part_shape
 @pytest.fixture
 def nested(doc):
     """Two boxes in a part that is moved and turned, one of them in a group of it; a link to that part; a sketch of it."""
-    part, group = doc.addObject("App::Part", "Part"), doc.addObject("App::DocumentObjectGroup", "Group")
+    part, group = (
+        doc.addObject("App::Part", "Part"),
+        doc.addObject("App::DocumentObjectGroup", "Group"),
+    )
     part.addObject(group)
     a, b = doc.addObject("Part::Box", "A"), doc.addObject("Part::Box", "B")
     a.Length, b.Length, b.Label = 20, 30, "Bee"
@@ -38,13 +41,14 @@ def ends(edge):
 
 def laid(feature):
     """The ends of the only curve of a feature."""
-    curve, = api.result(feature).curves
+    (curve,) = api.result(feature).curves
     return sorted(tuple(point) for point in np.round(curve.points[[0, -1]], 6).tolist())
 
 
 @pytest.mark.parametrize("edge", [f"Edge{k}" for k in range(1, 13)])
 @pytest.mark.parametrize(
-    ("top", "path"), [("Part", "A."), ("Part", "B."), ("Part", "$Bee."), ("Link", "A."), ("Link", "B.")]
+    ("top", "path"),
+    [("Part", "A."), ("Part", "B."), ("Part", "$Bee."), ("Link", "A."), ("Link", "B.")],
 )
 def test_the_edge_that_a_path_names_is_laid(nested, top, path, edge):
     holder = nested.getObject(top)
@@ -61,24 +65,36 @@ def test_a_part_within_a_part_is_where_it_is_seen(nested):
         feature = api.make_curves_feature(nested, nested.getObject(top), [path])
         assert laid(feature) == ends(nested.Outer.getSubObject("Part.B.Edge5"))
     api.change(feature, source=nested.Outer, faces=["Part.A.Edge7"])
-    assert laid(feature) == ends(nested.Outer.getSubObject("Part.A.Edge7")) and feature.Source[0] == nested.A
+    assert (
+        laid(feature) == ends(nested.Outer.getSubObject("Part.A.Edge7"))
+        and feature.Source[0] == nested.A
+    )
 
 
 def test_faces_and_axes_by_paths(nested):
     clad = api.make_cladding_feature(nested, nested.Part, ["B.Face6"], bead_spacing=3)
-    assert clad.Source[0] == nested.B and api.result(clad).area == pytest.approx(nested.B.Shape.Face6.Area)
+    assert clad.Source[0] == nested.B and api.result(clad).area == pytest.approx(
+        nested.B.Shape.Face6.Area
+    )
     for axis in ("B.Edge5", "Sketch.V_Axis", "Origin.Z_Axis.", "Origin.Z_Axis"):
         with pytest.raises(InputError) as caught:  # a box does not turn about anything
             api.make_feature(nested, nested.A, axis=(nested.Part, axis))
-        assert caught.value.code != "BAD_AXIS" and "Axis" not in caught.value.where, caught.value.line()
+        assert caught.value.code != "BAD_AXIS" and "Axis" not in caught.value.where, (
+            caught.value.line()
+        )
 
 
-@pytest.mark.parametrize("path", ["B.Edge99", "C.Edge5", "A.Group.Edge1", "Edge5.", ".", "B.Foo", ".Edge5", "B..Edge5"])
+@pytest.mark.parametrize(
+    "path", ["B.Edge99", "C.Edge5", "A.Group.Edge1", "Edge5.", ".", "B.Foo", ".Edge5", "B..Edge5"]
+)
 def test_what_a_path_does_not_lead_to_is_refused(nested, path):
     before = [obj.Name for obj in nested.Objects]
     with pytest.raises(InputError) as caught:
         api.make_curves_feature(nested, nested.Part, [path])
-    assert caught.value.code in ("BAD_EDGES", "BAD_FACES", "BAD_AXIS") and caught.value.where == "source"
+    assert (
+        caught.value.code in ("BAD_EDGES", "BAD_FACES", "BAD_AXIS")
+        and caught.value.where == "source"
+    )
     assert path in caught.value.message and [obj.Name for obj in nested.Objects] == before
 
 
@@ -107,18 +123,28 @@ def test_what_is_in_a_group_of_a_part_is_there_once(nested):
     nested.recompute()
     assert len(nested.Part.Shape.Solids) == 3
     whole = global_shape(nested.Part)
-    assert whole.Volume == pytest.approx(nested.A.Shape.Volume + nested.B.Shape.Volume) and len(whole.Edges) == 24
-    assert ends(whole.Edges[0]) in [ends(global_shape(one).Edges[0]) for one in (nested.A, nested.B)]
+    assert (
+        whole.Volume == pytest.approx(nested.A.Shape.Volume + nested.B.Shape.Volume)
+        and len(whole.Edges) == 24
+    )
+    assert ends(whole.Edges[0]) in [
+        ends(global_shape(one).Edges[0]) for one in (nested.A, nested.B)
+    ]
     assert api.make_solid_feature(nested, nested.Part, layer_height=5).Solids == 2
 
 
 @pytest.mark.parametrize("order", ["AGC", "GAC", "ACG"])
-def test_names_of_a_part_that_has_something_twice_are_those_of_freecad_or_refused(doc, order, tmp_path):
+def test_names_of_a_part_that_has_something_twice_are_those_of_freecad_or_refused(
+    doc, order, tmp_path
+):
     """Left out what is there a second time, faces and edges that follow have other numbers than FreeCAD shows."""
     held = {name: doc.addObject("Part::Box", name) for name in "ABC"}
     for k, box in enumerate(held.values()):
         box.Placement.Base.x, box.Length = 20 * k, 5 + k
-    part, group = doc.addObject("App::Part", "Part"), doc.addObject("App::DocumentObjectGroup", "Group")
+    part, group = (
+        doc.addObject("App::Part", "Part"),
+        doc.addObject("App::DocumentObjectGroup", "Group"),
+    )
     group.addObject(held["B"])
     for name in order:
         part.addObject({**held, "G": group}[name])
@@ -136,7 +162,9 @@ def test_names_of_a_part_that_has_something_twice_are_those_of_freecad_or_refuse
     assert found == (list(range(1, 37)) if order == "ACG" else [])
     doc.saveAs(str(tmp_path / "part.FCStd"))
     if order == "ACG":
-        assert part_shape(doc.FileName, "Part")[0].Edges[35].Length == pytest.approx(freecads.Edges[35].Length)
+        assert part_shape(doc.FileName, "Part")[0].Edges[35].Length == pytest.approx(
+            freecads.Edges[35].Length
+        )
         return
     with pytest.raises(InputError, match="twice") as caught:
         part_shape(doc.FileName, "Part")
@@ -152,7 +180,11 @@ def test_a_path_to_a_body_by_its_tip_is_the_body(doc):
     for path, owner in (("Bore.Edge3", body), ("Pad.Edge3", doc.Pad)):
         feature = api.make_curves_feature(doc, body, [path])
         assert feature.Source[0] == owner
-        assert laid(feature) == ends(global_shape(owner).getElement(feature.Source[1][0])) == ends(body.getSubObject(path))
+        assert (
+            laid(feature)
+            == ends(global_shape(owner).getElement(feature.Source[1][0]))
+            == ends(body.getSubObject(path))
+        )
     feature.Source = (body, ["Bore.Edge3"])
     api.recompute(feature)
     assert feature.Status == "up to date"

@@ -13,7 +13,10 @@ from freecad_am import api
 from freecad_am.core.issues import InfeasibleError
 
 HALF_ANGLE, TIP, LENGTH = np.radians(20.0), 0.5, 60.0  # of the nozzle
-LOW, HIGH = np.array([-30.0, 12.0, 0.0]), np.array([30.0, 22.0, 45.0])  # of the block, beside what is laid at y up to 10
+LOW, HIGH = (
+    np.array([-30.0, 12.0, 0.0]),
+    np.array([30.0, 22.0, 45.0]),
+)  # of the block, beside what is laid at y up to 10
 DEEP = 0.05  # mm, what bodies and cones are off their true places
 
 
@@ -29,7 +32,9 @@ def plate(doc):
     obj = doc.addObject("Part::Feature", "Plate")
     obj.Shape = Part.makeBox(40, 20, 5, App.Vector(-20, -10, -5))
     doc.recompute()
-    top = next(f"Face{k}" for k, face in enumerate(obj.Shape.Faces, 1) if face.CenterOfMass.z > -1e-9)
+    top = next(
+        f"Face{k}" for k, face in enumerate(obj.Shape.Faces, 1) if face.CenterOfMass.z > -1e-9
+    )
     return obj, top
 
 
@@ -43,8 +48,13 @@ def line(doc):
 
 @pytest.fixture
 def cell(doc):
-    return api.make_cell(doc, nozzle_half_angle=np.degrees(HALF_ANGLE), nozzle_diameter=2 * TIP, nozzle_length=LENGTH,
-                         platform_diameter=0)
+    return api.make_cell(
+        doc,
+        nozzle_half_angle=np.degrees(HALF_ANGLE),
+        nozzle_diameter=2 * TIP,
+        nozzle_length=LENGTH,
+        platform_diameter=0,
+    )
 
 
 def clad(doc, plate, block, **values):
@@ -68,7 +78,9 @@ def _face(plate):
 
 def inside(toolpath):
     """How many points of cones, on 24 lines of each, are inside of the block."""
-    points, tools = (np.vstack([getattr(bead, name) for _, _, bead in toolpath]) for name in ("points", "tool"))
+    points, tools = (
+        np.vstack([getattr(bead, name) for _, _, bead in toolpath]) for name in ("points", "tool")
+    )
     aside = np.cross(tools, [1.0, 0.0, 0.0])
     aside /= np.linalg.norm(aside, axis=1)[:, None]
     other = np.cross(tools, aside)
@@ -76,7 +88,11 @@ def inside(toolpath):
     count = 0
     for turn in np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False):
         out = np.cos(turn) * aside + np.sin(turn) * other
-        places = points[:, None] + up[:, None] * tools[:, None] + (TIP + np.tan(HALF_ANGLE) * up)[:, None] * out[:, None]
+        places = (
+            points[:, None]
+            + up[:, None] * tools[:, None]
+            + (TIP + np.tan(HALF_ANGLE) * up)[:, None] * out[:, None]
+        )
         count += int(((places > LOW + DEEP) & (places < HIGH - DEEP)).all(axis=-1).sum())
     return count
 

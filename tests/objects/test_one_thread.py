@@ -29,7 +29,8 @@ def vase(scale):
     return curve.toShape().revolve(Vector(0, 0, 0), Vector(0, 0, 1), 360)
 """
 # as a user's macro: numpy is there first, with all its threads, and is used again afterwards
-MACRO = """
+MACRO = (
+    """
 import sys, hashlib, json, os, time
 sys.path.insert(0, {root!r})
 from freecad_am.batch import host
@@ -40,7 +41,9 @@ from freecad_am.core import one_thread
 import freecad_am.api as am
 from freecad_am.core.simulation import waypoints
 from freecad_am.core.kinematics.proposed_cell import cell_of
-""" + VASE + """
+"""
+    + VASE
+    + """
 def made(machine, scale, **joints):
     doc = App.newDocument()
     part = doc.addObject("Part::Feature", "Vase")
@@ -64,14 +67,22 @@ print(json.dumps({{"texts": texts, "told": told, "after": after, "seconds": seco
 sys.stdout.flush()
 os._exit(0)
 """
+)
 THREADS = ("1", "4")
 
 
 def in_process(code, threads, seed):
-    environment = {key: value for key, value in os.environ.items() if key not in one_thread.ENVIRONMENT}
+    environment = {
+        key: value for key, value in os.environ.items() if key not in one_thread.ENVIRONMENT
+    }
     environment.update(OPENBLAS_NUM_THREADS=threads, PYTHONHASHSEED=seed)
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=False, env=environment, timeout=300
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+        timeout=300,
     )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout.splitlines()[-1])
@@ -80,7 +91,9 @@ def in_process(code, threads, seed):
 @pytest.fixture(scope="module")
 def runs():
     """What a macro makes with so many threads; the hash seed of each is another one."""
-    return {threads: in_process(MACRO.format(root=str(ROOT)), threads, threads) for threads in THREADS}
+    return {
+        threads: in_process(MACRO.format(root=str(ROOT)), threads, threads) for threads in THREADS
+    }
 
 
 def test_a_macro_makes_the_same_bytes_with_any_number_of_threads(runs):
@@ -103,20 +116,36 @@ def test_more_threads_take_no_more_processor_time(runs):
 def test_a_job_makes_the_same_bytes_with_any_number_of_threads(tmp_path):
     (tmp_path / "vase.py").write_text(
         f"import sys, os\nsys.path.insert(0, {str(ROOT)!r})\nfrom freecad_am.batch import host\nhost.find_freecad()\n"
-        + VASE + f"vase(1.0).exportStep({str(tmp_path / 'vase.step')!r})\nos._exit(0)\n", encoding="utf-8")
+        + VASE
+        + f"vase(1.0).exportStep({str(tmp_path / 'vase.step')!r})\nos._exit(0)\n",
+        encoding="utf-8",
+    )
     subprocess.run([sys.executable, str(tmp_path / "vase.py")], check=True, capture_output=True)
     (tmp_path / "vase.yaml").write_text(
         "version: 1\nname: vase\npart: {file: vase.step}\n"
         "strategy: {kind: revolution, layer_height: 20 mm, chord_error: 0.1 mm}\n"
         "cell: {machine: kuka-kr16-2, deposition_point: [1321, 0, 1621, 0, 0, 0], branch: [front, down, flip]}\n",
-        encoding="utf-8")
+        encoding="utf-8",
+    )
     texts = []
     for threads in ("1", "2"):
-        environment = {key: value for key, value in os.environ.items() if key not in one_thread.ENVIRONMENT}
+        environment = {
+            key: value for key, value in os.environ.items() if key not in one_thread.ENVIRONMENT
+        }
         out = tmp_path / threads
         subprocess.run(
-            [str(ROOT / "freecad-am"), "plan", str(tmp_path / "vase.yaml"), "-o", str(out), "--no-page"], check=True,
-            capture_output=True, env={**environment, "OPENBLAS_NUM_THREADS": threads}, timeout=300,
+            [
+                str(ROOT / "freecad-am"),
+                "plan",
+                str(tmp_path / "vase.yaml"),
+                "-o",
+                str(out),
+                "--no-page",
+            ],
+            check=True,
+            capture_output=True,
+            env={**environment, "OPENBLAS_NUM_THREADS": threads},
+            timeout=300,
         )
         texts.append((out / "waypoints.csv").read_bytes())
     assert texts[0] == texts[1]
@@ -127,7 +156,11 @@ def test_the_library_below_numpy_is_found():
     maps = Path("/proc/self/maps")
     if not maps.exists() or "openblas" not in maps.read_text(encoding="utf-8"):
         pytest.skip("no OpenBLAS here")
-    file = next(line.split()[-1] for line in maps.read_text(encoding="utf-8").splitlines() if "openblas" in line.split()[-1])
+    file = next(
+        line.split()[-1]
+        for line in maps.read_text(encoding="utf-8").splitlines()
+        if "openblas" in line.split()[-1]
+    )
     library = ctypes.CDLL(file)
     with one_thread.one_thread():
         assert library.openblas_get_num_threads() == 1

@@ -20,9 +20,12 @@ from freecad_am.posts.kuka import text as krl
 def of(turn, controller):
     """What a pendant shows of a rotation, by scipy."""
     return {
-        "kuka": lambda: turn.as_euler("ZYX", degrees=True), "fanuc": lambda: turn.as_euler("xyz", degrees=True),
-        "yaskawa": lambda: turn.as_euler("xyz", degrees=True), "staubli": lambda: turn.as_euler("XYZ", degrees=True),
-        "abb": lambda: np.roll(turn.as_quat(), 1), "ur": turn.as_rotvec,
+        "kuka": lambda: turn.as_euler("ZYX", degrees=True),
+        "fanuc": lambda: turn.as_euler("xyz", degrees=True),
+        "yaskawa": lambda: turn.as_euler("xyz", degrees=True),
+        "staubli": lambda: turn.as_euler("XYZ", degrees=True),
+        "abb": lambda: np.roll(turn.as_quat(), 1),
+        "ur": turn.as_rotvec,
     }[controller]()
 
 
@@ -31,7 +34,9 @@ def test_what_scipy_says_is_read_and_shown(controller):
     turns = Rotation.random(200, random_state=3)
     for turn in [*turns, *Rotation.from_euler("x", [0.0, 180.0, 90.0], degrees=True)]:
         numbers = of(turn, controller)
-        found = pendants.six([controller, "10.5", "-20", "300", *(f"{number:.17g}" for number in numbers)], "here")
+        found = pendants.six(
+            [controller, "10.5", "-20", "300", *(f"{number:.17g}" for number in numbers)], "here"
+        )
         assert found[:3] == (10.5, -20.0, 300.0)
         assert np.abs(frames.bryant(found)[:3, :3] - turn.as_matrix()).max() < 1e-12
         again = pendants.shown(controller, found)
@@ -43,23 +48,38 @@ def test_what_scipy_says_is_read_and_shown(controller):
             assert positive[0] < 1e-9 or np.abs(np.array(again[3:]) - positive).max() < 1e-9
 
 
-@pytest.mark.parametrize(("text", "z"), [
-    # where the tool's Z points, by hand: a quarter of a turn about Y
-    ("kuka 0 0 0 0 90 0", [1, 0, 0]), ("fanuc 0 0 0 0 90 0", [1, 0, 0]), ("yaskawa 0 0 0 0 90 0", [1, 0, 0]),
-    ("staubli 0 0 0 0 90 0", [1, 0, 0]), ("abb 0 0 0 0.70711 0 0.70711 0", [1, 0, 0]),
-    (f"ur 0 0 0 0 {math.pi / 2} 0", [1, 0, 0]),
-    # then a quarter about the fixed Z, which is A of KUKA, R of FANUC, Rz of Yaskawa, and Rx of Staubli about its own X
-    ("kuka 0 0 0 90 90 0", [0, 1, 0]), ("fanuc 0 0 0 0 90 90", [0, 1, 0]), ("yaskawa 0 0 0 0 90 90", [0, 1, 0]),
-    ("staubli 0 0 0 90 90 0", [1, 0, 0]), ("staubli 0 0 0 90 0 90", [0, -1, 0]),
-])
+@pytest.mark.parametrize(
+    ("text", "z"),
+    [
+        # where the tool's Z points, by hand: a quarter of a turn about Y
+        ("kuka 0 0 0 0 90 0", [1, 0, 0]),
+        ("fanuc 0 0 0 0 90 0", [1, 0, 0]),
+        ("yaskawa 0 0 0 0 90 0", [1, 0, 0]),
+        ("staubli 0 0 0 0 90 0", [1, 0, 0]),
+        ("abb 0 0 0 0.70711 0 0.70711 0", [1, 0, 0]),
+        (f"ur 0 0 0 0 {math.pi / 2} 0", [1, 0, 0]),
+        # then a quarter about the fixed Z, which is A of KUKA, R of FANUC, Rz of Yaskawa, and Rx of Staubli about its own X
+        ("kuka 0 0 0 90 90 0", [0, 1, 0]),
+        ("fanuc 0 0 0 0 90 90", [0, 1, 0]),
+        ("yaskawa 0 0 0 0 90 90", [0, 1, 0]),
+        ("staubli 0 0 0 90 90 0", [1, 0, 0]),
+        ("staubli 0 0 0 90 0 90", [0, -1, 0]),
+    ],
+)
 def test_by_hand(text, z):
     assert np.abs(frames.bryant(pendants.six(text.split(), "here"))[:3, 2] - z).max() < 1e-5
 
 
-@pytest.mark.parametrize(("text", "words"), [
-    ("kuka 1 2 3 4 5", "write such as: kuka X Y Z A B C"), ("abb 1 2 3 0.7 0 0.7 0.7", "quaternion is 1"),
-    ("abb 1 2 3 90 0 0", "q1 q2 q3 q4"), ("ur 0 0 0 90 0 0", "more than a turn"), ("fanuc 1 2 3 4 5 nan", "W P R"),
-])
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("kuka 1 2 3 4 5", "write such as: kuka X Y Z A B C"),
+        ("abb 1 2 3 0.7 0 0.7 0.7", "quaternion is 1"),
+        ("abb 1 2 3 90 0 0", "q1 q2 q3 q4"),
+        ("ur 0 0 0 90 0 0", "more than a turn"),
+        ("fanuc 1 2 3 4 5 nan", "W P R"),
+    ],
+)
 def test_what_is_no_such_pose_is_told(text, words):
     with pytest.raises(InputError, match=words):
         pendants.six(text.split(), "here")
@@ -70,7 +90,9 @@ def test_a_positioner_where_its_pendant_says():
     typed = "motoman-motopos-d500 at 1100 60 -100 kuka 30 0 0 carries part; track at abb, 0, 0, 5, 1, 0, 0, 0 carries robot"
     text = row.inner(typed, "here")
     assert text == row.inner(text, "here") and "kuka" not in text
-    other = externals("motoman-motopos-d500 at 1100 60 -100 0 0 30 carries part; track at 0 0 5 0 0 0 carries robot")
+    other = externals(
+        "motoman-motopos-d500 at 1100 60 -100 0 0 30 carries part; track at 0 0 5 0 0 0 carries robot"
+    )
     for one, wanted in zip(externals(text), other, strict=True):
         assert (one.machine, one.carries) == (wanted.machine, wanted.carries)
         assert np.allclose(one.pose, wanted.pose, atol=1e-12)
@@ -87,5 +109,9 @@ def test_numbers_that_posts_write_and_pendants_show_are_the_same_ones():
         turn = Rotation.from_euler("ZYX", angles, degrees=True)
         six = (1.0, 2.0, 3.0, *frames.to_bryant(turn.as_matrix()))
         place = np.array([[1.0, 2.0, 3.0]])
-        np.testing.assert_allclose(pendants.shown("kuka", six), krl.frames(place, turn.as_matrix()[None])[0], atol=1e-4)
-        np.testing.assert_allclose(pendants.shown("fanuc", six), tp.poses(place, turn.as_matrix()[None])[0], atol=1e-3)
+        np.testing.assert_allclose(
+            pendants.shown("kuka", six), krl.frames(place, turn.as_matrix()[None])[0], atol=1e-4
+        )
+        np.testing.assert_allclose(
+            pendants.shown("fanuc", six), tp.poses(place, turn.as_matrix()[None])[0], atol=1e-3
+        )

@@ -10,13 +10,23 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize("words, posts", [("100 0 -3 0 90 0", []), ("kuka 100 0 -3 0 90 0", ["kuka"])])
+@pytest.mark.parametrize(
+    "words, posts", [("100 0 -3 0 90 0", []), ("kuka 100 0 -3 0 90 0", ["kuka"])]
+)
 def test_a_pose_imports_the_post_that_it_names_alone(words, posts):
     lines = [
-        "import sys", "from freecad_am.objects.fields import pendants",
-        f"pendants.plain('x at {words} carries y', 'here')", f"pendants.named({words.split()!r})",
+        "import sys",
+        "from freecad_am.objects.fields import pendants",
+        f"pendants.plain('x at {words} carries y', 'here')",
+        f"pendants.named({words.split()!r})",
         "loaded = [name.split('.') for name in sys.modules if name.startswith('freecad_am.posts.')]",
         "print(sorted(name[2] for name in loaded if name[3:] == ['post']))",
     ]
-    done = subprocess.run([sys.executable, "-c", "\n".join(lines)], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", "\n".join(lines)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert done.stdout.strip() == str(posts)

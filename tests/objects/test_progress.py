@@ -14,10 +14,17 @@ from freecad_am.objects.work import progress
 def leaning(doc):
     """A bar that leans far over the platform: curved layers of it lean the nozzle into what lies beside."""
     bar = doc.addObject("Part::Feature", "Bar")
-    foot, arm = Part.makeBox(16, 16, 14, App.Vector(-40, 0, 0)), Part.makeBox(30, 16, 6, App.Vector(-32, 0, 8))
+    foot, arm = (
+        Part.makeBox(16, 16, 14, App.Vector(-40, 0, 0)),
+        Part.makeBox(30, 16, 6, App.Vector(-32, 0, 8)),
+    )
     bar.Shape = foot.fuse(arm).removeSplitter()
     doc.recompute()
-    return [api.make_solid_feature(doc, bar, layers="geodesic", layer_height=2, bead_spacing=4, chord_error=0.2)]
+    return [
+        api.make_solid_feature(
+            doc, bar, layers="geodesic", layer_height=2, bead_spacing=4, chord_error=0.2
+        )
+    ]
 
 
 def several(doc):
@@ -26,7 +33,10 @@ def several(doc):
     ring = doc.addObject("Part::Cylinder", "Post")
     ring.Radius, ring.Height, ring.Placement.Base = 4, 12, App.Vector(60, 0, 0)
     doc.recompute()
-    return [api.make_feature(doc, part, layer_height=3), api.make_solid_feature(doc, ring, layer_height=3, bead_spacing=3)]
+    return [
+        api.make_feature(doc, part, layer_height=3),
+        api.make_solid_feature(doc, ring, layer_height=3, bead_spacing=3),
+    ]
 
 
 @pytest.mark.parametrize("made", [leaning, several])
@@ -47,6 +57,9 @@ def test_curved_layers_and_tilts_move_on(doc):
     last = max(number for _, number in layers)
     assert last + 1 == len(made.layers) and last > 8
     for share, number in layers:
-        assert abs(share - STRATEGY * number / (last + 1)) < STRATEGY / last, (share, number)  # within one layer
+        assert abs(share - STRATEGY * number / (last + 1)) < STRATEGY / last, (
+            share,
+            number,
+        )  # within one layer
     clearing = {share for share, text in told if text == CLEARING}
     assert len(clearing) > 5 and min(clearing) >= STRATEGY and max(clearing) <= CHECKED

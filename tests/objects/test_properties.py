@@ -22,16 +22,33 @@ from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.objects.fields import properties, rows
 
 CLASSES = (
-    (CellParameters, "cell"), (RevolutionParameters, "strategy"), (BuildDirectionParameters, "build_direction"),
-    (ProcessParameters, "process"), (JointParameters, "joints"), (ProgramParameters, "program"),
+    (CellParameters, "cell"),
+    (RevolutionParameters, "strategy"),
+    (BuildDirectionParameters, "build_direction"),
+    (ProcessParameters, "process"),
+    (JointParameters, "joints"),
+    (ProgramParameters, "program"),
 )
-TEXTS = {"machine": "staubli-rx60bl", "limits": "paper", "call": "CLEAN", "gas": "argon 4.6", "bead_model": "csw",
-         "shape": "torch.step",
-         "name": "ER 2319", "source": "l'essai n° 7",
-         "post": "siemens", "plane": "0.6 0 -0.8", "deposit_on": "M7", "deposit_off": "H2=0", "unit": "STN1",
-         "external": "motoman-motopos-d500 at 1500 0.25 -3 0 45 0 carries part", "world_up": "0 0.1 1",
-         "classes": "first_layer: travel_speed 4.5, schedule 2; fill: lead -5, lead_on 0.25, weave 2",
-         "obstacles": "post = box 60 60 400 at 900 -0.25 0 0 30 0", "touched": "0 0 0 = 900.5 2 -99; 9 0 0.25 = 909 2 -99"}
+TEXTS = {
+    "machine": "staubli-rx60bl",
+    "limits": "paper",
+    "call": "CLEAN",
+    "gas": "argon 4.6",
+    "bead_model": "csw",
+    "shape": "torch.step",
+    "name": "ER 2319",
+    "source": "l'essai n° 7",
+    "post": "siemens",
+    "plane": "0.6 0 -0.8",
+    "deposit_on": "M7",
+    "deposit_off": "H2=0",
+    "unit": "STN1",
+    "external": "motoman-motopos-d500 at 1500 0.25 -3 0 45 0 carries part",
+    "world_up": "0 0.1 1",
+    "classes": "first_layer: travel_speed 4.5, schedule 2; fill: lead -5, lead_on 0.25, weave 2",
+    "obstacles": "post = box 60 60 400 at 900 -0.25 0 0 30 0",
+    "touched": "0 0 0 = 900.5 2 -99; 9 0 0.25 = 909 2 -99",
+}
 
 
 @pytest.fixture
@@ -53,12 +70,16 @@ def random_number(spec, rng):
 def random_value(row, rng):
     spec = row.spec
     if row.form == f.POSE:
-        return tuple(rng.uniform(-1500, 1500) for _ in range(3)) + tuple(rng.uniform(-1.5, 1.5) for _ in range(3))
+        return tuple(rng.uniform(-1500, 1500) for _ in range(3)) + tuple(
+            rng.uniform(-1.5, 1.5) for _ in range(3)
+        )
     if row.form == rows.LENGTH_OR_POSE:
         pose = tuple(rng.uniform(-50, 50) for _ in range(6))
         return rng.choice([rng.uniform(0, 50), pose])
     if row.key == "given":
-        return tuple(f"{layer}/0:{rng.uniform(-180, 180):.6g}:360" for layer in range(rng.randint(0, 3)))
+        return tuple(
+            f"{layer}/0:{rng.uniform(-180, 180):.6g}:360" for layer in range(rng.randint(0, 3))
+        )
     if row.form == rows.TEXT_LIST:
         return tuple(rng.sample(METHODS, rng.randint(0, len(METHODS))))
     if row.key == "origin":
@@ -89,7 +110,9 @@ def assert_same(one, other):
     have, want = rows.flat(one), rows.flat(other)
     assert have.keys() == want.keys()
     for key in want:
-        if isinstance(want[key], float) or (isinstance(want[key], tuple) and key != "branch" and want[key][:1] != ()):
+        if isinstance(want[key], float) or (
+            isinstance(want[key], tuple) and key != "branch" and want[key][:1] != ()
+        ):
             assert have[key] == pytest.approx(want[key], rel=1e-13, abs=1e-12), key
         else:
             assert have[key] == want[key] and type(have[key]) is type(want[key]), key
@@ -142,8 +165,12 @@ def test_units_of_properties(holder):
     holder.NozzleHalfAngle = "0.1 rad"
     holder.Rz = "90 deg"
     holder.Platform = "0 0 12 0 0 90"
-    holder.DepositionPoint = App.Placement(App.Vector(1, 2, 3), App.Rotation(App.Vector(0, 1, 0), 30))
-    assert properties.read(holder, RevolutionParameters, "strategy").layer_height == pytest.approx(1.0)
+    holder.DepositionPoint = App.Placement(
+        App.Vector(1, 2, 3), App.Rotation(App.Vector(0, 1, 0), 30)
+    )
+    assert properties.read(holder, RevolutionParameters, "strategy").layer_height == pytest.approx(
+        1.0
+    )
     assert properties.read(holder, ProcessParameters, "process").travel_speed == pytest.approx(6.0)
     cell = properties.read(holder, CellParameters, "cell")
     assert cell.nozzle.half_angle == pytest.approx(0.1)
@@ -184,7 +211,9 @@ def test_bad_values_name_label_and_property(holder, cls, section, name, value, c
     assert caught.value.where == f"Héros n° 1.{name}"
 
 
-@pytest.mark.parametrize(("text", "seconds"), [("50 ms", 0.05), (" 7.5ms", 0.0075), ("0.05 s", 0.05), ("0.05", 0.05)])
+@pytest.mark.parametrize(
+    ("text", "seconds"), [("50 ms", 0.05), (" 7.5ms", 0.0075), ("0.05 s", 0.05), ("0.05", 0.05)]
+)
 def test_times_may_be_in_milliseconds(text, seconds):
     lead = next(row for row in rows.rows(ProgramParameters) if row.key == "trigger_lead")
     assert lead.inner(text, "program.trigger_lead") == pytest.approx(seconds, rel=1e-15)
@@ -193,14 +222,19 @@ def test_times_may_be_in_milliseconds(text, seconds):
         stand_off.inner("50 ms", "process.stand_off")
 
 
-@pytest.mark.parametrize(("text", "says"), [("0,05", "such as 0.05"), ("0,05 s", "such as 0.05 s"), (",5s", "such as .5s")])
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [("0,05", "such as 0.05"), ("0,05 s", "such as 0.05 s"), (",5s", "such as .5s")],
+)
 def test_a_decimal_comma_is_told_how_to_be_written(text, says):
     lead = next(row for row in rows.rows(ProgramParameters) if row.key == "trigger_lead")
     with pytest.raises(InputError, match=f"has a comma; write decimals with a point, {says}$"):
         lead.inner(text, "program.trigger_lead")
 
 
-@pytest.mark.parametrize("cls", [cls for cls, _ in (*CLASSES, (SolidParameters, ""), (CladdingParameters, ""))])
+@pytest.mark.parametrize(
+    "cls", [cls for cls, _ in (*CLASSES, (SolidParameters, ""), (CladdingParameters, ""))]
+)
 def test_the_example_of_a_message_may_be_entered(cls):
     for row in rows.rows(cls):
         if row.spec.kind in rows._UNITS:
@@ -211,30 +245,45 @@ def test_the_example_of_a_message_may_be_entered(cls):
 
 
 @pytest.mark.parametrize(
-    "text", ["10,5 20,5", "10,5, 20,5", "10, 5,5", "10,5 mm", ",5 20", ",5", "1\u202f234", "1 2\u00a0345"]
+    "text",
+    ["10,5 20,5", "10,5, 20,5", "10, 5,5", "10,5 mm", ",5 20", ",5", "1\u202f234", "1 2\u00a0345"],
 )
 def test_a_list_that_may_be_read_in_two_ways_is_refused(text):
     heights = next(row for row in rows.rows(InspectionParameters) if row.key == "heights")
-    with pytest.raises(InputError, match=r"may be read in two ways; write decimals with a point .* as in 10\.5 20\.5"):
+    with pytest.raises(
+        InputError,
+        match=r"may be read in two ways; write decimals with a point .* as in 10\.5 20\.5",
+    ):
         heights.inner(text, "inspection.heights")
 
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [("10, 5, 20", "10 5 20"), ("10,5,20", "10 5 20"), ("10.5,20.5", "10.5 20.5"), ("10.5 20 , 5", "10.5 20 5"),
-     ("\u00a010.5\u202f mm ", "10.5 mm"), ("0/0:1.5:-2 *:0", "0/0:1.5:-2 *:0"), ("", "")],
+    [
+        ("10, 5, 20", "10 5 20"),
+        ("10,5,20", "10 5 20"),
+        ("10.5,20.5", "10.5 20.5"),
+        ("10.5 20 , 5", "10.5 20 5"),
+        ("\u00a010.5\u202f mm ", "10.5 mm"),
+        ("0/0:1.5:-2 *:0", "0/0:1.5:-2 *:0"),
+        ("", ""),
+    ],
 )
 def test_a_list_has_blanks_or_commas_between(text, words):
     heights = next(row for row in rows.rows(InspectionParameters) if row.key == "heights")
     assert heights.inner(text, "inspection.heights") == tuple(words.split())
 
 
-@pytest.mark.parametrize("text", ["12\u202fm", "12\u00a0m", "12 m", "1.2e7\u2009\u03bcm", "1.2e7 \u00b5m"])
+@pytest.mark.parametrize(
+    "text", ["12\u202fm", "12\u00a0m", "12 m", "1.2e7\u2009\u03bcm", "1.2e7 \u00b5m"]
+)
 def test_a_quantity_may_have_any_blank_before_its_unit(text):
     assert rows.quantity(text).getValueAs("mm").Value == pytest.approx(12000.0)
 
 
-@pytest.mark.parametrize("text", ["1\u202f234 mm", "1\u00a0234 mm", "1\u2009234", "1’234 mm", "2 mm²", "5 мм", "１２ mm"])
+@pytest.mark.parametrize(
+    "text", ["1\u202f234 mm", "1\u00a0234 mm", "1\u2009234", "1’234 mm", "2 mm²", "5 мм", "１２ mm"]
+)
 def test_a_quantity_is_read_whole_or_not_at_all(text):
     with pytest.raises((ValueError, OSError)):
         rows.quantity(text)

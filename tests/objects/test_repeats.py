@@ -37,16 +37,23 @@ def test_any_list_comes_back(seed):
         before = np.concatenate(parts)
         start = random.integers(0, len(before) + 1)
         run = np.full(random.integers(1, 900), random.choice([0.0, -0.0, np.nan, np.inf, 1.5]))
-        parts.append([
-            before[start : start + random.integers(0, 3000)], random.normal(size=random.integers(1, 200)), run,
-            np.tile(random.normal(size=random.integers(1, 6)), random.integers(1, 200)), np.arange(len(run)).astype(float),
-        ][kind])
+        parts.append(
+            [
+                before[start : start + random.integers(0, 3000)],
+                random.normal(size=random.integers(1, 200)),
+                run,
+                np.tile(random.normal(size=random.integers(1, 6)), random.integers(1, 200)),
+                np.arange(len(run)).astype(float),
+            ][kind]
+        )
     there_and_back(np.concatenate(parts))
 
 
 def test_every_long_repetition_is_found_whole():
     random = np.random.default_rng(5)
-    pieces = [random.normal(size=n) for n in random.integers(repeats.SHORTEST + repeats.EVERY, 1500, 200)]
+    pieces = [
+        random.normal(size=n) for n in random.integers(repeats.SHORTEST + repeats.EVERY, 1500, 200)
+    ]
     between = [random.normal(size=n) for n in random.integers(1, 9, 200)]
     first = np.concatenate(pieces)
     again = [part for pair in zip(pieces, between, strict=True) for part in pair]
@@ -57,9 +64,17 @@ def test_every_long_repetition_is_found_whole():
 
 def test_every_run_is_left_out():
     random = np.random.default_rng(7)
-    sizes, kinds = random.integers(repeats.SHORTEST, 1500, 60), np.resize([0.0, -0.0, np.nan, np.inf, 1.5], 60)
-    numbers = np.concatenate([part for size, kind in zip(sizes, kinds, strict=True)
-                              for part in (np.full(size, kind), random.normal(size=3))])
+    sizes, kinds = (
+        random.integers(repeats.SHORTEST, 1500, 60),
+        np.resize([0.0, -0.0, np.nan, np.inf, 1.5], 60),
+    )
+    numbers = np.concatenate(
+        [
+            part
+            for size, kind in zip(sizes, kinds, strict=True)
+            for part in (np.full(size, kind), random.normal(size=3))
+        ]
+    )
     once, runs = repeats.without_runs(numbers)
     assert len(once) == 60 * 4
     assert (runs[:, 1] == sizes).all()
@@ -96,8 +111,12 @@ def test_damaged_ones_are_told():
     numbers = np.tile(np.random.default_rng(2).normal(size=300), 3)
     rest, copies = repeats.folded(numbers)
     for bad in (
-        (rest[:-1], copies, 900), (np.append(rest, 1.0), copies, 900), (rest, copies + [[0, 0, 1]], 900),
-        (rest, copies + [[0, 450, 0]], 900), (rest, copies + [[0, -900, 0]], 900), (rest, copies * [[1, 1, -1]], 900),
+        (rest[:-1], copies, 900),
+        (np.append(rest, 1.0), copies, 900),
+        (rest, copies + [[0, 0, 1]], 900),
+        (rest, copies + [[0, 450, 0]], 900),
+        (rest, copies + [[0, -900, 0]], 900),
+        (rest, copies * [[1, 1, -1]], 900),
         (rest, copies, 800),
     ):
         with pytest.raises(ValueError, match=r"damaged|cut short"):
@@ -113,12 +132,19 @@ def test_results_that_repeat_take_less_room_and_old_ones_are_read():
     for one, other in zip(store.unpack(floats, text, "k", "x")[1:], value[1:], strict=True):
         assert same(one, other)
     mark = floats[0]
-    old = store.unpack([mark, 1.0, 2.0, 3.0, 4.0], 'k {"t":[{"a":[0,1,2,2]},{"a":[1,2,3]}]}', "k", "x")
+    old = store.unpack(
+        [mark, 1.0, 2.0, 3.0, 4.0], 'k {"t":[{"a":[0,1,2,2]},{"a":[1,2,3]}]}', "k", "x"
+    )
     assert same(old[0], np.array([[1.0, 2.0], [3.0, 4.0]])) and same(old[1], np.array([2, 3, 4]))
 
 
 def test_what_is_the_same_everywhere_takes_no_room():
-    value = (np.ones((4000, 3)), np.zeros(9000, dtype=bool), np.tile([0.0, 0.6, 0.8], (5000, 1)), np.full(300, np.nan))
+    value = (
+        np.ones((4000, 3)),
+        np.zeros(9000, dtype=bool),
+        np.tile([0.0, 0.6, 0.8], (5000, 1)),
+        np.full(300, np.nan),
+    )
     floats, text = store.pack(value, "k")
     assert len(floats) < 60
     for one, other in zip(store.unpack(floats, text, "k", "x"), value, strict=True):

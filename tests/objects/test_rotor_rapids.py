@@ -26,30 +26,42 @@ def travels_through_the_hub(cell, motion, files):
     rows = np.flatnonzero(motion.moves)
     drive = Drive(cell, fanuc.read(files), motion.joints[rows[0]])
     travels = np.flatnonzero(motion.role[rows] == TRAVEL)
-    return np.array([depth_in_hub(*drive.way(row), cell.nozzle, HUB, TOP) for row in travels if row])
+    return np.array(
+        [depth_in_hub(*drive.way(row), cell.nozzle, HUB, TOP) for row in travels if row]
+    )
 
 
 @pytest.mark.long
 def test_no_travel_of_the_rotor_leads_through_its_hub(doc, root, monkeypatch):
     taken = []
     real = programs.verification.verify
-    monkeypatch.setattr(programs.verification, "verify", lambda *given: taken.append(given) or real(*given))
+    monkeypatch.setattr(
+        programs.verification, "verify", lambda *given: taken.append(given) or real(*given)
+    )
     folder = root / "resources" / "examples" / "rotor"
     hub, blades = (api.open_part(doc, str(folder / name)) for name in ("hub.step", "blades.brep"))
     cell = api.make_cell(
-        doc, machine="fanuc-arcmate120ic", setup="tool-on-robot", deposition_point=(1000.0, 0.0, -100.0, 0.0, 0.0, 0.0),
-        branch=("front", "up", "flip"), nozzle_tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0),
+        doc,
+        machine="fanuc-arcmate120ic",
+        setup="tool-on-robot",
+        deposition_point=(1000.0, 0.0, -100.0, 0.0, 0.0, 0.0),
+        branch=("front", "up", "flip"),
+        nozzle_tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0),
     )
     feature = api.make_developable_feature(doc, blades, hub, layer_height=3)
     toolpath = api.make_toolpath(doc, feature, cell)
-    program = api.make_program(doc, api.make_joint_path(doc, toolpath, cell), name="rotor", motion="cartesian")
+    program = api.make_program(
+        doc, api.make_joint_path(doc, toolpath, cell), name="rotor", motion="cartesian"
+    )
     assert program.Status == "up to date"
     resolved, motion, _, files = taken[0][:4]
     depths = travels_through_the_hub(resolved, motion, files)
     assert len(depths) > 100 and depths.max() <= DEEP
     # as they were written before, straight in space and rounded, some of the same travels lead through it
     before = {
-        name: re.sub(rb"(?m)^( *\d+:)J(?= P\[\d+\] \d+msec)", rb"\1L", content).replace(b"msec FINE", b"msec CNT100")
+        name: re.sub(rb"(?m)^( *\d+:)J(?= P\[\d+\] \d+msec)", rb"\1L", content).replace(
+            b"msec FINE", b"msec CNT100"
+        )
         for name, content in files.items()
     }
     through = travels_through_the_hub(resolved, motion, before)

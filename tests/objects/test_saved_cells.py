@@ -39,11 +39,16 @@ def test_cells_of_the_users_folder_and_beside_the_document_are_known(own, tmp_pa
     (beside / "bytes.yaml").write_bytes(b"machine: \xff\xfe")
     (beside / "notes.txt").write_text(CELL, encoding="utf-8")
     doc = App.newDocument()
-    assert saved_cells.known(doc) == [(str(own / "Bay.yml"), "Bay"), (str(own / "hall 3.yaml"), "hall 3")]
+    assert saved_cells.known(doc) == [
+        (str(own / "Bay.yml"), "Bay"),
+        (str(own / "hall 3.yaml"), "hall 3"),
+    ]
     doc.saveAs(str(beside / "work.FCStd"))
     assert saved_cells.known(doc) == [
-        (str(own / "Bay.yml"), "Bay"), (str(beside / "hall 3.yaml"), f"hall 3 ({beside})"),
-        (str(own / "hall 3.yaml"), f"hall 3 ({own})")]
+        (str(own / "Bay.yml"), "Bay"),
+        (str(beside / "hall 3.yaml"), f"hall 3 ({beside})"),
+        (str(own / "hall 3.yaml"), f"hall 3 ({own})"),
+    ]
     App.closeDocument(doc.Name)
     assert saved_cells.known(None)[0][1] == "Bay"
 
@@ -55,19 +60,33 @@ def test_without_a_folder_there_are_none(tmp_path, monkeypatch):
 
 def test_a_job_is_made_in_a_saved_cell(own, tmp_path, root, monkeypatch, no_remedies):
     make = api.make_feature_of
-    monkeypatch.setattr(api, "make_feature_of", lambda *args, **more: make(
-        *args, **{**more, "values": {"layer_height": 25.0, "chord_error": 0.5}}))
+    monkeypatch.setattr(
+        api,
+        "make_feature_of",
+        lambda *args, **more: make(
+            *args, **{**more, "values": {"layer_height": 25.0, "chord_error": 0.5}}
+        ),
+    )
     path = own / "hall.yaml"
-    path.write_text(CELL + "external:\n- {machine: motoman-motopos-d500, pose: [1100, 60, -100, 0, 0, 20], carries: part}\n",
-                    encoding="utf-8")
+    path.write_text(
+        CELL
+        + "external:\n- {machine: motoman-motopos-d500, pose: [1100, 60, -100, 0, 0, 20], carries: part}\n",
+        encoding="utf-8",
+    )
     cell = api.read_cell(str(path))
-    assert (cell.machine, cell.setup, cell.nozzle.tool[:3]) == ("kuka-kr16-2", "tool-on-robot", (0.0, 0.0, 150.0))
+    assert (cell.machine, cell.setup, cell.nozzle.tool[:3]) == (
+        "kuka-kr16-2",
+        "tool-on-robot",
+        (0.0, 0.0, 150.0),
+    )
     (one,) = externals(cell.external)
     assert (one.machine, one.pose[:3]) == ("motoman-motopos-d500", (1100.0, 60.0, -100.0))
     doc = App.newDocument()
     part = api.open_part(doc, str(root / "resources/examples/hemisphere.step"))
     made = api.make_all(doc, part, cell=str(path))
-    assert api.result(made[0]) == cell or (made[0].Machine == "kuka-kr16-2" and made[0].External == cell.external)
+    assert api.result(made[0]) == cell or (
+        made[0].Machine == "kuka-kr16-2" and made[0].External == cell.external
+    )
     again = tmp_path / "again.yaml"
     api.export_cell(made[0], str(again))
     assert api.read_cell(str(again)) == cell
@@ -86,31 +105,45 @@ def test_what_is_wrong_with_a_file_is_told(own):
 
 def test_poses_of_a_file_and_of_macros_as_pendants_show_them(own):
     path = own / "shown.yaml"
-    path.write_text("""\
+    path.write_text(
+        """\
 machine: kuka-kr16-2
 setup: tool-on-robot
 deposition_point: [1050, 0, 200, kuka, 30, 0, 0]
 platform: kuka 0 0 5 0 0 0
 nozzle: {tool: fanuc 20 0 300 0 35 0}
 external: [{machine: motoman-motopos-d500, pose: abb 1100 60 -100 0.9659258 0 0 0.2588190, carries: part}]
-""", encoding="utf-8")
+""",
+        encoding="utf-8",
+    )
     plain = own / "plain.yaml"
-    plain.write_text("""\
+    plain.write_text(
+        """\
 machine: kuka-kr16-2
 setup: tool-on-robot
 deposition_point: [1050, 0, 200, 0, 0, 30]
 platform: [0, 0, 5, 0, 0, 0]
 nozzle: {tool: [20, 0, 300, 0, 35, 0]}
 external: [{machine: motoman-motopos-d500, pose: [1100, 60, -100, 0, 0, 30], carries: part}]
-""", encoding="utf-8")
+""",
+        encoding="utf-8",
+    )
     shown, wanted = api.read_cell(str(path)), api.read_cell(str(plain))
-    for one, other in ((shown.deposition_point, wanted.deposition_point), (shown.nozzle.tool, wanted.nozzle.tool),
-                       (shown.platform, wanted.platform),
-                       (externals(shown.external)[0].pose, externals(wanted.external)[0].pose)):
+    for one, other in (
+        (shown.deposition_point, wanted.deposition_point),
+        (shown.nozzle.tool, wanted.nozzle.tool),
+        (shown.platform, wanted.platform),
+        (externals(shown.external)[0].pose, externals(wanted.external)[0].pose),
+    ):
         assert one == pytest.approx(other, abs=1e-6)
     doc = App.newDocument()
-    cell = api.make_cell(doc, machine="kuka-kr16-2", setup="tool-on-robot", deposition_point="kuka 1050 0 200 30 0 0",
-                         platform="kuka 0 0 5 0 0 0")
+    cell = api.make_cell(
+        doc,
+        machine="kuka-kr16-2",
+        setup="tool-on-robot",
+        deposition_point="kuka 1050 0 200 30 0 0",
+        platform="kuka 0 0 5 0 0 0",
+    )
     assert api.result(cell).deposition_point == pytest.approx(wanted.deposition_point, abs=1e-9)
     App.closeDocument(doc.Name)
     path.write_text("machine: kuka-kr16-2\nnozzle: {tool: kuka 20 0 300 0 35}\n", encoding="utf-8")

@@ -18,8 +18,18 @@ def heights(toolpath):
 
 def test_a_fitted_toolpath_is_kept_and_follows_its_scan(doc, tmp_path):
     plate, block = doc.addObject("Part::Box", "Plate"), doc.addObject("Part::Box", "Block")
-    plate.Length, plate.Width, plate.Height, plate.Placement.Base = 200, 120, 10, App.Vector(-100, -60, -10)
-    block.Length, block.Width, block.Height, block.Placement.Base = 60, 20, 12, App.Vector(-30, -10, 0)
+    plate.Length, plate.Width, plate.Height, plate.Placement.Base = (
+        200,
+        120,
+        10,
+        App.Vector(-100, -60, -10),
+    )
+    block.Length, block.Width, block.Height, block.Placement.Base = (
+        60,
+        20,
+        12,
+        App.Vector(-30, -10, 0),
+    )
     doc.recompute()
     path = tmp_path / "scan.xyz"
     np.savetxt(path, points_on(bent, count=6000))
@@ -28,7 +38,9 @@ def test_a_fitted_toolpath_is_kept_and_follows_its_scan(doc, tmp_path):
     toolpath = api.make_toolpath(doc, feature, scan=scan, scan_band=10)
     x, y, z = heights(toolpath).T
     assert np.abs(z - bent(x, y)).max() < 0.06
-    assert api.result(toolpath).fitted.layers == int(np.ceil(np.abs(api.result(toolpath).fitted.off).max() / 0.4))
+    assert api.result(toolpath).fitted.layers == int(
+        np.ceil(np.abs(api.result(toolpath).fitted.off).max() / 0.4)
+    )
     copy = str(tmp_path / "copy.FCStd")
     doc.saveCopy(copy)
     again = App.openDocument(copy)
@@ -49,7 +61,12 @@ def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path
     """By the distance to its faces, less what the scan moved the layer: one that was moved twice as far is found, and the
     preflight tells what a part with too few layers is still off."""
     plate, tube = doc.addObject("Part::Box", "Plate"), doc.addObject("Part::Cylinder", "Tube")
-    plate.Length, plate.Width, plate.Height, plate.Placement.Base = 120, 120, 10, App.Vector(-60, -60, -10)
+    plate.Length, plate.Width, plate.Height, plate.Placement.Base = (
+        120,
+        120,
+        10,
+        App.Vector(-60, -60, -10),
+    )
     tube.Radius, tube.Height = 30, 24
     doc.recompute()
     path = tmp_path / "scan.xyz"
@@ -57,19 +74,33 @@ def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path
     def toolpath(low):
         np.savetxt(path, points_on(lambda x, y: low + 0.01 * x, (60.0, 60.0), 6000))
         scan = api.make_scan(doc, plate, str(path))
-        feature = api.make_surface_feature(doc, tube, substrate=plate, faces=["Face1"], layer_height=4, chord_error=0.1)
+        feature = api.make_surface_feature(
+            doc, tube, substrate=plate, faces=["Face1"], layer_height=4, chord_error=0.1
+        )
         made = api.make_toolpath(doc, feature, scan=scan)
-        promise, = [one for one in preflight.of_stages(made) if one.promise == "What is deposited lies on the part"]
+        (promise,) = [
+            one
+            for one in preflight.of_stages(made)
+            if one.promise == "What is deposited lies on the part"
+        ]
         return api.result(made), promise
 
     sound, promise = toolpath(-1.0)
     lowest = min(bead.points[:, 2].min() for bead in sound.layers[0].beads)
-    assert lowest == pytest.approx(-1.3, abs=0.06) and "OFF_PART" not in {issue.code for issue in sound.issues}
+    assert lowest == pytest.approx(-1.3, abs=0.06) and "OFF_PART" not in {
+        issue.code for issue in sound.issues
+    }
     assert promise.ok and promise.worst < 0.12 and "less what a scan moved" in promise.how
     few, promise = toolpath(-4.6)  # 24 mm lead back 4.8 mm, a fifth of them
     assert "SCAN_REMAINS" in {issue.code for issue in few.issues} and promise.ok is False
     moved = fit_layers.moved
-    monkeypatch.setattr(fit_layers, "moved", lambda one, share, *more: moved(one, 2.0 * share, *more))
+    monkeypatch.setattr(
+        fit_layers, "moved", lambda one, share, *more: moved(one, 2.0 * share, *more)
+    )
     wrong, promise = toolpath(-1.0)
     (issue,) = [issue for issue in wrong.issues if issue.code == "OFF_PART"]
-    assert issue.level == "error" and promise.ok is False and promise.worst == pytest.approx(1.3, abs=0.1)
+    assert (
+        issue.level == "error"
+        and promise.ok is False
+        and promise.worst == pytest.approx(1.3, abs=0.1)
+    )

@@ -33,7 +33,11 @@ def stages(doc, monkeypatch):
 def test_all_but_nozzle_platform_and_mount_leave_it_as_it_is(stages):
     cell, toolpath, planned = stages
     key, data = toolpath.Key, list(toolpath.ResultData)
-    for values in ({"deposition_point": [900, 50, 600, 0, 5, 0]}, {"platform": 12.0}, {"machine": "ur-ur10e"}):
+    for values in (
+        {"deposition_point": [900, 50, 600, 0, 5, 0]},
+        {"platform": 12.0},
+        {"machine": "ur-ur10e"},
+    ):
         api.change(cell, **values)
         assert (toolpath.Status, toolpath.Key, len(planned)) == ("up to date", key, 1), values
     api.recompute(cell.Document, force=True)
@@ -53,9 +57,16 @@ def test_what_is_planned_sees_nothing_else_of_the_cell(stages):
     api.change(cell, deposition_point=[900, 50, 600, 0, 5, 0], nozzle_length=44.0)
     whole = api.result(cell)
     seen, usual = seen_of(whole), CellParameters()
-    kept = {field.name for field in dataclasses.fields(usual) if getattr(seen, field.name) == getattr(whole, field.name)
-            and getattr(whole, field.name) != getattr(usual, field.name)}
-    assert kept == {"nozzle"} and seen.deposition_point == usual.deposition_point != whole.deposition_point
+    kept = {
+        field.name
+        for field in dataclasses.fields(usual)
+        if getattr(seen, field.name) == getattr(whole, field.name)
+        and getattr(whole, field.name) != getattr(usual, field.name)
+    }
+    assert (
+        kept == {"nozzle"}
+        and seen.deposition_point == usual.deposition_point != whole.deposition_point
+    )
 
 
 def test_a_document_from_before_fits_until_its_cell_changes(stages, tmp_path, monkeypatch):

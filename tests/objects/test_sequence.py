@@ -30,18 +30,31 @@ def doc():
 
 @pytest.fixture
 def features(doc):
-    sizes = {"Plate": (60, 20, 10, 0, 0, 0), "Low": (20, 20, 10, 0, 0, 10), "High": (20, 20, 20, 40, 0, 10)}
+    sizes = {
+        "Plate": (60, 20, 10, 0, 0, 0),
+        "Low": (20, 20, 10, 0, 0, 10),
+        "High": (20, 20, 20, 40, 0, 10),
+    }
     parts = [box(doc, name, *size) for name, size in sizes.items()]
     return [api.make_solid_feature(doc, part, label=part.Name.lower(), **COARSE) for part in parts]
 
 
 def middles(toolpath):
     """x and z of each layer's middle."""
-    rows = [np.vstack([bead.points for bead in layer.beads]) for layer in api.result(toolpath).layers]
-    return [(round(0.5 * (points[:, 0].min() + points[:, 0].max())), round(points[0, 2])) for points in rows]
+    rows = [
+        np.vstack([bead.points for bead in layer.beads]) for layer in api.result(toolpath).layers
+    ]
+    return [
+        (round(0.5 * (points[:, 0].min() + points[:, 0].max())), round(points[0, 2]))
+        for points in rows
+    ]
 
 
-PLATE, LOW, HIGH = [(30, 0), (30, 5)], [(10, 10), (10, 15)], [(50, 10), (50, 15), (50, 20), (50, 25)]
+PLATE, LOW, HIGH = (
+    [(30, 0), (30, 5)],
+    [(10, 10), (10, 15)],
+    [(50, 10), (50, 15), (50, 20), (50, 25)],
+)
 
 
 def test_the_order_is_that_of_the_list(doc, features):
@@ -78,13 +91,19 @@ def test_what_is_saved_is_there_again(doc, features, tmp_path):
     doc.saveAs(str(tmp_path / "sequence.FCStd"))
     App.closeDocument(doc.Name)
     opened = App.openDocument(str(tmp_path / "sequence.FCStd")).Toolpath
-    assert [one.Source[0].Name for one in (opened.Feature, *opened.Further)] == ["Plate", "Low", "High"]
+    assert [one.Source[0].Name for one in (opened.Feature, *opened.Further)] == [
+        "Plate",
+        "Low",
+        "High",
+    ]
     assert opened.Status == "up to date" and opened.Sequence == "height"
     after = api.result(opened)
     assert [layer.feature for layer in after.layers] == [layer.feature for layer in before.layers]
     for (_, _, old), (_, _, new) in zip(before, after, strict=True):
         np.testing.assert_array_equal(old.points, new.points)
-    assert [one.feature_label for one in after.features] == [one.feature_label for one in before.features]
+    assert [one.feature_label for one in after.features] == [
+        one.feature_label for one in before.features
+    ]
 
 
 def test_own_speeds(doc, features):
@@ -92,12 +111,23 @@ def test_own_speeds(doc, features):
 
     own = [ProcessParameters(), ProcessParameters(travel_speed=9.0), ProcessParameters()]
     toolpath = api.make_toolpath(doc, features, processes=own)
-    speeds = [{float(speed) for bead in layer.beads for speed in bead.speed} for layer in api.result(toolpath).layers]
+    speeds = [
+        {float(speed) for bead in layer.beads for speed in bead.speed}
+        for layer in api.result(toolpath).layers
+    ]
     usual = ProcessParameters().travel_speed
     assert speeds == [{usual}] * 2 + [{9.0}] * 2 + [{usual}] * 4
-    assert toolpath.Proxy.own_speeds(toolpath) == (False, True, False)  # slowing the job down leaves that one
+    assert toolpath.Proxy.own_speeds(toolpath) == (
+        False,
+        True,
+        False,
+    )  # slowing the job down leaves that one
     with pytest.raises(InputError, match="whole program"):
-        api.make_toolpath(doc, features, processes=[ProcessParameters(), ProcessParameters(rapid_speed=1.0), own[2]])
+        api.make_toolpath(
+            doc,
+            features,
+            processes=[ProcessParameters(), ProcessParameters(rapid_speed=1.0), own[2]],
+        )
     toolpath.FeatureProcess = ["", "nonsense", ""]
     with pytest.raises(InputError, match="JSON"):
         api.recompute(toolpath)
@@ -125,7 +155,10 @@ def test_with_fixed_build_directions_parts_of_revolution_alone_change(doc):
         assert one[:2] == other[:2]
         for name in ("points", "build", "tool", "speed"):
             assert np.array_equal(getattr(one[2], name), getattr(other[2], name))
-    assert any(not np.array_equal(one[2].build, other[2].build) for one, other in zip(as_was, asked, strict=True))
+    assert any(
+        not np.array_equal(one[2].build, other[2].build)
+        for one, other in zip(as_was, asked, strict=True)
+    )
     assert toolpath.Proxy.fixed(toolpath) is None
 
 
@@ -133,7 +166,13 @@ def test_all_stages_of_several_at_once(doc):
     plate, post = box(doc, "Plate", 30, 30, 3, 0, 0, 0), box(doc, "Post", 12, 12, 3, 9, 9, 3)
     steps = doc.UndoCount
     made = api.make_all(doc, plate, kind="solid", then=[{"source": post, "kind": "solid"}])
-    assert [one.Proxy.kind for one in made[:5]] == ["cell", "feature", "feature", "toolpath", "joint path"]
+    assert [one.Proxy.kind for one in made[:5]] == [
+        "cell",
+        "feature",
+        "feature",
+        "toolpath",
+        "joint path",
+    ]
     assert doc.UndoCount == steps + 1 and made[3].Further == [made[2]]
     (group,) = [one for one in doc.Objects if one.Name.startswith("Job")]
     assert [one.Name for one in group.Group] == [one.Name for one in made]
@@ -151,12 +190,13 @@ def test_what_one_feature_leaves_out_and_what_of_another_is_over_nothing_are_tol
     low, high = box(doc, "Low", 40, 20, 10, 0, 0, 0), box(doc, "High", 60, 20, 10, 0, 0, 10)
     features = [
         api.make_feature(doc, rod, label="skin", layer_height=5, chord_error=0.2),
-        api.make_solid_feature(doc, low, label="low", **COARSE), api.make_solid_feature(doc, high, label="high", **COARSE),
+        api.make_solid_feature(doc, low, label="low", **COARSE),
+        api.make_solid_feature(doc, high, label="high", **COARSE),
     ]
     toolpath = api.make_toolpath(doc, features)
-    left, = [issue for issue in api.issues(toolpath) if issue.code == "NOT_DEPOSITED"]
+    (left,) = [issue for issue in api.issues(toolpath) if issue.code == "NOT_DEPOSITED"]
     assert "of the 56.5 cm3 of Rod are not deposited" in left.message and left.level == "warning"
-    over, = [issue for issue in api.issues(toolpath) if issue.code == "UNSUPPORTED"]
+    (over,) = [issue for issue in api.issues(toolpath) if issue.code == "UNSUPPORTED"]
     made = api.result(toolpath)
     first = next(k for k, layer in enumerate(made.layers) if layer.feature == 2)
     assert over.layer == first and over.level == "warning"

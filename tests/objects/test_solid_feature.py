@@ -63,7 +63,9 @@ def part(doc, shape, name="Part"):
 
 def mesh(doc, shape, deflection=0.05):
     obj = doc.addObject("Mesh::Feature", "Scan")
-    obj.Mesh = MeshPart.meshFromShape(Shape=shape, LinearDeflection=deflection, AngularDeflection=0.2)
+    obj.Mesh = MeshPart.meshFromShape(
+        Shape=shape, LinearDeflection=deflection, AngularDeflection=0.2
+    )
     return obj
 
 
@@ -76,8 +78,13 @@ def slices(solids, **values):
 def section(shape, height):
     """Area that OpenCASCADE finds of a shape in the plane at a height."""
     box = shape.BoundBox
-    sheet = Part.makePlane(4 * box.DiagonalLength, 4 * box.DiagonalLength,
-                           App.Vector(box.Center.x - 2 * box.DiagonalLength, box.Center.y - 2 * box.DiagonalLength, height))
+    sheet = Part.makePlane(
+        4 * box.DiagonalLength,
+        4 * box.DiagonalLength,
+        App.Vector(
+            box.Center.x - 2 * box.DiagonalLength, box.Center.y - 2 * box.DiagonalLength, height
+        ),
+    )
     return shape.common(sheet).Area
 
 
@@ -86,12 +93,18 @@ def test_sections_are_those_of_the_kernel(doc, name):
     shape = SHAPES[name]()
     feature = api.make_solid_feature(doc, part(doc, shape), **{**FAST, "chord_error": 0.05})
     found = slices(api.result(feature))
-    low = shape.BoundBox.ZMin if name != "leaning" else float(api.result(feature).groups[0].base.frame[2, 3])
+    low = (
+        shape.BoundBox.ZMin
+        if name != "leaning"
+        else float(api.result(feature).groups[0].base.frame[2, 3])
+    )
     assert len(found) >= 7
     for one in found:
         area = sum(region.area for region in one.regions)
         border = sum(region.shape.length for region in one.regions)
-        assert area == pytest.approx(section(shape, low + 5.0 * one.number + 2.5), abs=0.05 * border)
+        assert area == pytest.approx(
+            section(shape, low + 5.0 * one.number + 2.5), abs=0.05 * border
+        )
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -102,33 +115,49 @@ def test_beads_lie_in_the_shape(doc, name):
     toolpath = api.make_toolpath(doc, api.make_solid_feature(doc, part(doc, shape), **FAST))
     made = api.result(toolpath)
     beads = [bead for _, _, bead in made]
-    points = np.vstack([bead.points[:: max(1, len(bead) // 8)] for bead in beads if bead.kind != "centre"])
+    points = np.vstack(
+        [bead.points[:: max(1, len(bead) // 8)] for bead in beads if bead.kind != "centre"]
+    )
     lifted = points + (0.0, 0.0, 2.5)
     rows = np.random.default_rng(1).permutation(len(lifted))[:150]
     places = [App.Vector(*lifted[k]) for k in rows]
-    off = [shape.distToShape(Part.Vertex(place))[0] for place in places if not shape.isInside(place, 1e-6, True)]
+    off = [
+        shape.distToShape(Part.Vertex(place))[0]
+        for place in places
+        if not shape.isInside(place, 1e-6, True)
+    ]
     assert not off or max(off) < 0.1
-    assert made.on_part[0] == min(20_000, sum(map(len, beads))) and made.on_part[1] <= made.on_part[2]
+    assert (
+        made.on_part[0] == min(20_000, sum(map(len, beads))) and made.on_part[1] <= made.on_part[2]
+    )
     assert not [issue for issue in api.issues(toolpath) if issue.level == "error"]
 
 
 def test_a_mesh_and_the_shape_it_is_of_are_filled_alike(doc):
-    exact = api.result(api.make_toolpath(doc, api.make_solid_feature(doc, part(doc, flange()), **FAST)))
-    scanned = api.result(api.make_toolpath(doc, api.make_solid_feature(doc, mesh(doc, flange()), **FAST)))
+    exact = api.result(
+        api.make_toolpath(doc, api.make_solid_feature(doc, part(doc, flange()), **FAST))
+    )
+    scanned = api.result(
+        api.make_toolpath(doc, api.make_solid_feature(doc, mesh(doc, flange()), **FAST))
+    )
     assert len(exact.layers) == len(scanned.layers)
     assert exact.length == pytest.approx(scanned.length, rel=0.005)
 
 
 def test_several_objects_and_solids_that_touch(doc):
     """A plate in two halves and a rod on it from another object: one part; with a second rod beside: two islands below."""
-    halves = Part.makeCompound([Part.makeBox(30, 40, 10), Part.makeBox(30, 40, 10, App.Vector(30, 0, 0))])
+    halves = Part.makeCompound(
+        [Part.makeBox(30, 40, 10), Part.makeBox(30, 40, 10, App.Vector(30, 0, 0))]
+    )
     rod = part(doc, Part.makeCylinder(10, 20, App.Vector(30, 20, 10)), "Rod")
     beside = part(doc, Part.makeCylinder(10, 30, App.Vector(90, 20, 0)), "Beside")
     feature = api.make_solid_feature(doc, part(doc, halves), further=[rod, beside], **FAST)
     assert feature.Solids == 4 and feature.Height.Value == pytest.approx(30.0)
     found = slices(api.result(feature))
     assert [len(one.regions) for one in found] == [2, 2, 2, 2, 2, 2]
-    assert sum(region.area for region in found[0].regions) == pytest.approx(60 * 40 + np.pi * 100, rel=0.002)
+    assert sum(region.area for region in found[0].regions) == pytest.approx(
+        60 * 40 + np.pi * 100, rel=0.002
+    )
 
 
 def test_what_stands_on_a_substrate_is_kept_clear_of_it(doc):
@@ -141,7 +170,9 @@ def test_what_stands_on_a_substrate_is_kept_clear_of_it(doc):
 
 
 def test_the_object_is_kept_with_the_document(doc, tmp_path):
-    feature = api.make_solid_feature(doc, part(doc, Part.makeBox(30, 30, 20)), direction="auto", cut_at="bottom", **FAST)
+    feature = api.make_solid_feature(
+        doc, part(doc, Part.makeBox(30, 30, 20)), direction="auto", cut_at="bottom", **FAST
+    )
     toolpath = api.make_toolpath(doc, feature)
     before = api.result(toolpath)
     path = str(tmp_path / "kept.FCStd")
@@ -161,7 +192,12 @@ def test_the_object_is_kept_with_the_document(doc, tmp_path):
 def test_tiny_and_huge_parts(doc, size):
     """With the defaults told why not; with layers and beads that fit planned as any."""
     obj = part(doc, Part.makeBox(size, size, size))
-    values = {"layer_height": 0.2 * size, "bead_spacing": 0.2 * size, "shortest": 0.1 * size, "chord_error": 0.01 * size}
+    values = {
+        "layer_height": 0.2 * size,
+        "bead_spacing": 0.2 * size,
+        "shortest": 0.1 * size,
+        "chord_error": 0.01 * size,
+    }
     if size > 1.0:
         values["chord_error"] = 10.0
     feature = api.make_solid_feature(doc, obj, **values)
@@ -183,12 +219,17 @@ def test_a_damaged_mesh_is_filled_as_the_whole_one(doc):
     whole = mesh(doc, leaning(), 0.5)
     points, triangles = whole.Mesh.Topology
     places, rows = np.array([tuple(point) for point in points]), np.array(triangles)
-    size = [float(np.linalg.norm(np.ptp(places[rows[(rows == k).any(axis=1)]].reshape(-1, 3), axis=0))) for k in range(50)]
+    size = [
+        float(np.linalg.norm(np.ptp(places[rows[(rows == k).any(axis=1)]].reshape(-1, 3), axis=0)))
+        for k in range(50)
+    ]
     gone = (rows == int(np.argmin(size))).any(axis=1)
     rows[::9] = rows[::9, ::-1]
     damaged = doc.addObject("Mesh::Feature", "Damaged")
     damaged.Mesh = Mesh.Mesh([[points[k] for k in row] for row in rows[~gone]])
-    made = [api.make_solid_feature(doc, obj, mend=1.01 * min(size), **FAST) for obj in (whole, damaged)]
+    made = [
+        api.make_solid_feature(doc, obj, mend=1.01 * min(size), **FAST) for obj in (whole, damaged)
+    ]
     assert {issue.code for issue in api.issues(made[1])} >= {"MENDED", "MESH_REPAIRED"}
     assert f"{min(size):.3g} mm across" in " ".join(issue.message for issue in api.issues(made[1]))
     one, other = (api.result(api.make_toolpath(doc, feature)) for feature in made)
@@ -225,18 +266,28 @@ def test_what_has_no_inside_is_refused(doc):
 
 def test_a_margin_far_wider_than_the_part_is_told_before_its_layers_are_filled(doc):
     """Forty layers of 0.6 m, each of which is another one: one and a half minutes of few points."""
-    angle = Part.makeBox(50, 40, 15).fuse(Part.makeBox(15, 40, 40)).cut(Part.makeCylinder(8, 60, App.Vector(32, 20, -5)))
+    angle = (
+        Part.makeBox(50, 40, 15)
+        .fuse(Part.makeBox(15, 40, 40))
+        .cut(Part.makeCylinder(8, 60, App.Vector(32, 20, -5)))
+    )
     part = doc.addObject("Part::Feature", "Bracket")
     part.Shape = angle
     wide = {"layer_height": 10, "bead_spacing": 10, "chord_error": 0.5}
-    told = [api.issues(api.make_solid_feature(doc, part, margin=margin, **wide)) for margin in (5, 360)]
+    told = [
+        api.issues(api.make_solid_feature(doc, part, margin=margin, **wide)) for margin in (5, 360)
+    ]
     assert [[issue.code for issue in issues].count("LARGE") for issues in told] == [0, 1]
 
 
 def balanced(doc, shape):
     """mm3 of the part, of what beads of 6 mm in layers of 4 mm leave of it and of what they lay beside it; and the codes."""
-    toolpath = api.make_toolpath(doc, api.make_solid_feature(
-        doc, part(doc, shape), layer_height=4.0, chord_error=0.1, bead_spacing=6.0))
+    toolpath = api.make_toolpath(
+        doc,
+        api.make_solid_feature(
+            doc, part(doc, shape), layer_height=4.0, chord_error=0.1, bead_spacing=6.0
+        ),
+    )
     told = {issue.code: issue.message for issue in api.issues(toolpath)}
     return api.result(toolpath).volumes, told
 
@@ -246,7 +297,9 @@ def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):
     width what stands out."""
     block = Part.makeBox(24, 24, 8)
     (whole, corners, _), told = balanced(doc, block)
-    assert whole == pytest.approx(block.Volume) and not {"NOT_DEPOSITED", "DEPOSITED_BESIDE"} & set(told)
+    assert whole == pytest.approx(block.Volume) and not {"NOT_DEPOSITED", "DEPOSITED_BESIDE"} & set(
+        told
+    )
     fin = Part.makeBox(30, 2, 8, App.Vector(24, 11, 0))
     (_, left, _), told = balanced(doc, block.fuse(fin).removeSplitter())
     assert left - corners == pytest.approx(fin.Volume, rel=0.02)
@@ -255,29 +308,48 @@ def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):
     assert left - corners == pytest.approx(24 * 24 * 1.5, rel=0.02) and "NOT_DEPOSITED" in told
     for high, news in ((8.1, True), (8.01, False)):  # 4.0 and 2.9 % of it
         (_, left, _), told = balanced(doc, Part.makeBox(24, 24, high))
-        assert left - corners == pytest.approx(24 * 24 * (high - 8.0), rel=0.05) and ("NOT_DEPOSITED" in told) == news
+        assert (
+            left - corners == pytest.approx(24 * 24 * (high - 8.0), rel=0.05)
+            and ("NOT_DEPOSITED" in told) == news
+        )
     (whole, _, beside), told = balanced(doc, Part.makeBox(60, 3.2, 8))
     assert beside > 0.8 * whole
-    assert f"about {beside / 1000.0:.3g} cm3 of beads lie outside the 1.54" in told["DEPOSITED_BESIDE"]
+    assert (
+        f"about {beside / 1000.0:.3g} cm3 of beads lie outside the 1.54" in told["DEPOSITED_BESIDE"]
+    )
 
 
 @pytest.mark.parametrize("lid", [22.0, None])
 def test_plane_layers_are_tried_where_curved_ones_have_no_room(doc, monkeypatch, lid):
     """Two real brackets were told to need a slimmer nozzle, which did not help; in planes they get programs."""
     box = part(doc, Part.makeBox(20, 20, 20))
-    fixtures = [] if lid is None else [part(doc, Part.makeBox(400, 400, 5, App.Vector(-190, -190, lid)), "Lid")]
+    fixtures = (
+        []
+        if lid is None
+        else [part(doc, Part.makeBox(400, 400, 5, App.Vector(-190, -190, lid)), "Lid")]
+    )
     feature = api.make_solid_feature(doc, box, fixtures=fixtures, layers="geodesic", **FAST)
     if lid is None:
-        cleared, touches = toolpaths.kept_clear, Issue("error", "CLEARANCE", "the nozzle touches", 1, 0, 0)
+        cleared, touches = (
+            toolpaths.kept_clear,
+            Issue("error", "CLEARANCE", "the nozzle touches", 1, 0, 0),
+        )
 
         def kept_clear(made, of, *rest):
             made = cleared(made, of, *rest)
-            return made if of.strategy.layers == "planes" else dataclasses.replace(made, issues=(*made.issues, touches))
+            return (
+                made
+                if of.strategy.layers == "planes"
+                else dataclasses.replace(made, issues=(*made.issues, touches))
+            )
 
         monkeypatch.setattr(toolpaths, "kept_clear", kept_clear)
     made = api.make_toolpath(doc, feature)
-    told = [str(issue.message) for issue in api.issues(made) if issue.code in ("REMEDY", "NO_REMEDY")]
+    told = [
+        str(issue.message) for issue in api.issues(made) if issue.code in ("REMEDY", "NO_REMEDY")
+    ]
     assert told == [
-        "the nozzle is not clear with `strategy.layers: planes` either, which was tried" if lid is not None else
-        "with `strategy.layers: planes` the nozzle is clear; the toolpath was planned so, joints were not"
+        "the nozzle is not clear with `strategy.layers: planes` either, which was tried"
+        if lid is not None
+        else "with `strategy.layers: planes` the nozzle is clear; the toolpath was planned so, joints were not"
     ]

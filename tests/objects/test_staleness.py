@@ -25,7 +25,12 @@ def test_all_is_up_to_date_once_made_and_nothing_is_due(job):
     ("stage", "name", "value", "want"),
     [
         ("cell", "PlatformDiameter", 100, [STALE, OK, STALE, STALE, STALE]),
-        ("cell", "DepositionPoint", App.Placement(App.Vector(1040, -630, 650), App.Rotation()), [STALE, OK] + [STALE] * 3),
+        (
+            "cell",
+            "DepositionPoint",
+            App.Placement(App.Vector(1040, -630, 650), App.Rotation()),
+            [STALE, OK] + [STALE] * 3,
+        ),
         ("feature", "LayerHeight", 9, [OK, STALE, STALE, STALE, STALE]),
         ("feature", "MaxTilt", 80, [OK, STALE, STALE, STALE, STALE]),
         ("toolpath", "SeamAngle", 15, [OK, OK, STALE, STALE, STALE]),
@@ -41,7 +46,9 @@ def test_a_changed_parameter_marks_what_follows_at_once(job, stage, name, value,
     job.doc.recompute()
     assert statuses(job) == [OK] * 5
     renewed = [obj.Key != key for obj, key in zip(job.stages, before, strict=True)]
-    same = [name == "DepositionPoint" and obj == job.toolpath for obj in job.stages]  # where it stands is not for layers
+    same = [
+        name == "DepositionPoint" and obj == job.toolpath for obj in job.stages
+    ]  # where it stands is not for layers
     assert renewed == [status == STALE and not one for status, one in zip(want, same, strict=True)]
 
 
@@ -86,10 +93,14 @@ def test_parameters_follow_expressions(job):
     sheet.set("A1", "=5 mm")
     job.doc.recompute()
     job.feature.setExpression("LayerHeight", "Sheet.A1 * 2 + 5 mm")
-    assert job.feature.Status == job.program.Status == "stale"  # at once, before the expression is evaluated
+    assert (
+        job.feature.Status == job.program.Status == "stale"
+    )  # at once, before the expression is evaluated
     job.toolpath.setExpression("TravelSpeed", "Feature.LayerHeight / 5 s")
     job.doc.recompute()
-    assert job.feature.LayerHeight.Value == 15 and job.toolpath.TravelSpeed.Value == pytest.approx(3)
+    assert job.feature.LayerHeight.Value == 15 and job.toolpath.TravelSpeed.Value == pytest.approx(
+        3
+    )
     assert statuses(job) == [OK] * 5 and job.toolpath.Layers == 5
     sheet.set("A1", "=0 mm")
     api.recompute(job.doc)
@@ -104,8 +115,11 @@ def test_a_bad_parameter_fails_and_what_follows_waits(job, capfd, tmp_path):
     assert "waits for Feature" in job.toolpath.Message
     assert job.program.Message == (  # each stage is named once
         "Program: waits for Joint path: waits for Toolpath: waits for Feature: "
-        "Feature.LayerHeight: 0 mm is out of range; give more than 0 mm")
-    with pytest.raises(InputError, match=r"^Program: no program fits its inputs \(waits for Joint path: "):
+        "Feature.LayerHeight: 0 mm is out of range; give more than 0 mm"
+    )
+    with pytest.raises(
+        InputError, match=r"^Program: no program fits its inputs \(waits for Joint path: "
+    ):
         api.export(job.program, str(tmp_path))
     assert "Traceback" not in "".join(capfd.readouterr())
     with pytest.raises(InputError, match="LayerHeight"):
@@ -149,7 +163,12 @@ def test_a_failed_document_can_be_saved_opened_and_cured(job, tmp_path):
 
 @pytest.mark.parametrize("gone", ["cell", "feature", "toolpath", "joint_path"])
 def test_deleting_an_input_fails_what_needs_it_with_a_message(job, gone, capfd):
-    needed = {"cell": "joint_path", "feature": "toolpath", "toolpath": "joint_path", "joint_path": "program"}
+    needed = {
+        "cell": "joint_path",
+        "feature": "toolpath",
+        "toolpath": "joint_path",
+        "joint_path": "program",
+    }
     followers = [getattr(job, needed[gone])]  # a toolpath does without a cell
     job.doc.removeObject(getattr(job, gone).Name)
     for obj in followers:
@@ -192,18 +211,28 @@ def test_what_could_not_be_carried_out_is_up_to_date_once_its_inputs_are_as_they
     for _ in range(2):
         feature.BeadSpacing = 30
         doc.recompute()
-        assert toolpath.Status == path.Status == "infeasible" and "less than a bead" in toolpath.Message
+        assert (
+            toolpath.Status == path.Status == "infeasible"
+            and "less than a bead" in toolpath.Message
+        )
         feature.BeadSpacing = spacing
         doc.recompute()
-        assert [obj.Status for obj in (feature, toolpath, path)] == [OK] * 3 and toolpath.Message == ""
+        assert [obj.Status for obj in (feature, toolpath, path)] == [
+            OK
+        ] * 3 and toolpath.Message == ""
         assert [obj.Key for obj in (toolpath, path)] == keys
-        assert not [issue for obj in (toolpath, path) for issue in api.issues(obj) if issue.level == "error"]
+        assert not [
+            issue for obj in (toolpath, path) for issue in api.issues(obj) if issue.level == "error"
+        ]
 
 
 def test_a_link_to_the_wrong_kind_is_told(job):
     job.toolpath.Feature = job.cell
     job.doc.recompute()
-    assert job.toolpath.Status == FAILED and job.toolpath.Message == "Toolpath.Feature: Cell is not a feature; choose one"
+    assert (
+        job.toolpath.Status == FAILED
+        and job.toolpath.Message == "Toolpath.Feature: Cell is not a feature; choose one"
+    )
 
 
 def test_what_failed_is_tried_again_at_the_next_recompute(job, root, tmp_path):
@@ -218,15 +247,24 @@ def test_what_failed_is_tried_again_at_the_next_recompute(job, root, tmp_path):
 
 def test_a_changed_mechanism_file_is_noticed_by_a_recompute(root, tmp_path):
     table = tmp_path / "table.json"
-    text = (root / "freecad_am/machines/mechanisms/motoman-motopos-d500.json").read_text(encoding="utf-8")
+    text = (root / "freecad_am/machines/mechanisms/motoman-motopos-d500.json").read_text(
+        encoding="utf-8"
+    )
     table.write_text(text, encoding="utf-8")
     doc = App.newDocument("Mechanism")
-    cell = api.make_cell(doc, setup="tool-on-robot", branch="auto", external=f"{table} at 1400 0 0 0 0 0 carries part")
+    cell = api.make_cell(
+        doc,
+        setup="tool-on-robot",
+        branch="auto",
+        external=f"{table} at 1400 0 0 0 0 0 carries part",
+    )
     key = cell.Key
     api.recompute(doc)
     assert cell.Key == key and cell.Status == OK
     table.write_text(text.replace("[0, 0, 380]", "[0, 0, 390]"), encoding="utf-8")
-    with pytest.raises(InputError, match="give a flange"):  # the poses of the file are those of 380 mm
+    with pytest.raises(
+        InputError, match="give a flange"
+    ):  # the poses of the file are those of 380 mm
         api.recompute(doc)
     table.write_text(text + "\n", encoding="utf-8")
     api.recompute(doc)
@@ -236,7 +274,9 @@ def test_a_changed_mechanism_file_is_noticed_by_a_recompute(root, tmp_path):
 
 def test_a_changed_machine_file_is_noticed_by_a_recompute(job, root, tmp_path):
     machine = tmp_path / "robot.json"
-    text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
+    text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(
+        encoding="utf-8"
+    )
     machine.write_text(text, encoding="utf-8")
     job.cell.Machine = str(machine)
     job.doc.recompute()

@@ -37,15 +37,20 @@ def dome(doc, monkeypatch):
 def looked(monkeypatch):
     """How many layers were planned to find a cell."""
     counts, errors = [], suited._errors
-    monkeypatch.setattr(suited, "_errors", lambda job, some, told: counts.append(len(some.layers)) or errors(
-        job, some, told))
+    monkeypatch.setattr(
+        suited,
+        "_errors",
+        lambda job, some, told: counts.append(len(some.layers)) or errors(job, some, told),
+    )
     return counts
 
 
 def leaning(path, positioner):
     """deg of the torch from the vertical at each point of a joint path object, by a PyKDL chain of the positioner's file."""
     chain = PyKDL.Chain()
-    for joint in json.loads((external.MECHANISMS / f"{positioner.machine}.json").read_text(encoding="utf-8"))["joints"]:
+    for joint in json.loads(
+        (external.MECHANISMS / f"{positioner.machine}.json").read_text(encoding="utf-8")
+    )["joints"]:
         chain.addSegment(PyKDL.Segment(PyKDL.Joint(), PyKDL.Frame(PyKDL.Vector(*joint["origin"]))))
         axis = PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis)
         chain.addSegment(PyKDL.Segment(axis, PyKDL.Frame()))
@@ -63,7 +68,8 @@ def leaning(path, positioner):
 
 def test_a_positioner_is_proposed_before_the_job_is_planned_without(doc, dome, looked):
     cell, feature, _, path, program = api.make_all(
-        doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MOST:g} deg")
+        doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MOST:g} deg"
+    )
     assert math.isclose(feature.MaxFromVertical.Value, MOST)
     assert path.Status == program.Status == "up to date", (api.issues(path), api.issues(program))
     made = api.result(cell)
@@ -85,17 +91,30 @@ def test_a_place_that_does_not_serve_is_changed(doc, dome, monkeypatch, looked, 
     """Told to begin out of reach, a job of each set-up is done elsewhere."""
     begin = cell_of(ROBOT)
     far = (5000.0, 0.0, 900.0, 0.0, 0.0, 0.0)
-    monkeypatch.setattr(api, "cell_of", lambda *given: type(begin)(
-        machine=ROBOT, setup=given[2], deposition_point=far, branch=begin.branch))
+    monkeypatch.setattr(
+        api,
+        "cell_of",
+        lambda *given: type(begin)(
+            machine=ROBOT, setup=given[2], deposition_point=far, branch=begin.branch
+        ),
+    )
     cell, _, _, path, *_ = api.make_all(doc, dome, setup=setup)
     assert path.Status == "up to date", api.issues(path)
-    assert api.result(cell).deposition_point != far and api.result(cell).setup == (setup or "part-on-robot")
+    assert api.result(cell).deposition_point != far and api.result(cell).setup == (
+        setup or "part-on-robot"
+    )
 
 
 @pytest.mark.long
 def test_what_no_cell_helps_is_left_as_it_is(doc, dome, looked):
     """A part too heavy for every positioner."""
     cell, *_, path = api.make_all(
-        doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MOST:g} deg", process={"density": 1e6})[:4]
+        doc,
+        dome,
+        machine=ROBOT,
+        setup=TOOL,
+        max_from_vertical=f"{MOST:g} deg",
+        process={"density": 1e6},
+    )[:4]
     assert path.Status == "infeasible" and api.result(cell) == cell_of(ROBOT, setup=TOOL)
     assert "NOT_LEVEL" in {issue.code for issue in api.issues(path)}

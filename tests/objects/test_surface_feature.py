@@ -27,7 +27,9 @@ def tube(doc):
 
 def made(doc, tube, **values):
     branch, pipe = tube
-    return api.make_surface_feature(doc, branch, ["Face1"], pipe, **{"layer_height": 5, "clearance": "none", **values})
+    return api.make_surface_feature(
+        doc, branch, ["Face1"], pipe, **{"layer_height": 5, "clearance": "none", **values}
+    )
 
 
 def test_feature_and_toolpath(doc, tube):
@@ -35,7 +37,9 @@ def test_feature_and_toolpath(doc, tube):
     wall = api.result(feature)
     assert feature.WallKind == "cone" and list(feature.WallFaces) == ["Face1"]
     assert np.hypot(wall.first[:, 0], wall.first[:, 2]) == pytest.approx(32.0, abs=1e-9)
-    assert [issue.message for issue in wall.issues] == ["the first layer lies on the wall and on Pipe within 0.001 mm"]
+    assert [issue.message for issue in wall.issues] == [
+        "the first layer lies on the wall and on Pipe within 0.001 mm"
+    ]
     toolpath = api.make_toolpath(doc, feature)
     value = api.result(toolpath)
     assert value.family == "surface" and toolpath.Layers == len(value.layers)
@@ -54,7 +58,9 @@ def test_a_tube_is_planned_by_fronts_where_that_is_chosen(doc, tube):
     assert np.abs(np.hypot(rings[0][:, 0], rings[0][:, 2]) - 32.0).max() < 2e-5
     for below, above in zip(rings, rings[1:]):
         start, way = below[:-1], np.diff(below, axis=0)
-        share = np.clip(((above[:, None] - start) * way).sum(axis=2) / (way * way).sum(axis=1), 0.0, 1.0)
+        share = np.clip(
+            ((above[:, None] - start) * way).sum(axis=2) / (way * way).sum(axis=1), 0.0, 1.0
+        )
         apart = np.linalg.norm(above[:, None] - start - share[..., None] * way, axis=2).min(axis=1)
         assert np.abs(apart - 6.0).max() < 0.011  # chords of both are up to 0.01 mm off
     api.change(feature, method="auto")
@@ -86,12 +92,16 @@ def test_a_wall_that_reaches_below_the_platform_is_refused_with_its_depth(doc, t
     assert api.make_toolpath(doc, feature, api.make_cell(doc, platform_diameter=0))
 
 
-def test_a_wall_that_begins_below_the_platform_is_refused_before_its_layers_are_looked_for(doc, tube, monkeypatch):
+def test_a_wall_that_begins_below_the_platform_is_refused_before_its_layers_are_looked_for(
+    doc, tube, monkeypatch
+):
     """Layers of walls of several faces, and of meshes, may take minutes."""
     for obj in tube:
         obj.Placement.Base = obj.Placement.Base - App.Vector(0, 0, 40)
     feature = made(doc, tube, method="fronts")
-    monkeypatch.setattr(fronts, "plan", lambda *args, **more: pytest.fail("its layers are looked for"))
+    monkeypatch.setattr(
+        fronts, "plan", lambda *args, **more: pytest.fail("its layers are looked for")
+    )
     with pytest.raises(InputError, match=r"reaches 10\.34 mm below the platform"):
         api.make_toolpath(doc, feature, api.make_cell(doc, mount="part"))
 
@@ -127,13 +137,17 @@ def post(doc, as_mesh):
     return found
 
 
-@pytest.mark.parametrize("as_mesh", [False, pytest.param(True, marks=pytest.mark.long)], ids=["solid", "mesh"])
+@pytest.mark.parametrize(
+    "as_mesh", [False, pytest.param(True, marks=pytest.mark.long)], ids=["solid", "mesh"]
+)
 def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
     fixture = post(doc, as_mesh)
     feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[fixture])
     substrate, clamp = api.result(feature).surroundings
     assert (substrate.name, clamp.name) == ("Pipe", "Post")
-    assert clamp.vertices.min(axis=0) == pytest.approx([15, -3, 30]) and clamp.vertices[:, 2].max() == pytest.approx(130)
+    assert clamp.vertices.min(axis=0) == pytest.approx([15, -3, 30]) and clamp.vertices[
+        :, 2
+    ].max() == pytest.approx(130)
     toolpath = api.make_toolpath(doc, feature)
     assert [issue.code for issue in api.issues(toolpath)].count("TILT_BACK") == 1
     assert api.result(toolpath).surroundings == api.result(feature).surroundings
@@ -147,7 +161,9 @@ def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
 
 def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, tube, monkeypatch):
     feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[post(doc, False)])
-    monkeypatch.setattr(size, "SECONDS_A_TILT", size.LARGE_SECONDS)  # one point takes as long as that
+    monkeypatch.setattr(
+        size, "SECONDS_A_TILT", size.LARGE_SECONDS
+    )  # one point takes as long as that
 
     def told(issue):
         assert issue.code == size.LARGE
@@ -160,14 +176,22 @@ def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, tube, m
 def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):
     fixture = post(doc, False)
     feature = api.make_feature(doc, tube[0], ["Face1"], layer_height=5, fixtures=[fixture])
-    found = [issue for issue in api.issues(api.make_toolpath(doc, feature)) if issue.level == "error"]
-    assert [issue.code for issue in found] == ["CLEARANCE"] and "Post" in found[0].message and found[0].layer is not None
+    found = [
+        issue for issue in api.issues(api.make_toolpath(doc, feature)) if issue.level == "error"
+    ]
+    assert (
+        [issue.code for issue in found] == ["CLEARANCE"]
+        and "Post" in found[0].message
+        and found[0].layer is not None
+    )
     api.change(feature, fixtures=[])
     assert not [issue for issue in api.issues(doc.Toolpath) if issue.level == "error"]
 
 
 def test_needs_a_solid_substrate(doc, tube):
-    tube[0].Placement = App.Placement(App.Vector(), App.Rotation(App.Vector(1, 0, 0), 20))  # it stands on no edge
+    tube[0].Placement = App.Placement(
+        App.Vector(), App.Rotation(App.Vector(1, 0, 0), 20)
+    )  # it stands on no edge
     with pytest.raises(InputError) as caught:
         api.make_surface_feature(doc, tube[0], ["Face1"])
     assert caught.value.code == "NO_SUBSTRATE" and "edges to start from" in caught.value.message
@@ -191,6 +215,8 @@ def test_a_wall_that_is_its_own_substrate_is_refused_where_that_is_said(doc, tub
     further = doc.addObject("Mesh::Feature", "Further")
     further.Mesh = scan.Mesh
     for wall, faces, ground in ((branch, ["Face1"], other), (scan, [], further)):
-        with pytest.raises(InputError, match=f"on the surface of {ground.Label}, as if it were a part of it") as caught:
+        with pytest.raises(
+            InputError, match=f"on the surface of {ground.Label}, as if it were a part of it"
+        ) as caught:
             api.make_surface_feature(doc, wall, faces, ground, layer_height=5)
         assert caught.value.code == "OWN_SUBSTRATE"

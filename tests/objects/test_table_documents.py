@@ -13,7 +13,10 @@ def test_a_cell_becomes_a_table_and_the_job_follows(job):
     job.cell.Machine, job.cell.Setup, job.cell.Limits = "table-xyzac", "rotary-table", "maker"
     with pytest.raises(InputError) as caught:  # the program is one for FANUC
         api.recompute(job.program)
-    assert caught.value.code == "WRONG_CONTROLLER" and "does not read fanuc; use one of siemens" in caught.value.message
+    assert (
+        caught.value.code == "WRONG_CONTROLLER"
+        and "does not read fanuc; use one of siemens" in caught.value.message
+    )
     job.program.Post = "siemens"
     api.recompute(job.program)
     planned = api.result(job.joint_path)
@@ -27,14 +30,22 @@ def test_a_cell_becomes_a_table_and_the_job_follows(job):
 def test_a_table_is_there_after_reopening(job, tmp_path):
     import FreeCAD
 
-    job.cell.Machine, job.cell.Setup, job.cell.Limits, job.program.Post = "table-xyzbc", "rotary-table", "maker", "linuxcnc"
+    job.cell.Machine, job.cell.Setup, job.cell.Limits, job.program.Post = (
+        "table-xyzbc",
+        "rotary-table",
+        "maker",
+        "linuxcnc",
+    )
     api.recompute(job.program)
     motion, files = api.result(job.joint_path).motion, api.result(job.program).files
     path = str(tmp_path / "table.FCStd")
     job.doc.saveAs(path)
     again = FreeCAD.openDocument(path)
     try:
-        joint_path, program = again.getObject(job.joint_path.Name), again.getObject(job.program.Name)
+        joint_path, program = (
+            again.getObject(job.joint_path.Name),
+            again.getObject(job.program.Name),
+        )
         assert joint_path.Status == program.Status == "up to date"
         np.testing.assert_array_equal(api.result(joint_path).motion.joints, motion.joints)
         assert np.isnan(api.result(joint_path).joint_path.beads[0].condition).all()
@@ -43,9 +54,13 @@ def test_a_table_is_there_after_reopening(job, tmp_path):
         FreeCAD.closeDocument(again.Name)
 
 
-@pytest.mark.parametrize("cell", [
-    {"Platform": "11 -7 60 0 20 35"}, {"Machine": "fanuc-arcmate120ic", "Setup": "tool-on-robot"},
-])
+@pytest.mark.parametrize(
+    "cell",
+    [
+        {"Platform": "11 -7 60 0 20 35"},
+        {"Machine": "fanuc-arcmate120ic", "Setup": "tool-on-robot"},
+    ],
+)
 def test_what_makes_a_program_impossible_is_told_before_anything_is_planned(job, cell, monkeypatch):
     """As headless, where such a job is refused before it is begun."""
     import FreeCAD
@@ -66,7 +81,9 @@ def test_what_makes_a_program_impossible_is_told_before_anything_is_planned(job,
         setattr(job.cell, name, value)
     FreeCAD.ActiveDocument.recompute()
     early = told[0]  # what would help an infeasible plan is tried by planning again
-    reason = "cell.platform: [11, -7, 60, 0, 0, 35]" if "Platform" in cell else "does not read linuxcnc"
+    reason = (
+        "cell.platform: [11, -7, 60, 0, 0, 35]" if "Platform" in cell else "does not read linuxcnc"
+    )
     assert early[0] == "failed" and reason in early[1]
     if job.joint_path.Status == "up to date":
         assert early == (job.program.Status, job.program.Message)

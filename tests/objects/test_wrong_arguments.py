@@ -59,55 +59,191 @@ def world(tmp_path_factory):
 
 COARSE = {"layer_height": 10, "chord_error": 0.5}
 RIGHT = {  # of each function arguments that serve, by name
-    "change": lambda w: {"obj": w.feature, "source": w.dome, "axis": None, "faces": [], "fixtures": [], "layer_height": 12},
+    "change": lambda w: {
+        "obj": w.feature,
+        "source": w.dome,
+        "axis": None,
+        "faces": [],
+        "fixtures": [],
+        "layer_height": 12,
+    },
     "export": lambda w: {"program": w.program, "folder": str(w.folder / "out")},
     "export_cell": lambda w: {"cell": w.cell, "path": str(w.folder / "made.yaml")},
     "export_report": lambda w: {"obj": w.program, "path": str(w.folder / "made.html")},
     "export_waypoints": lambda w: {"obj": w.path, "path": str(w.folder / "made.csv")},
     "export_wires": lambda w: {"obj": w.path, "path": str(w.folder / "made.dxf"), "rapids": True},
-    "inspect": lambda w: {"doc": w.doc, "planned": w.box, "file": str(w.folder / "points.xyz"), "label": "Look",
-                          "inspection": None, "tolerance": 1},
+    "inspect": lambda w: {
+        "doc": w.doc,
+        "planned": w.box,
+        "file": str(w.folder / "points.xyz"),
+        "label": "Look",
+        "inspection": None,
+        "tolerance": 1,
+    },
     "issues": lambda w: {"obj": w.path},
     "make_all": lambda w: {
-        "doc": w.doc, "source": w.box, "faces": (), "kind": "solid", "layers": "", "substrate": None, "further": (),
-        "base_faces": (), "name": "", "machine": "", "cell": "", "post": "", "process": {"travel_speed": 10}, "then": (),
-        "mend": 0.0, "setup": "", "max_from_vertical": None, "layers_otherwise": ""},
+        "doc": w.doc,
+        "source": w.box,
+        "faces": (),
+        "kind": "solid",
+        "layers": "",
+        "substrate": None,
+        "further": (),
+        "base_faces": (),
+        "name": "",
+        "machine": "",
+        "cell": "",
+        "post": "",
+        "process": {"travel_speed": 10},
+        "then": (),
+        "mend": 0.0,
+        "setup": "",
+        "max_from_vertical": None,
+        "layers_otherwise": "",
+    },
     "make_cam_path": lambda w: {"obj": w.path},
-    "make_cell": lambda w: {"doc": w.doc, "label": "Cell", "parameters": None, "machine": "kuka-kr16-2",
-                            "nozzle_length": 80, "deposition_point": (1000, 0, 700, 0, 90, 0), "branch": "front up noflip",
-                            "platform": 10, "external": "", "limits": "maker"},
+    "make_cell": lambda w: {
+        "doc": w.doc,
+        "label": "Cell",
+        "parameters": None,
+        "machine": "kuka-kr16-2",
+        "nozzle_length": 80,
+        "deposition_point": (1000, 0, 700, 0, 90, 0),
+        "branch": "front up noflip",
+        "platform": 10,
+        "external": "",
+        "limits": "maker",
+    },
     "make_cladding_feature": lambda w: {
-        "doc": w.doc, "source": w.box, "faces": ["Face6"], "substrate": None, "label": "Feature", "fixtures": [],
-        "strategy": None, "build_direction": None, "bead_spacing": 4, "layers": 1},
+        "doc": w.doc,
+        "source": w.box,
+        "faces": ["Face6"],
+        "substrate": None,
+        "label": "Feature",
+        "fixtures": [],
+        "strategy": None,
+        "build_direction": None,
+        "bead_spacing": 4,
+        "layers": 1,
+    },
     "make_curves_feature": lambda w: {
-        "doc": w.doc, "source": w.box, "faces": ["Edge1"], "substrate": None, "label": "Feature", "fixtures": [],
-        "strategy": None, "build_direction": None, "repeat": 2},
+        "doc": w.doc,
+        "source": w.box,
+        "faces": ["Edge1"],
+        "substrate": None,
+        "label": "Feature",
+        "fixtures": [],
+        "strategy": None,
+        "build_direction": None,
+        "repeat": 2,
+    },
     "make_developable_feature": lambda w: {
-        "doc": w.doc, "source": w.fin, "substrate": w.pipe, "base_faces": ["Face1"], "label": "Feature", "faces": [],
-        "further": [], "fixtures": [], "strategy": None, "build_direction": None, **COARSE},
+        "doc": w.doc,
+        "source": w.fin,
+        "substrate": w.pipe,
+        "base_faces": ["Face1"],
+        "label": "Feature",
+        "faces": [],
+        "further": [],
+        "fixtures": [],
+        "strategy": None,
+        "build_direction": None,
+        **COARSE,
+    },
     "make_feature": lambda w: {
-        "doc": w.doc, "source": w.dome, "faces": [], "label": "Feature", "axis": None, "fixtures": [], "strategy": None,
-        "build_direction": None, "spacing": "arc-length", **COARSE},
+        "doc": w.doc,
+        "source": w.dome,
+        "faces": [],
+        "label": "Feature",
+        "axis": None,
+        "fixtures": [],
+        "strategy": None,
+        "build_direction": None,
+        "spacing": "arc-length",
+        **COARSE,
+    },
     "make_feature_of": lambda w: {
-        "doc": w.doc, "kind": "revolution", "source": w.dome, "faces": [], "label": "Feature",
-        "links": {"Fixtures": [w.box]}, "parameters": [], "values": COARSE},
-    "make_joint_path": lambda w: {"doc": w.doc, "toolpath": w.toolpath, "cell": w.cell, "label": "Joint path",
-                                  "joints": None, "method": "constant"},
-    "make_program": lambda w: {"doc": w.doc, "joint_path": w.path, "label": "Program", "name": "CUP", "program": None,
-                               "post": "fanuc"},
-    "make_scan": lambda w: {"doc": w.doc, "substrate": w.box, "file": str(w.folder / "points.xyz"), "label": "Scan",
-                            "fit": "auto", "unit": "auto", "pairs": "", "within": 5.0},
+        "doc": w.doc,
+        "kind": "revolution",
+        "source": w.dome,
+        "faces": [],
+        "label": "Feature",
+        "links": {"Fixtures": [w.box]},
+        "parameters": [],
+        "values": COARSE,
+    },
+    "make_joint_path": lambda w: {
+        "doc": w.doc,
+        "toolpath": w.toolpath,
+        "cell": w.cell,
+        "label": "Joint path",
+        "joints": None,
+        "method": "constant",
+    },
+    "make_program": lambda w: {
+        "doc": w.doc,
+        "joint_path": w.path,
+        "label": "Program",
+        "name": "CUP",
+        "program": None,
+        "post": "fanuc",
+    },
+    "make_scan": lambda w: {
+        "doc": w.doc,
+        "substrate": w.box,
+        "file": str(w.folder / "points.xyz"),
+        "label": "Scan",
+        "fit": "auto",
+        "unit": "auto",
+        "pairs": "",
+        "within": 5.0,
+    },
     "make_solid_feature": lambda w: {
-        "doc": w.doc, "source": w.box, "substrate": None, "label": "Feature", "further": [], "guide": None,
-        "start_faces": (), "fixtures": [], "strategy": None, "build_direction": None, "layers": "planes", **COARSE},
+        "doc": w.doc,
+        "source": w.box,
+        "substrate": None,
+        "label": "Feature",
+        "further": [],
+        "guide": None,
+        "start_faces": (),
+        "fixtures": [],
+        "strategy": None,
+        "build_direction": None,
+        "layers": "planes",
+        **COARSE,
+    },
     "make_surface_feature": lambda w: {
-        "doc": w.doc, "source": w.tube, "faces": ["Face1"], "substrate": w.pipe, "label": "Feature", "start_edges": [],
-        "fixtures": [], "strategy": None, "build_direction": None, **COARSE},
+        "doc": w.doc,
+        "source": w.tube,
+        "faces": ["Face1"],
+        "substrate": w.pipe,
+        "label": "Feature",
+        "start_edges": [],
+        "fixtures": [],
+        "strategy": None,
+        "build_direction": None,
+        **COARSE,
+    },
     "make_toolpath": lambda w: {
-        "doc": w.doc, "feature": w.feature, "cell": w.cell, "label": "Toolpath", "further": (), "sequence": "feature",
-        "processes": (), "scan": None, "process": None, "fitting": None, "bead_width": 5},
+        "doc": w.doc,
+        "feature": w.feature,
+        "cell": w.cell,
+        "label": "Toolpath",
+        "further": (),
+        "sequence": "feature",
+        "processes": (),
+        "scan": None,
+        "process": None,
+        "fitting": None,
+        "bead_width": 5,
+    },
     "make_trajectory": lambda w: {"obj": w.path, "tolerance": 0.5, "turn": 2.0},
-    "open_part": lambda w: {"doc": w.doc, "path": str(w.folder / "cup.step"), "object": "", "scale": 1.0},
+    "open_part": lambda w: {
+        "doc": w.doc,
+        "path": str(w.folder / "cup.step"),
+        "object": "",
+        "scale": 1.0,
+    },
     "place": lambda w: {"path": w.toolpath, "cell": w.cell, "parameters": None, "x": 0},
     "proposed_name": lambda w: {"text": "A part"},
     "read_cell": lambda w: {"file": str(w.folder / "cell.yaml")},
@@ -117,22 +253,51 @@ RIGHT = {  # of each function arguments that serve, by name
     "told_to": lambda w: {"listener": print, "findings": None},
 }
 WRONG = {
-    "none": lambda w: None, "text": lambda w: "Body", "empty": lambda w: "", "number": lambda w: 7,
-    "below 0": lambda w: -1.5, "nan": lambda w: math.nan, "no list": lambda w: [], "numbers": lambda w: [1, 2],
-    "texts": lambda w: ["Foo", "Face999"], "edge": lambda w: ["Edge999"], "mapping": lambda w: {"a": 1},
-    "box": lambda w: w.box, "mesh": lambda w: w.mesh, "cell": lambda w: w.cell, "program": lambda w: w.program,
-    "deleted": lambda w: w.gone, "elsewhere": lambda w: w.there, "document": lambda w: w.doc,
-    "closed": lambda w: w.closed, "element": lambda w: (w.box, "Foo"), "vertex": lambda w: (w.box, ["Vertex1"]),
-    "line": lambda w: (w.box, "Edge999"), "list of objects": lambda w: [w.box, w.gone], "class": lambda w: object,
-    "bytes": lambda w: b"x", "true": lambda w: True, "path": lambda w: "/no/such/file.xyz", "huge": lambda w: 1e300,
-    "nested": lambda w: [[w.box]], "surrogate": lambda w: "\ud800", "nul": lambda w: "a\0b",
+    "none": lambda w: None,
+    "text": lambda w: "Body",
+    "empty": lambda w: "",
+    "number": lambda w: 7,
+    "below 0": lambda w: -1.5,
+    "nan": lambda w: math.nan,
+    "no list": lambda w: [],
+    "numbers": lambda w: [1, 2],
+    "texts": lambda w: ["Foo", "Face999"],
+    "edge": lambda w: ["Edge999"],
+    "mapping": lambda w: {"a": 1},
+    "box": lambda w: w.box,
+    "mesh": lambda w: w.mesh,
+    "cell": lambda w: w.cell,
+    "program": lambda w: w.program,
+    "deleted": lambda w: w.gone,
+    "elsewhere": lambda w: w.there,
+    "document": lambda w: w.doc,
+    "closed": lambda w: w.closed,
+    "element": lambda w: (w.box, "Foo"),
+    "vertex": lambda w: (w.box, ["Vertex1"]),
+    "line": lambda w: (w.box, "Edge999"),
+    "list of objects": lambda w: [w.box, w.gone],
+    "class": lambda w: object,
+    "bytes": lambda w: b"x",
+    "true": lambda w: True,
+    "path": lambda w: "/no/such/file.xyz",
+    "huge": lambda w: 1e300,
+    "nested": lambda w: [[w.box]],
+    "surrogate": lambda w: "\ud800",
+    "nul": lambda w: "a\0b",
 }
 
 
 def snapshot(doc):
     """All objects of a document with what they have, and its steps of undo."""
     found = [
-        (obj.Name, [(name, repr(getattr(obj, name))) for name in sorted(obj.PropertiesList) if name not in NOT_COMPARED])
+        (
+            obj.Name,
+            [
+                (name, repr(getattr(obj, name)))
+                for name in sorted(obj.PropertiesList)
+                if name not in NOT_COMPARED
+            ],
+        )
         for obj in doc.Objects
     ]
     return found, doc.UndoCount, doc.HasPendingTransaction, App.getActiveTransaction()
@@ -160,7 +325,9 @@ def test_every_function_is_tried(world):
     assert sorted(RIGHT) == sorted(api.__all__)
     for function, right in RIGHT.items():
         signature = inspect.signature(getattr(api, function)).parameters.values()
-        assert {one.name for one in signature if one.kind != one.VAR_KEYWORD} <= right(world).keys(), function
+        assert {one.name for one in signature if one.kind != one.VAR_KEYWORD} <= right(
+            world
+        ).keys(), function
 
 
 @pytest.mark.parametrize("function", sorted(RIGHT))
@@ -181,12 +348,19 @@ def test_an_axis_that_is_not_there(world, axis, code):
 def test_a_stage_is_not_made_from_what_follows_it(world):
     """FreeCAD took such a link, and fell over it."""
     for later in (world.toolpath, world.path, world.program, world.feature):
-        for links in ({"source": later}, {"fixtures": [world.box, later]}, {"axis": (later, "Edge1")}):
+        for links in (
+            {"source": later},
+            {"fixtures": [world.box, later]},
+            {"axis": (later, "Edge1")},
+        ):
             error = call(world, "change", {"obj": world.feature, **links})
             assert error.code == "BAD_INPUT" and "is made from" in error.message
 
 
-@pytest.mark.parametrize("wrong", [{"kind": "revolve"}, {"process": {"travel_speed": -1}}, {"post": 7}, {"source": "Box"}])
+@pytest.mark.parametrize(
+    "wrong",
+    [{"kind": "revolve"}, {"process": {"travel_speed": -1}}, {"post": 7}, {"source": "Box"}],
+)
 def test_a_job_that_is_refused_leaves_nothing_where_no_undo_is_kept(world, wrong):
     """As in documents of macros without a window: the cell stayed."""
     world.doc.UndoMode = 0
@@ -210,7 +384,9 @@ def test_parameters_of_another_family_are_not_passed_over(world):
 def test_an_absurd_number_is_refused_before_anything_is_computed_with_it(world, key, most, number):
     """The squares of a width of 1e300 mm overflowed in the search for collisions, and numpy warned."""
     error = call(world, "make_toolpath", {**RIGHT["make_toolpath"](world), key: number})
-    assert (error.code, error.where) == ("BAD_VALUE", f"process.{key}") and error.message.endswith(f"at most {most}")
+    assert (error.code, error.where) == ("BAD_VALUE", f"process.{key}") and error.message.endswith(
+        f"at most {most}"
+    )
 
 
 @pytest.mark.parametrize("function", sorted(RIGHT))

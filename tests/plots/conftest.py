@@ -17,7 +17,9 @@ from tests.core.planned_dome import planned_dome
 @pytest.fixture(scope="session")
 def dome():
     """The source of a dome, and what the report tells of its joints."""
-    process = ProcessParameters(lead_on=0.5, travel_speed=8.0, between_layers=BetweenLayersParameters(lift=15.0, wait=2.0))
+    process = ProcessParameters(
+        lead_on=0.5, travel_speed=8.0, between_layers=BetweenLayersParameters(lift=15.0, wait=2.0)
+    )
     toolpath, cell, path, motion = planned_dome(9.0, process)
     condition, threshold = (on_deposit(motion.deposit, column) for column in path.judged(motion))
     source = Source(path.toolpath(toolpath), motion, process, cell, condition, threshold, 0.1)
@@ -35,6 +37,11 @@ def modelled():
         points[-1] = points[0]
         speed, width = 8.0 + np.sin(turn) + level, 5.0 + 0.2 * np.cos(turn)
         height = 2.0 + 0.1 * level + 0.05 * np.cos(turn)
-        layers.append(Layer((Bead(points, up, up, turn, speed, True, width=width, height=height),), first=level == 0))
+        layers.append(
+            Layer(
+                (Bead(points, up, up, turn, speed, True, width=width, height=height),),
+                first=level == 0,
+            )
+        )
     toolpath = Toolpath(tuple(layers), np.eye(4), 2.0, 0.1)
     return Source(toolpath, deposit.alone(toolpath), ProcessParameters(bead_model="csw"))

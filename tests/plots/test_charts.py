@@ -38,7 +38,9 @@ def test_angles_are_those_of_the_motion_at_their_times(dome):
         np.testing.assert_allclose(found.x[moving] * unit, times.arrive, atol=1e-9)
         assert (np.diff(found.x) >= 0.0).all()
         limits = source.cell.limits
-        np.testing.assert_allclose(np.radians(chart.limits), [limits.lower[axis], limits.upper[axis]])
+        np.testing.assert_allclose(
+            np.radians(chart.limits), [limits.lower[axis], limits.upper[axis]]
+        )
     # while it stands the axes are where they were, until it leaves
     stays = np.flatnonzero(along.standing)
     assert len(stays) > 4
@@ -50,13 +52,18 @@ def test_angles_are_those_of_the_motion_at_their_times(dome):
 def test_rates_reach_what_the_report_tells(dome):
     source, told = dome
     along = rows(source)
-    for build, key in ((joints.speeds, "speed_max_deg_s"), (joints.accelerations, "acceleration_max_deg_s2"),
-                       (joints.jerks, "jerk_max_deg_s3")):
+    for build, key in (
+        (joints.speeds, "speed_max_deg_s"),
+        (joints.accelerations, "acceleration_max_deg_s2"),
+        (joints.jerks, "jerk_max_deg_s3"),
+    ):
         charts = build(source, along)
         found = [np.nanmax(np.abs(chart.curves[0].y)) for chart in charts]
         np.testing.assert_allclose(found, told[key], rtol=1e-6, atol=1e-7)
         one = together("all", charts)
-        assert [each.name for each in one.curves] == list(source.cell.machine.axes) and one.wrong_count == 0
+        assert [each.name for each in one.curves] == list(
+            source.cell.machine.axes
+        ) and one.wrong_count == 0
     shares = joints.shares(source, along)[0]
     most = [np.nanmax(each.y) / 100.0 for each in shares.curves]
     np.testing.assert_allclose(most, told["speed_ratio_max"], rtol=1e-6, atol=1e-7)
@@ -86,7 +93,10 @@ def test_what_breaks_a_limit_is_counted(dome):
     source, _ = dome
     machine = source.cell.machine
     slow = dataclasses.replace(machine, max_speed=np.full(6, np.radians(1.0)))
-    charts = joints.speeds(dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=slow)), rows(source))
+    charts = joints.speeds(
+        dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=slow)),
+        rows(source),
+    )
     with np.errstate(invalid="ignore"):
         over = (np.abs(np.degrees(source.rates.speed)) > 1.0).sum(axis=0)
     assert [chart.wrong_count for chart in charts] == over.tolist() and over.max() > 3
@@ -121,7 +131,9 @@ def test_deposit_rate_over_its_time_is_the_mass_of_the_job(dome):
     unit = {"min": 60.0, "s": 1.0}[rate.x.unit]
     hours = np.diff(rate.curves[0].x, prepend=0.0) * unit / 3600.0
     assert 1000.0 * (rate.curves[0].y * hours).sum() == pytest.approx(sums.mass, rel=1e-9)
-    np.testing.assert_allclose(np.diff(mass.curves[0].y), (1000.0 * rate.curves[0].y * hours)[1:], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(
+        np.diff(mass.curves[0].y), (1000.0 * rate.curves[0].y * hours)[1:], rtol=1e-6, atol=1e-9
+    )
 
 
 def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
@@ -129,7 +141,9 @@ def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
     (chart,) = process.travel(source, rows(source))
     by_name = {one.name: one.y for one in chart.curves}
     assert np.nanmin(by_name["deposit"]) == np.nanmax(by_name["deposit"]) == 8.0
-    assert (np.isfinite(by_name["rapid"]) & np.isfinite(by_name["deposit"])).sum() == 0 and "as the axes can" not in by_name
+    assert (
+        np.isfinite(by_name["rapid"]) & np.isfinite(by_name["deposit"])
+    ).sum() == 0 and "as the axes can" not in by_name
     machine = dataclasses.replace(source.cell.machine, max_speed=np.full(6, np.radians(2.0)))
     slow = dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=machine))
     (chart,) = process.travel(slow, rows(slow))
@@ -142,24 +156,34 @@ def test_spacing_is_that_of_the_layers(dome):
     values = np.concatenate(spacing.between_layers(source.toolpath))
     (chart,) = process.spacing(source, (0, len(source.toolpath.layers) - 1))
     bars = chart.bars
-    np.testing.assert_allclose(bars.heights, 100.0 * np.histogram(values, bars.edges)[0] / len(values), rtol=1e-9)
+    np.testing.assert_allclose(
+        bars.heights, 100.0 * np.histogram(values, bars.edges)[0] / len(values), rtol=1e-9
+    )
     assert bars.heights.sum() == pytest.approx(100.0) and bars.edges[0] < 9.0 < bars.edges[-1]
     assert chart.band == pytest.approx((8.1, 9.9)) and chart.upright[0][0] == 9.0
     assert process.spacing(source, (0, 0)) == ()
     (some,) = process.spacing(source, (1, 1))
     one = spacing.between_layers(source.toolpath)[0]
-    np.testing.assert_allclose(some.bars.heights, 100.0 * np.histogram(one, some.bars.edges)[0] / len(one), rtol=1e-9)
+    np.testing.assert_allclose(
+        some.bars.heights, 100.0 * np.histogram(one, some.bars.edges)[0] / len(one), rtol=1e-9
+    )
 
 
 def test_what_a_bead_model_predicts(modelled):
     told = predicted.beads(modelled.toolpath)
     height, drift = process.heights(modelled, (1, 3))
     for number, kind in enumerate(("min", "mean", "max")):
-        assert curve([height], 0, number).y.tolist() == [row["height_mm"][kind] for row in told["layers"][1:]]
+        assert curve([height], 0, number).y.tolist() == [
+            row["height_mm"][kind] for row in told["layers"][1:]
+        ]
     assert drift.curves[0].y.tolist() == [row["drift_mm"] for row in told["layers"][1:]]
     assert height.curves[0].x.tolist() == [1.0, 2.0, 3.0] and height.marks[0][0] == 2.0
     speed, width, _ = process.spread(modelled, (0, 3))
-    assert speed.bars.heights.sum() == pytest.approx(100.0) and width.across()[0] < 4.8 and width.across()[1] > 5.2
+    assert (
+        speed.bars.heights.sum() == pytest.approx(100.0)
+        and width.across()[0] < 4.8
+        and width.across()[1] > 5.2
+    )
     measured = bead_table.measured("csw")
     model = bead_model.fit(*measured)
     (fit,) = catalogue.picture("fit", modelled).charts
@@ -173,9 +197,13 @@ def test_every_picture_is_there_or_says_why(dome, modelled):
     source, _ = dome
     for name, entry in catalogue.PICTURES.items():
         of_dome, of_path = catalogue.picture(name, source), catalogue.picture(name, modelled)
-        assert bool(of_dome.charts) != bool(of_dome.lacking) and bool(of_path.charts) != bool(of_path.lacking)
+        assert bool(of_dome.charts) != bool(of_dome.lacking) and bool(of_path.charts) != bool(
+            of_path.lacking
+        )
         filled = name in ("volumes", "section")
-        assert bool(of_dome.charts) == (name not in ("heights", "spread", "fit") and not filled), name
+        assert bool(of_dome.charts) == (name not in ("heights", "spread", "fit") and not filled), (
+            name
+        )
         assert bool(of_path.charts) == (not entry.machine and not filled), name
 
 
@@ -186,7 +214,9 @@ def test_volumes_and_sections_of_plane_layers(modelled):
     source = Source(toolpath, deposit.alone(toolpath), ProcessParameters(), solids=solids)
     volume, share = catalogue.picture("volumes", source).charts
     of_part, laid = (one.y for one in volume.curves)
-    np.testing.assert_allclose(of_part, [4.8, 4.8, 4.8, 1.2], rtol=1e-9)  # cm3; 1 mm at the top is less than half a layer
+    np.testing.assert_allclose(
+        of_part, [4.8, 4.8, 4.8, 1.2], rtol=1e-9
+    )  # cm3; 1 mm at the top is less than half a layer
     assert laid[3] == 0.0 and laid.sum() == pytest.approx(source.volumes.sum() / 1000.0, rel=1e-12)
     np.testing.assert_allclose(share.curves[0].y, 100.0 * laid / of_part)
     assert f"{100 * laid.sum() / 15.6:.4g} %" in share.title
@@ -194,8 +224,11 @@ def test_volumes_and_sections_of_plane_layers(modelled):
     assert some.curves[1].y.tolist() == laid[1:2].tolist() and some.curves[1].x.tolist() == [1.0]
     (flat,) = catalogue.picture("section", source, layers=(0, 1)).charts
     outline = next(one for one in flat.curves if one.name == "part")
-    assert {tuple(np.round(np.abs(place), 9)) for place in zip(outline.x, outline.y)} <= {(20.0, 15.0)} | {
-        (20.0, round(float(abs(y)), 9)) for y in outline.y} | {(round(float(abs(x)), 9), 15.0) for x in outline.x}
+    assert {tuple(np.round(np.abs(place), 9)) for place in zip(outline.x, outline.y)} <= {
+        (20.0, 15.0)
+    } | {(20.0, round(float(abs(y)), 9)) for y in outline.y} | {
+        (round(float(abs(x)), 9), 15.0) for x in outline.x
+    }
     beads = [one for one in flat.curves if one is not outline]
     assert len(beads) == len(toolpath.layers[1].beads) and all(one.width > 0.0 for one in beads)
     edge = 20.0 - 0.5 * beads[0].width

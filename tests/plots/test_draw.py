@@ -91,7 +91,12 @@ def test_a_window_shows_a_part(dome):
     assert {place.across for place in places} == {part} and places[2].up == (-1.0, 1.0)
     assert figure.axes[2].get_ylim() == (-1.0, 1.0)
     x = lines(figure.axes[0])[0].get_xdata()
-    assert (x > part[0]).any() and x[0] <= part[0] and x[-1] >= part[1] and len(x) < len(charts[0].curves[0].x)
+    assert (
+        (x > part[0]).any()
+        and x[0] <= part[0]
+        and x[-1] >= part[1]
+        and len(x) < len(charts[0].curves[0].x)
+    )
 
 
 @pytest.mark.parametrize("kind", files.KINDS)
@@ -100,7 +105,9 @@ def test_the_same_values_are_the_same_bytes(dome, kind):
     charts = catalogue.picture("deposit", source).charts
     made = [files.image(draw.figure(charts, LIGHT, 500, 300)[0], kind) for _ in range(2)]
     assert made[0] == made[1] and len(made[0]) > 2000
-    other = files.image(draw.figure(catalogue.picture("deposit", source, PATH).charts, LIGHT, 500, 300)[0], kind)
+    other = files.image(
+        draw.figure(catalogue.picture("deposit", source, PATH).charts, LIGHT, 500, 300)[0], kind
+    )
     assert other != made[0]
     assert not re.search(rb"20\d\d-\d\d-\d\d|Matplotlib v|D:20", made[0])
 
@@ -112,7 +119,11 @@ def test_pictures_in_a_page_take_its_colours(dome):
     tree = ElementTree.fromstring(text)
     assert tree.get("aria-label") == 'a "name" & more' and tree.get("viewBox") == "0 0 331.2 165.6"
     assert "width" not in tree.attrib
-    assert not any(colour in text for colour in VARIABLES) and "var(--ink)" in text and "var(--line)" in text
+    assert (
+        not any(colour in text for colour in VARIABLES)
+        and "var(--ink)" in text
+        and "var(--line)" in text
+    )
     assert "<style" not in text and "<metadata" not in text and "date" not in text
     used = set(re.findall(r"url\(#(\w+)\)", text))
     assert used and used <= set(re.findall(r'id="(\w+)"', text))
@@ -127,12 +138,16 @@ def test_tables_give_the_values_back(dome, name):
     curves = [curve for chart in picture.charts for curve in chart.curves]
     assert len(table[0]) == 2 + len(curves) and len(set(table[0])) == len(table[0])
     unit = picture.charts[0].x.unit
-    assert table[0][:2] == [f"time_{unit}", "layer"] and all(re.fullmatch(r"\w+", cell) for cell in table[0])
+    assert table[0][:2] == [f"time_{unit}", "layer"] and all(
+        re.fullmatch(r"\w+", cell) for cell in table[0]
+    )
     columns = list(zip(*table[1:], strict=True))
     np.testing.assert_allclose(np.array(columns[0], float), curves[0].x, rtol=1e-9, atol=1e-12)
     assert [int(cell) for cell in columns[1]] == curves[0].layer.tolist()
     for cells, curve in zip(columns[2:], curves, strict=True):
-        np.testing.assert_allclose([float(cell) if cell else np.nan for cell in cells], curve.y, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(
+            [float(cell) if cell else np.nan for cell in cells], curve.y, rtol=1e-9, atol=1e-12
+        )
 
 
 @pytest.mark.parametrize("name", ["spread", "fit", "heights"])
@@ -143,18 +158,37 @@ def test_tables_of_what_is_no_course(modelled, name):
         assert table[0][:2] == ["layer", "lowest_mm"]
         return
     assert table[0] == ["chart", "curve", "from", "to", "value"]
-    wanted = [(chart.title, low, high, value) for chart in picture.charts if chart.bars is not None for low, high, value in
-              zip(chart.bars.edges[:-1], chart.bars.edges[1:], chart.bars.heights, strict=True)]
-    wanted += [(chart.title, x, x, y) for chart in picture.charts for curve in chart.curves
-               for x, y in zip(curve.x, curve.y, strict=True)]
+    wanted = [
+        (chart.title, low, high, value)
+        for chart in picture.charts
+        if chart.bars is not None
+        for low, high, value in zip(
+            chart.bars.edges[:-1], chart.bars.edges[1:], chart.bars.heights, strict=True
+        )
+    ]
+    wanted += [
+        (chart.title, x, x, y)
+        for chart in picture.charts
+        for curve in chart.curves
+        for x, y in zip(curve.x, curve.y, strict=True)
+    ]
     assert len(table) == 1 + len(wanted)
     for row, (title, *numbers) in zip(table[1:], wanted, strict=True):
-        assert row[0] == title and [float(cell) for cell in row[2:]] == pytest.approx(numbers, rel=1e-9, abs=1e-12)
+        assert row[0] == title and [float(cell) for cell in row[2:]] == pytest.approx(
+            numbers, rel=1e-9, abs=1e-12
+        )
 
 
 def test_a_comma_in_a_name_does_not_make_a_column():
-    chart = Chart('so, "said"', TIME, ANGLE, (Curve("one, two", np.arange(2.0), np.arange(2.0)),
-                                               Curve("b", np.arange(3.0), np.arange(3.0))))
+    chart = Chart(
+        'so, "said"',
+        TIME,
+        ANGLE,
+        (
+            Curve("one, two", np.arange(2.0), np.arange(2.0)),
+            Curve("b", np.arange(3.0), np.arange(3.0)),
+        ),
+    )
     table = list(csv.reader(io.StringIO("".join(files.values(Picture("a", "A", (chart,)))))))
     assert all(len(row) == 5 for row in table) and table[1][:2] == ['so, "said"', "one, two"]
 
@@ -162,7 +196,9 @@ def test_a_comma_in_a_name_does_not_make_a_column():
 @pytest.mark.parametrize("width", [300, 520, 1500])
 def test_names_of_curves_are_beside_or_above_their_frame_and_clear_of_each_other(width):
     x = np.linspace(0.0, 1.0, 50)
-    curves = tuple(Curve(f"radius {5 * number} mm, measured", x, x + number, number) for number in range(7))
+    curves = tuple(
+        Curve(f"radius {5 * number} mm, measured", x, x + number, number) for number in range(7)
+    )
     chart = Chart("Width of beads", TIME, ANGLE, curves)
     figure, (place,) = draw.figure((chart,), LIGHT, width, 400)
     renderer = files.FigureCanvasAgg(figure).get_renderer()

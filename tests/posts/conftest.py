@@ -63,7 +63,8 @@ INSTRUCTIONS = [
 VALUE = r"(?=.{10} )(?: *-?[1-9]\d*\.\d{3}| *-?\.(?!000)\d{3}| *0\.000)"
 FRAMES = r"\tUF : (\d+), UT : (\d+),"
 JOINTS = [FRAMES + r"\t"] + [
-    ",".join(rf"\tJ{axis}={VALUE} deg" for axis in row) + end for row, end in (((1, 2, 3), ","), ((4, 5, 6), ""))
+    ",".join(rf"\tJ{axis}={VALUE} deg" for axis in row) + end
+    for row, end in (((1, 2, 3), ","), ((4, 5, 6), ""))
 ]
 POSES = [
     FRAMES + r"\t\tCONFIG : '[NF] [UD] [TB], 0, 0, -?\d',",
@@ -87,7 +88,9 @@ def _faults(file, content):
     if f"LINE_COUNT\t= {len(body)};" not in lines or len(body) > 9999:
         yield "number of lines"
     for number, line in enumerate(body, 1):
-        if line[:5] != f"{number:4d}:" or not any(re.fullmatch(pattern, line[5:]) for pattern in INSTRUCTIONS):
+        if line[:5] != f"{number:4d}:" or not any(
+            re.fullmatch(pattern, line[5:]) for pattern in INSTRUCTIONS
+        ):
             yield f"instruction {number}: {line!r}"
     used = [int(point) for point in re.findall(r"[JL] P\[(\d+)\]", "\n".join(body))]
     records = lines[positions + 1 : -1]
@@ -96,25 +99,41 @@ def _faults(file, content):
     for number in range(len(records) // 6):
         start, group, *values, end = records[6 * number : 6 * number + 6]
         shape = JOINTS if "CONFIG" not in values[0] else POSES
-        right = all(re.fullmatch(pattern, line) for pattern, line in zip(shape, values, strict=True))
+        right = all(
+            re.fullmatch(pattern, line) for pattern, line in zip(shape, values, strict=True)
+        )
         if (start, group, end) != (f"P[{number + 1}]{{", "   GP1:", "};") or not right:
             yield f"record {number + 1}: {values}"
         frames = re.match(FRAMES, values[0])
-        if frames and [f"   1:  UFRAME_NUM={frames[1]} ;", f"   2:  UTOOL_NUM={frames[2]} ;"] != body[:2]:
+        if (
+            frames
+            and [f"   1:  UFRAME_NUM={frames[1]} ;", f"   2:  UTOOL_NUM={frames[2]} ;"] != body[:2]
+        ):
             yield f"record {number + 1} is in another frame than the one selected"
 
 
 @pytest.fixture
 def assert_listings(tmp_path, root):
     """A function that fails when a file of a program is not as controllers write it."""
-    other = Path(os.environ.get("FANUC_LS_CHECK", root.parent / "shared/recipes/posts/fanuc_ls_check.py"))
+    other = Path(
+        os.environ.get("FANUC_LS_CHECK", root.parent / "shared/recipes/posts/fanuc_ls_check.py")
+    )
 
     def judge(files):
-        assert not [f"{file}: {fault}" for file, content in files.items() for fault in _faults(file, content)]
+        assert not [
+            f"{file}: {fault}"
+            for file, content in files.items()
+            for fault in _faults(file, content)
+        ]
         if other.exists():
             for file, content in files.items():
                 (tmp_path / file).write_bytes(content)
-            command = [sys.executable, str(other), "--style", *(str(tmp_path / file) for file in files)]
+            command = [
+                sys.executable,
+                str(other),
+                "--style",
+                *(str(tmp_path / file) for file in files),
+            ]
             result = subprocess.run(command, capture_output=True, text=True)
             assert result.returncode == 0, result.stdout
 
@@ -137,13 +156,17 @@ def _random_program(seed, motion="joint", continuous=True, **options):
         if not continuous:
             joints = np.clip(joints, -3.1, 3.1)
         at = joints[-1]
-        duration = rng.choice([0.0011, 0.05, 0.3, 4.0, 31.9994, 40.0, 3000.0], count) * rng.uniform(1.0, 1.05, count)
+        duration = rng.choice([0.0011, 0.05, 0.3, 4.0, 31.9994, 40.0, 3000.0], count) * rng.uniform(
+            1.0, 1.05, count
+        )
         extra = {}
         if motion == "cartesian":
             normal = rng.normal(size=(count, 3, 3))
             turned = np.linalg.qr(normal)[0]
             turned *= np.linalg.det(turned)[:, None, None]
-            words = [("front", ("up", "down")[int(down)], "flip") for down in rng.integers(0, 2, count)]
+            words = [
+                ("front", ("up", "down")[int(down)], "flip") for down in rng.integers(0, 2, count)
+            ]
             extra = {
                 "position": rng.uniform(-2000, 2000, (count, 3)),
                 "rotation": turned,
@@ -159,10 +182,15 @@ def _random_program(seed, motion="joint", continuous=True, **options):
             blocks.append(DepositOn(float(rng.choice([0.0, 0.004, 0.5]))))
             blocks.append(moves("deposit", layer, bead, int(rng.integers(1, 40))))
             blocks.append(DepositOff(float(rng.choice([0.0, 1.25]))))
-        blocks += [Wait(float(rng.choice([0.0, 12.5, 700.0]))), WaitInput(3), Call("clean")][: int(rng.integers(0, 4))]
+        blocks += [Wait(float(rng.choice([0.0, 12.5, 700.0]))), WaitInput(3), Call("clean")][
+            : int(rng.integers(0, 4))
+        ]
     blocks.append(moves("rapid", layer, bead, 1))
     setup = "tool-on-robot" if motion == "cartesian" else "part-on-robot"
-    options = {"max_points": int(rng.integers(10, 120)), "blend": int(rng.integers(0, 101))} | options
+    options = {
+        "max_points": int(rng.integers(10, 120)),
+        "blend": int(rng.integers(0, 101)),
+    } | options
     return Program(
         "Random",
         "a machine",
@@ -196,8 +224,12 @@ def random_application(random_program):
                 block = dataclasses.replace(block, duration=np.clip(block.duration, 0.3, 4.0))
             blocks.append(block)
         return dataclasses.replace(
-            whole, setup=setup, blocks=tuple(blocks), max_speed=(15.0, 14.0, 15.5, 20.0, 16.0, 35.0),
-            station=(300.25, -20.5, 310.125, 0.1, -0.2, 3.0), carried=(1.0, 2.0, 105.0, 0.3, 0.2, 0.1),
+            whole,
+            setup=setup,
+            blocks=tuple(blocks),
+            max_speed=(15.0, 14.0, 15.5, 20.0, 16.0, 35.0),
+            station=(300.25, -20.5, 310.125, 0.1, -0.2, 3.0),
+            carried=(1.0, 2.0, 105.0, 0.3, 0.2, 0.1),
         )
 
     return make
@@ -210,14 +242,25 @@ ATTRIBUTES = {
     "jointRx": dict.fromkeys(("j1", "j2", "j3", "j4", "j5", "j6"), NUMBER),
     "dio": {"link": r"BasicIO-1\\%[IQ]\d+"},
     "mdesc": {
-        "accel": "100", "decel": "100", "vel": r"100|\d{1,2}\.\d{5}|100\.0{5}", "tmax": r"99999|\d+\.\d{3}", "rmax": "99999",
-        "blend": "off|joint|Cartesian", "leave": r"\d+\.\d{3}", "reach": r"\d+\.\d{3}",
+        "accel": "100",
+        "decel": "100",
+        "vel": r"100|\d{1,2}\.\d{5}|100\.0{5}",
+        "tmax": r"99999|\d+\.\d{3}",
+        "rmax": "99999",
+        "blend": "off|joint|Cartesian",
+        "leave": r"\d+\.\d{3}",
+        "reach": r"\d+\.\d{3}",
     },
 }
-ATTRIBUTES["frame"] = dict.fromkeys(("x", "y", "z", "rx", "ry", "rz"), NUMBER) | {"fatherId": r"world\[0\]"}
+ATTRIBUTES["frame"] = dict.fromkeys(("x", "y", "z", "rx", "ry", "rz"), NUMBER) | {
+    "fatherId": r"world\[0\]"
+}
 ATTRIBUTES["tool"] = ATTRIBUTES["frame"] | {"fatherId": r"(?:flange|tCarried)\[0\]"}
 ATTRIBUTES["pointRx"] = ATTRIBUTES["frame"] | {
-    "fatherId": r"fStation\[0\]", "shoulder": "ssame", "elbow": "esame", "wrist": "wsame",
+    "fatherId": r"fStation\[0\]",
+    "shoulder": "ssame",
+    "elbow": "esame",
+    "wrist": "wsame",
 }
 PLACE = r"(?:\[(\d+|l_nI(?:[+-]\d+)?)\])?"
 VAL3_MOVE = rf"(move[jl])\(({WORD}){PLACE},({WORD}){PLACE},({WORD}){PLACE}\)"
@@ -238,12 +281,19 @@ def _parsed(content):
 def _data_faults(file, data):
     """Types, sizes and attributes of the data; returns type and size by name, yields what is wrong."""
     for name, (kind, size, values) in data.items():
-        if not re.fullmatch(WORD, name) or kind not in ATTRIBUTES or int(size) != len(values) or not values:
+        if (
+            not re.fullmatch(WORD, name)
+            or kind not in ATTRIBUTES
+            or int(size) != len(values)
+            or not values
+        ):
             yield f"{file}: {name} is {kind} of size {size} with {len(values)} values"
             continue
         for key, value in enumerate(values):
             wanted = {"key": str(key)} | ATTRIBUTES[kind]
-            if set(value) != set(wanted) or not all(re.fullmatch(wanted[a], value[a]) for a in wanted):
+            if set(value) != set(wanted) or not all(
+                re.fullmatch(wanted[a], value[a]) for a in wanted
+            ):
                 yield f"{file}: {name} {value}"
 
 
@@ -266,7 +316,10 @@ def _code_faults(file, lines, data):
             moving = True
             kinds = ("jointRx" if move[1] == "movej" else "pointRx", "tool", "mdesc")
             for name, index, kind in zip(move.groups()[1::2], move.groups()[2::2], kinds):
-                rows = [eval(index or "0", {"l_nI": i}) for i in (counter if counter is not None else (0,))]
+                rows = [
+                    eval(index or "0", {"l_nI": i})
+                    for i in (counter if counter is not None else (0,))
+                ]
                 if data[name][0] != kind or min(rows) < 0 or max(rows) >= int(data[name][1]):
                     yield f"{file}: {line}: {name}"
                 used.setdefault(name, []).extend(rows)
@@ -288,13 +341,26 @@ def _application_faults(project, files):
     listed = [element.get("file") for element in root.iter(space + "Program")]
     datas = [element.get("file") for element in root.iter(space + "Data")]
     here = {file.rsplit("/", 1)[1] for file in files if file.rsplit("/", 1)[0] == folder}
-    if folder.rsplit("/", 1)[-1] != name or not re.fullmatch(WORD, name) or root.tag != space + "Project":
+    if (
+        folder.rsplit("/", 1)[-1] != name
+        or not re.fullmatch(WORD, name)
+        or root.tag != space + "Project"
+    ):
         yield f"{project}: name of folder and project"
-    if listed != ["start.pgx", "stop.pgx"] or datas != [f"{name}.dtx"] or here != {*listed, *datas, f"{name}.pjx"}:
+    if (
+        listed != ["start.pgx", "stop.pgx"]
+        or datas != [f"{name}.dtx"]
+        or here != {*listed, *datas, f"{name}.pjx"}
+    ):
         yield f"{project}: files {listed} {datas} {here}"
-    aliases = {element.get("alias"): element.get("path") for element in root.iter(space + "Library")}
+    aliases = {
+        element.get("alias"): element.get("path") for element in root.iter(space + "Library")
+    }
     for alias, path in aliases.items():
-        if not re.fullmatch(rf"Disk://{alias}/{alias}\.pjx", path) and f"{folder}/{path.removeprefix('./')}" not in files:
+        if (
+            not re.fullmatch(rf"Disk://{alias}/{alias}\.pjx", path)
+            and f"{folder}/{path.removeprefix('./')}" not in files
+        ):
             yield f"{project}: library {alias} {path}"
     space = VAL3 + "Data/2}"
     data = {
@@ -309,7 +375,7 @@ def _application_faults(project, files):
             yield f"{folder}/{program}.pgx: name or access"
         if ("l_nI" in code) != (element.find(f".//{VAL3}Program/2}}Local") is not None):
             yield f"{folder}/{program}.pgx: the counter and its declaration"
-        if set(re.findall(r"(\w+):", re.sub("//.*|\"[^\"]*\"", "", code))) - set(aliases):
+        if set(re.findall(r"(\w+):", re.sub('//.*|"[^"]*"', "", code))) - set(aliases):
             yield f"{folder}/{program}.pgx: a library that is not declared"
         if program == "start":
             yield from _code_faults(f"{folder}/start.pgx", code.split("\n"), data)
@@ -339,7 +405,12 @@ def assert_applications(tmp_path, root):
         (tmp_path / "bin/xmllint").write_text(LXML_LINT.format(python=sys.executable))
         (tmp_path / "bin/xmllint").chmod(0o755)
         environment["PATH"] = f"{tmp_path / 'bin'}{os.pathsep}{environment['PATH']}"
-        can_lint = subprocess.run([sys.executable, "-c", "import lxml.etree"], capture_output=True).returncode == 0
+        can_lint = (
+            subprocess.run(
+                [sys.executable, "-c", "import lxml.etree"], capture_output=True
+            ).returncode
+            == 0
+        )
     else:
         can_lint = True
 

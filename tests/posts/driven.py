@@ -45,13 +45,19 @@ class Drive:
             if shown is not None and np.isfinite(shown).all():
                 found = machine.from_controller(shown)
                 continuous = self.cell.limits.continuous
-                found[continuous] += 2.0 * np.pi * np.round((rows[-1] - found)[continuous] / (2.0 * np.pi))
+                found[continuous] += (
+                    2.0 * np.pi * np.round((rows[-1] - found)[continuous] / (2.0 * np.pi))
+                )
             elif shown is not None and self.cell.external is not None and self.poses is not None:
                 found = self._beside(row, shown, rows[-1])
             elif self.poses is not None and read.configuration is not None:
                 found = self._by_configuration(row)
             elif self.poses is not None:
-                near = rows[-1] if read.near is None or read.linear[row] else machine.from_controller(read.near[row])
+                near = (
+                    rows[-1]
+                    if read.near is None or read.linear[row]
+                    else machine.from_controller(read.near[row])
+                )
                 found = self.arm.inverse(self.poses[row][None], near[None], "nr", 1e-7)[0]
             else:
                 found = self._by_tip(row, rows[-1])
@@ -64,9 +70,12 @@ class Drive:
         cell, own = self.cell, len(self.cell.robot.axes)
         values = cell.machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[own:]
         face = KdlArm(cell.machine).forward(np.r_[np.zeros(own), values][None])[0] @ np.linalg.inv(
-            KdlArm(cell.robot).forward(np.zeros((1, own)))[0])
+            KdlArm(cell.robot).forward(np.zeros((1, own)))[0]
+        )
         pose = np.linalg.inv(face) @ self.poses[row]  # seen from the robot
-        return np.r_[KdlArm(cell.robot).inverse(pose[None], near[None, :own], "nr", 1e-7)[0], values]
+        return np.r_[
+            KdlArm(cell.robot).inverse(pose[None], near[None, :own], "nr", 1e-7)[0], values
+        ]
 
     def _by_configuration(self, row):
         """The joints of a position with the arm and the turns that the text names; no other joints enter."""
@@ -87,7 +96,11 @@ class Drive:
         if rotary is not None:
             free = np.isnan(rotary)
             found[~free] = rotary[~free]
-        target = [self.told_tip[row]] if read.direction is None else [self.told_tip[row], 300.0 * self.told_axis[row]]
+        target = (
+            [self.told_tip[row]]
+            if read.direction is None
+            else [self.told_tip[row], 300.0 * self.told_axis[row]]
+        )
         target = np.concatenate(target)
 
         def seen(values):
@@ -127,26 +140,38 @@ class Drive:
         if not self.read.linear[row]:
             joints = self.joints[row - 1] + share * (self.joints[row] - self.joints[row - 1])
             return self.cell.tip_in_part(self.arm.forward(joints))
-        moving = self.read.tool is not None and self.cell.setup == "part-on-robot" and not self.read.held
+        moving = (
+            self.read.tool is not None and self.cell.setup == "part-on-robot" and not self.read.held
+        )
         if self.poses is not None and moving:
             tool = self.read.tool[row]
-            start, end = self.arm.forward(self.joints[row - 1][None])[0] @ tool, self.poses[row] @ tool
+            start, end = (
+                self.arm.forward(self.joints[row - 1][None])[0] @ tool,
+                self.poses[row] @ tool,
+            )
             moved = np.array([_slid(start, end, s) for s in share[:, 0]]) @ np.linalg.inv(tool)
             return self.cell.tip_in_part(moved)
         (from_tip, from_axis), (to_tip, to_axis) = self.ends(row - 1), self.ends(row)
         axis = from_axis + share * (to_axis - from_axis)
-        return from_tip + share * (to_tip - from_tip), axis / np.linalg.norm(axis, axis=1, keepdims=True)
+        return from_tip + share * (to_tip - from_tip), axis / np.linalg.norm(
+            axis, axis=1, keepdims=True
+        )
 
     def way(self, row):
         """Tips and axes on the move to a row; a corner that is rounded is cut straight."""
         start, end = self.ends(row - 1)[0], self.ends(row)[0]
-        turn = np.abs(self.joints[row] - self.joints[row - 1])[~self.cell.machine.chain.sliding].max()
+        turn = np.abs(self.joints[row] - self.joints[row - 1])[
+            ~self.cell.machine.chain.sliding
+        ].max()
         count = 2 + int(max(np.linalg.norm(end - start) / STEP_MM, turn / STEP_RAD))
         share = np.linspace(0.0, 1.0, count)
         tips, axes = self._between(row, share)
         if row + 1 < len(self.joints) and not self.read.stops[row] and not self.read.deposit[row]:
             cut, chord = share >= 1.0 - ROUNDED, np.linspace(0.0, 1.0, 12)[:, None]
-            (from_tip, from_axis), (to_tip, to_axis) = self._between(row, 1.0 - ROUNDED), self._between(row + 1, ROUNDED)
+            (from_tip, from_axis), (to_tip, to_axis) = (
+                self._between(row, 1.0 - ROUNDED),
+                self._between(row + 1, ROUNDED),
+            )
             axis = from_axis + chord * (to_axis - from_axis)
             tips = np.vstack([tips[~cut], from_tip + chord * (to_tip - from_tip)])
             axes = np.vstack([axes[~cut], axis / np.linalg.norm(axis, axis=1, keepdims=True)])
@@ -161,10 +186,16 @@ def _slid(start, end, share):
     pose[:3, 3] = start[:3, 3] + share * (end - start)[:3, 3]
     pose[:3, :3] = start[:3, :3]
     if angle > 1e-12:
-        about = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / (2.0 * np.sin(angle))
-        cross = np.array([[0, -about[2], about[1]], [about[2], 0, -about[0]], [-about[1], about[0], 0]])
+        about = np.array(
+            [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
+        ) / (2.0 * np.sin(angle))
+        cross = np.array(
+            [[0, -about[2], about[1]], [about[2], 0, -about[0]], [-about[1], about[0], 0]]
+        )
         part = share * angle
-        pose[:3, :3] = start[:3, :3] @ (np.eye(3) + np.sin(part) * cross + (1.0 - np.cos(part)) * cross @ cross)
+        pose[:3, :3] = start[:3, :3] @ (
+            np.eye(3) + np.sin(part) * cross + (1.0 - np.cos(part)) * cross @ cross
+        )
     return pose
 
 
@@ -193,12 +224,17 @@ def bead_body(tips, axes, width, height):
     """Points (k, 3) in and on a bead laid along tips (n, 3), on which it stands along axes (n, 3): a stadium every mm."""
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(tips, axis=0), axis=1))]
     at = np.linspace(0.0, way[-1], 2 + int(way[-1]))
-    tips, axes = (np.stack([np.interp(at, way, column) for column in each.T], axis=1) for each in (tips, axes))
+    tips, axes = (
+        np.stack([np.interp(at, way, column) for column in each.T], axis=1) for each in (tips, axes)
+    )
     side = np.cross(axes, np.gradient(tips, axis=0))
     side /= np.linalg.norm(side, axis=1, keepdims=True)
     angle = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
     round_, flat = 0.5 * height, 0.5 * (width - height)
-    across = np.r_[flat * np.sign(np.cos(angle)) + round_ * np.cos(angle), np.linspace(-0.5 * width, 0.5 * width, 7)]
+    across = np.r_[
+        flat * np.sign(np.cos(angle)) + round_ * np.cos(angle),
+        np.linspace(-0.5 * width, 0.5 * width, 7),
+    ]
     up = round_ + np.r_[round_ * np.sin(angle), np.zeros(7)]
     points = tips[:, None] + across[:, None] * side[:, None] + up[:, None] * axes[:, None]
     return points.reshape(-1, 3)
@@ -210,5 +246,7 @@ def depths_in_nozzle(tips, axes, nozzle, points):
     away = points[None] - tips[:, None]
     height = np.einsum("npi,ni->np", away, axes)
     side = np.linalg.norm(away - height[..., None] * axes[:, None], axis=2)
-    room = (0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * height - side) * np.cos(nozzle.half_angle)
+    room = (0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * height - side) * np.cos(
+        nozzle.half_angle
+    )
     return np.minimum(np.minimum(room, height), nozzle.length - height), height

@@ -7,7 +7,16 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput
+from freecad_am.core.program import (
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Wait,
+    WaitInput,
+)
 from freecad_am.posts.fanuc import post as fanuc
 
 UPRIGHT = ("front", "up", "flip")
@@ -16,7 +25,9 @@ UPRIGHT = ("front", "up", "flip")
 def moves(kind, degrees, duration=0.1, layer=0, bead=0, **extra):
     degrees = np.atleast_2d(np.asarray(degrees, float))
     duration = np.broadcast_to(np.asarray(duration, float), len(degrees)).copy()
-    return Moves(kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), 6.0), **extra)
+    return Moves(
+        kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), 6.0), **extra
+    )
 
 
 def program(*blocks, name="part", continuous=(False,) * 6, **options):
@@ -37,9 +48,16 @@ def beads(count, points, layers=1, **options):
 
 def with_tool(of, **more):
     """The same with the tool on the robot and a platform that stands."""
-    return dataclasses.replace(of, **{
-        "name": "tool", "setup": "tool-on-robot", "station": (700.0, 10.5, -100.0, 0.1, -0.2, 3.0),
-        "carried": (0.0, 0.0, 150.0, 0.0, 0.0, 0.5), **more})
+    return dataclasses.replace(
+        of,
+        **{
+            "name": "tool",
+            "setup": "tool-on-robot",
+            "station": (700.0, 10.5, -100.0, 0.1, -0.2, 3.0),
+            "carried": (0.0, 0.0, 150.0, 0.0, 0.0, 0.5),
+            **more,
+        },
+    )
 
 
 def refusal(of, *, code, where=None):
@@ -84,6 +102,10 @@ GOLDEN_TABLE = program(
 
 def early(of, ahead=0.05, **more):
     """The same with the deposit switched on the moves themselves."""
-    blocks = [dataclasses.replace(block, lead=0.0, ahead=ahead) if isinstance(block, (DepositOn, DepositOff)) else block
-              for block in of.blocks]
+    blocks = [
+        dataclasses.replace(block, lead=0.0, ahead=ahead)
+        if isinstance(block, (DepositOn, DepositOff))
+        else block
+        for block in of.blocks
+    ]
     return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "early", **more})

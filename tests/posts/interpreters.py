@@ -30,7 +30,10 @@ def rs274() -> tuple[list[str], dict[str, str]] | None:
     """Command and environment of LinuxCNC's interpreter, None where it is not there."""
     here = UNPACKED / "usr" / "bin" / "rs274"
     if here.exists():
-        libraries = [str(UNPACKED / "usr/lib"), *map(str, (UNPACKED / "usr/lib").glob("*-linux-gnu"))]
+        libraries = [
+            str(UNPACKED / "usr/lib"),
+            *map(str, (UNPACKED / "usr/lib").glob("*-linux-gnu")),
+        ]
         return [str(here)], {**os.environ, "LD_LIBRARY_PATH": ":".join(libraries)}
     installed = shutil.which("rs274")
     return ([installed], dict(os.environ)) if installed else None
@@ -44,30 +47,59 @@ def nc_python() -> list[str] | None:
 def provide() -> None:
     """Fetch what is missing; say so where that fails."""
     if rs274() is None and not _unpack():
-        print("freecad-am: no rs274 of LinuxCNC: its programs are NOT interpreted by the tests", flush=True)
+        print(
+            "freecad-am: no rs274 of LinuxCNC: its programs are NOT interpreted by the tests",
+            flush=True,
+        )
     if nc_python() is None and not _wheels():
-        print("freecad-am: no nc-gcode-interpreter: SINUMERIK programs are NOT interpreted by the tests", flush=True)
+        print(
+            "freecad-am: no nc-gcode-interpreter: SINUMERIK programs are NOT interpreted by the tests",
+            flush=True,
+        )
 
 
 def _unpack() -> bool:
     if not (shutil.which("apt-get") and shutil.which("dpkg-deb")):
         return False
-    print(f"freecad-am: unpacking {', '.join(PACKAGES)} into {ENVIRONMENT.name}", file=sys.stderr, flush=True)
+    print(
+        f"freecad-am: unpacking {', '.join(PACKAGES)} into {ENVIRONMENT.name}",
+        file=sys.stderr,
+        flush=True,
+    )
     with tempfile.TemporaryDirectory() as folder:
         if not _done(["apt-get", "download", "-q", *PACKAGES], cwd=folder):
             return False
         shutil.rmtree(UNPACKED, ignore_errors=True)
         UNPACKED.parent.mkdir(parents=True, exist_ok=True)
-        return all(_done(["dpkg-deb", "-x", str(package), str(UNPACKED)]) for package in Path(folder).glob("*.deb"))
+        return all(
+            _done(["dpkg-deb", "-x", str(package), str(UNPACKED)])
+            for package in Path(folder).glob("*.deb")
+        )
 
 
 def _wheels() -> bool:
-    print(f"freecad-am: making {ENVIRONMENT.name} with {', '.join(WHEELS)}", file=sys.stderr, flush=True)
+    print(
+        f"freecad-am: making {ENVIRONMENT.name} with {', '.join(WHEELS)}",
+        file=sys.stderr,
+        flush=True,
+    )
     folder = NC_PYTHON.parents[1]
     if not _done([sys.executable, "-m", "venv", str(folder)]):
         return False
     # it needs no more than these to run
-    if _done([str(NC_PYTHON), "-m", "pip", "install", "-q", "--no-deps", "--only-binary", ":all:", *WHEELS]):
+    if _done(
+        [
+            str(NC_PYTHON),
+            "-m",
+            "pip",
+            "install",
+            "-q",
+            "--no-deps",
+            "--only-binary",
+            ":all:",
+            *WHEELS,
+        ]
+    ):
         return _done([str(NC_PYTHON), "-c", "import nc_gcode_interpreter"])
     shutil.rmtree(folder, ignore_errors=True)
     return False
@@ -83,7 +115,9 @@ def _done(command: list[str], **more: object) -> bool:
 KINEMATICS = (428, 429, 430)
 
 
-def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: float = 0.0) -> tuple[list[dict], list[str]]:
+def run_rs274(
+    folder: Path, files: dict[str, bytes], main: str, tool_length: float = 0.0
+) -> tuple[list[dict], list[str]]:
     """What LinuxCNC's interpreter makes of a program: its moves in order, and what it complains of.
 
     A move: at (6,) mm and deg, seconds, deposit, kinematics (428, 429 or None), offset (number of the work offset),
@@ -95,15 +129,31 @@ def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: flo
         (folder / name).write_bytes(content)
     remaps = "".join(f"REMAP=M{code} modalgroup=10 ngc=kinematics{code}\n" for code in KINEMATICS)
     for code in KINEMATICS:
-        lines = [f"o<kinematics{code}> sub", f"(kinematics {code})", f"o<kinematics{code}> endsub", "M2", ""]
+        lines = [
+            f"o<kinematics{code}> sub",
+            f"(kinematics {code})",
+            f"o<kinematics{code}> endsub",
+            "M2",
+            "",
+        ]
         (folder / f"kinematics{code}.ngc").write_text("\n".join(lines))
     (folder / "clean.ngc").write_text("o<clean> sub\n(cleaned)\nG20 G91\no<clean> endsub\nM2\n")
-    (folder / "machine.ini").write_text(f"[RS274NGC]\nSUBROUTINE_PATH={folder}\n{remaps}[TRAJ]\nLINEAR_UNITS=mm\n[EMCIO]\n")
+    (folder / "machine.ini").write_text(
+        f"[RS274NGC]\nSUBROUTINE_PATH={folder}\n{remaps}[TRAJ]\nLINEAR_UNITS=mm\n[EMCIO]\n"
+    )
     # standing alone it takes the tool table for inches
-    (folder / "tool.tbl").write_text("".join(f"T{n} P{n} Z{tool_length / 25.4:.6f} D0.1 ;\n" for n in range(1, 30)))
+    (folder / "tool.tbl").write_text(
+        "".join(f"T{n} P{n} Z{tool_length / 25.4:.6f} D0.1 ;\n" for n in range(1, 30))
+    )
     arguments = ["-g", "-n", "2", "-t", "tool.tbl", "-v", "numbers.var", "-i", "machine.ini", main]
     result = subprocess.run(
-        [*command, *arguments], cwd=folder, env=environment, capture_output=True, text=True, timeout=LIMIT, check=False
+        [*command, *arguments],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=LIMIT,
+        check=False,
     )
     moves, complaints, ended = [], [], False
     at, feed, deposit, kinematics, offset = np.full(6, np.nan), 0.0, False, None, 0
@@ -134,10 +184,20 @@ def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: flo
             place = np.array([float(value) for value in inside.split(",")][:6])
             step = place - at
             way = np.linalg.norm(step[:3]) or np.linalg.norm(step[3:])
-            moves.append({"at": place, "way": way, "feed": feed, "seconds": 60.0 * way / feed if feed else np.nan,
-                          "deposit": deposit, "kinematics": kinematics, "offset": offset, "corner": corner,
-                          "rapid": word != "STRAIGHT_FEED",
-                          "analogue": dict(analogue)})
+            moves.append(
+                {
+                    "at": place,
+                    "way": way,
+                    "feed": feed,
+                    "seconds": 60.0 * way / feed if feed else np.nan,
+                    "deposit": deposit,
+                    "kinematics": kinematics,
+                    "offset": offset,
+                    "corner": corner,
+                    "rapid": word != "STRAIGHT_FEED",
+                    "analogue": dict(analogue),
+                }
+            )
             at = place
         ended |= word == "PROGRAM_END"
     if result.returncode or not ended:
@@ -172,7 +232,11 @@ def run_nc(texts: list[str]) -> list[tuple[list[dict], list[str], str]]:
     for text in texts:
         plain = re.sub(r"(?:\bDO )?\$A_OUTA\[(\d+)\]=", r"O\1=", text)
         plain = re.sub(r"\b([A-Z]\d+)=(?!=)", r"V_\1=", plain)
-        plain = re.sub(r"=DC\(([^()]*)\)", r"=\1", plain).replace("$A_IN[3]==0", "0==1").replace("$A_INA[4]>=", "0>=")
+        plain = (
+            re.sub(r"=DC\(([^()]*)\)", r"=\1", plain)
+            .replace("$A_IN[3]==0", "0==1")
+            .replace("$A_INA[4]>=", "0>=")
+        )
         asked.append((plain, sorted(set(re.findall(r"\bV_[A-Z]\d+(?==)", plain)))))
     result = subprocess.run(
         [*(nc_python() or []), "-c", _INTERPRET], input=json.dumps(asked), capture_output=True, text=True, timeout=LIMIT,
@@ -185,10 +249,13 @@ def _rows(found: dict) -> tuple[list[dict], list[str], str]:
     if "error" in found:
         return [], [], found["error"]
     rows = [
-        {name.removeprefix("V_"): value for name, value in zip(found["columns"], row, strict=True)} for row in found["rows"]
+        {name.removeprefix("V_"): value for name, value in zip(found["columns"], row, strict=True)}
+        for row in found["rows"]
     ]
     calls = []
     for row in rows:
         names = row.get("function_call") or row.get("non_returning_function_call") or []
-        calls += [name for name in ([names] if isinstance(names, str) else names) if name not in _KNOWN]
+        calls += [
+            name for name in ([names] if isinstance(names, str) else names) if name not in _KNOWN
+        ]
     return rows, calls, ""

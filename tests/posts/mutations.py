@@ -20,14 +20,21 @@ NUMBER = r"-?\d*\.\d+"
 def mutated(files: Files, pattern: str, change: Change, rng: np.random.Generator) -> Files | None:
     """The files with one match of the pattern, chosen at random, changed; None where there is none, or none that changes."""
     places = [
-        (name, match) for name in sorted(files) for match in re.finditer(pattern, _text(files, name), re.MULTILINE)
+        (name, match)
+        for name in sorted(files)
+        for match in re.finditer(pattern, _text(files, name), re.MULTILINE)
     ]
     while places:
         name, match = places.pop(int(rng.integers(len(places))))
         new = match.expand(change) if isinstance(change, str) else change(match, rng)
         if new != match[0]:
             text = _text(files, name)
-            return {**files, name: _numbered(name, text[: match.start()] + new + text[match.end() :]).encode("utf-8")}
+            return {
+                **files,
+                name: _numbered(name, text[: match.start()] + new + text[match.end() :]).encode(
+                    "utf-8"
+                ),
+            }
     return None
 
 
@@ -68,7 +75,11 @@ def moved(step: float) -> Change:
         text, start = match[1], match.start(1) - match.start()
         decimals = len(text.partition(".")[2])
         value = float(text) + step * rng.choice([-1.0, 1.0])
-        return match[0][:start] + f"{value:.{decimals}f}".rjust(len(text)) + match[0][start + len(text) :]
+        return (
+            match[0][:start]
+            + f"{value:.{decimals}f}".rjust(len(text))
+            + match[0][start + len(text) :]
+        )
 
     return change
 
@@ -106,7 +117,11 @@ def negated(match: re.Match, rng: np.random.Generator) -> str:
     """The number of the first group with another sign; none where it is all but zero."""
     start = match.start(1) - match.start()
     value = match[1].removeprefix("-") if match[1].startswith("-") else f"-{match[1]}"
-    return match[0] if abs(float(match[1])) < 0.5 else match[0][:start] + value + match[0][start + len(match[1]) :]
+    return (
+        match[0]
+        if abs(float(match[1])) < 0.5
+        else match[0][:start] + value + match[0][start + len(match[1]) :]
+    )
 
 
 DROP, TWICE, SWAP = "", r"\g<0>\g<0>", r"\2\1"
@@ -115,7 +130,9 @@ DROP, TWICE, SWAP = "", r"\g<0>\g<0>", r"\2\1"
 _FN = r"^ *\d+:"
 _MOVE = _FN + r"[JL] P\[\d+\][^\n]*\n"
 _DO, _WAIT, _IN, _CLEAN = (
-    _FN + r"  " + word + r"[^\n]*\n" for word in (r"DO\[", r"WAIT +[.\d]+\(sec\)", r"WAIT DI\[", "CALL CLEAN"))
+    _FN + r"  " + word + r"[^\n]*\n"
+    for word in (r"DO\[", r"WAIT +[.\d]+\(sec\)", r"WAIT DI\[", "CALL CLEAN")
+)
 _AHEAD = r" TB +\d?\.\d\dsec,DO\[\d+\]=O(?:N|FF)"
 _VALUE = r"(?:J[1-6]|[XYZWPR] )=( *-?\d*\.\d{3})"
 _GROUPED = r"(?:GP2:\r\n[^\n]*\n\tJ1=|(?<=deg,)\tJ2=)( *-?\d*\.\d{3})(?=[^\n]*\r\n\};)"
@@ -183,27 +200,36 @@ FANUC: dict[str, tuple[str, Change]] = {
     "another layer": (r"!layer (\d+)", one_more),
     "a part dropped": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", DROP),
     "a part doubled": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", TWICE),
-    "parts in another order": (r"^( *\d+:  CALL JOB\d+[^\n]*\n)( *\d+:  CALL JOB\d+[^\n]*\n)", SWAP),
+    "parts in another order": (
+        r"^( *\d+:  CALL JOB\d+[^\n]*\n)( *\d+:  CALL JOB\d+[^\n]*\n)",
+        SWAP,
+    ),
 }
 # of texts that switch the deposit on the move itself
-TRIGGERS: dict[str, dict[str, tuple[str, Change]]] = {"fanuc": {
-    "a trigger dropped": (_AHEAD, DROP),
-    "a trigger doubled": (_AHEAD, TWICE),
-    "a trigger at another time": (r" TB( +\d?\.\d\d)sec", moved(0.05)),
-    "a trigger behind the end": (r" (TB) ", other("TA", "DB")),
-    "a trigger on the next move": (rf"({_AHEAD})(    ;\r\n {{0,3}}\d+:[JL] [^\n;]*?)(?=    ;)", SWAP),
-    "a trigger of its own": (rf"({_AHEAD})    ;", r"    ;\r\n   0:  \1 ;"),
-}, "abb": {
-    "a trigger dropped": (r"TriggL (\[[^\n]*),v_am\d+,g_o[nf]+\d", r"MoveL \1,v_am\\V:=5.000"),
-    "a trigger doubled": (r",(g_o[nf]+\d)(?=,fine)", r",\1\\T2:=\1"),
-    "a trigger at another place": (rf"TriggIO \w+,({NUMBER})", moved(0.05)),
-    "a trigger at a time": (rf"(TriggIO \w+,{NUMBER})", r"\1\\Time"),
-    "a trigger from the start": (rf"(TriggIO \w+,{NUMBER})", r"\1\\Start"),
-    "a trigger of another output": (r"TriggIO[^\n]*do(1)", one_more),
-    "a trigger the other way": (r"TriggIO[^\n]*,([01]);", other("0", "1")),
-    "another trigger": (r"(g_o[nf]+1)(?=,fine)", other("g_on1", "g_off1")),
-    "a trigger that is not set": (r"^    TriggIO[^\n]*\n", DROP),
-}}
+TRIGGERS: dict[str, dict[str, tuple[str, Change]]] = {
+    "fanuc": {
+        "a trigger dropped": (_AHEAD, DROP),
+        "a trigger doubled": (_AHEAD, TWICE),
+        "a trigger at another time": (r" TB( +\d?\.\d\d)sec", moved(0.05)),
+        "a trigger behind the end": (r" (TB) ", other("TA", "DB")),
+        "a trigger on the next move": (
+            rf"({_AHEAD})(    ;\r\n {{0,3}}\d+:[JL] [^\n;]*?)(?=    ;)",
+            SWAP,
+        ),
+        "a trigger of its own": (rf"({_AHEAD})    ;", r"    ;\r\n   0:  \1 ;"),
+    },
+    "abb": {
+        "a trigger dropped": (r"TriggL (\[[^\n]*),v_am\d+,g_o[nf]+\d", r"MoveL \1,v_am\\V:=5.000"),
+        "a trigger doubled": (r",(g_o[nf]+\d)(?=,fine)", r",\1\\T2:=\1"),
+        "a trigger at another place": (rf"TriggIO \w+,({NUMBER})", moved(0.05)),
+        "a trigger at a time": (rf"(TriggIO \w+,{NUMBER})", r"\1\\Time"),
+        "a trigger from the start": (rf"(TriggIO \w+,{NUMBER})", r"\1\\Start"),
+        "a trigger of another output": (r"TriggIO[^\n]*do(1)", one_more),
+        "a trigger the other way": (r"TriggIO[^\n]*,([01]);", other("0", "1")),
+        "another trigger": (r"(g_o[nf]+1)(?=,fine)", other("g_on1", "g_off1")),
+        "a trigger that is not set": (r"^    TriggIO[^\n]*\n", DROP),
+    },
+}
 
 # machines with rotary axes: what both controllers have in common, and what each has of its own
 _AXIS = rf"(?: [XYZABC]=?(?:DC\()?)({NUMBER})"
@@ -211,8 +237,14 @@ _SIEMENS_MOVE = r"^N\d+ (?:G9 )?(?:G9[34] )?G1 [^\n]*\n"
 _SIEMENS_RAPID = r"^N\d+ G9 (?:G9[34] )?G1 [^\n]*\n"
 _N = r"^N\d+ "
 _SWITCH, _DWELL, _LOOP, _CLEANING = (
-    _N + word for word in (r"H1=[01]\n", r"G4 F[.\d]+\n(?!N\d+ ENDWHILE)", r"WHILE[^\n]*\nN\d+ G4[^\n]*\nN\d+ ENDWHILE\n",
-                           r"CLEAN\n"))
+    _N + word
+    for word in (
+        r"H1=[01]\n",
+        r"G4 F[.\d]+\n(?!N\d+ ENDWHILE)",
+        r"WHILE[^\n]*\nN\d+ G4[^\n]*\nN\d+ ENDWHILE\n",
+        r"CLEAN\n",
+    )
+)
 SIEMENS: dict[str, tuple[str, Change]] = {
     "a point moved": (_AXIS, moved(0.05)),
     "a digit changed": (_AXIS, digit),
@@ -265,7 +297,12 @@ SIEMENS: dict[str, tuple[str, Change]] = {
 # what is said again before the next move, in another file at the latest, is not in use
 _USED = r"(?:\n(?!o<|G61|G64)[^\n]*)*?\n(?:G9[34] )?G1 "
 _LINUX_MOVE = r"^(?:G9[34] )?G1 [^\n]*\n"
-_PIN, _G4, _M66, _SUB = r"^M6[45] P0\n", r"^G4 P[.\d]+\n", r"^M66 P\d+ L3[^\n]*\n", r"^o<clean> call\n"
+_PIN, _G4, _M66, _SUB = (
+    r"^M6[45] P0\n",
+    r"^G4 P[.\d]+\n",
+    r"^M66 P\d+ L3[^\n]*\n",
+    r"^o<clean> call\n",
+)
 LINUXCNC: dict[str, tuple[str, Change]] = {
     "a point moved": (_AXIS, moved(0.05)),
     "a digit changed": (_AXIS, digit),
@@ -287,7 +324,10 @@ LINUXCNC: dict[str, tuple[str, Change]] = {
     "another output": (r"^M6[45] P(0)", one_more),
     "an output doubled": (_PIN, TWICE),
     "two moves swapped": (rf"({_LINUX_MOVE})({_LINUX_MOVE})", SWAP),
-    "a move and an output swapped": (rf"({_LINUX_MOVE})((?:M428\nG54\n)?G64[^\n]*\n{_PIN[1:]})", SWAP),
+    "a move and an output swapped": (
+        rf"({_LINUX_MOVE})((?:M428\nG54\n)?G64[^\n]*\n{_PIN[1:]})",
+        SWAP,
+    ),
     "an output and a wait swapped": (rf"({_PIN})({_G4})", SWAP),
     "a move dropped": (_LINUX_MOVE, DROP),
     "a move doubled": (_LINUX_MOVE, TWICE),
@@ -320,12 +360,24 @@ _POINT = rf"(?<=<Value )key=\"\d+\" (?:j1|x)[^\n]*?{_PLACE}(?=[^\n]*(?:fStation|
 _POINTS = r"(?<=<Value )(key=\"\d+\" )((?:j1|x)[^\n]*)(\n *<Value key=\"\d+\" )((?:j1|x)[^\n]*)"
 _LOOP_OF = r"^  for [^\n]*\n[^\n]*\n  endFor\n  waitEndMove\(\)\n"
 _DEPOSIT, _DELAY, _READY, _GONE = (
-    rf"^  {word}\n" for word in (r"doDeposit=(?:true|false)", r"delay\([.\d]+\)", r"wait\(diInput\d+==true\)",
-                                r"call clean:start\(\)"))
+    rf"^  {word}\n"
+    for word in (
+        r"doDeposit=(?:true|false)",
+        r"delay\([.\d]+\)",
+        r"wait\(diInput\d+==true\)",
+        r"call clean:start\(\)",
+    )
+)
 STAUBLI: dict[str, tuple[str, Change]] = {
     "a point moved": (rf"key=\"\d+\" j1[^\n]*?{_PLACE}", moved(0.05)),
-    "a position moved": (r"key=\"\d+\" x=\"(-?\d+\.\d+)\"[^\n]*(?=fStation|tCarried\[)", moved(0.05)),
-    "an angle of a position moved": (r"ry=\"(-?\d+\.\d+)\"(?=[^\n]*(?:fStation|tCarried\[))", moved(0.05)),
+    "a position moved": (
+        r"key=\"\d+\" x=\"(-?\d+\.\d+)\"[^\n]*(?=fStation|tCarried\[)",
+        moved(0.05),
+    ),
+    "an angle of a position moved": (
+        r"ry=\"(-?\d+\.\d+)\"(?=[^\n]*(?:fStation|tCarried\[))",
+        moved(0.05),
+    ),
     "a digit changed": (r" j[1-6]=\"(-?\d+\.\d+)\"", digit),
     "a sign changed": (r" j[1-6]=\"(-?\d+\.\d+)\"", negated),
     "a turn more": (r" j[1-6]=\"(-?\d+\.\d+)\"", moved(360.0)),
@@ -335,15 +387,25 @@ STAUBLI: dict[str, tuple[str, Change]] = {
     "a loop ends later": (r"^  for l_nI=\d+ to (\d+)", one_more),
     "another point named": (r"\[(\d+)\],(?:tCarried|mPath)", one_more),
     "another speed named": (r"mPath\[(\d+)\]", one_more),
-    "a blend added": (r"blend=\"off\" leave=\"0.000\" reach=\"0.000\"", 'blend="joint" leave="5.000" reach="5.000"'),
-    "a stop added": (r"blend=\"(?:joint|Cartesian)\" leave=\"[.\d]+\" reach=\"[.\d]+\"",
-                     'blend="off" leave="0.000" reach="0.000"'),
-    "a blend changed": (r"blend=\"(joint|Cartesian)\" leave=\"[.\d]+\" reach=\"[.\d]+\"",
-                        r'blend="\1" leave="7.000" reach="7.000"'),
+    "a blend added": (
+        r"blend=\"off\" leave=\"0.000\" reach=\"0.000\"",
+        'blend="joint" leave="5.000" reach="5.000"',
+    ),
+    "a stop added": (
+        r"blend=\"(?:joint|Cartesian)\" leave=\"[.\d]+\" reach=\"[.\d]+\"",
+        'blend="off" leave="0.000" reach="0.000"',
+    ),
+    "a blend changed": (
+        r"blend=\"(joint|Cartesian)\" leave=\"[.\d]+\" reach=\"[.\d]+\"",
+        r'blend="\1" leave="7.000" reach="7.000"',
+    ),
     "a blend that leaves earlier": (r"leave=\"((?!0\.000)[.\d]+)\"", scaled(1.5)),
     "another acceleration": (r"accel=\"(100)\"", other("150", "50")),
     "another deceleration": (r"decel=\"(100)\"", other("150", "50")),
-    "a limit of speed": (r"(?<=vel=\")[^\"]*(\" decel=\"100\") tmax=\"99999\"", r'50.00000\1 tmax="10"'),
+    "a limit of speed": (
+        r"(?<=vel=\")[^\"]*(\" decel=\"100\") tmax=\"99999\"",
+        r'50.00000\1 tmax="10"',
+    ),
     "a move's kind changed": (r"^ *move([jl])\(", other("j", "l")),
     "an output dropped": (_DEPOSIT, DROP),
     "an output switched the other way": (r"doDeposit=(true|false)", other("true", "false")),
@@ -378,10 +440,19 @@ STAUBLI: dict[str, tuple[str, Change]] = {
 _UR_N = r"-?\d+\.\d{7}"
 _UR_JOINT = rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\)?, a=1\.4)"
 _UR_PLACE, _UR_ANGLE = (
-    rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{{some}}}\]\), (?:a=1\.2|\[))" for some in ("3,5", "0,2"))
+    rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{{some}}}\]\), (?:a=1\.2|\[))"
+    for some in ("3,5", "0,2")
+)
 _UR_MOVE, _UR_OUT, _UR_SLEEP, _UR_WHILE, _UR_CALL = (
-    rf"^ +{line}\n" for line in (r"move[jp]\([^\n]*", r"set_standard_digital_out\([^\n]*", r"sleep\((?!0\.010)[.\d]+\)",
-                                r"while [^\n]*\n +sleep\(0\.010\)\n +end", r"clean\(\)"))
+    rf"^ +{line}\n"
+    for line in (
+        r"move[jp]\([^\n]*",
+        r"set_standard_digital_out\([^\n]*",
+        r"sleep\((?!0\.010)[.\d]+\)",
+        r"while [^\n]*\n +sleep\(0\.010\)\n +end",
+        r"clean\(\)",
+    )
+)
 _UR_BLEND = r"r=(0\.\d*[1-9]\d*)\)$"
 UR: dict[str, tuple[str, Change]] = {
     "a point moved": (_UR_JOINT, moved(0.001)),
@@ -391,7 +462,10 @@ UR: dict[str, tuple[str, Change]] = {
     "a sign changed": (_UR_JOINT, negated),
     "a turn more": (_UR_JOINT, moved(6.2831853)),
     "two points exchanged": (r"(movej\(\[)([^\]]*)(\][^\n]*\n +movej\(\[)([^\]]*)", r"\1\4\3\2"),
-    "two positions exchanged": (r"(movep\([^\[]*\[)([^\]]*)(\][^\n]*\n +movep\([^\[]*\[)([^\]]*)", r"\1\4\3\2"),
+    "two positions exchanged": (
+        r"(movep\([^\[]*\[)([^\]]*)(\][^\n]*\n +movep\([^\[]*\[)([^\]]*)",
+        r"\1\4\3\2",
+    ),
     "a blend added": (r"r=0\.000000(?=\)$)", "r=0.005000"),
     "a stop added": (_UR_BLEND, "r=0.000000)"),
     "a blend changed": (_UR_BLEND, scaled(1.5)),
@@ -440,8 +514,16 @@ UR: dict[str, tuple[str, Change]] = {
 }
 
 _YA_MOVE, _YA_OUT, _YA_TIMER, _YA_IN, _YA_CALL, _YA_PART = (
-    rf"^{line}\r\n" for line in (r"MOV[JL] [^\r]*", r"DOUT [^\r]*", r"TIMER T=[.\d]+", r"WAIT IN#[^\r]*", "CALL JOB:CLEAN",
-                               r"CALL JOB:JOB\d+"))
+    rf"^{line}\r\n"
+    for line in (
+        r"MOV[JL] [^\r]*",
+        r"DOUT [^\r]*",
+        r"TIMER T=[.\d]+",
+        r"WAIT IN#[^\r]*",
+        "CALL JOB:CLEAN",
+        r"CALL JOB:JOB\d+",
+    )
+)
 
 
 def next_position(match: re.Match, rng: np.random.Generator) -> str:
@@ -514,7 +596,9 @@ YASKAWA: dict[str, tuple[str, Change]] = {
 # ABB
 _MOVE_ABB = r"^    Move(?:AbsJ|L) [^\n]*\n"
 _SETDO, _WAITTIME, _WAITDI, _CLEAN_ABB = (
-    rf"^    {word}\n" for word in (r"SetDO do\d+,[01];\r", r"WaitTime [.\d]+;\r", r"WaitDI di\d+,1;\r", r"clean;\r"))
+    rf"^    {word}\n"
+    for word in (r"SetDO do\d+,[01];\r", r"WaitTime [.\d]+;\r", r"WaitDI di\d+,1;\r", r"clean;\r")
+)
 _AXIS_ABB = rf"^    MoveAbsJ \[\[(?:{NUMBER},){{0,5}}?({NUMBER})"
 _PLACE_ABB = rf"^    MoveL \[\[(?:{NUMBER},){{0,2}}?({NUMBER})"
 _TURN_ABB = rf"^    MoveL \[\[[^]]*\],\[(?:{NUMBER},){{0,3}}?({NUMBER})"
@@ -524,7 +608,10 @@ _PART_ABB = r"    Load [^\n]*\n    %[^\n]*\n    UnLoad [^\n]*\n"
 ABB: dict[str, tuple[str, Change]] = {
     "a point moved": (_AXIS_ABB, moved(0.05)),
     "a position moved": (_PLACE_ABB, moved(0.05)),
-    "an orientation turned": (r"^    MoveL \[\[[^]]*\],\[(\S+?),(\S+?),", r"    MoveL [[0.000,0.000,0.000],[\2,\1,"),
+    "an orientation turned": (
+        r"^    MoveL \[\[[^]]*\],\[(\S+?),(\S+?),",
+        r"    MoveL [[0.000,0.000,0.000],[\2,\1,",
+    ),
     "a number of an orientation": (_TURN_ABB, moved(0.001)),
     "a digit changed": (_AXIS_ABB, digit),
     "a sign changed": (_AXIS_ABB, negated),
@@ -532,7 +619,10 @@ ABB: dict[str, tuple[str, Change]] = {
     "two points exchanged": (rf"({_MOVE_ABB})({_MOVE_ABB})", SWAP),
     "a blend added": (r"(?<=,)fine(?=,)", "z_am1"),
     "a stop added": (r"(?<=,)z_am\d+(?=,t_am)", "fine"),
-    "a blend changed": (r"(z_am\d+:=\[FALSE,)[.\d]+,[.\d]+,[.\d]+,([.\d]+),[.\d]+,", r"\g<1>1.000,1.000,1.000,\2,1.000,"),
+    "a blend changed": (
+        r"(z_am\d+:=\[FALSE,)[.\d]+,[.\d]+,[.\d]+,([.\d]+),[.\d]+,",
+        r"\g<1>1.000,1.000,1.000,\2,1.000,",
+    ),
     "a blend of another kind": (r"(z_am\d+:=\[FALSE,[.\d]+,)[.\d]+", r"\g<1>25.000"),
     "a blend that stops": (r"(z_am\d+:=\[)FALSE", r"\1TRUE"),
     "another zone": (r"(?<=,)z_am(\d+)(?=,t_am)", lambda match, rng: f"z{match[1]}"),
@@ -549,7 +639,10 @@ ABB: dict[str, tuple[str, Change]] = {
     "another unit altogether": (r"STN1(\"[\s\S]*ActUnit )STN1", r"STN2\1STN2"),
     "a unit that is not active": (r"^    ActUnit STN1;\r\n", DROP),
     "a frame of the user on a unit": (r"(?<=\"STN1\",)\[\[0,0,0\]", "[[0,0,5]"),
-    "a work object on a unit moved": (rf"STN1\",\[\[0,0,0\],\[1,0,0,0\]\],\[\[({NUMBER}){_IN_USE}", moved(0.5)),
+    "a work object on a unit moved": (
+        rf"STN1\",\[\[0,0,0\],\[1,0,0,0\]\],\[\[({NUMBER}){_IN_USE}",
+        moved(0.5),
+    ),
     "a work object that no unit moves": (r"FALSE,\"STN1\"", 'TRUE,""'),
     "a configuration": (r"\[0,0,0,0\]", "[-1,0,0,1]"),
     "an offset of axes": (r"\\NoEOffs", ""),
@@ -582,10 +675,19 @@ ABB: dict[str, tuple[str, Change]] = {
     "a wait and a call swapped": (rf"({_WAITTIME})({_WAITDI})({_CLEAN_ABB})", r"\3\2\1"),
     "another tool": (rf"tooldata t_am:=\[\w+,\[\[({NUMBER}){_IN_USE}", moved(0.5)),
     "another work object": (rf"wobjdata w_am:=\[\w+,TRUE,\"\",\[\[({NUMBER}){_IN_USE}", moved(0.5)),
-    "a work object moved": (r"\[\[0,0,0\],\[1,0,0,0\]\](?=\];\r\n[\s\S]*MoveL )", "[[0,0,1],[1,0,0,0]]"),
-    "a tool turned": (rf"(tooldata t_am:=\[\w+,\[\[[^]]*\],\[){NUMBER},{NUMBER}{_IN_USE}", r"\g<1>0.0000000,0.0000000"),
+    "a work object moved": (
+        r"\[\[0,0,0\],\[1,0,0,0\]\](?=\];\r\n[\s\S]*MoveL )",
+        "[[0,0,1],[1,0,0,0]]",
+    ),
+    "a tool turned": (
+        rf"(tooldata t_am:=\[\w+,\[\[[^]]*\],\[){NUMBER},{NUMBER}{_IN_USE}",
+        r"\g<1>0.0000000,0.0000000",
+    ),
     "a tool that is held otherwise": (r"tooldata t_am:=\[(TRUE|FALSE)", other("TRUE", "FALSE")),
-    "a work object that is held otherwise": (r"wobjdata w_am:=\[(TRUE|FALSE)", other("TRUE", "FALSE")),
+    "a work object that is held otherwise": (
+        r"wobjdata w_am:=\[(TRUE|FALSE)",
+        other("TRUE", "FALSE"),
+    ),
     "a work object that a unit moves": (r"(?<=,)TRUE,\"\"", 'FALSE,"STN1"'),
     "another tool named": (r",(t_am)\\WObj", other("tool0")),
     "another work object named": (r"WObj:=(w_am);", other("wobj0")),
@@ -602,7 +704,9 @@ ABB: dict[str, tuple[str, Change]] = {
 # KUKA
 _K_MOVE = r"^(?:PTP|LIN) [^\n]*\n"
 _K_OUT, _K_SEC, _K_IN, _K_CLEAN = (
-    rf"^{line}\r\n" for line in (r"\$OUT\[\d+\]=\w+", r"WAIT SEC \d+\.\d+", r"WAIT FOR [^\r]*", r"clean\(\)"))
+    rf"^{line}\r\n"
+    for line in (r"\$OUT\[\d+\]=\w+", r"WAIT SEC \d+\.\d+", r"WAIT FOR [^\r]*", r"clean\(\)")
+)
 _K_AXIS = rf"(?<=A\d )({NUMBER})"
 _K_BESIDE = rf"(?<=E\d )({NUMBER})"
 _K_PLACE, _K_ANGLE = (rf"(?<=[{letters}] )({NUMBER})(?=[^\n]*\}})" for letters in ("XYZ", "ABC"))
@@ -631,7 +735,10 @@ KUKA: dict[str, tuple[str, Change]] = {
     "another axis called the track": (r"^; E(\d) is the track", one_more),
     "no axis called the track": (r"^; E\d is the track[^\n]*\n", DROP),
     "another mechanism": (r"^\$BASE[^\n]*MACHINE_DEF\[(2)\]", one_more),
-    "another mechanism altogether": (r"MACHINE_DEF\[2\]([^\n]*)MACHINE_DEF\[2\]", r"MACHINE_DEF[3]\1MACHINE_DEF[3]"),
+    "another mechanism altogether": (
+        r"MACHINE_DEF\[2\]([^\n]*)MACHINE_DEF\[2\]",
+        r"MACHINE_DEF[3]\1MACHINE_DEF[3]",
+    ),
     "another base of the mechanism": (r"MECH_TYPE,BASE_DATA\[(1)\]", one_more),
     "no mechanism": (r"^\$BASE=EK[^\n]*\n", DROP),
     "a mechanism that is let go": (r"^(\$BASE=EK[^\n]*\n)", r"\1BAS(#BASE,1)\r\n"),
@@ -641,7 +748,10 @@ KUKA: dict[str, tuple[str, Change]] = {
     "an output switched the other way": (r"^\$OUT\[1\]=(TRUE|FALSE)", other("TRUE", "FALSE")),
     "another output": (r"^\$OUT\[(1)", one_more),
     "an output doubled": (_K_OUT, TWICE),
-    "a move and an output swapped": (rf"({_K_OUT})((?:WAIT[^\n]*\n|\$[AV][^\n]*\n|BAS[^\n]*\n)*{_K_MOVE[1:]})", SWAP),
+    "a move and an output swapped": (
+        rf"({_K_OUT})((?:WAIT[^\n]*\n|\$[AV][^\n]*\n|BAS[^\n]*\n)*{_K_MOVE[1:]})",
+        SWAP,
+    ),
     "an output and a wait swapped": (rf"({_K_OUT})({_K_SEC})", SWAP),
     "a standstill dropped": (r"^WAIT SEC 0\r\n(?=\$OUT)", DROP),
     "a move dropped": (_K_MOVE, DROP),
@@ -674,7 +784,13 @@ KUKA: dict[str, tuple[str, Change]] = {
 }
 
 KINDS = {
-    "fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC, "ur": UR, "abb": ABB, "yaskawa": YASKAWA,
+    "fanuc": FANUC,
+    "staubli": STAUBLI,
+    "siemens": SIEMENS,
+    "linuxcnc": LINUXCNC,
+    "ur": UR,
+    "abb": ABB,
+    "yaskawa": YASKAWA,
     "kuka": KUKA,
 }
 
@@ -685,49 +801,79 @@ _TOLD = r"(?=[^\n]*(?:fStation|tCarried\[))"
 _WAIT_NC, _FEED = r"^{}([.\d]+)\n(?!N\d+ ENDWHILE)", r"G1 [^\n]* F(\d+\.\d+)$"
 SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
     "fanuc": {
-        "axis of a group": (_GROUPED, 1), "track": (r"\tE1=( *-?\d*\.\d{3})", 1), "joint": (r"J[1-6]=( *-?\d*\.\d{3})", 1),
+        "axis of a group": (_GROUPED, 1),
+        "track": (r"\tE1=( *-?\d*\.\d{3})", 1),
+        "joint": (r"J[1-6]=( *-?\d*\.\d{3})", 1),
         "position": (r"[XYZ] =( *-?\d*\.\d{3})", 2),
-        "angle": (r"[WPR] =( *-?\d*\.\d{3})", 4), "milliseconds": (r"(\d+)msec", 3),
+        "angle": (r"[WPR] =( *-?\d*\.\d{3})", 4),
+        "milliseconds": (r"(\d+)msec", 3),
         "wait": (r"WAIT +([.\d]+)\(sec\)", 1),
     },
     "staubli": {
-        "joint": (r" j[1-6]=\"(-?\d+\.\d+)\"", 1), "position": (rf" [xyz]=\"(-?\d+\.\d+)\"{_TOLD}", 4),
+        "joint": (r" j[1-6]=\"(-?\d+\.\d+)\"", 1),
+        "position": (rf" [xyz]=\"(-?\d+\.\d+)\"{_TOLD}", 4),
         "angle": (rf" r[xyz]=\"(-?\d+\.\d+)\"{_TOLD}", 8),
         "frame": (r" (?:x|y|z|rx|ry|rz)=\"(-?\d+\.\d+)\"(?=[^\n]*world)", 6),
-        "speed": (r"tmax=\"((?!99999)[.\d]+)\"", 1), "share": (r"vel=\"(\d+\.\d+)\"", 50),
-        "blend": (r"leave=\"((?!0\.000)[.\d]+)\"", 1), "wait": (r"delay\(([.\d]+)\)", 1),
+        "speed": (r"tmax=\"((?!99999)[.\d]+)\"", 1),
+        "share": (r"vel=\"(\d+\.\d+)\"", 50),
+        "blend": (r"leave=\"((?!0\.000)[.\d]+)\"", 1),
+        "wait": (r"delay\(([.\d]+)\)", 1),
     },
     "kuka": {
-        "joint": (_K_AXIS, 1), "external axis": (_K_BESIDE, 1), "position": (_K_PLACE, 2),
-        "angle": (_K_ANGLE, 4), "speed": (r"CP=([.\d]+)", 1),
-        "blend": (r"CDIS=([.\d]+)", 2), "wait": (r"WAIT SEC (\d+\.\d+)", 1),
+        "joint": (_K_AXIS, 1),
+        "external axis": (_K_BESIDE, 1),
+        "position": (_K_PLACE, 2),
+        "angle": (_K_ANGLE, 4),
+        "speed": (r"CP=([.\d]+)", 1),
+        "blend": (r"CDIS=([.\d]+)", 2),
+        "wait": (r"WAIT SEC (\d+\.\d+)", 1),
     },
     "abb": {
-        "external axis": (_BESIDE_ABB, 1), "joint": (_AXIS_ABB, 1), "position": (_PLACE_ABB, 4),
-        "orientation": (_TURN_ABB, 16), "time": (r"\\T:=([.\d]+)", 1),
-        "frame": (rf"(?:data t_am:=\[\w+|w_am:=\[\w+,TRUE,\"\"),\[\[({NUMBER}){_IN_USE}", 6), "speed": (r"\\V:=([.\d]+)", 1),
-        "wait": (r"WaitTime ([.\d]+)", 1), "blend": (r"z_am\d+:=\[FALSE,([.\d]+)", 1),
+        "external axis": (_BESIDE_ABB, 1),
+        "joint": (_AXIS_ABB, 1),
+        "position": (_PLACE_ABB, 4),
+        "orientation": (_TURN_ABB, 16),
+        "time": (r"\\T:=([.\d]+)", 1),
+        "frame": (rf"(?:data t_am:=\[\w+|w_am:=\[\w+,TRUE,\"\"),\[\[({NUMBER}){_IN_USE}", 6),
+        "speed": (r"\\V:=([.\d]+)", 1),
+        "wait": (r"WaitTime ([.\d]+)", 1),
+        "blend": (r"z_am\d+:=\[FALSE,([.\d]+)", 1),
     },
     "siemens": {
-        "rotary axis": (r" [ABC]=?(?:DC\()?(-?\d+\.\d+)", 1), "position": (r" [XYZ](-?\d+\.\d+)", 2),
+        "rotary axis": (r" [ABC]=?(?:DC\()?(-?\d+\.\d+)", 1),
+        "position": (r" [XYZ](-?\d+\.\d+)", 2),
         # of a number that is nearly all of the direction the last digits are its length
-        "direction": (r" [ABC]3=(-?0\.[0-5]\d+)", 2), "feed": (_FEED, 1), "wait": (_WAIT_NC.format(r"N\d+ G4 F"), 1),
+        "direction": (r" [ABC]3=(-?0\.[0-5]\d+)", 2),
+        "feed": (_FEED, 1),
+        "wait": (_WAIT_NC.format(r"N\d+ G4 F"), 1),
     },
     "linuxcnc": {
-        "rotary axis": (r" [ABC](-?\d+\.\d+)", 1), "position": (r" [XYZ](-?\d+\.\d+)", 2), "feed": (_FEED, 1),
-        "wait": (_WAIT_NC.format("G4 P"), 1), "blend": (r"^G64 P([.\d]+) Q", 1),
+        "rotary axis": (r" [ABC](-?\d+\.\d+)", 1),
+        "position": (r" [XYZ](-?\d+\.\d+)", 2),
+        "feed": (_FEED, 1),
+        "wait": (_WAIT_NC.format("G4 P"), 1),
+        "blend": (r"^G64 P([.\d]+) Q", 1),
     },
     "ur": {
-        "joint": (_UR_JOINT, 1), "position": (_UR_PLACE, 5), "angle": (_UR_ANGLE, 10),
-        "frame": (rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\n)", 10), "time": (r"t=(\d+\.\d+)", 3),
-        "speed": (r"v=(0\.00\d+)", 1), "blend": (_UR_BLEND, 3), "wait": (r"sleep\(((?!0\.010)[.\d]+)\)", 1),
+        "joint": (_UR_JOINT, 1),
+        "position": (_UR_PLACE, 5),
+        "angle": (_UR_ANGLE, 10),
+        "frame": (rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\n)", 10),
+        "time": (r"t=(\d+\.\d+)", 3),
+        "speed": (r"v=(0\.00\d+)", 1),
+        "blend": (_UR_BLEND, 3),
+        "wait": (r"sleep\(((?!0\.010)[.\d]+)\)", 1),
     },
     "yaskawa": {
-        "track": (r"^BC\d{5}=(-?\d+)", 1), "first axis": (r"^C\d{5}=(-?\d+)", 1),
+        "track": (r"^BC\d{5}=(-?\d+)", 1),
+        "first axis": (r"^C\d{5}=(-?\d+)", 1),
         "last axis": (r"^C\d{5}=[^\r]*,(-?\d+)(?=\r)", 1),
-        "share": (r"VJ=(\d+\.\d\d)", 4), "speed": (r"V=(\d+\.\d)", 1), "wait": (r"TIMER T=([.\d]+)", 1),
+        "share": (r"VJ=(\d+\.\d\d)", 4),
+        "speed": (r"V=(\d+\.\d)", 1),
+        "wait": (r"TIMER T=([.\d]+)", 1),
     },
 }
+
 
 def stepped(steps: int) -> Change:
     """The number of the first group off by so many steps of its last digit."""

@@ -44,7 +44,9 @@ def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=Fal
     rng, speeds = np.random.default_rng(seed), np.random.default_rng([seed, 1])
     kinds = tuple("linear" if name in "XYZ" else "rotary" for name in names)
     linear = np.array([kind == "linear" for kind in kinds])
-    at = np.where(linear, rng.uniform(-200.0, 200.0, len(names)), rng.uniform(-2.0, 2.0, len(names)))
+    at = np.where(
+        linear, rng.uniform(-200.0, 200.0, len(names)), rng.uniform(-2.0, 2.0, len(names))
+    )
     last = np.zeros(len(names), bool)
     last[-1] = continuous
     blocks = []
@@ -60,7 +62,9 @@ def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=Fal
         joints = at + np.cumsum(steps, axis=0)
         joints[(rng.random(joints.shape) < 0.05) & ~last] *= 1e-5  # small values, of both signs
         at = joints[-1]
-        duration = rng.choice([0.0011, 0.05, 0.3, 4.0, 40.0, 3000.0], count) * rng.uniform(1.0, 1.05, count)
+        duration = rng.choice([0.0011, 0.05, 0.3, 4.0, 40.0, 3000.0], count) * rng.uniform(
+            1.0, 1.05, count
+        )
         extra = {}
         if motion == "cartesian":
             direction = rng.normal(size=(count, 3))
@@ -82,7 +86,9 @@ def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=Fal
                 blocks[-1] = dataclasses.replace(blocks[-1], wire=feeds)
                 blocks[-2] = dataclasses.replace(blocks[-2], wire=float(feeds[0]))
             blocks.append(DepositOff(float(rng.choice([0.0, 1.25]))))
-        blocks += [Wait(float(rng.choice([0.0, 12.5, 700.0]))), WaitInput(3), Call("clean")][: int(rng.integers(0, 4))]
+        blocks += [Wait(float(rng.choice([0.0, 12.5, 700.0]))), WaitInput(3), Call("clean")][
+            : int(rng.integers(0, 4))
+        ]
         blocks += [WaitBelow(4, 0.125 * (seed + 1), layer, 0)] * (layer % 2)
     blocks.append(some("rapid", layer, bead, 1))
     options = {
@@ -91,7 +97,12 @@ def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=Fal
         "remarks": ('A remark; longer than a line of most controllers ought to be: Größe "1" (in brackets), msg, and more',),
     } | options  # fmt: skip
     return program(
-        *blocks, name="Random", motion=motion, continuous=tuple(last.tolist()), axis_names=tuple(names), axis_kinds=kinds,
+        *blocks,
+        name="Random",
+        motion=motion,
+        continuous=tuple(last.tolist()),
+        axis_names=tuple(names),
+        axis_kinds=kinds,
         **options,
     )
 

@@ -30,7 +30,10 @@ AT_ENDS = ((4.0, 5.0, 2.5, 11.0), (0.0, 0.0, 3.0, 4.0), ())
 # of which the hub is told to the planner; the beads' first layer lies on the larger one
 STEEP, FLAT, SKIN = Developable(60.0, 270.0), Developable(60.0, 60.0), 2.0
 PROCESS = ProcessParameters(
-    travel_speed=SPEED, bead_width=WIDTH, lead_on=0.5, lead_off=0.25,
+    travel_speed=SPEED,
+    bead_width=WIDTH,
+    lead_on=0.5,
+    lead_off=0.25,
     between_layers=BetweenLayersParameters(wait=2.5, input=3, call="clean", lift=LIFT),
 )
 
@@ -184,7 +187,9 @@ def _spanning():
     seen, names = set(), []
     for post, motion, feed, setup in reversed(WAYS):
         kind = setup.removeprefix(f"{post} ")
-        new = {(post, motion, feed), kind} | ({(post, "external")} if "track" in kind or "positioner" in kind else set())
+        new = {(post, motion, feed), kind} | (
+            {(post, "external")} if "track" in kind or "positioner" in kind else set()
+        )
         if not new <= seen:
             names.append(" ".join((post, motion, feed, setup)))
         seen |= new
@@ -203,7 +208,15 @@ def _bead(hub, side, layer):
     points = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
     up = skin.normals(points)
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    return Bead(points, up, up, 2.0 * math.pi * length / length[-1], np.full(len(points), SPEED), False, ends=AT_ENDS[side])
+    return Bead(
+        points,
+        up,
+        up,
+        2.0 * math.pi * length / length[-1],
+        np.full(len(points), SPEED),
+        False,
+        ends=AT_ENDS[side],
+    )
 
 
 def wanted_speeds(side, along):
@@ -220,13 +233,21 @@ def body(setup):
     angle = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
     rings = [
         np.stack([radius * np.cos(angle), radius * np.sin(angle), np.full(48, z)], axis=1)
-        for radius, z in ((setup.hub.radius, 0.0), (setup.hub.radius * (1.0 - setup.top / setup.hub.height), setup.top))
+        for radius, z in (
+            (setup.hub.radius, 0.0),
+            (setup.hub.radius * (1.0 - setup.top / setup.hub.height), setup.top),
+        )
     ]
     vertices = np.vstack([*rings, [[0.0, 0.0, 0.0], [0.0, 0.0, setup.top]]])
     low = np.arange(48)
     next_low, high, next_high = np.roll(low, -1), low + 48, np.roll(low, -1) + 48
     middle, top = np.full(48, 96), np.full(48, 97)
-    sides = [(low, next_low, next_high), (low, next_high, high), (middle, next_low, low), (top, high, next_high)]
+    sides = [
+        (low, next_low, next_high),
+        (low, next_high, high),
+        (middle, next_low, low),
+        (top, high, next_high),
+    ]
     return Body("hub", vertices, np.concatenate([np.stack(corners, axis=1) for corners in sides]))
 
 
@@ -236,19 +257,40 @@ def planned(name, lift=LIFT, retreat=0.0, ramps=()):
     before: the straight way back to the next start leads through what was just laid."""
     setup = SETUPS[name]
     cell = cells.resolve(setup.cell, np.eye(4), "developable")
-    if name.startswith("yaskawa"):  # what only a user's machine file tells; of no robot that there is
-        cell = dataclasses.replace(cell, machine=dataclasses.replace(
-            cell.machine, pulses_per_degree=PULSES[: cell.machine.chain.axes], speed_unit="mm/s"))
+    if name.startswith(
+        "yaskawa"
+    ):  # what only a user's machine file tells; of no robot that there is
+        cell = dataclasses.replace(
+            cell,
+            machine=dataclasses.replace(
+                cell.machine, pulses_per_degree=PULSES[: cell.machine.chain.axes], speed_unit="mm/s"
+            ),
+        )
     sides = range(SIDES if lift else 1)
     beads = [[_bead(setup.hub, side, k) for side in sides] for k in range(2)]
-    layers = tuple(Layer(tuple(
-        dataclasses.replace(bead, ends=(*bead.ends, *ramps) if bead.ends else ()) for bead in some)) for some in beads)
+    layers = tuple(
+        Layer(
+            tuple(
+                dataclasses.replace(bead, ends=(*bead.ends, *ramps) if bead.ends else ())
+                for bead in some
+            )
+        )
+        for some in beads
+    )
     toolpath = Toolpath(
-        layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable", max_from_vertical=setup.most, retreat=retreat,
+        layers,
+        np.eye(4),
+        HEIGHT,
+        CHORD_ERROR,
+        family="developable",
+        max_from_vertical=setup.most,
+        retreat=retreat,
     )
     path = plan_joints(toolpath, cell, JointParameters(degree=1))
     assert path.feasible, [issue.message for issue in path.issues]
-    process = dataclasses.replace(PROCESS, between_layers=dataclasses.replace(PROCESS.between_layers, lift=lift))
+    process = dataclasses.replace(
+        PROCESS, between_layers=dataclasses.replace(PROCESS.between_layers, lift=lift)
+    )
     motion, issues = assemble(path, cell, process, [body(setup)], layer_height=HEIGHT)
     assert not has_errors(issues), [issue.message for issue in issues]
     return cell, [bead.bead for bead in path.beads], motion
@@ -261,6 +303,8 @@ def written(way, max_points=2000, lift=LIFT, retreat=0.0, ramps=()):
     cell, beads, motion = planned(name, lift, retreat, ramps)
     if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
         motion = moving_tool.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
-    parameters = ProgramParameters(post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed))
+    parameters = ProgramParameters(
+        post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed)
+    )
     program = build(motion, cell, PROCESS, parameters, "job")
     return cell, motion, program, catalogue.load(post).write(program)

@@ -12,19 +12,35 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitBelow, WaitInput
+from freecad_am.core.program import (
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
 from freecad_am.posts import catalogue
 from freecad_am.posts.abb import post as abb
 from tests.posts.fanuc_programs import with_tool
 
-VARIANTS = [("joint", "part-on-robot"), ("cartesian", "part-on-robot"), ("cartesian", "tool-on-robot")]
+VARIANTS = [
+    ("joint", "part-on-robot"),
+    ("cartesian", "part-on-robot"),
+    ("cartesian", "tool-on-robot"),
+]
 NO_AXES = [9e9] * 6
 
 
 def moves(kind, degrees, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
     degrees = np.atleast_2d(np.asarray(degrees, float))
     duration = np.broadcast_to(np.asarray(duration, float), len(degrees)).copy()
-    return Moves(kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), speed), **extra)
+    return Moves(
+        kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), speed), **extra
+    )
 
 
 def program(*blocks, name="part", **options):
@@ -61,8 +77,15 @@ def values(line):
 
 def declared(files, name, kind):
     """The values that a module declares of a type, by name."""
-    found = re.findall(rf"^  LOCAL (?:PERS|CONST) {kind} (\w+):=(.*);\r$", files[name].decode("ascii"), re.MULTILINE)
-    return {word: json.loads(value.replace("TRUE", "true").replace("FALSE", "false")) for word, value in found}
+    found = re.findall(
+        rf"^  LOCAL (?:PERS|CONST) {kind} (\w+):=(.*);\r$",
+        files[name].decode("ascii"),
+        re.MULTILINE,
+    )
+    return {
+        word: json.loads(value.replace("TRUE", "true").replace("FALSE", "false"))
+        for word, value in found
+    }
 
 
 def refusal(of, *, code, where=None):
@@ -77,15 +100,31 @@ def assert_modules(files):
     for file, content in files.items():
         text = content.decode("ascii")
         assert text.count("\n") == text.count("\r\n") and text.endswith("ENDMODULE\r\n")
-        assert text.startswith(f"MODULE {file.removesuffix('.mod')}\r\n") and text.count("PROC ") == 1
-        tools, objects, speeds, zones = (declared(files, file, f"{kind}data") for kind in ("tool", "wobj", "speed", "zone"))
-        for (on_robot, (_, turn), load), (held, fixed, unit, (_, seen), inside) in zip(tools.values(), objects.values()):
-            assert on_robot is not held and fixed is (unit == "") and (inside if fixed else seen) == (
-                [[0, 0, 0], [1, 0, 0, 0]] if fixed else [1, 0, 0, 0])
+        assert (
+            text.startswith(f"MODULE {file.removesuffix('.mod')}\r\n") and text.count("PROC ") == 1
+        )
+        tools, objects, speeds, zones = (
+            declared(files, file, f"{kind}data") for kind in ("tool", "wobj", "speed", "zone")
+        )
+        for (on_robot, (_, turn), load), (held, fixed, unit, (_, seen), inside) in zip(
+            tools.values(), objects.values()
+        ):
+            assert (
+                on_robot is not held
+                and fixed is (unit == "")
+                and (inside if fixed else seen)
+                == ([[0, 0, 0], [1, 0, 0, 0]] if fixed else [1, 0, 0, 0])
+            )
             assert (f"ActUnit {unit};" in lines(files, file)) is not fixed
             assert load[0] > 0.0 and [len(load[1]), len(load[2]), len(load)] == [3, 4, 6]
-            assert np.linalg.norm(turn) == pytest.approx(1.0, abs=1e-6) == pytest.approx(np.linalg.norm(seen), abs=1e-6)
-        assert all(len(value) == 4 for value in speeds.values()) and all(len(value) == 7 for value in zones.values())
+            assert (
+                np.linalg.norm(turn)
+                == pytest.approx(1.0, abs=1e-6)
+                == pytest.approx(np.linalg.norm(seen), abs=1e-6)
+            )
+        assert all(len(value) == 4 for value in speeds.values()) and all(
+            len(value) == 7 for value in zones.values()
+        )
         used = set()
         for line in lines(files, file):
             if line.startswith("Move"):
@@ -93,19 +132,36 @@ def assert_modules(files):
                 joint = line.startswith("MoveAbsJ ")
                 on_track = fixed and file == "rail.mod"
                 last = 4 if file.startswith("both") else 3
-                beside_it = [*target[-1][:2], *target[-1][3:], NO_AXES[0]] if on_track else (
-                    target[-1] if fixed else [target[-1][0], *target[-1][last:], *NO_AXES[: last - 1]])
-                assert [len(part) for part in target] == ([6, 6] if joint else [3, 4, 4, 6]) and beside_it == NO_AXES
+                beside_it = (
+                    [*target[-1][:2], *target[-1][3:], NO_AXES[0]]
+                    if on_track
+                    else (
+                        target[-1]
+                        if fixed
+                        else [target[-1][0], *target[-1][last:], *NO_AXES[: last - 1]]
+                    )
+                )
+                assert [len(part) for part in target] == (
+                    [6, 6] if joint else [3, 4, 4, 6]
+                ) and beside_it == NO_AXES
                 assert joint or abs(np.linalg.norm(target[1]) - 1.0) < 1e-6
                 speed, zone, tool, work_object = re.fullmatch(
-                    r".*\],?(?:\\NoEOffs,)?(\w+)\\[TV]:=[\d.]+,(\w+),(\w+)\\WObj:=(\w+);", line).groups()
-                assert speed in speeds and tool in tools and work_object in objects and (zone == "fine" or zone in zones)
+                    r".*\],?(?:\\NoEOffs,)?(\w+)\\[TV]:=[\d.]+,(\w+),(\w+)\\WObj:=(\w+);", line
+                ).groups()
+                assert (
+                    speed in speeds
+                    and tool in tools
+                    and work_object in objects
+                    and (zone == "fine" or zone in zones)
+                )
                 used.add(zone)
             else:
                 assert re.fullmatch(
                     r"!.*|Conf[LJ]\\Off;|SingArea\\Off;|ActUnit \w+;|SetDO do\d+,[01];|WaitTime \d+\.\d{3};|WaitDI di\d+,1;|"
                     r'WaitAI ai\d+,\\LT,-?\d+\.\d+;|Load \\Dynamic,"HOME:/\w+\.mod";|%"\w+_p"%;|UnLoad "HOME:/\w+\.mod";|'
-                    r"[A-Za-z]\w*;", line), line
+                    r"[A-Za-z]\w*;",
+                    line,
+                ), line
         assert used - {"fine"} == set(zones)
 
 
@@ -122,7 +178,11 @@ JOINT = program(
 )  # fmt: skip
 
 TURNED = np.array(
-    [[[1.0, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[-1, 0, 0], [0, 1, 0], [0, 0, -1]]]
+    [
+        [[1.0, 0, 0], [0, 1, 0], [0, 0, 1]],
+        [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
+        [[-1, 0, 0], [0, 1, 0], [0, 0, -1]],
+    ]
 )
 
 
@@ -133,13 +193,23 @@ def straight_bead(layer):
         LayerStart(layer),
         moves("rapid", [at[0], at[0]], layer=layer, position=places[:2], rotation=TURNED[:2]),
         DepositOn(),
-        moves("deposit", at, [0.3, 0.4, 0.5], layer=layer, speed=5.0, position=places, rotation=TURNED,
-              interpolation="linear"),
+        moves(
+            "deposit",
+            at,
+            [0.3, 0.4, 0.5],
+            layer=layer,
+            speed=5.0,
+            position=places,
+            rotation=TURNED,
+            interpolation="linear",
+        ),
         DepositOff(),
     ]
 
 
-HELD = program(*straight_bead(0), *straight_bead(1), name="held", motion="cartesian", max_points=8, blend=50)
+HELD = program(
+    *straight_bead(0), *straight_bead(1), name="held", motion="cartesian", max_points=8, blend=50
+)
 
 
 def beside(of, **more):
@@ -147,12 +217,28 @@ def beside(of, **more):
     count, blocks = 0, []
     for block in of.blocks:
         if isinstance(block, Moves):
-            turned = np.radians(np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25])
-            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
+            turned = np.radians(
+                np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25]
+            )
+            count, block = (
+                count + len(block),
+                dataclasses.replace(block, joints=np.hstack([block.joints, turned])),
+            )
         blocks.append(block)
-    return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "dome", "continuous": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
-        "unit": "STN1", "first_external": 2, "station": (0, 0, 20, 0, 0, 0), **more})
+    return dataclasses.replace(
+        of,
+        blocks=tuple(blocks),
+        **{
+            "name": "dome",
+            "continuous": (False,) * 8,
+            "setup": "tool-on-robot",
+            "external_kinds": ("rotary", "rotary"),
+            "unit": "STN1",
+            "first_external": 2,
+            "station": (0, 0, 20, 0, 0, 0),
+            **more,
+        },
+    )
 
 
 def along(of, **more):
@@ -161,11 +247,25 @@ def along(of, **more):
     for block in of.blocks:
         if isinstance(block, Moves):
             slid = 12.5 * (count + np.arange(len(block)))[:, None] - 900.125
-            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, slid]))
+            count, block = (
+                count + len(block),
+                dataclasses.replace(block, joints=np.hstack([block.joints, slid])),
+            )
         blocks.append(block)
-    return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "rail", "continuous": (False,) * 7, "setup": "tool-on-robot", "external_kinds": ("linear",),
-        "unit": "", "first_external": 3, "station": (1200, 0, 20, 0, 0, 0), **more})
+    return dataclasses.replace(
+        of,
+        blocks=tuple(blocks),
+        **{
+            "name": "rail",
+            "continuous": (False,) * 7,
+            "setup": "tool-on-robot",
+            "external_kinds": ("linear",),
+            "unit": "",
+            "first_external": 3,
+            "station": (1200, 0, 20, 0, 0, 0),
+            **more,
+        },
+    )
 
 
 def both(of, **more):
@@ -175,16 +275,34 @@ def both(of, **more):
     for block in of.blocks:
         if isinstance(block, Moves):
             slid = 12.5 * (count + np.arange(len(block))) - 900.125
-            count, block = count + len(block), dataclasses.replace(block, joints=np.insert(block.joints, 7, slid, axis=1))
+            count, block = (
+                count + len(block),
+                dataclasses.replace(block, joints=np.insert(block.joints, 7, slid, axis=1)),
+            )
         blocks.append(block)
-    return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "both", "continuous": (False,) * 9, "external_kinds": ("rotary", "linear", "rotary"), **more})
+    return dataclasses.replace(
+        of,
+        blocks=tuple(blocks),
+        **{
+            "name": "both",
+            "continuous": (False,) * 9,
+            "external_kinds": ("rotary", "linear", "rotary"),
+            **more,
+        },
+    )
 
 
 GOLDENS = {
-    "joint": JOINT, "held": HELD, "positioner": beside(HELD), "track": along(HELD, max_points=2000),
-    "track-joint": along(JOINT), "both": both(HELD), "tool-joint": with_tool(JOINT), "tool": with_tool(HELD),
-    "positioner-joint": beside(JOINT), "both-joint": both(JOINT),
+    "joint": JOINT,
+    "held": HELD,
+    "positioner": beside(HELD),
+    "track": along(HELD, max_points=2000),
+    "track-joint": along(JOINT),
+    "both": both(HELD),
+    "tool-joint": with_tool(JOINT),
+    "tool": with_tool(HELD),
+    "positioner-joint": beside(JOINT),
+    "both-joint": both(JOINT),
 }
 
 
@@ -201,14 +319,25 @@ def test_a_part_on_a_positioner_is_a_work_object_that_its_unit_moves():
         files, run = abb.write(of), of.moves
         read, joints = abb.read(files), np.concatenate([moves.joints for moves in run])
         np.testing.assert_allclose(read.joints[:, 6:], joints[:, 6:], rtol=0.0, atol=1e-6)
-        assert (read.unit, read.first_external) == ("STN1", 2) and np.isnan(read.joints[read.linear, :6]).all()
+        assert (read.unit, read.first_external) == ("STN1", 2) and np.isnan(
+            read.joints[read.linear, :6]
+        ).all()
         for file in files:
             if "Move" in files[file].decode():
-                (held, fixed, unit, user, inside), = declared(files, file, "wobjdata").values()
-                assert (held, fixed, unit, user) == (False, False, "STN1", [[0, 0, 0], [1, 0, 0, 0]])
+                ((held, fixed, unit, user, inside),) = declared(files, file, "wobjdata").values()
+                assert (held, fixed, unit, user) == (
+                    False,
+                    False,
+                    "STN1",
+                    [[0, 0, 0], [1, 0, 0, 0]],
+                )
                 assert inside == [[0, 0, 20], [1, 0, 0, 0]]
-                turned = [values(line)[-1] for line in lines(files, file) if line.startswith("Move")]
-                assert all(row[0] == row[3] == 9e9 and row[1] == 30.0 and row[2] < 360.0 for row in turned)
+                turned = [
+                    values(line)[-1] for line in lines(files, file) if line.startswith("Move")
+                ]
+                assert all(
+                    row[0] == row[3] == 9e9 and row[1] == 30.0 and row[2] < 360.0 for row in turned
+                )
     refusal(beside(JOINT, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first")
     for unit in ("", "1", "my unit"):
         refusal(beside(JOINT, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
@@ -219,11 +348,13 @@ def test_a_track_carries_the_robot_and_the_work_object_stands():
         files, run = abb.write(of), of.moves
         read, joints = abb.read(files), np.concatenate([moves.joints for moves in run])
         assert np.array_equal(read.joints[:, 6], joints[:, 6])  # mm as they are
-        np.testing.assert_allclose(read.joints[~read.linear, :6], joints[~read.linear, :6], rtol=0.0, atol=1e-6)
+        np.testing.assert_allclose(
+            read.joints[~read.linear, :6], joints[~read.linear, :6], rtol=0.0, atol=1e-6
+        )
         assert (read.unit, read.first_external, read.linear_digits) == (of.unit, 3, 0.00005)
         for file in files:
             if "Move" in files[file].decode():
-                (held, fixed, unit, user, _), = declared(files, file, "wobjdata").values()
+                ((held, fixed, unit, user, _),) = declared(files, file, "wobjdata").values()
                 assert (held, fixed, unit, user[0]) == (False, True, "", [1200, 0, 20])
                 assert ("ActUnit TRACK_1;" in lines(files, file)) is bool(of.unit)
                 slid = [values(line)[-1] for line in lines(files, file) if line.startswith("Move")]
@@ -244,9 +375,12 @@ def test_a_track_and_a_positioner_are_told_together():
         assert "! eax_c is the track in mm" in main and "w_am is on the face of STN1" in main
         for file in files:
             if "Move" in files[file].decode():
-                (_, fixed, unit, user, _), = declared(files, file, "wobjdata").values()
+                ((_, fixed, unit, user, _),) = declared(files, file, "wobjdata").values()
                 assert (fixed, unit, user) == (False, "STN1", [[0, 0, 0], [1, 0, 0, 0]])
-        for old, new in (("! eax_c is the track", "! eax_e is the track"), ("ActUnit STN1;", "ActUnit STN2;")):
+        for old, new in (
+            ("! eax_c is the track", "! eax_e is the track"),
+            ("ActUnit STN1;", "ActUnit STN2;"),
+        ):
             name = next(file for file in files if old in files[file].decode())
             with pytest.raises(InputError):
                 abb.read({**files, name: files[name].replace(old.encode(), new.encode())})
@@ -257,15 +391,35 @@ def test_a_track_and_a_positioner_are_told_together():
 def test_a_part_that_is_held_is_a_work_object_and_the_nozzle_a_tool_that_stands():
     files = abb.write(dataclasses.replace(HELD, max_points=20))
     half = math.sqrt(0.5)
-    (tool,), (held,) = (declared(files, "held.mod", f"{kind}data").values() for kind in ("tool", "wobj"))
-    assert tool[0] is False and tool[1] == [[300.0, 0.0, 310.5], pytest.approx([half, 0, 0, half], abs=1e-7)]
+    (tool,), (held,) = (
+        declared(files, "held.mod", f"{kind}data").values() for kind in ("tool", "wobj")
+    )
+    assert tool[0] is False and tool[1] == [
+        [300.0, 0.0, 310.5],
+        pytest.approx([half, 0, 0, half], abs=1e-7),
+    ]
     assert held[0] is True and held[3] == [[0.0, 0.0, 5.0], [1.0, 0.0, 0.0, 0.0]]
     targets = [values(line) for line in lines(files, "held.mod") if line.startswith("MoveL")][:3]
-    assert [target[0] for target in targets] == [[10.0, 0.25, 105.0], [12.0, 0.25, 105.0], [14.0, 0.5, 105.0]]
-    assert [target[1] for target in targets] == [[1, 0, 0, 0], pytest.approx([half, 0, 0, half], abs=1e-7), [0, 0, 1, 0]]
+    assert [target[0] for target in targets] == [
+        [10.0, 0.25, 105.0],
+        [12.0, 0.25, 105.0],
+        [14.0, 0.5, 105.0],
+    ]
+    assert [target[1] for target in targets] == [
+        [1, 0, 0, 0],
+        pytest.approx([half, 0, 0, half], abs=1e-7),
+        [0, 0, 1, 0],
+    ]
     other = abb.write(dataclasses.replace(HELD, max_points=20, setup="tool-on-robot"))
-    (tool,), (fixed,) = (declared(other, "held.mod", f"{kind}data").values() for kind in ("tool", "wobj"))
-    assert tool[0] is True and tool[1][0] == [0.0, 0.0, 5.0] and fixed[0] is False and fixed[3][0] == [300.0, 0.0, 310.5]
+    (tool,), (fixed,) = (
+        declared(other, "held.mod", f"{kind}data").values() for kind in ("tool", "wobj")
+    )
+    assert (
+        tool[0] is True
+        and tool[1][0] == [0.0, 0.0, 5.0]
+        and fixed[0] is False
+        and fixed[3][0] == [300.0, 0.0, 310.5]
+    )
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -278,17 +432,34 @@ def test_random_programs_come_back_to_their_digits(random_application, seed, mot
     joints = np.concatenate([each.joints for each in run])
     straight = np.concatenate([np.full(len(each), each.interpolation == "linear") for each in run])
     np.testing.assert_array_equal(read.linear, straight)
-    np.testing.assert_allclose(read.joints[~straight], joints[~straight], rtol=0.0, atol=read.digits + 1e-12)
+    np.testing.assert_allclose(
+        read.joints[~straight], joints[~straight], rtol=0.0, atol=read.digits + 1e-12
+    )
     assert np.degrees(read.digits) == pytest.approx(0.00005)
     np.testing.assert_allclose(
-        read.duration[~straight], np.concatenate([each.duration for each in run])[~straight], rtol=0.0, atol=5.1e-6)
-    np.testing.assert_array_equal(read.stops, np.concatenate([
-        each.stops | (each.kind == "deposit") & (0.005 * of.blend * min(each.speed * each.duration) < 0.001) for each in run
-    ]))
+        read.duration[~straight],
+        np.concatenate([each.duration for each in run])[~straight],
+        rtol=0.0,
+        atol=5.1e-6,
+    )
+    np.testing.assert_array_equal(
+        read.stops,
+        np.concatenate(
+            [
+                each.stops
+                | (each.kind == "deposit")
+                & (0.005 * of.blend * min(each.speed * each.duration) < 0.001)
+                for each in run
+            ]
+        ),
+    )
     wet = np.concatenate([np.full(len(each), each.kind == "deposit") for each in run])
     np.testing.assert_array_equal(read.deposit, wet)
     if motion == "cartesian":
-        place, turn = (np.concatenate([getattr(each, name) for each in run])[straight] for name in ("position", "rotation"))
+        place, turn = (
+            np.concatenate([getattr(each, name) for each in run])[straight]
+            for name in ("position", "rotation")
+        )
         frame, carried = (np.eye(4), np.eye(4))
         for pose, six in ((frame, of.station), (carried, of.carried)):
             pose[:3, :3], pose[:3, 3] = Rotation.from_euler("XYZ", six[3:]).as_matrix(), six[:3]
@@ -299,8 +470,10 @@ def test_random_programs_come_back_to_their_digits(random_application, seed, mot
         told = np.tile(np.eye(4), (len(place), 1, 1))
         told[:, :3, :3], told[:, :3, 3] = read.rotation[straight], read.position[straight]
         # where the flange is asked to be
-        wanted, found = (a @ b @ np.linalg.inv(c) for a, b, c in (
-            (frame, target, carried), (read.frame, told, read.tool[straight])))
+        wanted, found = (
+            a @ b @ np.linalg.inv(c)
+            for a, b, c in ((frame, target, carried), (read.frame, told, read.tool[straight]))
+        )
         np.testing.assert_allclose(found, wanted, rtol=0.0, atol=4e-3)
         np.testing.assert_allclose(found[:, :3, :3], wanted[:, :3, :3], rtol=0.0, atol=1e-6)
         assert read.held == (setup == "part-on-robot")
@@ -309,22 +482,42 @@ def test_random_programs_come_back_to_their_digits(random_application, seed, mot
 def test_same_program_same_bytes_and_parts_are_the_program(random_application):
     for motion, setup in VARIANTS:
         parts = abb.write(random_application(2, motion, setup, max_points=50))
-        assert parts == abb.write(random_application(2, motion, setup, max_points=50)) and len(parts) > 3
-        whole, cut = abb.read(abb.write(random_application(2, motion, setup, max_points=10**5))), abb.read(parts)
+        assert (
+            parts == abb.write(random_application(2, motion, setup, max_points=50))
+            and len(parts) > 3
+        )
+        whole, cut = (
+            abb.read(abb.write(random_application(2, motion, setup, max_points=10**5))),
+            abb.read(parts),
+        )
         for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
-            if field.name in ("rotation", "position"):  # products may differ in their last bit by where they stand in memory
-                np.testing.assert_equal(getattr(cut, field.name) is None, getattr(whole, field.name) is None)
+            if field.name in (
+                "rotation",
+                "position",
+            ):  # products may differ in their last bit by where they stand in memory
+                np.testing.assert_equal(
+                    getattr(cut, field.name) is None, getattr(whole, field.name) is None
+                )
                 if getattr(cut, field.name) is not None:
-                    np.testing.assert_allclose(getattr(cut, field.name), getattr(whole, field.name), rtol=0.0, atol=1e-11)
+                    np.testing.assert_allclose(
+                        getattr(cut, field.name), getattr(whole, field.name), rtol=0.0, atol=1e-11
+                    )
             else:
-                np.testing.assert_array_equal(getattr(cut, field.name), getattr(whole, field.name), field.name)
+                np.testing.assert_array_equal(
+                    getattr(cut, field.name), getattr(whole, field.name), field.name
+                )
 
 
 def test_a_dry_run_moves_the_same_and_switches_nothing(random_application):
     wet = random_application(5, max_points=10**4)
     files, dry = abb.write(wet), abb.write(dataclasses.replace(wet, dry_run=True))
-    assert not any(b"SetDO" in content for content in dry.values()) and b"! dry run: no deposit" in dry["Random.mod"]
-    moving = [[line for line in lines(f, "Random.mod") if line.startswith("Move")] for f in (files, dry)]
+    assert (
+        not any(b"SetDO" in content for content in dry.values())
+        and b"! dry run: no deposit" in dry["Random.mod"]
+    )
+    moving = [
+        [line for line in lines(f, "Random.mod") if line.startswith("Move")] for f in (files, dry)
+    ]
     assert moving[0] == moving[1] and len(moving[0]) > 10
 
 
@@ -334,29 +527,51 @@ def test_times_and_corners():
         ("10.00000", "fine"), ("0.80000", "fine"), ("0.20000", "z_am1"), ("0.25000", "fine"), ("1.00000", "fine"),
     ]  # fmt: skip
     for blend, size in ((0, None), (50, 0.3), (100, 0.6)):  # the shorter move is 1.2 mm long
-        zones = declared(abb.write(dataclasses.replace(JOINT, blend=blend)), "Joint.mod", "zonedata")
-        assert zones == ({} if size is None else {"z_am1": [False, size, size, size, size / 10.0, size, size / 10.0]})
-    fast = program(moves("rapid", np.zeros(6)), moves("deposit", np.ones(6), 0.00004, layer=2, bead=1))
+        zones = declared(
+            abb.write(dataclasses.replace(JOINT, blend=blend)), "Joint.mod", "zonedata"
+        )
+        assert zones == (
+            {}
+            if size is None
+            else {"z_am1": [False, size, size, size, size / 10.0, size, size / 10.0]}
+        )
+    fast = program(
+        moves("rapid", np.zeros(6)), moves("deposit", np.ones(6), 0.00004, layer=2, bead=1)
+    )
     assert "4e-05 s" in refusal(fast, code="MOVE_TIME", where="layer 2 bead 1")
     for speed in (0.004, 1e6, np.nan):
-        blocks = (dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b for b in HELD.blocks)
-        refusal(dataclasses.replace(HELD, blocks=tuple(blocks)), code="MOVE_SPEED", where="layer 0 bead 0")
+        blocks = (
+            dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b
+            for b in HELD.blocks
+        )
+        refusal(
+            dataclasses.replace(HELD, blocks=tuple(blocks)),
+            code="MOVE_SPEED",
+            where="layer 0 bead 0",
+        )
 
 
 def test_parts_hold_whole_beads_are_loaded_away_from_them_and_their_sum_is_told():
     files = abb.write(beads(3, 20, layers=2, max_points=50))
     assert_modules(files)
     assert lines(files, "part.mod")[:3] == [
-        'Load \\Dynamic,"HOME:/part01.mod";', '%"part01_p"%;', 'UnLoad "HOME:/part01.mod";']
+        'Load \\Dynamic,"HOME:/part01.mod";',
+        '%"part01_p"%;',
+        'UnLoad "HOME:/part01.mod";',
+    ]
     total = sum(len(content) for name, content in files.items() if name != "part.mod")
     assert f"  ! 3 parts of {total} bytes in all".encode() in files["part.mod"]
     for number in (1, 2, 3):
         part = lines(files, f"part{number:02d}.mod")
         assert part.count("SetDO do1,1;") == part.count("SetDO do1,0;") == 2
         last = max(n for n, line in enumerate(part) if line.startswith("Move"))
-        assert (last > part[::-1].index("SetDO do1,0;") and part[-1].startswith("Move")) == (number < 3)
+        assert (last > part[::-1].index("SetDO do1,0;") and part[-1].startswith("Move")) == (
+            number < 3
+        )
         assert sum(line.startswith("Move") for line in part) == (45, 44, 43)[number - 1]
-    message = refusal(beads(2, 25, max_points=20, layers=2), code="BEAD_TOO_LONG", where="program.max_points")
+    message = refusal(
+        beads(2, 25, max_points=20, layers=2), code="BEAD_TOO_LONG", where="program.max_points"
+    )
     assert "layer 0 bead 0 has 27 points" in message and message.endswith("use at least 28")
     abb.write(beads(2, 25, max_points=28, layers=2))
 
@@ -365,7 +580,9 @@ def test_of_beads_too_long_for_a_part_the_longest_is_named():
     """What is said to be enough is enough."""
     blocks = [block for points in (22, 40, 31) for block in beads(1, points).blocks]
     too_long = dataclasses.replace(beads(1, 22, max_points=20), blocks=tuple(blocks))
-    enough = int(refusal(too_long, code="BEAD_TOO_LONG", where="program.max_points").rsplit(" ", 1)[1])
+    enough = int(
+        refusal(too_long, code="BEAD_TOO_LONG", where="program.max_points").rsplit(" ", 1)[1]
+    )
     assert enough > 40
     abb.write(dataclasses.replace(too_long, max_points=enough))
 
@@ -383,19 +600,29 @@ def test_names_the_controller_refuses(name, why, proposal):
 
 def test_what_cannot_be_said_is_refused():
     still, where = program(moves("rapid", np.ones(6))), "process.between_layers.call"
-    refusal(dataclasses.replace(still, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
+    refusal(
+        dataclasses.replace(still, setup="rotary-table"),
+        code="UNSUPPORTED_SETUP",
+        where="cell.setup",
+    )
     continuous = dataclasses.replace(still, continuous=(False,) * 5 + (True,))
     assert "axis 6" in refusal(continuous, code="ENDLESS_AXIS", where="cell.limits")
     refusal(dataclasses.replace(HELD, station=None), code="NO_POSITIONS", where="program.motion")
     refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
     refusal(program(moves("rapid", [0, 0, 0, np.nan, 0, 0])), code="UNREACHABLE")
     refusal(program(moves("rapid", np.ones(5))), code="UNSUPPORTED_AXES", where="program.post")
-    wire = program(moves("rapid", np.ones(6)), moves("deposit", np.ones(6) * 2, wire=np.array([10.0])))
+    wire = program(
+        moves("rapid", np.ones(6)), moves("deposit", np.ones(6) * 2, wire=np.array([10.0]))
+    )
     assert "TriggSpeed" in refusal(wire, code="NO_WIRE_OUTPUT")
     for called in ("Part", "two words", "main"):
         refusal(program(moves("rapid", np.ones(6)), Call(called)), code="PROGRAM_NAME", where=where)
     refusal(beads(3, 20, max_points=25, name="x" * 13), code="PROGRAM_NAME", where="name")
-    refusal(program(*beads(3, 20).blocks, Call("PART02_p"), max_points=25), code="PROGRAM_NAME", where=where)
+    refusal(
+        program(*beads(3, 20).blocks, Call("PART02_p"), max_points=25),
+        code="PROGRAM_NAME",
+        where=where,
+    )
     abb.write(program(moves("rapid", np.ones(6)), Call("party")))
     assert catalogue.load("abb") is abb
 
@@ -430,33 +657,55 @@ def by_hand(old="", new=""):
 def test_a_module_by_hand():
     read = abb.read(by_hand())
     np.testing.assert_allclose(np.degrees(read.joints[0]), [1.5, -30.0, 20.0, 0.0, 45.0, -190.5])
-    assert np.isnan(read.joints[1:]).all() and read.position[1:].tolist() == [[20.5, 0.25, 5.0], [21.5, 0.25, 5.0]]
+    assert np.isnan(read.joints[1:]).all() and read.position[1:].tolist() == [
+        [20.5, 0.25, 5.0],
+        [21.5, 0.25, 5.0],
+    ]
     turned = Rotation.from_quat([[0.0, 1.0, 0.0, 0.0], [0.0, 0.8, 0.0, 0.6]]).as_matrix()
     np.testing.assert_allclose(read.rotation[1:], turned, atol=1e-15)
     # the work object is turned by half about Z, so what lies in it at X 10 is at X 1190
-    np.testing.assert_allclose(read.frame, [[-1, 0, 0, 1190], [0, -1, 0, 0], [0, 0, 1, 300], [0, 0, 0, 1]], atol=1e-12)
-    np.testing.assert_allclose(read.tool[2], [[0, 0, 1, 1], [0, 1, 0, 2], [-1, 0, 0, 250], [0, 0, 0, 1]], atol=1e-12)
+    np.testing.assert_allclose(
+        read.frame, [[-1, 0, 0, 1190], [0, -1, 0, 0], [0, 0, 1, 300], [0, 0, 0, 1]], atol=1e-12
+    )
+    np.testing.assert_allclose(
+        read.tool[2], [[0, 0, 1, 1], [0, 1, 0, 2], [-1, 0, 0, 250], [0, 0, 0, 1]], atol=1e-12
+    )
     assert read.deposit.tolist() == read.linear.tolist() == [False, True, True] and not read.held
     assert read.stops.tolist() == [True, False, True] and read.rounding[1] == 0.3
     assert [(event.row, event.kind, *event.value) for event in read.events] == [
-        (1, "on", 7.0, "do"), (1, "wait", 0.25), (3, "off", 7.0, "do"), (3, "call", "GRIPPER_OPEN")]
+        (1, "on", 7.0, "do"),
+        (1, "wait", 0.25),
+        (3, "off", 7.0, "do"),
+        (3, "call", "GRIPPER_OPEN"),
+    ]
     np.testing.assert_array_equal(read.speed, [np.nan, 30.5, 30.5])
     np.testing.assert_array_equal(read.duration, [10.0, np.nan, np.nan])
 
 
-@pytest.mark.parametrize(("old", "new", "why"), [
-    ("MODULE hand", "MODULE other", "called other"), ("ENDMODULE\n", "ENDMODULE\nx\n", "one routine"),
-    ("slow:=[50,500", "slow:=[50,50", "value of slow"), ("0.3,0.3,0.3,0.03", "0.3,0.3,30,0.03", "value of near"),
-    ("LOCAL PERS tooldata", "PERS tooldata", "not understood"),
-    ("[FALSE,TRUE,\"\"", '[FALSE,FALSE,"STN1"', "value of plate"),
-    ("[FALSE,TRUE,\"\"", '[TRUE,TRUE,""', "either the tool or the work object"),
-    ("0.7071068,0]]", "0.8,0]]", "value of nozzle"), ("0.6,0.0,0.8,0.0", "0.6,0.0,0.7,0.0", "unit quaternion"),
-    ("ConfL\\Off", "ConfL\\On", "not understood"), ("    ConfL\\Off;\n", "", "supervised"),
-    ("near,nozzle", "z50,nozzle", "not a zone"), ("SetDO do7,0", "SetDO do8,0", "second output"),
-    ("V:=30.5,fine", "V:=30.5,near", "before the move before it ends"), ("gripper_open;", "main;", "not loaded"),
-    ("gripper_open;", "MoveJ x,y;", "not understood"), ("slow\\V:=30.5", "slow\\T:=30.5", "otherwise than by"),
-    ("gripper_open;", "GOTO start;", "not understood"), ("9E9]]\\NoEOffs", "0]]\\NoEOffs", "not understood"),
-])
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("MODULE hand", "MODULE other", "called other"),
+        ("ENDMODULE\n", "ENDMODULE\nx\n", "one routine"),
+        ("slow:=[50,500", "slow:=[50,50", "value of slow"),
+        ("0.3,0.3,0.3,0.03", "0.3,0.3,30,0.03", "value of near"),
+        ("LOCAL PERS tooldata", "PERS tooldata", "not understood"),
+        ('[FALSE,TRUE,""', '[FALSE,FALSE,"STN1"', "value of plate"),
+        ('[FALSE,TRUE,""', '[TRUE,TRUE,""', "either the tool or the work object"),
+        ("0.7071068,0]]", "0.8,0]]", "value of nozzle"),
+        ("0.6,0.0,0.8,0.0", "0.6,0.0,0.7,0.0", "unit quaternion"),
+        ("ConfL\\Off", "ConfL\\On", "not understood"),
+        ("    ConfL\\Off;\n", "", "supervised"),
+        ("near,nozzle", "z50,nozzle", "not a zone"),
+        ("SetDO do7,0", "SetDO do8,0", "second output"),
+        ("V:=30.5,fine", "V:=30.5,near", "before the move before it ends"),
+        ("gripper_open;", "main;", "not loaded"),
+        ("gripper_open;", "MoveJ x,y;", "not understood"),
+        ("slow\\V:=30.5", "slow\\T:=30.5", "otherwise than by"),
+        ("gripper_open;", "GOTO start;", "not understood"),
+        ("9E9]]\\NoEOffs", "0]]\\NoEOffs", "not understood"),
+    ],
+)
 def test_what_is_not_understood_is_refused(old, new, why):
     with pytest.raises(InputError) as raised:
         abb.read(by_hand(old, new))

@@ -12,7 +12,12 @@ import pytest
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
-from freecad_am.core.parameters.program import NcParameters, ProgramParameters, ScheduleParameters, TriggerParameters
+from freecad_am.core.parameters.program import (
+    NcParameters,
+    ProgramParameters,
+    ScheduleParameters,
+    TriggerParameters,
+)
 from freecad_am.core.planning.program import linear_approach
 from freecad_am.core.program import Call, DepositOff, DepositOn, Moves, WaitBelow, WaitInput, Weave
 from freecad_am.core.read_moves import Event
@@ -32,10 +37,14 @@ RATIO, LEAD = 4.25, 0.045
 FED = WireParameters(feed_mode="proportional")
 # set-up, motion, and what is told
 KINDS = {
-    "arc": ("abb positioner", "cartesian"), "held": ("abb part-on-robot", "cartesian"),
-    "ahead": ("abb tool-on-robot", "cartesian"), "joint": ("abb part-on-robot", "joint"),
-    "joint ahead": ("abb part-on-robot", "joint"), "turned ahead": ("abb positioner", "joint"),
-    "wire": ("abb track", "cartesian"), "wire ahead": ("abb tool-on-robot", "cartesian"),
+    "arc": ("abb positioner", "cartesian"),
+    "held": ("abb part-on-robot", "cartesian"),
+    "ahead": ("abb tool-on-robot", "cartesian"),
+    "joint": ("abb part-on-robot", "joint"),
+    "joint ahead": ("abb part-on-robot", "joint"),
+    "turned ahead": ("abb positioner", "joint"),
+    "wire": ("abb track", "cartesian"),
+    "wire ahead": ("abb tool-on-robot", "cartesian"),
 }
 
 
@@ -44,19 +53,31 @@ def written(kind, most=2000, dry_run=False):
     setup, way = KINDS[kind]
     cell, _, motion = planned(setup)
     number = (motion.layer + motion.bead) % 3
-    motion = dataclasses.replace(motion, bead_class=np.array([CLASSES.index(name) for name in SCHEDULES])[number])
+    motion = dataclasses.replace(
+        motion, bead_class=np.array([CLASSES.index(name) for name in SCHEDULES])[number]
+    )
     process, told = PROCESS, {}
     if kind in ("arc", "held"):
-        weave = "; fill: schedule 12, weave 0, lead_off 0" if kind == "arc" else ", weave 0; fill: schedule 12"
+        weave = (
+            "; fill: schedule 12, weave 0, lead_off 0"
+            if kind == "arc"
+            else ", weave 0; fill: schedule 12"
+        )
         process = dataclasses.replace(
-            PROCESS, schedule=7, weave=4 if kind == "arc" else 0, lead_off=0.25 if kind == "arc" else 0.0,
-            classes=f"contour: schedule 3{', weave 2' if kind == 'arc' else ''}{weave}")
+            PROCESS,
+            schedule=7,
+            weave=4 if kind == "arc" else 0,
+            lead_off=0.25 if kind == "arc" else 0.0,
+            classes=f"contour: schedule 3{', weave 2' if kind == 'arc' else ''}{weave}",
+        )
         told = {"schedule": ScheduleParameters(by="arc")}
     elif kind != "wire":
         process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
         told = {"trigger": TriggerParameters(lead=0.0 if kind == "joint" else LEAD)}
     if kind.startswith("wire"):
-        motion = dataclasses.replace(motion, wire=np.where(motion.deposit, RATIO * motion.speed, np.nan))
+        motion = dataclasses.replace(
+            motion, wire=np.where(motion.deposit, RATIO * motion.speed, np.nan)
+        )
         told["nc"] = NcParameters(wire_output=9, wire_gain=2.5)
     if "ahead" in kind and way == "cartesian":
         motion = linear_approach.with_short_approaches(motion, cell)
@@ -76,13 +97,18 @@ def codes(kind, files, most=2000):
 
 def lines_of(kind, most=2000):
     files = written(kind, most)[3]
-    return [line.strip() for name in sorted(files) for line in files[name].decode("ascii").split("\r\n")]
+    return [
+        line.strip() for name in sorted(files) for line in files[name].decode("ascii").split("\r\n")
+    ]
 
 
 def deposits(motion):
     """Rows of the beads that are moved to, one array each."""
     rows = np.flatnonzero(motion.moves & motion.deposit)
-    return np.split(rows, np.flatnonzero((np.diff(motion.layer[rows]) != 0) | (np.diff(motion.bead[rows]) != 0)) + 1)
+    return np.split(
+        rows,
+        np.flatnonzero((np.diff(motion.layer[rows]) != 0) | (np.diff(motion.bead[rows]) != 0)) + 1,
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -96,15 +122,29 @@ def test_what_is_written_reads_back_as_planned(kind, most):
 def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(kind):
     _, motion, program, _ = written(kind)
     lines, runs = lines_of(kind), [run for run in program.moves if run.kind == "deposit"]
-    speeds = {name: float(value) for line in lines for name, value in re.findall(r"^(\w+)\.weld_speed:=([\d.]+);", line)}
-    again = {name: float(value) for line in lines for name, value in re.findall(r"^(\w+)\.org_weld_speed:=([\d.]+);", line)}
+    speeds = {
+        name: float(value)
+        for line in lines
+        for name, value in re.findall(r"^(\w+)\.weld_speed:=([\d.]+);", line)
+    }
+    again = {
+        name: float(value)
+        for line in lines
+        for name, value in re.findall(r"^(\w+)\.org_weld_speed:=([\d.]+);", line)
+    }
     taken = dict(found for line in lines for found in re.findall(r"^(\w+):=weld(\d+);", line))
-    dry = {name: float(value) for line in lines for name, value in re.findall(r"speeddata (\w+):=\[([\d.]+),", line)}
+    dry = {
+        name: float(value)
+        for line in lines
+        for name, value in re.findall(r"speeddata (\w+):=\[([\d.]+),", line)
+    }
     assert speeds == again and set(speeds) == set(taken)
     beads, inside, before = [], False, None
     for line in lines:
         arc = re.match(
-            r"(ArcL(?:Start|End|)) \[\[([^]]*)\].*\],(\w+),seam(\d+),(\w+)(?:\\Weave:=weave(\d+))?,(\w+),t_am", line)
+            r"(ArcL(?:Start|End|)) \[\[([^]]*)\].*\],(\w+),seam(\d+),(\w+)(?:\\Weave:=weave(\d+))?,(\w+),t_am",
+            line,
+        )
         if not arc:
             assert not (inside and line.startswith("Move"))
             continue
@@ -113,7 +153,15 @@ def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(
         assert taken[weld] == seam
         if name == "ArcLStart":
             assert not inside and zone == "fine"
-            beads.append({"seam": int(seam), "weave": int(weave or 0), "start": place, "points": [], "speeds": []})
+            beads.append(
+                {
+                    "seam": int(seam),
+                    "weave": int(weave or 0),
+                    "start": place,
+                    "points": [],
+                    "speeds": [],
+                }
+            )
         elif (name, place) != ("ArcLEnd", before):  # not where the torch stood after the bead
             assert dry[speed] == speeds[weld]
             beads[-1]["points"].append(place)
@@ -123,16 +171,27 @@ def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(
         assert inside or zone == "fine"
     classes = [list(SCHEDULES)[(run.layer + run.bead) % 3] for run in runs]
     assert [bead["seam"] for bead in beads] == [SCHEDULES[name] for name in classes]
-    assert [bead["weave"] for bead in beads] == [WEAVES[name] if kind == "arc" else 0 for name in classes]
-    assert len({tuple(bead["speeds"]) for bead in beads}) > 2 and len(beads) == len(deposits(motion)) > 4
+    assert [bead["weave"] for bead in beads] == [
+        WEAVES[name] if kind == "arc" else 0 for name in classes
+    ]
+    assert (
+        len({tuple(bead["speeds"]) for bead in beads}) > 2
+        and len(beads) == len(deposits(motion)) > 4
+    )
     for bead, run, rows in zip(beads, runs, deposits(motion), strict=True):
         np.testing.assert_allclose(bead["points"], run.position, rtol=0.0, atol=5.1e-4)
         np.testing.assert_allclose(bead["speeds"], motion.speed[rows], rtol=0.0, atol=5.1e-4)
-    starts = [before for before, run in zip(program.moves, program.moves[1:]) if run.kind == "deposit"]
-    np.testing.assert_allclose([b["start"] for b in beads], [one.position[-1] for one in starts], rtol=0.0, atol=5.1e-4)
+    starts = [
+        before for before, run in zip(program.moves, program.moves[1:]) if run.kind == "deposit"
+    ]
+    np.testing.assert_allclose(
+        [b["start"] for b in beads], [one.position[-1] for one in starts], rtol=0.0, atol=5.1e-4
+    )
     assert not any("SetDO" in line for line in lines)
     head = next(line for line in lines if line.startswith("! declare on the controller"))
-    assert {f"seam{n}" for n in SCHEDULES.values()} | {f"weld{n}" for n in SCHEDULES.values()} <= set(head.split())
+    assert {f"seam{n}" for n in SCHEDULES.values()} | {
+        f"weld{n}" for n in SCHEDULES.values()
+    } <= set(head.split())
     assert (kind == "arc") == ("weave2 weave4" in head)
 
 
@@ -153,7 +212,11 @@ def test_the_deposit_is_switched_on_the_moves_onto_the_beads_and_at_their_ends(k
             row += 1
     # so far before the end of a move as the tip gets in the lead at the speed of that very move
     assert np.abs(early).max() <= 0.00005 + lead * 0.0005 and len(early) == len(on + off)
-    assert (set(triggered) == {"g_on", "g_off"}) == (kind == "joint") == ({way for way, _ in triggered.values()} == {"0"})
+    assert (
+        (set(triggered) == {"g_on", "g_off"})
+        == (kind == "joint")
+        == ({way for way, _ in triggered.values()} == {"0"})
+    )
     moved = motion.deposit[np.flatnonzero(motion.moves)]
     assert on == (np.flatnonzero(np.diff(moved.astype(int)) == 1)).tolist()
     assert off == (np.flatnonzero(np.diff(moved.astype(int)) == -1)).tolist()
@@ -166,10 +229,17 @@ def test_the_deposit_is_switched_on_the_moves_onto_the_beads_and_at_their_ends(k
 def test_the_wire_follows_the_real_speed_on_all_moves_of_beads_and_no_other(kind):
     _, motion, _, _ = written(kind)
     lines, row, fed, ends = lines_of(kind), 0, {}, []
-    scales = {name: float(value) for line in lines
-              for name, value in re.findall(r"TriggSpeed (\w+),0\\Start,0,ao9,(\S+);", line)}
+    scales = {
+        name: float(value)
+        for line in lines
+        for name, value in re.findall(r"TriggSpeed (\w+),0\\Start,0,ao9,(\S+);", line)
+    }
     stop = [name for line in lines for name in re.findall(r"TriggSpeed (\w+),0,0,ao9,0;", line)]
-    speed = {name: float(value) for line in lines for name, value in re.findall(r"speeddata (\w+):=\[([\d.]+),", line)}
+    speed = {
+        name: float(value)
+        for line in lines
+        for name, value in re.findall(r"speeddata (\w+):=\[([\d.]+),", line)
+    }
     for line in lines:
         if re.match(r"(Move|Trigg)(AbsJ|L) \[", line):
             names = [name for name in scales if f",{name}" in line]
@@ -243,21 +313,34 @@ def test_a_text_with_anything_else_is_refused(kind, pattern, change):
     """At its first place, its last one, and one between, in the whole text and in parts."""
     for most in (2000, 40):
         files = written(kind, most)[3]
-        places = [(name, found) for name in sorted(files) for found in re.finditer(pattern, files[name].decode())]
+        places = [
+            (name, found)
+            for name in sorted(files)
+            for found in re.finditer(pattern, files[name].decode())
+        ]
         assert places, pattern
-        for name, found in {id(one): one for one in (places[0], places[len(places) // 2], places[-1])}.values():
+        for name, found in {
+            id(one): one for one in (places[0], places[len(places) // 2], places[-1])
+        }.values():
             text = files[name].decode()
             damaged = text[: found.start()] + found.expand(change) + text[found.end() :]
-            assert damaged != text and codes(kind, {**files, name: damaged.encode()}, most), found[0]
+            assert damaged != text and codes(kind, {**files, name: damaged.encode()}, most), found[
+                0
+            ]
 
 
-@pytest.mark.parametrize("name", ["Weld5", "seam5", "weave2", "d_am1", "v_am1", "z_am1", "do1", "di4", "ai2"])
+@pytest.mark.parametrize(
+    "name", ["Weld5", "seam5", "weave2", "d_am1", "v_am1", "z_am1", "do1", "di4", "ai2"]
+)
 def test_no_module_and_no_routine_that_is_called_has_the_name_of_what_the_program_uses(name):
     of = GOLDENS["arc"]
     more = dataclasses.replace(of, blocks=(*of.blocks, WaitInput(4), WaitBelow(2, 1.0, 0, 0)))
     for bad, where in (
         (dataclasses.replace(more, name=name), "name"),
-        (dataclasses.replace(more, blocks=(*more.blocks, Call(name))), "process.between_layers.call"),
+        (
+            dataclasses.replace(more, blocks=(*more.blocks, Call(name))),
+            "process.between_layers.call",
+        ),
     ):
         with pytest.raises(InputError) as error:
             abb.write(bad)
@@ -277,9 +360,14 @@ def test_a_trigger_on_a_corner_is_not_read():
 def onto(rapid):
     """A rapid with a linear move as its last one."""
     columns = ("joints", "duration", "speed", "position", "rotation", "stops", "halt")
-    before, last = ({name: getattr(rapid, name)[rows] for name in columns} for rows in (slice(-1), slice(-1, None)))
-    return [dataclasses.replace(rapid, **before, role=rapid.role[:-1]),
-            dataclasses.replace(rapid, **last, role=rapid.role[-1:], interpolation="linear")]
+    before, last = (
+        {name: getattr(rapid, name)[rows] for name in columns}
+        for rows in (slice(-1), slice(-1, None))
+    )
+    return [
+        dataclasses.replace(rapid, **before, role=rapid.role[:-1]),
+        dataclasses.replace(rapid, **last, role=rapid.role[-1:], interpolation="linear"),
+    ]
 
 
 def told(of, name, **how):
@@ -292,7 +380,9 @@ def told(of, name, **how):
             lead = 0.0 if "ahead" in how else block.lead
             if begins and "ahead" in how and of.motion == "cartesian":
                 blocks[-1:] = onto(blocks[-1])
-            new = dataclasses.replace(block, schedule=how.get("arc"), ahead=how.get("ahead"), lead=lead)
+            new = dataclasses.replace(
+                block, schedule=how.get("arc"), ahead=how.get("ahead"), lead=lead
+            )
             blocks += [new, *weave] if begins else [*weave, new]
         elif isinstance(block, Moves) and block.kind == "deposit" and "wire" in how:
             blocks.append(dataclasses.replace(block, wire=how["wire"] * block.speed))
@@ -303,8 +393,10 @@ def told(of, name, **how):
 
 TOOL = with_tool(HELD)
 GOLDENS = {
-    "arc": told(beside(HELD), "arc", arc=5, weave=2), "arc-held": told(HELD, "archeld", arc=5),
-    "ahead": told(TOOL, "ahead", ahead=0.05), "ahead-joint": told(JOINT, "aheadj", ahead=0.0),
+    "arc": told(beside(HELD), "arc", arc=5, weave=2),
+    "arc-held": told(HELD, "archeld", arc=5),
+    "ahead": told(TOOL, "ahead", ahead=0.05),
+    "ahead-joint": told(JOINT, "aheadj", ahead=0.0),
     "wire": told(TOOL, "wire", wire=3.5, ahead=0.02),
 }
 
@@ -314,28 +406,72 @@ def test_golden_modules_to_the_byte(root, name):
     files, folder = abb.write(GOLDENS[name]), root / "tests/golden/abb" / name
     assert files == {path.name: path.read_bytes() for path in folder.iterdir()}
     read = abb.read(files)
-    deposit = np.repeat([run.kind == "deposit" for run in GOLDENS[name].moves], [len(run) for run in GOLDENS[name].moves])
+    deposit = np.repeat(
+        [run.kind == "deposit" for run in GOLDENS[name].moves],
+        [len(run) for run in GOLDENS[name].moves],
+    )
     assert read.deposit.tolist() == deposit.tolist()
     if name == "wire":
         wire = 0.06 * 3.5 * np.concatenate([run.speed for run in GOLDENS[name].moves])
         np.testing.assert_allclose(read.wire[deposit], wire[deposit], rtol=1e-6)
 
 
-@pytest.mark.parametrize(("process", "program", "setup", "code", "words"), [
-    ({"schedule": 3}, {"by": "arc", "motion": "joint"}, "abb tool-on-robot", "SCHEDULE", "motion: cartesian"),
-    ({"weave": 2}, {}, "abb tool-on-robot", "WEAVE", "program.schedule.by: arc"),
-    ({"weave": 2, "schedule": 3}, {"by": "call"}, "abb tool-on-robot", "WEAVE", "program.schedule.by: arc"),
-    ({"weave": 2, "schedule": 3}, {"by": "arc", "dry_run": True}, "abb tool-on-robot", "WEAVE", "dry run"),
-    ({"weave": 2, "schedule": 3}, {"by": "arc"}, "abb part-on-robot", "WEAVE", "swings the part"),
-    ({"wire": FED, "schedule": 3}, {"by": "arc"}, "abb tool-on-robot", "NO_WIRE_OUTPUT", "welddata"),
-    ({"wire": FED}, {"motion": "joint"}, "abb tool-on-robot", "NO_WIRE_OUTPUT", "joint moves"),
-    ({"wire": FED}, {}, "abb part-on-robot", "NO_WIRE_OUTPUT", "part that moves"),
-    ({"wire": FED}, {}, "abb positioner", "NO_WIRE_OUTPUT", "part that moves"),
-    ({"schedule": 3}, {"by": "arc", "trigger": TriggerParameters(lead=0.1)}, "abb tool-on-robot", "TRIGGER", "arc instruct"),
-])
+@pytest.mark.parametrize(
+    ("process", "program", "setup", "code", "words"),
+    [
+        (
+            {"schedule": 3},
+            {"by": "arc", "motion": "joint"},
+            "abb tool-on-robot",
+            "SCHEDULE",
+            "motion: cartesian",
+        ),
+        ({"weave": 2}, {}, "abb tool-on-robot", "WEAVE", "program.schedule.by: arc"),
+        (
+            {"weave": 2, "schedule": 3},
+            {"by": "call"},
+            "abb tool-on-robot",
+            "WEAVE",
+            "program.schedule.by: arc",
+        ),
+        (
+            {"weave": 2, "schedule": 3},
+            {"by": "arc", "dry_run": True},
+            "abb tool-on-robot",
+            "WEAVE",
+            "dry run",
+        ),
+        (
+            {"weave": 2, "schedule": 3},
+            {"by": "arc"},
+            "abb part-on-robot",
+            "WEAVE",
+            "swings the part",
+        ),
+        (
+            {"wire": FED, "schedule": 3},
+            {"by": "arc"},
+            "abb tool-on-robot",
+            "NO_WIRE_OUTPUT",
+            "welddata",
+        ),
+        ({"wire": FED}, {"motion": "joint"}, "abb tool-on-robot", "NO_WIRE_OUTPUT", "joint moves"),
+        ({"wire": FED}, {}, "abb part-on-robot", "NO_WIRE_OUTPUT", "part that moves"),
+        ({"wire": FED}, {}, "abb positioner", "NO_WIRE_OUTPUT", "part that moves"),
+        (
+            {"schedule": 3},
+            {"by": "arc", "trigger": TriggerParameters(lead=0.1)},
+            "abb tool-on-robot",
+            "TRIGGER",
+            "arc instruct",
+        ),
+    ],
+)
 def test_what_does_not_go_together_is_refused_before_planning(process, program, setup, code, words):
     by, motion = program.pop("by", "output"), program.pop("motion", "cartesian")
-    asked = ProgramParameters(post="abb", motion=motion, schedule=ScheduleParameters(by=by), **program)
+    asked = ProgramParameters(
+        post="abb", motion=motion, schedule=ScheduleParameters(by=by), **program
+    )
     with pytest.raises(InputError) as error:
         refuse(planned(setup)[0], ProcessParameters(**process), asked)
     assert error.value.code == code and words in error.value.message
@@ -343,12 +479,15 @@ def test_what_does_not_go_together_is_refused_before_planning(process, program, 
 
 def ending_at(of, speed):
     """The program with the last moves of its beads at another speed of the tip, and the time that this takes."""
+
     def slower(block):
         if not isinstance(block, Moves) or block.kind != "deposit":
             return block
         last = np.arange(len(block)) == len(block) - 1
         duration = np.where(last, block.duration * block.speed / speed, block.duration)
-        return dataclasses.replace(block, speed=np.where(last, speed, block.speed), duration=duration)
+        return dataclasses.replace(
+            block, speed=np.where(last, speed, block.speed), duration=duration
+        )
 
     return dataclasses.replace(of, blocks=tuple(map(slower, of.blocks)))
 
@@ -359,7 +498,11 @@ def test_rounding_moves_no_switch_by_more_than_half_a_millisecond_and_slower_mov
         for lead in (0.0007, 0.0123, 0.1, 0.15):
             program = ending_at(told(of, "ahead", ahead=lead), speed)
             kept = np.round(speed, 3) if of is TOOL else speed
-            (early,) = {event.before / kept for event in abb.read(abb.write(program)).events if event.kind == "off"}
+            (early,) = {
+                event.before / kept
+                for event in abb.read(abb.write(program)).events
+                if event.kind == "off"
+            }
             assert abs(early - lead) <= leads.MOST_DIGITS + 1e-12
     slow = ending_at(told(of, "ahead", ahead=0.02), 0.09)
     with pytest.raises(InputError) as error:
@@ -372,9 +515,14 @@ def test_a_way_is_as_long_ahead_as_the_tip_takes_for_it_on_that_very_move():
     ways = ((1, 0.5), (2, 0.5), (3, 0.5), (4, 0.0))
     events = tuple(Event(row, "off", (1.0, "do"), 0.00005, before=way) for row, way in ways)
     other = Event(2, "on", (1.0, "do"), 0.001, ahead=0.03)
-    first, second, third, fourth, fifth = leads.timed((*events, other), np.array([10.0, 0.05, 0.0, 0.0]))
+    first, second, third, fourth, fifth = leads.timed(
+        (*events, other), np.array([10.0, 0.05, 0.0, 0.0])
+    )
     assert (first.ahead, first.digits, first.before) == (0.05, 5e-6, None)
-    assert (second.ahead, second.digits) == (10.0, leads.MOST_DIGITS)  # digits explain no more than that
+    assert (second.ahead, second.digits) == (
+        10.0,
+        leads.MOST_DIGITS,
+    )  # digits explain no more than that
     assert np.isnan(third.ahead) and (fourth.ahead, fourth.digits) == (0.0, 0.0) and fifth is other
 
 
@@ -384,16 +532,23 @@ def many_speeds(block):
         return block
     names = ("joints", "duration", "position", "rotation")
     points = {name: np.repeat(getattr(block, name)[:1], 501, axis=0) for name in names}
-    return dataclasses.replace(block, **points, speed=1.0 + 0.01 * np.arange(501), stops=None, halt=None, role=())
+    return dataclasses.replace(
+        block, **points, speed=1.0 + 0.01 * np.arange(501), stops=None, halt=None, role=()
+    )
 
 
 def test_writing_refuses_it_too_and_weaves_and_speeds_beyond_what_there_is():
     for wrong, code in (
-        (told(JOINT, "arc", arc=3), "SCHEDULE"), (told(TOOL, "weave", weave=2), "WEAVE"),
-        (told(HELD, "weave", arc=3, weave=2), "WEAVE"), (told(TOOL, "weave", arc=3, weave=256), "WEAVE"),
-        (told(JOINT, "wire", wire=2.0), "NO_WIRE_OUTPUT"), (told(HELD, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
-        (told(beside(HELD), "wire", wire=2.0), "NO_WIRE_OUTPUT"), (told(TOOL, "wire", arc=3, wire=2.0), "NO_WIRE_OUTPUT"),
-        (told(TOOL, "seam", arc=10000), "SCHEDULE"), (told(TOOL, "ahead", ahead=0.51), "TRIGGER_LEAD"),
+        (told(JOINT, "arc", arc=3), "SCHEDULE"),
+        (told(TOOL, "weave", weave=2), "WEAVE"),
+        (told(HELD, "weave", arc=3, weave=2), "WEAVE"),
+        (told(TOOL, "weave", arc=3, weave=256), "WEAVE"),
+        (told(JOINT, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (told(HELD, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (told(beside(HELD), "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (told(TOOL, "wire", arc=3, wire=2.0), "NO_WIRE_OUTPUT"),
+        (told(TOOL, "seam", arc=10000), "SCHEDULE"),
+        (told(TOOL, "ahead", ahead=0.51), "TRIGGER_LEAD"),
     ):
         with pytest.raises(InputError) as error:
             abb.write(wrong)
@@ -409,7 +564,11 @@ def test_a_dry_run_has_no_arc_no_trigger_and_no_wire_and_moves_alike():
         text = b"".join(written(kind, dry_run=True)[3].values())
         assert not re.search(rb"Arc|Trigg|trigg|weld|ao9|SetDO", text)
         cell, motion, program, files = written(kind, dry_run=True)
-        assert not [issue for issue in verify(cell, motion, program, files, abb, CHORD_ERROR).issues if issue.level == ERROR]
+        assert not [
+            issue
+            for issue in verify(cell, motion, program, files, abb, CHORD_ERROR).issues
+            if issue.level == ERROR
+        ]
 
 
 def test_lines_of_moves_are_found_where_an_arc_stands_too():
@@ -419,5 +578,7 @@ def test_lines_of_moves_are_found_where_an_arc_stands_too():
         found = found_lines("abb", files)
         assert len(found) == int(motion.moves.sum())
         (text,) = (content.decode().split("\n") for content in files.values())
-        assert not any("ArcLStart" in text[line] or ",v_am,seam" in text[line] for line in found.line.tolist())
+        assert not any(
+            "ArcLStart" in text[line] or ",v_am,seam" in text[line] for line in found.line.tolist()
+        )
     assert catalogue.load("abb").NO_TRIGGER == ""

@@ -21,8 +21,13 @@ from tests.posts.planned_jobs import CHORD_ERROR, HEIGHT, SETUPS, SPANNING, WAYS
 DEEP, APART = 0.3, 0.15
 CARTESIAN = ("fanuc", "cartesian", "time", "fanuc tool-on-robot")
 # one of each post
-STACKED = (WAYS[1], WAYS[4], ("siemens", "joint", "time", "table"), ("linuxcnc", "cartesian", "time", "table"),
-           ("abb", "cartesian", "time", "abb part-on-robot"))
+STACKED = (
+    WAYS[1],
+    WAYS[4],
+    ("siemens", "joint", "time", "table"),
+    ("linuxcnc", "cartesian", "time", "table"),
+    ("abb", "cartesian", "time", "abb part-on-robot"),
+)
 
 
 def bodies_of(drive, laying):
@@ -37,7 +42,9 @@ def bodies_of(drive, laying):
 def inside_at(drive, row, points):
     """(k,) which of the points are in the nozzle where a row ends: none of those above the bead that it stands in."""
     tip, axis = drive.ends(row)
-    deep, height = (each[0] for each in depths_in_nozzle(tip[None], axis[None], drive.cell.nozzle, points))
+    deep, height = (
+        each[0] for each in depths_in_nozzle(tip[None], axis[None], drive.cell.nozzle, points)
+    )
     return (deep > 0.0) & (height < HEIGHT)
 
 
@@ -65,9 +72,13 @@ def contacts(way, files, lift=planned_jobs.LIFT):
                 if end is not None:
                     deep = np.where(inside_at(drive, end, laid), 0.0, deep)
         up = (tips - cell.mount[:3, 3]) @ cell.mount[:3, 2]
-        beside = np.linalg.norm((tips - cell.mount[:3, 3]) @ cell.mount[:3, :2], axis=1) > 0.5 * cell.platform_diameter
+        beside = (
+            np.linalg.norm((tips - cell.mount[:3, 3]) @ cell.mount[:3, :2], axis=1)
+            > 0.5 * cell.platform_diameter
+        )
         deepest = max(
-            depth_in_hub(tips, axes, nozzle, setup.hub, setup.top), float(deep.max(initial=0.0)),
+            depth_in_hub(tips, axes, nozzle, setup.hub, setup.top),
+            float(deep.max(initial=0.0)),
             float(np.where(beside, 0.0, -up).max()),
         )
         found += [(row, deepest)] if deepest > DEEP else []
@@ -88,9 +99,15 @@ def test_the_text_drives_the_way_that_was_looked_at(way):
     furthest = 0.0
     for row in np.flatnonzero(~motion.deposit[rows])[1:]:
         tips, axes = drive.way(row)
-        planned = joints[row - 1] + np.linspace(0.0, 1.0, len(tips))[:, None] * (joints[row] - joints[row - 1])
+        planned = joints[row - 1] + np.linspace(0.0, 1.0, len(tips))[:, None] * (
+            joints[row] - joints[row - 1]
+        )
         tip, axis = cell.tip_in_part(drive.arm.forward(planned))
-        furthest = max(furthest, np.linalg.norm(tips - tip, axis=1).max(), 100.0 * np.linalg.norm(axes - axis, axis=1).max())
+        furthest = max(
+            furthest,
+            np.linalg.norm(tips - tip, axis=1).max(),
+            100.0 * np.linalg.norm(axes - axis, axis=1).max(),
+        )
     assert 0.0 < furthest < APART
 
 
@@ -101,7 +118,11 @@ def test_travels_have_something_to_pass(way):
     _, motion, _, _ = written(way)
     rows = np.flatnonzero(motion.moves)
     lifted = np.flatnonzero(motion.role[rows] == 2)
-    assert len(lifted) >= 5 and np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)[lifted[1:] - 1].min() > 60.0
+    assert (
+        len(lifted) >= 5
+        and np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)[lifted[1:] - 1].min()
+        > 60.0
+    )
 
 
 @pytest.mark.parametrize("way", STACKED, ids=" ".join)
@@ -112,20 +133,35 @@ def test_a_retract_distance_of_nothing_leads_over_what_was_just_laid(way):
     assert (~drive.read.deposit).sum() >= 4  # there is a retract after all
 
 
-@pytest.mark.parametrize("broken", ["beads are lines", "moves off and onto beads are not looked at", "nothing is laid yet"])
+@pytest.mark.parametrize(
+    "broken",
+    ["beads are lines", "moves off and onto beads are not looked at", "nothing is laid yet"],
+)
 def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
     """The same jobs planned by a check that misses something: the drive of the text finds it."""
     way = STACKED[0]
     met, built = rapids.RapidObstacles.met, bead_ends.of_beads
     with monkeypatch.context() as patch:
         if broken == "beads are lines":
-            patch.setattr(bead_ends, "of_beads", lambda points, build, width, *rest, **more: built(
-                points, build, 0.0 * width, *rest, **more))
+            patch.setattr(
+                bead_ends,
+                "of_beads",
+                lambda points, build, width, *rest, **more: built(
+                    points, build, 0.0 * width, *rest, **more
+                ),
+            )
         elif broken == "nothing is laid yet":
-            patch.setattr(rapids.RapidObstacles, "met", lambda self, moves: met(
-                self, moves._replace(deposited=0 * moves.deposited)))
+            patch.setattr(
+                rapids.RapidObstacles,
+                "met",
+                lambda self, moves: met(self, moves._replace(deposited=0 * moves.deposited)),
+            )
         else:
-            patch.setattr(rapids.RapidObstacles, "met", lambda self, moves: np.zeros(len(moves.deposited), dtype=bool))
+            patch.setattr(
+                rapids.RapidObstacles,
+                "met",
+                lambda self, moves: np.zeros(len(moves.deposited), dtype=bool),
+            )
         planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()
         found, _ = contacts(way, written(way, lift=0.0)[3], 0.0)
     planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()
@@ -134,7 +170,7 @@ def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
 
 def old_text(files):
     """As it was written before: rapids of Cartesian programs straight in space, without a stop on retract and travel."""
-    (name, content), = files.items()
+    ((name, content),) = files.items()
     text = re.sub(r"(?m)^( *\d+:)J(?= P\[\d+\] \d+msec)", r"\1L", content.decode())
     text = re.sub(r"FINE(?=    ;\r\n *\d+:[JL] P\[\d+\] \d+msec FINE)", "CNT100", text)
     return {name: text.encode()}
@@ -144,7 +180,11 @@ def test_straight_rapids_with_rounded_corners_are_found_by_the_drive_and_refused
     cell, motion, program, files = written(CARTESIAN)
     old = old_text(files)
     found, drive = contacts(CARTESIAN, old)
-    assert (~drive.read.stops).sum() > motion.deposit.sum() - 20 and drive.read.linear.sum() > motion.deposit.sum()
+    assert (
+        ~drive.read.stops
+    ).sum() > motion.deposit.sum() - 20 and drive.read.linear.sum() > motion.deposit.sum()
     assert found and max(deep for _, deep in found) > 5.0
     result = verify(cell, motion, program, old, catalogue.load("fanuc"), CHORD_ERROR)
-    assert {"VERIFY_INTERPOLATION", "VERIFY_BLEND", "VERIFY_BETWEEN"} <= {i.code for i in result.issues if i.level == ERROR}
+    assert {"VERIFY_INTERPOLATION", "VERIFY_BLEND", "VERIFY_BETWEEN"} <= {
+        i.code for i in result.issues if i.level == ERROR
+    }

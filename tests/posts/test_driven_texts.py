@@ -28,10 +28,14 @@ def test_the_plan_is_found_again_in_the_text(way):
     read = catalogue.load(way[0]).read(files)
     motion = driven.driven(cell, told(program), read)
     for column in ("deposit", "layer", "bead", "point"):
-        np.testing.assert_array_equal(getattr(motion, column), getattr(planned, column), err_msg=column)
+        np.testing.assert_array_equal(
+            getattr(motion, column), getattr(planned, column), err_msg=column
+        )
     np.testing.assert_allclose(motion.position, planned.position, atol=APART)
     np.testing.assert_allclose(motion.tool, planned.tool, atol=TURNED)
-    np.testing.assert_allclose(motion.duration[2:], planned.duration[2:], atol=LATE)  # the first move begins anywhere
+    np.testing.assert_allclose(
+        motion.duration[2:], planned.duration[2:], atol=LATE
+    )  # the first move begins anywhere
     apart = motion.joints - planned.joints
     continuous = cell.limits.continuous
     apart[:, continuous] -= 2.0 * np.pi * np.rint(apart[:, continuous] / (2.0 * np.pi))

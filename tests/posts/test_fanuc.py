@@ -11,16 +11,28 @@ import pytest
 
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
 from freecad_am.posts.fanuc import post as fanuc
-from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program, refusal, with_tool
+from tests.posts.fanuc_programs import (
+    GOLDEN_JOINT,
+    GOLDEN_TABLE,
+    beads,
+    moves,
+    program,
+    refusal,
+    with_tool,
+)
 
 
 def body(content):
     text = content.decode("ascii")
-    return [line[5:] for line in text[text.index("/MN") + 5 : text.index("/POS")].split("\r\n")[:-1]]
+    return [
+        line[5:] for line in text[text.index("/MN") + 5 : text.index("/POS")].split("\r\n")[:-1]
+    ]
 
 
 GOLDENS = {
-    "joint": GOLDEN_JOINT, "table": GOLDEN_TABLE, "parts": beads(1, 12, layers=2, name="parts", max_points=10),
+    "joint": GOLDEN_JOINT,
+    "table": GOLDEN_TABLE,
+    "parts": beads(1, 12, layers=2, name="parts", max_points=10),
     "tool": with_tool(GOLDEN_JOINT),
 }
 
@@ -28,7 +40,9 @@ GOLDENS = {
 @pytest.mark.parametrize("name", GOLDENS)
 def test_golden_programs_to_the_byte(root, name, assert_listings):
     files = fanuc.write(GOLDENS[name])
-    golden = {path.name: path.read_bytes() for path in (root / "tests/golden").glob(f"{name.upper()}*.LS")}
+    golden = {
+        path.name: path.read_bytes() for path in (root / "tests/golden").glob(f"{name.upper()}*.LS")
+    }
     assert files == golden
     assert_listings(files)
 
@@ -38,29 +52,56 @@ def two_groups(of, **more):
     count, blocks = 0, []
     for block in of.blocks:
         if isinstance(block, Moves):
-            turned = np.radians(np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25])
-            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
+            turned = np.radians(
+                np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25]
+            )
+            count, block = (
+                count + len(block),
+                dataclasses.replace(block, joints=np.hstack([block.joints, turned])),
+            )
         blocks.append(block)
-    return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "groups", "continuous": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
-        "unit": "2", **more})
+    return dataclasses.replace(
+        of,
+        blocks=tuple(blocks),
+        **{
+            "name": "groups",
+            "continuous": (False,) * 8,
+            "setup": "tool-on-robot",
+            "external_kinds": ("rotary", "rotary"),
+            "unit": "2",
+            **more,
+        },
+    )
 
 
 def test_a_positioner_is_a_second_motion_group(root):
     of = two_groups(beads(1, 12, layers=2, max_points=20))
     files = fanuc.write(of)
-    assert files == {path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob("GROUPS*.LS")}
+    assert files == {
+        path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob("GROUPS*.LS")
+    }
     read, joints = fanuc.read(files), np.concatenate([moves.joints for moves in of.moves])
     np.testing.assert_allclose(read.joints, joints, rtol=0.0, atol=np.radians(5.1e-4))
     assert read.unit == "2" and read.position is None
     assert all(b"DEFAULT_GROUP\t= 1,1,*,*,*;" in content for content in files.values())
     text = fanuc.write(two_groups(GOLDEN_JOINT, unit="4"))["GROUPS.LS"].decode()
-    assert "= 1,*,*,1,*;" in text and text.count("   GP4:\r\n\tUF : 1, UT : 1,\t\r\n\tJ1=    30.000 deg,\tJ2=") == len(
-        re.findall(r"^P\[", text, re.MULTILINE))
-    assert "COORD" in refusal(dataclasses.replace(of, motion="cartesian"), code="COORDINATED_MOTION", where="program.motion")
-    refusal(dataclasses.replace(of, first_external=2), code="UNSUPPORTED_AXES", where="program.axes.first")
+    assert "= 1,*,*,1,*;" in text and text.count(
+        "   GP4:\r\n\tUF : 1, UT : 1,\t\r\n\tJ1=    30.000 deg,\tJ2="
+    ) == len(re.findall(r"^P\[", text, re.MULTILINE))
+    assert "COORD" in refusal(
+        dataclasses.replace(of, motion="cartesian"),
+        code="COORDINATED_MOTION",
+        where="program.motion",
+    )
+    refusal(
+        dataclasses.replace(of, first_external=2),
+        code="UNSUPPORTED_AXES",
+        where="program.axes.first",
+    )
     for unit in ("1", "6", "STN1"):
-        refusal(dataclasses.replace(of, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
+        refusal(
+            dataclasses.replace(of, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit"
+        )
 
 
 def along(of, at=0, **more):
@@ -74,29 +115,48 @@ def along(of, at=0, **more):
         blocks.append(block)
     kinds = [*of.external_kinds]
     kinds.insert(at, "linear")
-    return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "rail", "continuous": (False,) * (7 + len(of.external_kinds)), "setup": "tool-on-robot",
-        "external_kinds": tuple(kinds), **more})
+    return dataclasses.replace(
+        of,
+        blocks=tuple(blocks),
+        **{
+            "name": "rail",
+            "continuous": (False,) * (7 + len(of.external_kinds)),
+            "setup": "tool-on-robot",
+            "external_kinds": tuple(kinds),
+            **more,
+        },
+    )
 
 
 def test_a_track_is_an_axis_of_the_robots_own_group(root):
     grouped = two_groups(beads(1, 12, layers=2, max_points=20))
-    for of, group in ((along(GOLDEN_JOINT), "1"), (along(grouped, at=2, name="railgrp"), "2"), (along(grouped, at=1), "2")):
+    for of, group in (
+        (along(GOLDEN_JOINT), "1"),
+        (along(grouped, at=2, name="railgrp"), "2"),
+        (along(grouped, at=1), "2"),
+    ):
         files = fanuc.write(of)
         read, joints = fanuc.read(files), np.concatenate([moves.joints for moves in of.moves])
         slides = np.array([*(False,) * 6, *(kind == "linear" for kind in of.external_kinds)])
         np.testing.assert_array_equal(read.joints[:, slides], joints[:, slides])  # mm as they are
-        np.testing.assert_allclose(read.joints[:, ~slides], joints[:, ~slides], rtol=0.0, atol=np.radians(5.1e-4))
+        np.testing.assert_allclose(
+            read.joints[:, ~slides], joints[:, ~slides], rtol=0.0, atol=np.radians(5.1e-4)
+        )
         assert (read.unit, read.linear_digits) == (group if group != "1" else "", 0.0005)
         for content in files.values():
             text = content.decode()
             records = text[text.index("/POS") :].split("};")[:-1]
             # the form of records of controllers: after the last angle, blank before mm, in the first group
-            told = [re.search(r" deg,\r\n\tE1=(.{10})  mm\r\n(?:   GP2:\r\n|$)", record) for record in records]
+            told = [
+                re.search(r" deg,\r\n\tE1=(.{10})  mm\r\n(?:   GP2:\r\n|$)", record)
+                for record in records
+            ]
             assert all(told) and np.allclose(np.diff([float(one[1]) for one in told]), 12.5)
             assert f"DEFAULT_GROUP\t= {'1,1' if group == '2' else '1,*'},*,*,*;" in text
     files = fanuc.write(along(GOLDEN_JOINT)) | fanuc.write(along(grouped, at=2, name="railgrp"))
-    assert files == {path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob("RAIL*.LS")}
+    assert files == {
+        path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob("RAIL*.LS")
+    }
     on_rail = dataclasses.replace(along(GOLDEN_JOINT), motion="cartesian")
     assert "rail" in refusal(on_rail, code="COORDINATED_MOTION", where="program.motion")
     refusal(along(GOLDEN_JOINT, unit="2"), code="UNSUPPORTED_AXES", where="program.axes.unit")
@@ -105,7 +165,9 @@ def test_a_track_is_an_axis_of_the_robots_own_group(root):
 
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("motion", ["joint", "cartesian"])
-def test_random_programs_are_as_controllers_write_them(random_program, assert_listings, seed, motion):
+def test_random_programs_are_as_controllers_write_them(
+    random_program, assert_listings, seed, motion
+):
     assert_listings(fanuc.write(random_program(seed, motion)))
 
 
@@ -121,7 +183,8 @@ def test_a_locale_with_decimal_commas_changes_nothing(tmp_path, root):
         'thousands_sep "<U002E>"\ngrouping 3;3\nEND LC_NUMERIC\n'
     )
     made = subprocess.run(
-        ["localedef", "-c", "-i", source, "-f", "UTF-8", tmp_path / "comma.utf8"], capture_output=True
+        ["localedef", "-c", "-i", source, "-f", "UTF-8", tmp_path / "comma.utf8"],
+        capture_output=True,
     )
     if not (tmp_path / "comma.utf8/LC_NUMERIC").exists():
         pytest.skip(f"no locale with decimal commas can be made here: {made.stderr[-200:]!r}")
@@ -133,7 +196,11 @@ def test_a_locale_with_decimal_commas_changes_nothing(tmp_path, root):
         "sys.stdout.buffer.write(f['JOINT.LS'])"
     )
     command = [sys.executable, "-c", code, str(root), __file__]
-    environment = {"LOCPATH": str(tmp_path), "PATH": "/usr/bin:/bin", "PYTHONPATH": ":".join(sys.path)}
+    environment = {
+        "LOCPATH": str(tmp_path),
+        "PATH": "/usr/bin:/bin",
+        "PYTHONPATH": ":".join(sys.path),
+    }
     result = subprocess.run(command, capture_output=True, env=environment)
     assert result.returncode == 0, result.stderr[-500:]
     assert result.stdout == fanuc.write(GOLDEN_JOINT)["JOINT.LS"]
@@ -152,7 +219,9 @@ def written_times(content):
 def test_milliseconds_add_up_over_a_bead_and_none_is_zero(seed):
     rng = np.random.default_rng(seed)
     duration = rng.exponential(0.003, 500) if seed % 2 else rng.uniform(0.001, 0.4, 500)
-    file = fanuc.write(program(moves("rapid", np.zeros(6)), moves("deposit", np.zeros((500, 6)), duration)))["PART.LS"]
+    file = fanuc.write(
+        program(moves("rapid", np.zeros(6)), moves("deposit", np.zeros((500, 6)), duration))
+    )["PART.LS"]
     times = np.array(written_times(file))
     assert times.min() >= 1.0 and abs(times.sum() - 1000.0 * duration.sum()) <= 0.5 + 1e-9
     if not seed % 2:  # no move is too short: every partial sum is right
@@ -161,7 +230,9 @@ def test_milliseconds_add_up_over_a_bead_and_none_is_zero(seed):
 
 def test_long_moves_are_in_tenths_of_a_second_and_leave_the_others_alone():
     duration = [0.1, 32.0, 32.0004, 32.0006, 0.1, 3200.0]
-    file = fanuc.write(program(moves("rapid", np.zeros(6)), moves("deposit", np.zeros((6, 6)), duration)))["PART.LS"]
+    file = fanuc.write(
+        program(moves("rapid", np.zeros(6)), moves("deposit", np.zeros((6, 6)), duration))
+    )["PART.LS"]
     words = re.findall(r"\] (\S+) (?:CNT|FINE)", "\n".join(body(file)))[1:]
     assert words == ["100msec", "32000msec", "32000msec", "32.0sec", "100msec", "3200.0sec"]
 
@@ -220,7 +291,9 @@ def test_an_endless_axis_says_what_it_needs_and_a_limited_one_keeps_its_turns():
     assert shown == [0.0, 100.0, -160.0, -60.0, 40.0, 140.0, -120.0, -20.0, 80.0]
     text = fanuc.write(program(turning))["PART.LS"].decode()
     assert "Continuous" not in text
-    assert [float(value) for value in re.findall(r"J6= *(\S+)", text)] == [100.0 * n for n in range(9)]
+    assert [float(value) for value in re.findall(r"J6= *(\S+)", text)] == [
+        100.0 * n for n in range(9)
+    ]
 
 
 @pytest.mark.parametrize(("degrees", "written"), [
@@ -229,16 +302,18 @@ def test_an_endless_axis_says_what_it_needs_and_a_limited_one_keeps_its_turns():
     (-360.25, "-.250"),
 ])  # fmt: skip
 def test_angles_of_an_endless_axis_lie_within_half_a_turn(degrees, written):
-    text = fanuc.write(program(moves("rapid", [0, 0, 0, 0, 0, degrees]), continuous=(False,) * 5 + (True,)))[
-        "PART.LS"
-    ].decode()
+    text = fanuc.write(
+        program(moves("rapid", [0, 0, 0, 0, 0, degrees]), continuous=(False,) * 5 + (True,))
+    )["PART.LS"].decode()
     assert re.search(r"J6=(.{10}) deg", text)[1] == written.rjust(10)
 
 
 def test_a_move_of_half_a_turn_on_an_endless_axis_is_refused():
     values = [[0, 0, 0, 0, 0, 0.0], [0, 0, 0, 0, 0, 179.9], [0, 0, 0, 0, 0, 359.9]]
     of = program(
-        moves("rapid", values[:2]), moves("deposit", values[2:], layer=3, bead=1), continuous=(False,) * 5 + (True,)
+        moves("rapid", values[:2]),
+        moves("deposit", values[2:], layer=3, bead=1),
+        continuous=(False,) * 5 + (True,),
     )
     assert "axis 6 turns 180.0 deg" in refusal(of, code="ENDLESS_STEP", where="layer 3 bead 1")
     fanuc.write(dataclasses.replace(of, continuous=(False,) * 6))
@@ -264,12 +339,20 @@ def test_a_bead_longer_than_a_part_is_cut_and_says_so(assert_listings):
     parts = [body(files[name]) for name in list(files)[1:]]
     points = [sum(line[0] == "J" for line in part) for part in parts]
     assert points == [10, 10, 7, 10, 10, 7]
-    assert [any("bead goes on in the next part" in line for line in part) for part in parts] == [True, True, False] * 2
-    assert [any("bead goes on here" in line for line in part) for part in parts] == [False, True, True] * 2
+    assert [any("bead goes on in the next part" in line for line in part) for part in parts] == [
+        True,
+        True,
+        False,
+    ] * 2
+    assert [any("bead goes on here" in line for line in part) for part in parts] == [
+        False,
+        True,
+        True,
+    ] * 2
     # the cut is passed without a stop, the bead's end is a stop
-    assert parts[0][-2].endswith("CNT100    ;") and [line for line in parts[2] if line[0] == "J"][-1].endswith(
-        "FINE    ;"
-    )
+    assert parts[0][-2].endswith("CNT100    ;") and [line for line in parts[2] if line[0] == "J"][
+        -1
+    ].endswith("FINE    ;")
     assert_listings(files)
 
 
@@ -278,7 +361,10 @@ def test_a_bead_that_goes_on_through_layers_is_no_place_to_cut():
         LayerStart(0), moves("rapid", np.zeros(6)), DepositOn(), moves("deposit", np.zeros((20, 6))),
         LayerStart(1), moves("deposit", np.zeros((20, 6)), layer=1), DepositOff(),
     )  # fmt: skip
-    first, second = (body(fanuc.write(dataclasses.replace(through, max_points=30))[f"PART0{n}.LS"]) for n in (1, 2))
+    first, second = (
+        body(fanuc.write(dataclasses.replace(through, max_points=30))[f"PART0{n}.LS"])
+        for n in (1, 2)
+    )
     assert "  !layer 1 ;" in first and first[-1] == "  !bead goes on in the next part ;"
     assert second[2] == "  !bead goes on here ;" and second[-1] == "  DO[1]=OFF ;"
 
@@ -308,4 +394,6 @@ def test_the_parts_of_a_program_are_the_program(random_program):
         whole = fanuc.write(random_program(seed, max_points=10**5))
         for most in (1, 7, 40):
             parts = fanuc.write(random_program(seed, max_points=most))
-            assert list(executed(parts)) == list(executed(whole)) and records(parts) == records(whole)
+            assert list(executed(parts)) == list(executed(whole)) and records(parts) == records(
+                whole
+            )

@@ -75,15 +75,25 @@ def by_hand(pattern="", replacement="", sub=SUB):
 
 def test_a_listing_by_hand():
     read = fanuc.read(by_hand())
-    first, home, other = [0.5, -0.25, 0.0, -190.125, 45.0, 180.0], [0, 0, 0, 0, -90.0, 0], [1, 2, 3, 4, 5, 6]
-    assert np.degrees(read.joints) == pytest.approx(np.array([home, first, home, other, first], float), abs=1e-12)
+    first, home, other = (
+        [0.5, -0.25, 0.0, -190.125, 45.0, 180.0],
+        [0, 0, 0, 0, -90.0, 0],
+        [1, 2, 3, 4, 5, 6],
+    )
+    assert np.degrees(read.joints) == pytest.approx(
+        np.array([home, first, home, other, first], float), abs=1e-12
+    )
     assert read.duration == pytest.approx([np.nan, 0.25, 2.5, 0.001, 0.5], nan_ok=True)
     assert read.deposit.tolist() == [False, True, True, False, False]
     assert not read.linear.any() and read.stops.tolist() == [True, False, False, True, True]
     assert read.blend[1:3].tolist() == [100.0, 0.0] and read.share[0] == 0.2
     assert set(read.user_frame.tolist()) == {3.0} and set(read.tool_frame.tolist()) == {4.0}
     assert [(event.row, event.kind, *event.value) for event in read.events] == [
-        (1, "on", 5.0, "DO"), (1, "wait", 0.5), (3, "off", 5.0, "DO"), (3, "input", 3.0), (5, "call", "ELSEWHERE"),
+        (1, "on", 5.0, "DO"),
+        (1, "wait", 0.5),
+        (3, "off", 5.0, "DO"),
+        (3, "input", 3.0),
+        (5, "call", "ELSEWHERE"),
     ]
     assert np.degrees(read.digits) == pytest.approx(0.005)  # two decimals in one of the files
     assert np.isnan(read.speed).all() and read.position is None
@@ -100,7 +110,9 @@ def test_random_programs_come_back(random_program, seed, motion):
         deposit += [on] * len(block) if isinstance(block, Moves) else []
     assert read.deposit.tolist() == deposit
     runs = program.moves
-    timed = np.concatenate([np.full(len(run), motion == "joint" or run.kind == "rapid") for run in runs])
+    timed = np.concatenate(
+        [np.full(len(run), motion == "joint" or run.kind == "rapid") for run in runs]
+    )
     timed[0] = False
     assert (np.isfinite(read.duration) == timed).all()
     assert not np.isfinite(read.speed[timed]).any() and not np.isfinite(read.speed[0])
@@ -112,13 +124,23 @@ def test_random_programs_come_back(random_program, seed, motion):
             continue
         long = run.duration > 32.0005
         assert np.abs(written - run.duration)[long].max(initial=0.0) <= 0.05 + 1e-9
-        assert abs((written - run.duration)[~long].sum()) <= 0.001 * (1 + long.sum()) and written.min() > 0.0009
+        assert (
+            abs((written - run.duration)[~long].sum()) <= 0.001 * (1 + long.sum())
+            and written.min() > 0.0009
+        )
     if motion == "joint":
         apart = np.degrees(read.joints - np.concatenate([run.joints for run in runs]))
-        apart[:, np.array(program.continuous)] -= 360.0 * np.rint(apart[:, np.array(program.continuous)] / 360.0)
-        assert np.abs(apart).max() <= HALF_DIGIT + 1e-9 and np.degrees(read.digits) == pytest.approx(HALF_DIGIT)
+        apart[:, np.array(program.continuous)] -= 360.0 * np.rint(
+            apart[:, np.array(program.continuous)] / 360.0
+        )
+        assert np.abs(apart).max() <= HALF_DIGIT + 1e-9 and np.degrees(
+            read.digits
+        ) == pytest.approx(HALF_DIGIT)
     else:
-        position, rotation = (np.concatenate([getattr(run, name) for run in runs]) for name in ("position", "rotation"))
+        position, rotation = (
+            np.concatenate([getattr(run, name) for run in runs])
+            for name in ("position", "rotation")
+        )
         assert np.abs(read.position - position).max() <= HALF_DIGIT + 1e-9 and read.joints is None
         between = np.swapaxes(read.rotation, 1, 2) @ rotation
         angle = np.linalg.norm(between - np.eye(3), axis=(1, 2)) / np.sqrt(2.0)
@@ -180,6 +202,12 @@ def test_joint_and_cartesian_positions_in_one_program_are_refused():
         "\tX = 1.0 mm,\tY = 2.0 mm,\tZ = 3.0 mm,\n\tW = 1.0 deg,\tP = 2.0 deg,\tR = 3.0 deg\n};\n"
     )
     with pytest.raises(InputError, match="mixed"):
-        fanuc.read(by_hand(sub=SUB[: SUB.index("P[7]{")].replace("J P[7] 1msec", "L P[7] 5.0mm/sec") + pose + "/END\n"))
+        fanuc.read(
+            by_hand(
+                sub=SUB[: SUB.index("P[7]{")].replace("J P[7] 1msec", "L P[7] 5.0mm/sec")
+                + pose
+                + "/END\n"
+            )
+        )
     with pytest.raises(InputError, match=r"P\[7\] is not understood"):
         fanuc.read(by_hand(sub=SUB[: SUB.index("P[7]{")] + pose + record + "/END\n"))

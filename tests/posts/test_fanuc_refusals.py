@@ -28,14 +28,18 @@ from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves,
     ("call", "reserved", "AM_CALL"),
 ])  # fmt: skip
 def test_names_the_controller_refuses(name, why, proposal):
-    message = refusal(program(moves("rapid", np.zeros(6)), name=name), code="PROGRAM_NAME", where="name")
+    message = refusal(
+        program(moves("rapid", np.zeros(6)), name=name), code="PROGRAM_NAME", where="name"
+    )
     assert why in message and message.endswith(f"use {proposal!r}") and repr(name) in message
     fanuc.write(program(moves("rapid", np.zeros(6)), name=proposal))
 
 
 @pytest.mark.parametrize("name", ["a", "part_7", "x" * 36, "Hemisphere"])
 def test_names_the_controller_takes_are_in_upper_case(name):
-    assert list(fanuc.write(program(moves("rapid", np.zeros(6)), name=name))) == [f"{name.upper()}.LS"]
+    assert list(fanuc.write(program(moves("rapid", np.zeros(6)), name=name))) == [
+        f"{name.upper()}.LS"
+    ]
 
 
 def test_a_name_without_room_for_the_digits_of_its_parts_is_refused():
@@ -61,7 +65,9 @@ def test_called_programs_are_judged_by_the_same_rules():
 
 def test_remote_tcp_is_refused_with_its_reason():
     message = refusal(
-        dataclasses.replace(GOLDEN_TABLE, setup="part-on-robot"), code="REMOTE_TCP", where="program.motion"
+        dataclasses.replace(GOLDEN_TABLE, setup="part-on-robot"),
+        code="REMOTE_TCP",
+        where="program.motion",
     )
     assert "remote TCP" in message and "not understood" in message and "`motion: joint`" in message
 
@@ -72,7 +78,11 @@ def test_other_setups_and_axes_are_refused():
         code="UNSUPPORTED_SETUP",
         where="cell.setup",
     )
-    refusal(program(moves("rapid", np.zeros(5)), continuous=(False,) * 5), code="UNSUPPORTED_AXES", where="program.post")
+    refusal(
+        program(moves("rapid", np.zeros(5)), continuous=(False,) * 5),
+        code="UNSUPPORTED_AXES",
+        where="program.post",
+    )
     refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
     refusal(program(moves("rapid", [0, 0, 0, np.nan, 0, 0])), code="UNREACHABLE")
 
@@ -82,8 +92,14 @@ def test_turns_of_other_axes_than_the_last_are_refused_in_cartesian_positions(ax
     run = GOLDEN_TABLE.blocks[2]
     joints = run.joints.copy()
     joints[1, axis] = np.radians(degrees)
-    blocks = (*GOLDEN_TABLE.blocks[:2], dataclasses.replace(run, joints=joints), *GOLDEN_TABLE.blocks[3:])
-    assert f"axis {axis + 1} stands" in refusal(dataclasses.replace(GOLDEN_TABLE, blocks=blocks), code="TURN_NUMBER")
+    blocks = (
+        *GOLDEN_TABLE.blocks[:2],
+        dataclasses.replace(run, joints=joints),
+        *GOLDEN_TABLE.blocks[3:],
+    )
+    assert f"axis {axis + 1} stands" in refusal(
+        dataclasses.replace(GOLDEN_TABLE, blocks=blocks), code="TURN_NUMBER"
+    )
 
 
 @pytest.mark.parametrize(("degrees", "turn"), [
@@ -106,11 +122,17 @@ def test_cartesian_positions_of_an_arm_bent_backwards_are_refused():
 @pytest.mark.parametrize("speed", [0.04, 2000.1, np.nan])
 def test_speeds_that_cannot_be_written_are_refused(speed):
     run = dataclasses.replace(GOLDEN_TABLE.blocks[2], speed=np.array([6.0, speed]))
-    refusal(dataclasses.replace(GOLDEN_TABLE, blocks=(run,)), code="MOVE_SPEED", where="layer 0 bead 0")
+    refusal(
+        dataclasses.replace(GOLDEN_TABLE, blocks=(run,)), code="MOVE_SPEED", where="layer 0 bead 0"
+    )
 
 
 def test_the_catalogue():
     assert catalogue.load("fanuc") is fanuc and catalogue.NAMES[:2] == ("fanuc", "staubli")
     with pytest.raises(InputError) as raised:
         catalogue.load("fanuk")
-    assert raised.value.code == "UNKNOWN_POST" and "'fanuk'" in raised.value.message and "fanuc" in raised.value.message
+    assert (
+        raised.value.code == "UNKNOWN_POST"
+        and "'fanuk'" in raised.value.message
+        and "fanuc" in raised.value.message
+    )

@@ -23,7 +23,8 @@ from tests.programs import build
 
 GROUPED = early(two_groups(beads(1, 12, layers=2, max_points=8)), 0.0, name="earlygrp")
 GOLDENS = {
-    "EARLY.LS": early(with_tool(GOLDEN_JOINT)), "EARLYTAB.LS": early(GOLDEN_TABLE, 0.1, name="earlytab"),
+    "EARLY.LS": early(with_tool(GOLDEN_JOINT)),
+    "EARLYTAB.LS": early(GOLDEN_TABLE, 0.1, name="earlytab"),
     "EARLYGRP*.LS": GROUPED,
 }
 
@@ -31,7 +32,9 @@ GOLDENS = {
 @pytest.mark.parametrize("names", GOLDENS)
 def test_golden_listings_to_the_byte(root, names, assert_listings):
     files = fanuc.write(GOLDENS[names])
-    assert files == {path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob(names)}
+    assert files == {
+        path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob(names)
+    }
     if names != "EARLYGRP*.LS":  # which judges listings of one group
         assert_listings(files)
 
@@ -39,19 +42,36 @@ def test_golden_listings_to_the_byte(root, names, assert_listings):
 def test_it_stands_on_the_moves_that_end_there_as_controllers_write_it():
     of = early(with_tool(GOLDEN_JOINT))
     told = [line for line in body(fanuc.write(of)["EARLY.LS"]) if "DO[" in line]
-    assert told == ["J P[2] 2500msec FINE TB    .05sec,DO[1]=ON    ;", "J P[5] 33.0sec FINE TB    .05sec,DO[1]=OFF    ;"]
-    told = [line for line in body(fanuc.write(GOLDENS["EARLYTAB.LS"])["EARLYTAB.LS"]) if "DO[" in line]
-    assert told == ["J P[1] 10% FINE TB    .10sec,DO[7]=ON    ;", "L P[3] 6.0mm/sec FINE TB    .10sec,DO[7]=OFF    ;"]
+    assert told == [
+        "J P[2] 2500msec FINE TB    .05sec,DO[1]=ON    ;",
+        "J P[5] 33.0sec FINE TB    .05sec,DO[1]=OFF    ;",
+    ]
+    told = [
+        line for line in body(fanuc.write(GOLDENS["EARLYTAB.LS"])["EARLYTAB.LS"]) if "DO[" in line
+    ]
+    assert told == [
+        "J P[1] 10% FINE TB    .10sec,DO[7]=ON    ;",
+        "L P[3] 6.0mm/sec FINE TB    .10sec,DO[7]=OFF    ;",
+    ]
     read = fanuc.read(fanuc.write(of))
-    assert [(e.row, e.kind, *e.value, e.ahead, e.digits) for e in read.events if e.ahead is not None] == [
-        (2, "on", 1.0, "DO", 0.05, 0.005), (5, "off", 1.0, "DO", 0.05, 0.005)]
-    assert read.deposit.tolist() == fanuc.read(fanuc.write(with_tool(GOLDEN_JOINT))).deposit.tolist()
+    assert [
+        (e.row, e.kind, *e.value, e.ahead, e.digits) for e in read.events if e.ahead is not None
+    ] == [(2, "on", 1.0, "DO", 0.05, 0.005), (5, "off", 1.0, "DO", 0.05, 0.005)]
+    assert (
+        read.deposit.tolist() == fanuc.read(fanuc.write(with_tool(GOLDEN_JOINT))).deposit.tolist()
+    )
     # cut inside the beads: the output stays on, and is switched on the last move of all
     files = fanuc.write(GROUPED)
-    switched = [(name, re.findall(r"TB   0\.00sec,DO\[1\]=(ON|OFF)    ;\r", text.decode())) for name, text in files.items()]
-    assert [one for one in switched if one[1]] == [(f"EARLYGRP0{n}.LS", [word]) for n, word in (
-        (1, "ON"), (2, "OFF"), (3, "ON"), (4, "OFF"))]
-    refusal(early(GOLDEN_TABLE, 0.11), code="TRIGGER_LEAD", where="layer 0 bead 0")  # moves take 0.1 s
+    switched = [
+        (name, re.findall(r"TB   0\.00sec,DO\[1\]=(ON|OFF)    ;\r", text.decode()))
+        for name, text in files.items()
+    ]
+    assert [one for one in switched if one[1]] == [
+        (f"EARLYGRP0{n}.LS", [word]) for n, word in ((1, "ON"), (2, "OFF"), (3, "ON"), (4, "OFF"))
+    ]
+    refusal(
+        early(GOLDEN_TABLE, 0.11), code="TRIGGER_LEAD", where="layer 0 bead 0"
+    )  # moves take 0.1 s
 
 
 @pytest.mark.parametrize(("old", "new", "why"), [
@@ -72,17 +92,26 @@ def test_what_is_not_understood_is_refused(old, new, why):
 
 BARE = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
 WAYS = [
-    ("fanuc tool-on-robot", "joint", 0.0456), ("fanuc tool-on-robot", "cartesian", 0.0),
-    *(pytest.param(*way, marks=pytest.mark.long) for way in (
-        ("fanuc positioner", "joint", 0.0456), ("fanuc track and positioner", "joint", 0.02),
-        ("fanuc tool-on-robot", "joint", 0.0), ("fanuc tool-on-robot", "cartesian", 0.0456))),
+    ("fanuc tool-on-robot", "joint", 0.0456),
+    ("fanuc tool-on-robot", "cartesian", 0.0),
+    *(
+        pytest.param(*way, marks=pytest.mark.long)
+        for way in (
+            ("fanuc positioner", "joint", 0.0456),
+            ("fanuc track and positioner", "joint", 0.02),
+            ("fanuc tool-on-robot", "joint", 0.0),
+            ("fanuc tool-on-robot", "cartesian", 0.0456),
+        )
+    ),
 ]
 
 
 @functools.cache
 def made(name, kind, lead, weave=0, **more):
     cell, _, motion = planned(name)
-    parameters = ProgramParameters(post="fanuc", motion=kind, trigger=TriggerParameters(lead=lead), **more)
+    parameters = ProgramParameters(
+        post="fanuc", motion=kind, trigger=TriggerParameters(lead=lead), **more
+    )
     program = build(motion, cell, dataclasses.replace(BARE, weave=weave), parameters, "job")
     return cell, motion, program, fanuc.write(program)
 
@@ -111,19 +140,34 @@ def test_triggers_come_back_as_planned_and_none_may_be_another(name, kind, lead)
         bare, other = lines[n].replace(option, ""), "OFF" if option.endswith("ON") else "ON"
         blended = re.compile(r"(FINE|CNT\d+)(?= {4};)")
         changed = {
-            "lost": {n: bare}, "doubled": {n: lines[n].replace(option, 2 * option)},
+            "lost": {n: bare},
+            "doubled": {n: lines[n].replace(option, 2 * option)},
             "of the move before": {before: blended.sub(rf"FINE{option}", lines[before]), n: bare},
             "of the move before too": {before: blended.sub(rf"\1{option}", lines[before])},
             "of the move after": {n: bare, after: blended.sub(rf"FINE{option}", lines[after])},
             "sooner": {n: re.sub(r"TB +[\d.]+", f"TB    .{round(100 * lead + 1.1):02d}", lines[n])},
-            "later": {n: re.sub(r"TB +[\d.]+", f"TB    .{round(abs(100 * lead - 1.1)):02d}", lines[n])},
+            "later": {
+                n: re.sub(r"TB +[\d.]+", f"TB    .{round(abs(100 * lead - 1.1)):02d}", lines[n])
+            },
             "behind its end": {n: lines[n].replace(" TB ", " TA ")},
             "of another output": {n: lines[n].replace("DO[1]", "DO[2]")},
             "the other way": {n: re.sub(r"=(ON|OFF)", f"={other}", lines[n])},
             "where it stands": {n: f"{bare}\r\n   0:  {option.partition(',')[2]} ;"},
         }
-        passed = [what for what, those in changed.items() if not said(cell, motion, program, {
-            "JOB.LS": "\r\n".join(those.get(k, line) for k, line in enumerate(lines)).encode()})]
+        passed = [
+            what
+            for what, those in changed.items()
+            if not said(
+                cell,
+                motion,
+                program,
+                {
+                    "JOB.LS": "\r\n".join(
+                        those.get(k, line) for k, line in enumerate(lines)
+                    ).encode()
+                },
+            )
+        ]
         assert passed == []
 
 
@@ -132,10 +176,14 @@ def test_a_woven_bead_ends_before_its_weave_does():
     assert said(cell, motion, program, files) == set()
     for before, block in zip(program.blocks, program.blocks[1:]):
         assert not isinstance(block, DepositOff) or isinstance(before, Moves)
-        assert not isinstance(block, Weave) or isinstance(before, DepositOn if block.number else DepositOff)
+        assert not isinstance(block, Weave) or isinstance(
+            before, DepositOn if block.number else DepositOff
+        )
     lines = body(files["JOB.LS"])
     ends = [n for n, line in enumerate(lines) if line == "  Weave End ;"]
-    assert len(ends) == 6 and all(lines[n - 1].endswith("FINE TB    .05sec,DO[1]=OFF    ;") for n in ends)
+    assert len(ends) == 6 and all(
+        lines[n - 1].endswith("FINE TB    .05sec,DO[1]=OFF    ;") for n in ends
+    )
 
 
 def test_parts_rests_and_dry_runs_tell_it_as_the_whole_does():
@@ -151,23 +199,37 @@ def test_parts_rests_and_dry_runs_tell_it_as_the_whole_does():
     first = len(whole.deposit) - len(rest.deposit)
     assert first > 0 and not rows_from(motion, start).all()
     told = [(e.row, e.kind, e.value, e.ahead) for e in rest.events if e.kind in ("on", "off")]
-    assert told == [(e.row - first, e.kind, e.value, e.ahead) for e in whole.events if e.ahead is not None and e.row > first]
+    assert told == [
+        (e.row - first, e.kind, e.value, e.ahead)
+        for e in whole.events
+        if e.ahead is not None and e.row > first
+    ]
     assert len(told) == 6
     dry = made(*way, dry_run=True)
     assert said(*dry) == set() and b" TB " not in dry[3]["JOB.LS"]
-    plain = build(motion, cell, BARE, ProgramParameters(post="fanuc", motion="joint", dry_run=True), "job")
+    plain = build(
+        motion, cell, BARE, ProgramParameters(post="fanuc", motion="joint", dry_run=True), "job"
+    )
     assert dry[3] == fanuc.write(plain)
 
 
 def test_what_waits_keeps_a_line_of_its_own():
     cell, _, motion = planned("fanuc tool-on-robot")
-    parameters = ProgramParameters(post="fanuc", motion="joint", trigger=TriggerParameters(lead=0.05))
-    for process, on, off in (({"lead_on": 0.3, "lead_off": 0.0}, 0, 6), ({"lead_on": 0.0, "lead_off": 0.2}, 6, 0),
-                             ({"lead_on": 0.0, "lead_off": 0.0, "schedule": 4}, 0, 6)):
+    parameters = ProgramParameters(
+        post="fanuc", motion="joint", trigger=TriggerParameters(lead=0.05)
+    )
+    for process, on, off in (
+        ({"lead_on": 0.3, "lead_off": 0.0}, 0, 6),
+        ({"lead_on": 0.0, "lead_off": 0.2}, 6, 0),
+        ({"lead_on": 0.0, "lead_off": 0.0, "schedule": 4}, 0, 6),
+    ):
         program = build(motion, cell, dataclasses.replace(PROCESS, **process), parameters, "job")
         files = fanuc.write(program)
         assert said(cell, motion, program, files) == set()
         lines = body(files["JOB.LS"])
-        told = [sum(line.endswith(f" TB    .05sec,DO[1]={word}    ;") for line in lines) for word in ("ON", "OFF")]
+        told = [
+            sum(line.endswith(f" TB    .05sec,DO[1]={word}    ;") for line in lines)
+            for word in ("ON", "OFF")
+        ]
         assert told == [on, off]
         assert [lines.count(f"  DO[1]={word} ;") for word in ("ON", "OFF")] == [6 - on, 6 - off]

@@ -31,7 +31,9 @@ from tests.posts.test_matrix import OF_ROBOTS, ON_TABLES, REFUSED, SETUPS
 PART, TOOL, BOTH, TABLE = "part-on-robot", "tool-on-robot", "track and positioner", "rotary-table"
 GROUPED = test_fanuc.two_groups(beads(1, 12, layers=2, max_points=20))
 FANUC, ABB, KUKA, YASKAWA, STAUBLI, UR = (
-    module.GOLDENS for module in (test_fanuc, test_abb, test_kuka, test_yaskawa, test_staubli, test_ur))
+    module.GOLDENS
+    for module in (test_fanuc, test_abb, test_kuka, test_yaskawa, test_staubli, test_ur)
+)
 # of what is written: a program and its golden files, by their names in a folder of tests/golden
 GOLDENS = {
     ("fanuc", "joint", PART): (FANUC["joint"], "", "JOINT*.LS"),
@@ -73,8 +75,14 @@ GOLDENS = {
 EARLY = test_fanuc_trigger.GOLDENS
 # the same with an option
 OPTIONAL = {
-    **{("fanuc", motion, setup, "trigger"): (EARLY[names], "fanuc", names) for motion, setup, names in (
-        ("joint", TOOL, "EARLY.LS"), ("cartesian", TOOL, "EARLYTAB.LS"), ("joint", "positioner", "EARLYGRP*.LS"))},
+    **{
+        ("fanuc", motion, setup, "trigger"): (EARLY[names], "fanuc", names)
+        for motion, setup, names in (
+            ("joint", TOOL, "EARLY.LS"),
+            ("cartesian", TOOL, "EARLYTAB.LS"),
+            ("joint", "positioner", "EARLYGRP*.LS"),
+        )
+    },
     ("kuka", "cartesian", TOOL, "trigger"): (KUKA["trigger"], "kuka/trigger", "*"),
     ("abb", "cartesian", TOOL, "trigger"): (test_abb_process.GOLDENS["ahead"], "abb/ahead", "*"),
 }
@@ -89,7 +97,11 @@ NO_DAMAGE = {("linuxcnc", "cartesian", TABLE): "the kinematics kept"}
 
 def golden_files(root, folder, names):
     at = root / "tests/golden" / folder
-    return {path.relative_to(at).as_posix(): path.read_bytes() for path in at.glob(names) if path.is_file()}
+    return {
+        path.relative_to(at).as_posix(): path.read_bytes()
+        for path in at.glob(names)
+        if path.is_file()
+    }
 
 
 def column(of, name):
@@ -114,14 +126,22 @@ def test_golden_files_are_what_is_written_and_come_back_as_its_numbers(root, cel
     deposit = np.repeat([run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves])
     assert read.deposit.tolist() == deposit.tolist()
     # moves onto beads on which an ABB switches the deposit are linear ones too
-    straight = np.repeat([run.interpolation == "linear" for run in of.moves], [len(run) for run in of.moves])
+    straight = np.repeat(
+        [run.interpolation == "linear" for run in of.moves], [len(run) for run in of.moves]
+    )
     linear = (deposit | straight) & (motion == "cartesian")
     assert read.linear.tolist() == linear.tolist()
-    slides = np.array([*(False,) * (joints.shape[1] - len(of.external_kinds)), *(
-        kind == "linear" for kind in of.external_kinds)])
+    slides = np.array(
+        [
+            *(False,) * (joints.shape[1] - len(of.external_kinds)),
+            *(kind == "linear" for kind in of.external_kinds),
+        ]
+    )
     if setup == TABLE:
         slides[:3] = True
-    by_joints = ~linear if motion == "cartesian" and post != "yaskawa" else np.ones(len(joints), bool)
+    by_joints = (
+        ~linear if motion == "cartesian" and post != "yaskawa" else np.ones(len(joints), bool)
+    )
     if read.joints is None:
         assert (post, motion) == ("fanuc", "cartesian") or post == "ur"
     else:
@@ -135,12 +155,15 @@ def test_golden_files_are_what_is_written_and_come_back_as_its_numbers(root, cel
         assert told.all()  # external axes at every move
     # texts of URScript and VAL 3, and of ABB with the part on the robot, tell positions in frames of their own
     if motion == "cartesian" and post != "yaskawa" and (post, setup) not in OWN_FRAMES:
-        apart = read.position[deposit] - np.concatenate([run.position for run in of.moves if run.kind == "deposit"])
+        apart = read.position[deposit] - np.concatenate(
+            [run.position for run in of.moves if run.kind == "deposit"]
+        )
         assert np.abs(apart).max() <= read.position_digits + 1e-9
 
 
 def told(read):
     """All that a reader found of the motion, to be compared: damage that moves its lines alone changes nothing."""
+
     def plain(value):
         if dataclasses.is_dataclass(value):
             return tuple(plain(getattr(value, field.name)) for field in dataclasses.fields(value))
@@ -158,7 +181,9 @@ def test_damaged_golden_files_are_not_read_as_the_same(root, cell):
     whole, passed, tried = told(post.read(files)), [], set()
     more = TRIGGERS.get(cell[0], {}) if cell in OPTIONAL else {}
     for kind, (pattern, change) in (KINDS[cell[0]] | more).items():
-        damaged = mutated(files, pattern, change, np.random.default_rng(zlib.crc32(repr((cell, kind)).encode())))
+        damaged = mutated(
+            files, pattern, change, np.random.default_rng(zlib.crc32(repr((cell, kind)).encode()))
+        )
         if damaged is None or NO_DAMAGE.get(cell) == kind:
             continue
         tried.add(kind)

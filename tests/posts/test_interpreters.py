@@ -12,8 +12,12 @@ from freecad_am.posts.siemens import post as siemens
 from tests.posts.interpreters import nc_python, rs274, run_nc, run_rs274
 from tests.posts.nc_programs import deposit_of, random_program, with_options
 
-linuxcnc_is_here = pytest.mark.skipif(rs274() is None, reason="no rs274 of LinuxCNC: `./freecad-am test` fetches it")
-sinumerik_is_here = pytest.mark.skipif(nc_python() is None, reason="no nc-gcode-interpreter: `./freecad-am test` fetches it")
+linuxcnc_is_here = pytest.mark.skipif(
+    rs274() is None, reason="no rs274 of LinuxCNC: `./freecad-am test` fetches it"
+)
+sinumerik_is_here = pytest.mark.skipif(
+    nc_python() is None, reason="no nc-gcode-interpreter: `./freecad-am test` fetches it"
+)
 LETTERS = "XYZABC"
 # half of the last digit of a word, and what the interpreter of 0.1.9 loses, which counts in single precision
 HALF, SINGLE = 5e-6 + 1e-9, 1.2e-7
@@ -27,9 +31,13 @@ def wanted(of):
     """(n, 6) X Y Z mm, A B C deg of all moves as LinuxCNC is to take them, 0 for axes that are not there."""
     joints, values = columns(of, "joints"), np.zeros((len(columns(of, "joints")), 6))
     for column, name in enumerate(of.axis_names):
-        values[:, LETTERS.index(name)] = joints[:, column] if name in "XYZ" else np.degrees(joints[:, column])
+        values[:, LETTERS.index(name)] = (
+            joints[:, column] if name in "XYZ" else np.degrees(joints[:, column])
+        )
     if of.motion == "cartesian":
-        deposit = np.repeat([run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves])
+        deposit = np.repeat(
+            [run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves]
+        )
         values[deposit, :3] = columns(of, "position")[deposit]
     return values
 
@@ -42,7 +50,9 @@ def wires(of):
 
 @linuxcnc_is_here
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
+@pytest.mark.parametrize(
+    ("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)]
+)
 def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
     names = (("X", "Y", "Z", "A", "C"), ("X", "Y", "Z", "B", "C"))[seed % 2]
     of = random_program(seed, motion, seed % 3 == 0, names, wire=seed % 2 == 0, deposit_output=4)
@@ -50,7 +60,9 @@ def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
     moves, complaints = run_rs274(tmp_path, linuxcnc.write(of), "random.ngc", 250.0)
     assert not complaints and not any(move["rapid"] for move in moves)
     at = np.array([move["at"] for move in moves])
-    assert np.abs(at - wanted(of)).max() <= 5e-6 + 5e-5 + 1e-9  # of the text, and of what rs274 prints
+    assert (
+        np.abs(at - wanted(of)).max() <= 5e-6 + 5e-5 + 1e-9
+    )  # of the text, and of what rs274 prints
     assert [move["deposit"] for move in moves] == deposit_of(of)
     for move, wire, first in zip(moves, *wires(of), strict=True):
         if np.isfinite(wire):
@@ -62,12 +74,22 @@ def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
     assert [move["kinematics"] for move in moves] == [428 if on else 429 for on in tip]
     assert [move["offset"] for move in moves] == [of.user_frame if on else 9 for on in tip]
     seconds, planned = np.array([move["seconds"] for move in moves]), columns(of, "duration")
-    way, feeds = np.array([move["way"] for move in moves]), np.array([move["feed"] for move in moves])
+    way, feeds = (
+        np.array([move["way"] for move in moves]),
+        np.array([move["feed"] for move in moves]),
+    )
     steps = np.abs(np.diff(np.round(wanted(of), 5), axis=0, prepend=0.0))
     slides = np.linalg.norm(steps[:, :3], axis=1)
     # rs274 prints four decimals: too few of short ways and small feeds
-    told = (way > 0.05) & (feeds > 0.01) & ((slides > 0.05) | (slides == 0.0)) & (np.arange(len(moves)) > 0)
-    off = np.abs(seconds / planned - 1.0) - (2e-4 / np.maximum(way, 1e-9) + 1e-4 / np.maximum(feeds, 1e-9))
+    told = (
+        (way > 0.05)
+        & (feeds > 0.01)
+        & ((slides > 0.05) | (slides == 0.0))
+        & (np.arange(len(moves)) > 0)
+    )
+    off = np.abs(seconds / planned - 1.0) - (
+        2e-4 / np.maximum(way, 1e-9) + 1e-4 / np.maximum(feeds, 1e-9)
+    )
     if motion == "cartesian":
         speed = columns(of, "speed")
         assert (np.abs(feeds / 60.0 - speed) / (1e-6 * speed + 1e-6))[tip].max() < 1.0
@@ -81,7 +103,7 @@ def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
 ])  # fmt: skip
 def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
     """The judge is one: it refuses texts that are not programs."""
-    (name, content), = linuxcnc.write(random_program(1, max_points=10**5)).items()
+    ((name, content),) = linuxcnc.write(random_program(1, max_points=10**5)).items()
     text = re.sub(damage[0], damage[1], content.decode(), count=0)
     assert text != content.decode()
     assert run_rs274(tmp_path, {name: text.encode()}, name)[1]
@@ -89,7 +111,9 @@ def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
 
 @sinumerik_is_here
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
+@pytest.mark.parametrize(
+    ("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)]
+)
 @pytest.mark.always
 def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
     continuous = seed % 2 == 1
@@ -98,34 +122,55 @@ def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
     files = siemens.write(of)
     rows, places, names = {}, [], set()
     order = sorted(files)  # the parts are called in the order of their names
-    for file, (found, calls, complaint) in zip(order, run_nc([files[file].decode() for file in order]), strict=True):
+    for file, (found, calls, complaint) in zip(
+        order, run_nc([files[file].decode() for file in order]), strict=True
+    ):
         assert not complaint
         names |= set(calls)
         for row in found:
             rows.setdefault((file, row["N"]), row)
-        places += [(file, int(number)) for number in re.findall(r"\nN(\d+) .*G1 ", files[file].decode())]
+        places += [
+            (file, int(number)) for number in re.findall(r"\nN(\d+) .*G1 ", files[file].decode())
+        ]
     assert names <= {"CLEAN", *(file.removesuffix(".SPF") for file in files)}
     joints, deposit = columns(of, "joints"), np.array(deposit_of(of))
     tip = deposit & (motion == "cartesian")
     assert len(places) == len(joints)
     for place, axes, is_tip, position, run_on, wire, stops in zip(
-        places, joints, tip, columns(of, "position") if motion == "cartesian" else joints, deposit, wires(of)[0],
-        columns(of, "stops"), strict=True,
+        places,
+        joints,
+        tip,
+        columns(of, "position") if motion == "cartesian" else joints,
+        deposit,
+        wires(of)[0],
+        columns(of, "stops"),
+        strict=True,
     ):
         row = rows[place]
         assert np.isnan(wire) or row["O7"] == pytest.approx(0.15 * wire, rel=5.1e-5)
         if is_tip:
-            assert np.all(np.abs([row[name] for name in "XYZ"] - position) <= HALF + SINGLE * np.abs(position))
+            assert np.all(
+                np.abs([row[name] for name in "XYZ"] - position) <= HALF + SINGLE * np.abs(position)
+            )
             assert math.hypot(row["A3"], row["B3"], row["C3"]) == pytest.approx(1.0, abs=2e-6)
         else:
-            assert np.all(np.abs([row[name] for name in "XYZ"] - axes[:3]) <= HALF + SINGLE * np.abs(axes[:3]))
+            assert np.all(
+                np.abs([row[name] for name in "XYZ"] - axes[:3]) <= HALF + SINGLE * np.abs(axes[:3])
+            )
             apart = np.array([row["A"], row["C"]]) - np.degrees(axes[3:])
             apart[1] -= 360.0 * np.rint(apart[1] / 360.0) * continuous
             assert np.abs(apart).max() <= HALF + 360.0 * SINGLE
-        assert (row["gg01_motion"], row["gg07_tool_radius"], row["gg06_plane_select"]) == ("G1", "G40", "G17")
+        assert (row["gg01_motion"], row["gg07_tool_radius"], row["gg06_plane_select"]) == (
+            "G1",
+            "G40",
+            "G17",
+        )
         assert row["gg08_work_offset"] == (siemens._offset(of.user_frame) if is_tip else "G500")
         assert (row.get("H4") == 1.0) == run_on
-        assert (row["gg10_exact_stop_mode"], row["gg11_exact_stop_non_modal"] == "G9") == ("G642", stops)
+        assert (row["gg10_exact_stop_mode"], row["gg11_exact_stop_non_modal"] == "G9") == (
+            "G642",
+            stops,
+        )
 
 
 @sinumerik_is_here
@@ -134,8 +179,17 @@ def test_a_sinumerik_refuses_what_is_wrong():
     text = content.decode()
     damages = (("; layer", "( layer"), ("G4 F", "G4 F=)"), ("ENDWHILE", ""), ("G1 X", "G1 X=1,5 Y"))
     assert all(old in text for old, _ in damages)
-    answers = run_nc([text, *(text.replace(*damage) for damage in damages), "N10 TRAFOOFF\nN20 M30\n"])
-    assert [bool(complaint) for _, _, complaint in answers] == [False, True, True, True, True, False]
+    answers = run_nc(
+        [text, *(text.replace(*damage) for damage in damages), "N10 TRAFOOFF\nN20 M30\n"]
+    )
+    assert [bool(complaint) for _, _, complaint in answers] == [
+        False,
+        True,
+        True,
+        True,
+        True,
+        False,
+    ]
     assert answers[-1][1] == ["TRAFOOFF"]
 
 

@@ -51,15 +51,28 @@ INSTRUCTIONS = [
 def moves(kind, degrees, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
     degrees = np.atleast_2d(np.asarray(degrees, float))
     duration = np.broadcast_to(np.asarray(duration, float), len(degrees)).copy()
-    return Moves(kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), speed), **extra)
+    return Moves(
+        kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), speed), **extra
+    )
 
 
 def laid(points, layer=0, bead=0, speed=6.0, duration=0.25):
     """A bead of so many points in linear moves, the tool turning all ways."""
     k = np.arange(points)[:, None]
-    turns = Rotation.from_euler("ZYX", np.hstack([10.0 * k, 3.0 * k - 20.0, 179.0 + k]), degrees=True).as_matrix()
-    return moves("deposit", 0.1 * k + np.full(6, 0.1), duration, layer, bead, speed, interpolation="linear", rotation=turns,
-                 position=np.hstack([1.5 * k, 0.25 + 0.0 * k, 5.0 - 0.1 * k]))
+    turns = Rotation.from_euler(
+        "ZYX", np.hstack([10.0 * k, 3.0 * k - 20.0, 179.0 + k]), degrees=True
+    ).as_matrix()
+    return moves(
+        "deposit",
+        0.1 * k + np.full(6, 0.1),
+        duration,
+        layer,
+        bead,
+        speed,
+        interpolation="linear",
+        rotation=turns,
+        position=np.hstack([1.5 * k, 0.25 + 0.0 * k, 5.0 - 0.1 * k]),
+    )
 
 
 def program(*blocks, name="part", **options):
@@ -99,16 +112,26 @@ def assert_modules(files):
         assert text.count("\n") == text.count("\r\n") and text.endswith("\r\nEND\r\n")
         assert text.startswith(f"&ACCESS RVP\r\n&REL 1\r\nDEF {file.removesuffix('.src')}()\r\n")
         told = lines(files, file)
-        assert not [line for line in told if not any(re.fullmatch(pattern, line) for pattern in INSTRUCTIONS)]
+        assert not [
+            line
+            for line in told
+            if not any(re.fullmatch(pattern, line) for pattern in INSTRUCTIONS)
+        ]
         moving = [n for n, line in enumerate(told) if line.startswith(("PTP", "LIN"))]
         for n in moving:
             before = "\n".join(told[:n])
-            assert all(word in before for word in ("INITMOV", "#BASE,", "#TOOL,", "IPO_MODE", "ORI_TYPE"))
+            assert all(
+                word in before for word in ("INITMOV", "#BASE,", "#TOOL,", "IPO_MODE", "ORI_TYPE")
+            )
             assert ("VEL_PTP" if told[n].startswith("PTP") else "$VEL.CP") in before
             calls = (";", "$VEL", "$APO", "BAS", "TRIGGER", "ArcMainNG")
             after = next(line for line in told[n + 1 :] if not line.startswith(calls))
-            assert not told[n].endswith("C_DIS") or (after.startswith("LIN") and "$APO.CDIS" in before)
-            assert after.startswith(("PTP", "LIN", "WAIT"))  # outputs and calls come where the robot stands
+            assert not told[n].endswith("C_DIS") or (
+                after.startswith("LIN") and "$APO.CDIS" in before
+            )
+            assert after.startswith(
+                ("PTP", "LIN", "WAIT")
+            )  # outputs and calls come where the robot stands
 
 
 JOB = program(
@@ -125,12 +148,28 @@ def beside(of, **more):
     count, blocks = 0, []
     for block in of.blocks:
         if isinstance(block, Moves):
-            turned = np.radians(np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25])
-            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
+            turned = np.radians(
+                np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25]
+            )
+            count, block = (
+                count + len(block),
+                dataclasses.replace(block, joints=np.hstack([block.joints, turned])),
+            )
         blocks.append(block)
-    return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "dome", "continuous": (False,) * 8, "max_speed": NOMINAL + tuple(np.radians([80.0, 160.0])),
-        "external_kinds": ("rotary", "rotary"), "unit": "3", "first_external": 2, "station": (0, 0, 20, 0, 0, 0), **more})
+    return dataclasses.replace(
+        of,
+        blocks=tuple(blocks),
+        **{
+            "name": "dome",
+            "continuous": (False,) * 8,
+            "max_speed": NOMINAL + tuple(np.radians([80.0, 160.0])),
+            "external_kinds": ("rotary", "rotary"),
+            "unit": "3",
+            "first_external": 2,
+            "station": (0, 0, 20, 0, 0, 0),
+            **more,
+        },
+    )
 
 
 def along(of, **more):
@@ -139,12 +178,25 @@ def along(of, **more):
     for block in of.blocks:
         if isinstance(block, Moves):
             slid = 12.5 * (count + np.arange(len(block)))[:, None] - 900.125
-            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, slid]))
+            count, block = (
+                count + len(block),
+                dataclasses.replace(block, joints=np.hstack([block.joints, slid])),
+            )
         blocks.append(block)
-    return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "rail", "continuous": (False,) * 7, "max_speed": (*NOMINAL, 2500.0), "external_kinds": ("linear",),
-        "unit": "",
-        "first_external": 1, "station": (1200, 0, 20, 0, 0, 0), **more})
+    return dataclasses.replace(
+        of,
+        blocks=tuple(blocks),
+        **{
+            "name": "rail",
+            "continuous": (False,) * 7,
+            "max_speed": (*NOMINAL, 2500.0),
+            "external_kinds": ("linear",),
+            "unit": "",
+            "first_external": 1,
+            "station": (1200, 0, 20, 0, 0, 0),
+            **more,
+        },
+    )
 
 
 def both(of, **more):
@@ -153,11 +205,22 @@ def both(of, **more):
     for block in of.blocks:
         if isinstance(block, Moves):
             slid = 12.5 * (count + np.arange(len(block))) - 900.125
-            count, block = count + len(block), dataclasses.replace(block, joints=np.insert(block.joints, 6, slid, axis=1))
+            count, block = (
+                count + len(block),
+                dataclasses.replace(block, joints=np.insert(block.joints, 6, slid, axis=1)),
+            )
         blocks.append(block)
-    return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "both", "continuous": (False,) * 9, "max_speed": (*NOMINAL, 2500.0, *np.radians([80.0, 160.0])),
-        "external_kinds": ("linear", "rotary", "rotary"), **more})
+    return dataclasses.replace(
+        of,
+        blocks=tuple(blocks),
+        **{
+            "name": "both",
+            "continuous": (False,) * 9,
+            "max_speed": (*NOMINAL, 2500.0, *np.radians([80.0, 160.0])),
+            "external_kinds": ("linear", "rotary", "rotary"),
+            **more,
+        },
+    )
 
 
 def lit(of, **more):
@@ -166,8 +229,17 @@ def lit(of, **more):
     for n in range(len(blocks) - 2, -1, -1):  # from behind, for more blocks come
         if isinstance(blocks[n], DepositOn):
             first, before = blocks[n + 1], blocks[n - 1]
-            onto = moves("rapid", np.degrees(before.joints[-1:]) + 0.01, 0.2, before.layer, before.bead, 100.0,
-                         interpolation="linear", position=first.position[:1] - [1.5, 0.0, 0.0], rotation=first.rotation[:1])
+            onto = moves(
+                "rapid",
+                np.degrees(before.joints[-1:]) + 0.01,
+                0.2,
+                before.layer,
+                before.bead,
+                100.0,
+                interpolation="linear",
+                position=first.position[:1] - [1.5, 0.0, 0.0],
+                rotation=first.rotation[:1],
+            )
             blocks.insert(n, onto)
     for n, block in enumerate(blocks):
         if isinstance(block, DepositOn):
@@ -179,16 +251,25 @@ def lit(of, **more):
 
 def early(of, ahead=0.12, **more):
     """The same with the deposit switched on the moves themselves."""
-    blocks = [dataclasses.replace(block, lead=0.0, ahead=ahead) if isinstance(block, (DepositOn, DepositOff)) else block
-              for block in of.blocks]
+    blocks = [
+        dataclasses.replace(block, lead=0.0, ahead=ahead)
+        if isinstance(block, (DepositOn, DepositOff))
+        else block
+        for block in of.blocks
+    ]
     return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "early", **more})
 
 
 GOLDENS = {
-    "trigger": early(JOB), "triggers": early(JOB, 0.0, max_points=5, name="earlies"),
-    "arc": lit(JOB), "arcparts": lit(JOB, max_points=5, blend=50, name="arcs"),
-    "whole": JOB, "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup"), "positioner": beside(JOB),
-    "track": along(JOB), "both": both(JOB),
+    "trigger": early(JOB),
+    "triggers": early(JOB, 0.0, max_points=5, name="earlies"),
+    "arc": lit(JOB),
+    "arcparts": lit(JOB, max_points=5, blend=50, name="arcs"),
+    "whole": JOB,
+    "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup"),
+    "positioner": beside(JOB),
+    "track": along(JOB),
+    "both": both(JOB),
 }
 
 
@@ -203,8 +284,13 @@ def test_golden_modules_to_the_byte(root, name):
 def test_a_track_carries_the_robot_and_the_base_stands():
     of = along(JOB)
     read, joints = kuka.read(kuka.write(of)), np.concatenate([moves.joints for moves in of.moves])
-    assert np.array_equal(read.joints[:, 6], joints[:, 6]) and np.isnan(read.joints[read.linear, :6]).all()
-    np.testing.assert_allclose(read.joints[~read.linear, :6], joints[~read.linear, :6], rtol=0.0, atol=1e-6)
+    assert (
+        np.array_equal(read.joints[:, 6], joints[:, 6])
+        and np.isnan(read.joints[read.linear, :6]).all()
+    )
+    np.testing.assert_allclose(
+        read.joints[~read.linear, :6], joints[~read.linear, :6], rtol=0.0, atol=1e-6
+    )
     assert (read.unit, read.first_external, read.linear_digits) == ("", 1, 0.00005)
     text = kuka.write(of)["rail.src"].decode()
     assert "EK(" not in text and "E1 is the track in mm" in text and "$VEL_EXTAX[1]=100" in text
@@ -218,24 +304,47 @@ def test_a_track_and_a_positioner_are_told_together():
     of = both(JOB)
     files = kuka.write(of)
     read, joints = kuka.read(files), np.concatenate([moves.joints for moves in of.moves])
-    assert np.array_equal(read.joints[:, 6], joints[:, 6]) and np.isnan(read.joints[read.linear, :6]).all()
+    assert (
+        np.array_equal(read.joints[:, 6], joints[:, 6])
+        and np.isnan(read.joints[read.linear, :6]).all()
+    )
     np.testing.assert_allclose(read.joints[:, 7:], joints[:, 7:], rtol=0.0, atol=1e-6)
     assert (read.unit, read.first_external, read.linear_digits) == ("3", 2, 0.00005)
     text = files["both.src"].decode()
-    assert "EK(MACHINE_DEF[3].ROOT" in text and "E2 is the track in mm" in text and "the base of MACHINE_DEF[3]" in text
+    assert (
+        "EK(MACHINE_DEF[3].ROOT" in text
+        and "E2 is the track in mm" in text
+        and "the base of MACHINE_DEF[3]" in text
+    )
     with pytest.raises(InputError):
-        kuka.read({"both.src": text.replace("; E2 is the track in mm", "; E5 is the track in mm").encode()})
+        kuka.read(
+            {
+                "both.src": text.replace(
+                    "; E2 is the track in mm", "; E5 is the track in mm"
+                ).encode()
+            }
+        )
     refusal(both(JOB, unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_random_programs_come_back_to_their_digits(random_application, seed):
     of = random_application(seed, "cartesian", "tool-on-robot", max_points=60)
-    of = dataclasses.replace(of, tool_frame=4, blocks=tuple(
-        # rapids that whole percents can say
-        dataclasses.replace(
-            b, joints=np.cumsum(np.full(b.joints.shape, 0.1), axis=0) + 0.01 * n, duration=np.full(len(b), 0.3))
-        if isinstance(b, Moves) and b.kind == "rapid" else b for n, b in enumerate(of.blocks)))
+    of = dataclasses.replace(
+        of,
+        tool_frame=4,
+        blocks=tuple(
+            # rapids that whole percents can say
+            dataclasses.replace(
+                b,
+                joints=np.cumsum(np.full(b.joints.shape, 0.1), axis=0) + 0.01 * n,
+                duration=np.full(len(b), 0.3),
+            )
+            if isinstance(b, Moves) and b.kind == "rapid"
+            else b
+            for n, b in enumerate(of.blocks)
+        ),
+    )
     of = dataclasses.replace(of, max_speed=(40.0,) * 6)
     files = kuka.write(of)
     assert_modules(files)
@@ -243,28 +352,55 @@ def test_random_programs_come_back_to_their_digits(random_application, seed):
     straight = np.concatenate([np.full(len(each), each.interpolation == "linear") for each in run])
     np.testing.assert_array_equal(read.linear, straight)
     joints = np.concatenate([each.joints for each in run])
-    np.testing.assert_allclose(read.joints[~straight], joints[~straight], rtol=0.0, atol=read.digits + 1e-12)
-    place, turn = (np.concatenate([getattr(each, name) for each in run])[straight] for name in ("position", "rotation"))
+    np.testing.assert_allclose(
+        read.joints[~straight], joints[~straight], rtol=0.0, atol=read.digits + 1e-12
+    )
+    place, turn = (
+        np.concatenate([getattr(each, name) for each in run])[straight]
+        for name in ("position", "rotation")
+    )
     np.testing.assert_allclose(read.position[straight], place, rtol=0.0, atol=5.01e-4)
     np.testing.assert_allclose(read.rotation[straight], turn, rtol=0.0, atol=4e-6)
-    np.testing.assert_allclose(read.speed[straight], np.concatenate([each.speed for each in run])[straight], atol=5.1e-4)
+    np.testing.assert_allclose(
+        read.speed[straight], np.concatenate([each.speed for each in run])[straight], atol=5.1e-4
+    )
     np.testing.assert_array_equal(read.deposit, straight)
-    assert set(read.user_frame) == {of.user_frame} and set(read.tool_frame) == {4} and read.share[0] == 0.1
+    assert (
+        set(read.user_frame) == {of.user_frame}
+        and set(read.tool_frame) == {4}
+        and read.share[0] == 0.1
+    )
 
 
 def test_parts_are_the_program_hold_whole_beads_and_their_sum_is_told():
-    whole, files = kuka.read(kuka.write(beads(3, 20, layers=2))), kuka.write(beads(3, 20, layers=2, max_points=50))
+    whole, files = (
+        kuka.read(kuka.write(beads(3, 20, layers=2))),
+        kuka.write(beads(3, 20, layers=2, max_points=50)),
+    )
     assert_modules(files)
     # each file ends with a standstill of no time
-    whole, cut = (dataclasses.replace(read, events=tuple(e for e in read.events if (e.kind, e.value) != ("wait", (0.0,))))
-                  for read in (whole, kuka.read(files)))
+    whole, cut = (
+        dataclasses.replace(
+            read, events=tuple(e for e in read.events if (e.kind, e.value) != ("wait", (0.0,)))
+        )
+        for read in (whole, kuka.read(files))
+    )
     for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
-        if field.name == "rotation":  # sines may differ in their last bit by where they stand in memory
+        if (
+            field.name == "rotation"
+        ):  # sines may differ in their last bit by where they stand in memory
             np.testing.assert_allclose(cut.rotation, whole.rotation, rtol=0.0, atol=1e-15)
         else:
-            np.testing.assert_array_equal(getattr(cut, field.name), getattr(whole, field.name), field.name)
+            np.testing.assert_array_equal(
+                getattr(cut, field.name), getattr(whole, field.name), field.name
+            )
     total = sum(len(content) for name, content in files.items() if name != "part.src")
-    assert lines(files, "part.src")[-4:] == [f"; 3 parts of {total} bytes in all", "part01()", "part02()", "part03()"]
+    assert lines(files, "part.src")[-4:] == [
+        f"; 3 parts of {total} bytes in all",
+        "part01()",
+        "part02()",
+        "part03()",
+    ]
     assert all(lines(files, f"part0{n}.src").count("$OUT[1]=TRUE") == 2 for n in (1, 2, 3))
     longer = kuka.write(beads(2, 25, max_points=20))
     assert_modules(longer)
@@ -274,31 +410,57 @@ def test_parts_are_the_program_hold_whole_beads_and_their_sum_is_told():
 def test_a_dry_run_moves_the_same_and_switches_nothing():
     files, dry = kuka.write(JOB), kuka.write(dataclasses.replace(JOB, dry_run=True))
     assert b"$OUT" not in dry["Job.src"] and b"; dry run: no deposit" in dry["Job.src"]
-    moving = [[line for line in lines(f, "Job.src") if line.startswith(("PTP", "LIN", "$VEL"))] for f in (files, dry)]
+    moving = [
+        [line for line in lines(f, "Job.src") if line.startswith(("PTP", "LIN", "$VEL"))]
+        for f in (files, dry)
+    ]
     assert moving[0] == moving[1] and len(moving[0]) > 8
 
 
 def test_speeds_and_corners():
     told = lines(kuka.write(JOB), "Job.src")
     # axis 6 turns by 5 deg in 0.8 s, of 615 deg/s; then axis 2 by 90.3 in 1 s, of 156
-    assert [line for line in told if "VEL_PTP" in line] == [f"BAS(#VEL_PTP,{share})" for share in (10, 1, 58)]
+    assert [line for line in told if "VEL_PTP" in line] == [
+        f"BAS(#VEL_PTP,{share})" for share in (10, 1, 58)
+    ]
     assert [line for line in told if "VEL.CP" in line] == ["$VEL.CP=0.006000", "$VEL.CP=0.007500"]
-    assert [line for line in told if "CDIS" in line] == ["$APO.CDIS=0.750", "$APO.CDIS=0.937"]  # half of 0.25 s
-    assert not [line for line in lines(kuka.write(dataclasses.replace(JOB, blend=0)), "Job.src") if "DIS" in line]
-    fast, slow = (program(moves("rapid", np.zeros(6)), moves("rapid", [0, 0, step, 0, 0, 0], 1.0)) for step in (160.0, 0.7))
+    assert [line for line in told if "CDIS" in line] == [
+        "$APO.CDIS=0.750",
+        "$APO.CDIS=0.937",
+    ]  # half of 0.25 s
+    assert not [
+        line
+        for line in lines(kuka.write(dataclasses.replace(JOB, blend=0)), "Job.src")
+        if "DIS" in line
+    ]
+    fast, slow = (
+        program(moves("rapid", np.zeros(6)), moves("rapid", [0, 0, step, 0, 0, 0], 1.0))
+        for step in (160.0, 0.7)
+    )
     assert "103 %" in refusal(fast, code="JOINT_SPEED", where="layer 0 bead 0")
     assert "0.449 %" in refusal(slow, code="JOINT_SPEED")
-    short = program(moves("rapid", np.zeros(6)), moves("rapid", [0, 0, 0.03, 0, 0, 0], 0.05))  # 0.385 % for the least time
+    short = program(
+        moves("rapid", np.zeros(6)), moves("rapid", [0, 0, 0.03, 0, 0, 0], 0.05)
+    )  # 0.385 % for the least time
     assert [line for line in lines(kuka.write(short), "part.src") if "VEL_PTP" in line] == [
-        f"BAS(#VEL_PTP,{share})" for share in (10, 1)]
+        f"BAS(#VEL_PTP,{share})" for share in (10, 1)
+    ]
     for speed in (0.004, 1e6, np.nan):
-        refusal(program(moves("rapid", np.zeros(6)), laid(3, 2, 1, speed)), code="MOVE_SPEED", where="layer 2 bead 1")
+        refusal(
+            program(moves("rapid", np.zeros(6)), laid(3, 2, 1, speed)),
+            code="MOVE_SPEED",
+            where="layer 2 bead 1",
+        )
 
 
 def test_frames_are_told_as_the_pendant_takes_them():
     told = lines(kuka.write(JOB), "Job.src")
     assert "BAS(#BASE,2)" in told and "BAS(#TOOL,1)" in told
-    values = {line.split()[1]: [float(value) for value in line.split()[3::2]] for line in told if line[6:9] == " X "}
+    values = {
+        line.split()[1]: [float(value) for value in line.split()[3::2]]
+        for line in told
+        if line[6:9] == " X "
+    }
     np.testing.assert_allclose(values["BASE"], [900.0, 0.0, 310.5, 90.0, 0.0, 0.0])
     np.testing.assert_allclose(values["TOOL"], [0.0, 0.0, 150.0, 0.0, 45.0, 0.0])
 
@@ -315,9 +477,13 @@ def test_names_the_controller_refuses(name, why, proposal):
 
 def test_no_module_has_the_name_of_what_it_declares_or_uses():
     for name in ("WDAT3", "wdatoff4", "WSEAM", "ArcMainNG"):
-        assert "data" in refusal(dataclasses.replace(lit(JOB), name=name), code="PROGRAM_NAME", where="name")
+        assert "data" in refusal(
+            dataclasses.replace(lit(JOB), name=name), code="PROGRAM_NAME", where="name"
+        )
         kuka.write(dataclasses.replace(JOB, name=name))  # which uses none of it
-    told = dataclasses.replace(JOB, blocks=(JOB.blocks[0], Schedule(3), *JOB.blocks[1:]), schedule_output=20)
+    told = dataclasses.replace(
+        JOB, blocks=(JOB.blocks[0], Schedule(3), *JOB.blocks[1:]), schedule_output=20
+    )
     refusal(dataclasses.replace(told, name="AM_schedule"), code="PROGRAM_NAME", where="name")
     called = dataclasses.replace(told, blocks=(*told.blocks, Call("am_schedule")))
     refusal(called, code="PROGRAM_NAME", where="process.between_layers.call")
@@ -325,22 +491,50 @@ def test_no_module_has_the_name_of_what_it_declares_or_uses():
 
 def test_what_cannot_be_said_is_refused():
     where = "process.between_layers.call"
-    refusal(dataclasses.replace(JOB, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
-    assert "#TCP" in refusal(dataclasses.replace(JOB, setup="part-on-robot"), code="REMOTE_TCP", where="cell.setup")
+    refusal(
+        dataclasses.replace(JOB, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup"
+    )
+    assert "#TCP" in refusal(
+        dataclasses.replace(JOB, setup="part-on-robot"), code="REMOTE_TCP", where="cell.setup"
+    )
     joint = dataclasses.replace(JOB, motion="joint")
     assert "whole percents" in refusal(joint, code="JOINT_DEPOSIT", where="program.motion")
-    refusal(dataclasses.replace(JOB, continuous=(False,) * 5 + (True,)), code="ENDLESS_AXIS", where="cell.limits")
-    refusal(dataclasses.replace(JOB, tool_frame=17), code="UNSUPPORTED_FRAME", where="program.tool_frame")
-    refusal(dataclasses.replace(JOB, user_frame=33), code="UNSUPPORTED_FRAME", where="program.user_frame")
+    refusal(
+        dataclasses.replace(JOB, continuous=(False,) * 5 + (True,)),
+        code="ENDLESS_AXIS",
+        where="cell.limits",
+    )
+    refusal(
+        dataclasses.replace(JOB, tool_frame=17),
+        code="UNSUPPORTED_FRAME",
+        where="program.tool_frame",
+    )
+    refusal(
+        dataclasses.replace(JOB, user_frame=33),
+        code="UNSUPPORTED_FRAME",
+        where="program.user_frame",
+    )
     for speeds in ((), (1.0,) * 5 + (math.inf,)):
-        refusal(dataclasses.replace(JOB, max_speed=speeds), code="NO_JOINT_SPEED", where="cell.machine")
+        refusal(
+            dataclasses.replace(JOB, max_speed=speeds), code="NO_JOINT_SPEED", where="cell.machine"
+        )
     refusal(program(moves("rapid", np.ones(6)), WaitBelow(1, 0.5, 0, 0)), code="NO_ANALOGUE_INPUT")
-    refusal(program(moves("rapid", np.ones(6)), dataclasses.replace(laid(2), wire=np.ones(2))), code="NO_WIRE_OUTPUT")
-    refusal(program(moves("rapid", np.ones(6)), dataclasses.replace(laid(2), position=None)), code="NO_POSITIONS")
+    refusal(
+        program(moves("rapid", np.ones(6)), dataclasses.replace(laid(2), wire=np.ones(2))),
+        code="NO_WIRE_OUTPUT",
+    )
+    refusal(
+        program(moves("rapid", np.ones(6)), dataclasses.replace(laid(2), position=None)),
+        code="NO_POSITIONS",
+    )
     refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
     for called in ("Part", "two words", "loop"):
         refusal(program(moves("rapid", np.ones(6)), Call(called)), code="PROGRAM_NAME", where=where)
-    refusal(program(*beads(3, 20).blocks, Call("PART02"), max_points=25), code="PROGRAM_NAME", where=where)
+    refusal(
+        program(*beads(3, 20).blocks, Call("PART02"), max_points=25),
+        code="PROGRAM_NAME",
+        where=where,
+    )
     assert catalogue.load("kuka") is kuka
 
 
@@ -348,40 +542,76 @@ def test_axes_beside_the_robot():
     read, run = kuka.read(kuka.write(beside(JOB))), beside(JOB).moves
     joints = np.concatenate([moves.joints for moves in run])
     np.testing.assert_allclose(read.joints[:, 6:], joints[:, 6:], rtol=0.0, atol=1e-6)
-    assert (read.unit, read.first_external) == ("3", 2) and np.isnan(read.joints[read.linear, :6]).all()
+    assert (read.unit, read.first_external) == ("3", 2) and np.isnan(
+        read.joints[read.linear, :6]
+    ).all()
     told = lines(kuka.write(beside(JOB)), "dome.src")
     # 10 deg of 160 deg/s in 0.8 s
-    assert [line for line in told if "VEL_PTP" in line] == [f"BAS(#VEL_PTP,{share})" for share in (10, 8, 58)]
-    assert [line for line in told if "EXTAX[3]" in line] == [f"$VEL_EXTAX[3]={share}" for share in (10, 8, 100, 58, 100)]
+    assert [line for line in told if "VEL_PTP" in line] == [
+        f"BAS(#VEL_PTP,{share})" for share in (10, 8, 58)
+    ]
+    assert [line for line in told if "EXTAX[3]" in line] == [
+        f"$VEL_EXTAX[3]={share}" for share in (10, 8, 100, 58, 100)
+    ]
     refusal(beside(JOB, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first")
     for unit in ("", "1", "STN1", "17"):
         refusal(beside(JOB, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
-    refusal(dataclasses.replace(beside(JOB), external_kinds=()), code="UNSUPPORTED_AXES", where="program.post")
+    refusal(
+        dataclasses.replace(beside(JOB), external_kinds=()),
+        code="UNSUPPORTED_AXES",
+        where="program.post",
+    )
 
 
 def _refused_beside(mechanism):
     """What a program is refused with for the joint speeds of a mechanism's file, which carries the part."""
-    cell = cells.resolve(CellParameters(
-        machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto",
-        external=f"{mechanism} at 1400 0 0 0 0 0 carries part",
-    ), np.eye(4))
-    made = without_moves(cell, ProgramParameters(post="kuka", motion="cartesian"), catalogue.controller("kuka"), "dome")
-    return refusal(dataclasses.replace(made, blocks=beside(JOB).blocks), code="NO_JOINT_SPEED", where="cell.external")
+    cell = cells.resolve(
+        CellParameters(
+            machine="kuka-kr8-r2100-2-arc-hw",
+            setup="tool-on-robot",
+            branch="auto",
+            external=f"{mechanism} at 1400 0 0 0 0 0 carries part",
+        ),
+        np.eye(4),
+    )
+    made = without_moves(
+        cell,
+        ProgramParameters(post="kuka", motion="cartesian"),
+        catalogue.controller("kuka"),
+        "dome",
+    )
+    return refusal(
+        dataclasses.replace(made, blocks=beside(JOB).blocks),
+        code="NO_JOINT_SPEED",
+        where="cell.external",
+    )
 
 
 def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     """That of the robot, or of the positioner or track beside it."""
-    slow, told = (*NOMINAL[:5], math.inf), json.loads((MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8"))
+    slow, told = (
+        (*NOMINAL[:5], math.inf),
+        json.loads((MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8")),
+    )
     message = refusal(
-        dataclasses.replace(JOB, machine="a robot", max_speed=slow), code="NO_JOINT_SPEED", where="cell.machine")
+        dataclasses.replace(JOB, machine="a robot", max_speed=slow),
+        code="NO_JOINT_SPEED",
+        where="cell.machine",
+    )
     assert message.endswith("file of a robot does not give them; add `max_speed` to its joints")
     for lacking, where in ((0, "cell.machine"), (1, "cell.external")):
         speeds = (*slow, 1.0, 1.0) if lacking == 0 else (*NOMINAL, 1.0, math.inf)
-        message = refusal(beside(JOB, max_speed=speeds, axis_machines=("a robot",) * 6 + ("a table",) * 2),
-                          code="NO_JOINT_SPEED", where=where)
+        message = refusal(
+            beside(JOB, max_speed=speeds, axis_machines=("a robot",) * 6 + ("a table",) * 2),
+            code="NO_JOINT_SPEED",
+            where=where,
+        )
         assert f"file of {('a robot', 'a table')[lacking]} does not" in message
-        message = refusal(beside(JOB, max_speed=speeds, of_urdf=(lacking == 0,) * 6 + (lacking == 1,) * 2),
-                          code="NO_JOINT_SPEED", where=where)
+        message = refusal(
+            beside(JOB, max_speed=speeds, of_urdf=(lacking == 0,) * 6 + (lacking == 1,) * 2),
+            code="NO_JOINT_SPEED",
+            where=where,
+        )
         assert message.endswith("; add `velocity` to the `<limit>` of each of its joints")
     del told["joints"][1]["max_speed"]
     (tmp_path / "mine.json").write_text(json.dumps({**told, "id": "mine"}), encoding="utf-8")
@@ -392,25 +622,42 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
         '<joint name="tilt" type="revolute"><parent link="foot"/><child link="arm"/><axis xyz="0 1 0"/>'
         '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
         '<joint name="turn" type="revolute"><parent link="arm"/><child link="plate"/><axis xyz="0 0 1"/>'
-        '<limit lower="-3" upper="3" effort="1"/></joint></robot>', encoding="utf-8")
+        '<limit lower="-3" upper="3" effort="1"/></joint></robot>',
+        encoding="utf-8",
+    )
     message = _refused_beside(tmp_path / "turn.urdf")
-    assert message.endswith("of turn tilt - turn does not give them; add `velocity` to the `<limit>` of each of its joints")
+    assert message.endswith(
+        "of turn tilt - turn does not give them; add `velocity` to the `<limit>` of each of its joints"
+    )
 
 
 def test_the_deposit_is_switched_on_the_moves_themselves():
     told = lines(kuka.write(early(JOB)), "early.src")
     places = [n for n, line in enumerate(told) if line.startswith("TRIGGER")]
     assert [told[n].partition("DELAY=")[2] for n in places] == [
-        f"-120 DO $OUT[3]={word}" for word in ("TRUE", "FALSE", "TRUE", "FALSE")]
+        f"-120 DO $OUT[3]={word}" for word in ("TRUE", "FALSE", "TRUE", "FALSE")
+    ]
     # right in front of a move that stops, the last one onto a bead or of it, and no wait or output elsewhere
     assert [told[n + 1].split()[0] for n in places] == ["PTP", "LIN", "PTP", "LIN"]
-    assert all(told[n + 1].endswith("}") for n in places) and not [line for line in told if line.startswith("$OUT")]
+    assert all(told[n + 1].endswith("}") for n in places) and not [
+        line for line in told if line.startswith("$OUT")
+    ]
     read = kuka.read(kuka.write(early(JOB)))
-    switched = [(e.row, e.kind, e.value, round(e.ahead, 9)) for e in read.events if e.kind in ("on", "off")]
-    assert switched == [(row, kind, (3.0, "$OUT"), 0.12) for row, kind in ((2, "on"), (5, "off"), (6, "on"), (8, "off"))]
+    switched = [
+        (e.row, e.kind, e.value, round(e.ahead, 9)) for e in read.events if e.kind in ("on", "off")
+    ]
+    assert switched == [
+        (row, kind, (3.0, "$OUT"), 0.12)
+        for row, kind in ((2, "on"), (5, "off"), (6, "on"), (8, "off"))
+    ]
     assert read.deposit.tolist() == kuka.read(kuka.write(JOB)).deposit.tolist()
-    assert "TRIGGER" not in kuka.write(dataclasses.replace(early(JOB), dry_run=True))["early.src"].decode()
-    refusal(early(JOB, 0.26), code="TRIGGER_LEAD", where="layer 0 bead 0")  # the last move of the bead takes 0.25 s
+    assert (
+        "TRIGGER"
+        not in kuka.write(dataclasses.replace(early(JOB), dry_run=True))["early.src"].decode()
+    )
+    refusal(
+        early(JOB, 0.26), code="TRIGGER_LEAD", where="layer 0 bead 0"
+    )  # the last move of the bead takes 0.25 s
 
 
 HAND = """&ACCESS RVP
@@ -445,15 +692,25 @@ def by_hand(old="", new=""):
 def test_a_module_by_hand():
     read = kuka.read(by_hand())
     np.testing.assert_allclose(np.degrees(read.joints[0]), [0.5, -90.0, 90.0, 0.0, -10.0, 200.25])
-    assert np.isnan(read.joints[1:]).all() and read.position[1:].tolist() == [[10.0, 0.25, 5.0], [20.5, 0.25, 5.0]]
-    turned = Rotation.from_euler("ZYX", [[30.0, 20.0, 10.0], [-170.0, 0.0, 179.5]], degrees=True).as_matrix()
+    assert np.isnan(read.joints[1:]).all() and read.position[1:].tolist() == [
+        [10.0, 0.25, 5.0],
+        [20.5, 0.25, 5.0],
+    ]
+    turned = Rotation.from_euler(
+        "ZYX", [[30.0, 20.0, 10.0], [-170.0, 0.0, 179.5]], degrees=True
+    ).as_matrix()
     np.testing.assert_allclose(read.rotation[1:], turned, atol=1e-15)
     assert read.deposit.tolist() == read.linear.tolist() == [False, True, True]
     assert read.stops.tolist() == [True, False, True] and read.rounding[1] == 0.5
     np.testing.assert_allclose(read.speed, [np.nan, 30.5, 30.5])
     np.testing.assert_array_equal(read.share, [0.25, np.nan, np.nan])
     assert [(event.row, event.kind, *event.value) for event in read.events] == [
-        (1, "wait", 0.5), (1, "on", 7.0, "$OUT"), (3, "input", 4.0), (3, "off", 7.0, "$OUT"), (3, "call", "GRIPPER_OPEN")]
+        (1, "wait", 0.5),
+        (1, "on", 7.0, "$OUT"),
+        (3, "input", 4.0),
+        (3, "off", 7.0, "$OUT"),
+        (3, "call", "GRIPPER_OPEN"),
+    ]
     assert read.user_frame.tolist() == [3.0] * 3 and read.tool_frame.tolist() == [5.0] * 3
 
 

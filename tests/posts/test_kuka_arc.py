@@ -25,8 +25,12 @@ from tests.programs import build
 
 ARC = ProgramParameters(post="kuka", motion="cartesian", schedule=ScheduleParameters(by="arc"))
 LIT = dataclasses.replace(PROCESS, schedule=7, lead_off=0.0)
-NAMES = ["kuka tool-on-robot", pytest.param("kuka positioner"), pytest.param("kuka track", marks=pytest.mark.long),
-         pytest.param("kuka track and positioner", marks=pytest.mark.long)]
+NAMES = [
+    "kuka tool-on-robot",
+    pytest.param("kuka positioner"),
+    pytest.param("kuka track", marks=pytest.mark.long),
+    pytest.param("kuka track and positioner", marks=pytest.mark.long),
+]
 
 
 @functools.cache
@@ -41,7 +45,9 @@ def made(name):
 def said(name, text):
     cell, motion, program, _ = made(name)
     try:
-        found = verify(cell, motion, program, {"job.src": "\r\n".join(text).encode()}, kuka, CHORD_ERROR)
+        found = verify(
+            cell, motion, program, {"job.src": "\r\n".join(text).encode()}, kuka, CHORD_ERROR
+        )
     except InputError as error:
         return {error.code}
     return {issue.code for issue in found.issues if issue.level == ERROR}
@@ -83,9 +89,16 @@ def test_every_line_of_it_that_is_lost_doubled_moved_or_of_other_data_is_refused
     for n in places[: 2 * 9]:
         line = text[n]
         other = [*text[:n], line.replace("7", "8"), *text[n + 1 :]]
-        assert said(name, other) and said(name, [*text[:n], *text[n + 1 :]]) and said(name, [*text[:n], line, *text[n:]])
+        assert (
+            said(name, other)
+            and said(name, [*text[:n], *text[n + 1 :]])
+            and said(name, [*text[:n], line, *text[n:]])
+        )
         assert said(name, [*text[: n - 1], line, text[n - 1], *text[n + 1 :]])
-        assert said(name, [*text[:n], re.sub(r"DELAY=(0|\w+\(.*?\))", "DELAY=20", line) + " ", *text[n + 1 :]])
+        assert said(
+            name,
+            [*text[:n], re.sub(r"DELAY=(0|\w+\(.*?\))", "DELAY=20", line) + " ", *text[n + 1 :]],
+        )
         assert said(name, [*text[:n], line.replace("WSEAM", "WOTHER"), *text[n + 1 :]])
 
 
@@ -97,9 +110,13 @@ def test_whole_instructions_that_are_lost_or_of_another_schedule_are_refused():
         of_bead = places[bead * one : (bead + 1) * one]
         for lines in (of_bead, of_bead[:5], of_bead[5:]):  # both, the arc's beginning, its end
             assert said(name, [line for n, line in enumerate(text) if n not in lines])
-            other = [line.replace("7", "8", 2) if n in lines else line for n, line in enumerate(text)]
-            renumbered = [re.sub(r"(WDAT(?:OFF)?)7\b", r"\g<1>8", line) if n in lines else line
-                          for n, line in enumerate(text)]
+            other = [
+                line.replace("7", "8", 2) if n in lines else line for n, line in enumerate(text)
+            ]
+            renumbered = [
+                re.sub(r"(WDAT(?:OFF)?)7\b", r"\g<1>8", line) if n in lines else line
+                for n, line in enumerate(text)
+            ]
             assert said(name, other) and said(name, renumbered)
 
 
@@ -142,7 +159,9 @@ def test_the_way_onto_a_bead_stays_by_the_one_that_was_looked_at():
             looked += 1
         joints = motion.joints[end - 1] + share * (motion.joints[end] - motion.joints[end - 1])
         tip = cell.tip_in_part(solver.forward(joints))[0]
-        straight = motion.position[end - 1] + share * (motion.position[end] - motion.position[end - 1])
+        straight = motion.position[end - 1] + share * (
+            motion.position[end] - motion.position[end - 1]
+        )
         assert np.linalg.norm(tip - straight, axis=1).max() <= 0.2
     assert looked == added
     with pytest.raises(InputError) as error:
@@ -162,12 +181,18 @@ def test_a_document_cuts_the_ways_onto_beads_and_passes():
     name = "kuka positioner"
     motion = planned(name)[2]
     layers = [SimpleNamespace(wait=0.0, first=0)] * 2
-    toolpath = SimpleNamespace(frame=np.eye(4), family="developable", chord_error=CHORD_ERROR, layers=layers, height=HEIGHT)
-    paths = SimpleNamespace(beads=[SimpleNamespace(bead=SimpleNamespace(returns=True), layer=9, index=9)])
+    toolpath = SimpleNamespace(
+        frame=np.eye(4), family="developable", chord_error=CHORD_ERROR, layers=layers, height=HEIGHT
+    )
+    paths = SimpleNamespace(
+        beads=[SimpleNamespace(bead=SimpleNamespace(returns=True), layer=9, index=9)]
+    )
     path = SimpleNamespace(motion=motion, joint_path=paths)
     job = Job(lambda: path, lambda: toolpath, SETUPS[name].cell, (), LIT, ARC, "job")
     made_of = posted(job)
-    assert len(made_of.motion) == len(made(name)[1]) > len(motion) and made_of.files == made(name)[3]
+    assert (
+        len(made_of.motion) == len(made(name)[1]) > len(motion) and made_of.files == made(name)[3]
+    )
 
 
 def test_a_dry_run_moves_the_same_without_the_arc():
@@ -190,13 +215,19 @@ def test_what_arctech_has_in_its_own_data_or_was_not_confirmed_is_refused():
     refusal(dataclasses.replace(LIT, lead_off=0.2), "SCHEDULE", "crater time of WDATOFF7")
     refusal(dataclasses.replace(LIT, schedule=None), "NO_SCHEDULE", "arc instructions name")
     refusal(dataclasses.replace(LIT, schedule=256), "SCHEDULE", "up to 255, not 256")
-    refusal(dataclasses.replace(LIT, start=BeadStart(4.0, 5.0, 4)), "SCHEDULE", "only an output can change the schedule")
+    refusal(
+        dataclasses.replace(LIT, start=BeadStart(4.0, 5.0, 4)),
+        "SCHEDULE",
+        "only an output can change the schedule",
+    )
 
 
 def test_a_program_that_begins_at_a_bead_is_refused():
     cell, _, motion = planned("kuka tool-on-robot")
     first = int(np.argmax(motion.deposit))
-    columns = {field.name: getattr(motion, field.name)[first - 1 :] for field in dataclasses.fields(motion)}
+    columns = {
+        field.name: getattr(motion, field.name)[first - 1 :] for field in dataclasses.fields(motion)
+    }
     with pytest.raises(InputError) as error:
         build(type(motion)(**columns), cell, LIT, ARC, "job")
     assert error.value.code == "SCHEDULE" and "begins at the bead" in error.value.message

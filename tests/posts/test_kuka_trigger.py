@@ -24,7 +24,9 @@ NAMES = ["kuka tool-on-robot", pytest.param("kuka positioner", marks=pytest.mark
 @functools.cache
 def made(name, lead):
     cell, _, motion = planned(name)
-    parameters = ProgramParameters(post="kuka", motion="cartesian", trigger=TriggerParameters(lead=lead))
+    parameters = ProgramParameters(
+        post="kuka", motion="cartesian", trigger=TriggerParameters(lead=lead)
+    )
     program = build(motion, cell, BARE, parameters, "job")
     return cell, motion, program, kuka.write(program)["job.src"].decode()
 
@@ -51,17 +53,34 @@ def test_triggers_come_back_as_planned_and_none_may_be_another(name, lead):
         before = max(k for k in range(n) if lines[k].startswith(("PTP", "LIN")))
         line, other = lines[n], "FALSE" if lines[n].endswith("TRUE") else "TRUE"
         changed = {
-            "lost": [*lines[:n], *lines[n + 1 :]], "doubled": [*lines[:n], line, *lines[n:]],
+            "lost": [*lines[:n], *lines[n + 1 :]],
+            "doubled": [*lines[:n], line, *lines[n:]],
             "of the move before": [*lines[:before], line, *lines[before:n], *lines[n + 1 :]],
             "of the move after": [*lines[:n], lines[n + 1], line, *lines[n + 2 :]],
-            "sooner": [*lines[:n], re.sub(r"DELAY=-?\d+", f"DELAY={-round(1000 * lead) - 1}", line), *lines[n + 1 :]],
-            "later": [*lines[:n], re.sub(r"DELAY=-?\d+", f"DELAY={-round(1000 * lead) + 1}", line), *lines[n + 1 :]],
+            "sooner": [
+                *lines[:n],
+                re.sub(r"DELAY=-?\d+", f"DELAY={-round(1000 * lead) - 1}", line),
+                *lines[n + 1 :],
+            ],
+            "later": [
+                *lines[:n],
+                re.sub(r"DELAY=-?\d+", f"DELAY={-round(1000 * lead) + 1}", line),
+                *lines[n + 1 :],
+            ],
             "of the start": [*lines[:n], line.replace("DISTANCE=1", "DISTANCE=0"), *lines[n + 1 :]],
             "of another output": [*lines[:n], line.replace("$OUT[1]", "$OUT[2]"), *lines[n + 1 :]],
             "the other way": [*lines[:n], re.sub("(TRUE|FALSE)$", other, line), *lines[n + 1 :]],
-            "where it stands": [*lines[:n], lines[n + 1], "WAIT SEC 0", line.partition(" DO ")[2], *lines[n + 2 :]],
+            "where it stands": [
+                *lines[:n],
+                lines[n + 1],
+                "WAIT SEC 0",
+                line.partition(" DO ")[2],
+                *lines[n + 2 :],
+            ],
         }
-        passed = [what for what, those in changed.items() if not said(name, lead, "\r\n".join(those))]
+        passed = [
+            what for what, those in changed.items() if not said(name, lead, "\r\n".join(those))
+        ]
         assert passed == []
 
 
@@ -80,9 +99,14 @@ def test_a_delay_does_not_reach_back_into_the_corner_before_the_last_move_of_a_b
     cell, _, motion = planned(NAMES[0])
 
     def ended(lead):
-        asked = ProgramParameters(post="kuka", motion="cartesian", blend=blend, trigger=TriggerParameters(lead=lead))
+        asked = ProgramParameters(
+            post="kuka", motion="cartesian", blend=blend, trigger=TriggerParameters(lead=lead)
+        )
         program = build(motion, cell, BARE, asked, "job")
-        blocks = [dataclasses.replace(one, ahead=None) if isinstance(one, DepositOn) else one for one in program.blocks]
+        blocks = [
+            dataclasses.replace(one, ahead=None) if isinstance(one, DepositOn) else one
+            for one in program.blocks
+        ]
         return dataclasses.replace(program, blocks=tuple(blocks))
 
     text = kuka.write(ended(0.0))["job.src"].decode()
@@ -100,5 +124,9 @@ def test_a_delay_does_not_reach_back_into_the_corner_before_the_last_move_of_a_b
     with pytest.raises(InputError) as error:
         kuka.write(ended(np.ceil(1000.0 * least) / 1000.0 + 0.002))
     assert error.value.code == "TRIGGER_LEAD" and ("corner" in error.value.message) == bool(blend)
-    where = [f"layer {run.layer} bead {run.bead}" for run, there in zip(beads, free) if there <= least + 0.002]
+    where = [
+        f"layer {run.layer} bead {run.bead}"
+        for run, there in zip(beads, free)
+        if there <= least + 0.002
+    ]
     assert str(error.value.where) in where

@@ -27,15 +27,23 @@ def another_end(post, files, name, number, k):
     lines = files[name].split(b"\n")
     if post in ("fanuc", "yaskawa"):
         long = 5 if post == "yaskawa" else 1
-        changed = INDEX.sub(lambda found: b"%0*d" % (long, int(found[0]) - 1), lines[number], count=1)
+        changed = INDEX.sub(
+            lambda found: b"%0*d" % (long, int(found[0]) - 1), lines[number], count=1
+        )
     else:
-        body = re.sub(rb"^\s*(?:N\d+ )?(?:G9 )?\w+", lambda found: b"#" * len(found[0]), lines[number])
+        body = re.sub(
+            rb"^\s*(?:N\d+ )?(?:G9 )?\w+", lambda found: b"#" * len(found[0]), lines[number]
+        )
         found = NUMBER.search(body)
         value = float(found[0]) + 0.25
         digits = len(found[0].split(b".")[1])
-        changed = lines[number][:found.start()] + f"{value:.{digits}f}".encode() + lines[number][found.end():]
+        changed = (
+            lines[number][: found.start()]
+            + f"{value:.{digits}f}".encode()
+            + lines[number][found.end() :]
+        )
     assert changed != lines[number]
-    return {**files, name: b"\n".join([*lines[:number], changed, *lines[number + 1:]])}
+    return {**files, name: b"\n".join([*lines[:number], changed, *lines[number + 1 :]])}
 
 
 @pytest.mark.always(*SPANNING)
@@ -49,22 +57,31 @@ def test_the_line_of_a_move_tells_that_move_and_no_other(way):
         (name, number), (file, found) = lines.of(row), read.lines.at(row)
         if way[0] == "staubli":  # counted within the code, and of a loop the line that it begins on
             head, code = files[name].split(b"<Code>")
-            number -= head.count(b"\n") + code.split(b"\n")[number - head.count(b"\n") - 1].startswith(b"  for ")
+            number -= head.count(b"\n") + code.split(b"\n")[
+                number - head.count(b"\n") - 1
+            ].startswith(b"  for ")
         assert (file, found) == (name, number + 1)
     before = told(read)
     for row in np.linspace(1, len(lines) - 1, 9).astype(int).tolist():
         name, number = lines.of(row)
-        assert lines.move_at(name, number) == (row if way[0] != "staubli" else np.flatnonzero(
-            (lines.file == lines.file[row]) & (lines.line == number))[0])
+        assert lines.move_at(name, number) == (
+            row
+            if way[0] != "staubli"
+            else np.flatnonzero((lines.file == lines.file[row]) & (lines.line == number))[0]
+        )
         if way[0] == "staubli":
             continue  # its lines tell the number in a list
         try:
             after = told(post.read(another_end(way[0], files, name, number, row)))
-        except InputError as error:  # such as two positions for one place, of which this line is named
+        except (
+            InputError
+        ) as error:  # such as two positions for one place, of which this line is named
             assert f"{name} line {number + 1}" in str(error)
             continue
         other = np.flatnonzero(np.abs(after - before).max(axis=1) > 1e-9)
-        assert other.tolist() in ([row], []) and (len(other) or np.allclose(before[row], before[row - 1]))
+        assert other.tolist() in ([row], []) and (
+            len(other) or np.allclose(before[row], before[row - 1])
+        )
 
 
 def test_lines_between_moves_lead_to_the_next_one():
@@ -76,14 +93,20 @@ def test_lines_between_moves_lead_to_the_next_one():
 
 
 def test_a_loop_tells_as_many_moves_as_it_runs():
-    text = (b"  movej(jPath[0],tTool,mPath[0])\n  for l_nI=1 to 3\n    movej(jPath[l_nI],tTool,mPath[l_nI])\n  endFor\n"
-            b"  movel(pEnd,tTool,mEnd)\n")
+    text = (
+        b"  movej(jPath[0],tTool,mPath[0])\n  for l_nI=1 to 3\n    movej(jPath[l_nI],tTool,mPath[l_nI])\n  endFor\n"
+        b"  movel(pEnd,tTool,mEnd)\n"
+    )
     lines = lines_of("staubli", {"a/a01/start.pgx": text, "a/start.pgx": b"call a01:start()\n"})
-    assert [lines.of(row) for row in range(5)] == [("a/a01/start.pgx", number) for number in (0, 2, 2, 2, 4)]
+    assert [lines.of(row) for row in range(5)] == [
+        ("a/a01/start.pgx", number) for number in (0, 2, 2, 2, 4)
+    ]
     assert lines.move_at("a/a01/start.pgx", 2) == 1 and lines.move_at("a/a01/start.pgx", 3) == 4
 
 
 def test_parts_are_in_the_order_of_their_numbers_beyond_a_hundred():
-    files = {f"JOB{number:02d}.LS": b"   1:J P[1] 0.5sec FINE ;\n" for number in (1, 2, 11, 99, 100, 101)}
+    files = {
+        f"JOB{number:02d}.LS": b"   1:J P[1] 0.5sec FINE ;\n" for number in (1, 2, 11, 99, 100, 101)
+    }
     names = [lines_of("fanuc", files).of(row)[0] for row in range(6)]
     assert names == ["JOB01.LS", "JOB02.LS", "JOB11.LS", "JOB99.LS", "JOB100.LS", "JOB101.LS"]

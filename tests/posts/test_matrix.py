@@ -17,8 +17,12 @@ from freecad_am.posts import catalogue
 from tests.posts.planned_jobs import PULSES, WAYS
 
 ROBOTS = {  # one that reads each post
-    "fanuc": "fanuc-arcmate120ic", "staubli": "staubli-rx60bl", "ur": "ur-ur10e", "abb": "abb-irb1600-6-12",
-    "yaskawa": "motoman-ma2010", "kuka": "kuka-kr16-2",
+    "fanuc": "fanuc-arcmate120ic",
+    "staubli": "staubli-rx60bl",
+    "ur": "ur-ur10e",
+    "abb": "abb-irb1600-6-12",
+    "yaskawa": "motoman-ma2010",
+    "kuka": "kuka-kr16-2",
 }
 POSITIONER = "motoman-motopos-d500 at 1100 60 -600 0 0 20 carries part"
 TRACK = "kuka-kl100-2 at 0 0 -356 0 0 90 carries robot"
@@ -29,36 +33,58 @@ SETUPS = {
     "track": {"setup": "tool-on-robot", "external": TRACK},
     "track and positioner": {"setup": "tool-on-robot", "external": f"{POSITIONER}; {TRACK}"},
 }
-ON_TABLES = ("siemens", "linuxcnc")  # posts of five-axis machines, which have a file of tests of their own
+ON_TABLES = (
+    "siemens",
+    "linuxcnc",
+)  # posts of five-axis machines, which have a file of tests of their own
 # what is refused, by its code and a word of its reason
 NOT_WRITTEN, BOTH = ("UNSUPPORTED_AXES", "not written with a"), "track and positioner"
 RAIL = {"fanuc": "how its rail was set up", "yaskawa": "whether their speed counts its way"}
 COUPLED = {"fanuc": "which user frame", "yaskawa": "SMOVL"}
-REFUSED = {
-    ("fanuc", "cartesian", "part-on-robot"): ("REMOTE_TCP", "what the position records of such moves"),
-    ("ur", "cartesian", "part-on-robot"): ("REMOTE_TCP", "no documented instruction"),
-    ("yaskawa", "cartesian", "part-on-robot"): ("REMOTE_TCP", "external reference point"),
-    ("kuka", "joint", "part-on-robot"): ("REMOTE_TCP", "fixed tool"),
-    ("kuka", "cartesian", "part-on-robot"): ("REMOTE_TCP", "fixed tool"),
-    ("kuka", "joint", "tool-on-robot"): ("JOINT_DEPOSIT", "whole percents"),
-    ("kuka", "joint", "positioner"): ("JOINT_DEPOSIT", "whole percents"),
-    ("kuka", "joint", "track"): ("JOINT_DEPOSIT", "whole percents"),
-    ("kuka", "joint", BOTH): ("JOINT_DEPOSIT", "whole percents"),
-} | {(post, "cartesian", "track"): ("COORDINATED_MOTION", word) for post, word in RAIL.items()} | {
-    (post, "cartesian", setup): ("COORDINATED_MOTION", word)
-    for post, word in COUPLED.items() for setup in ("positioner", BOTH)
-} | {
-    (post, motion, setup): NOT_WRITTEN
-    for post in ("staubli", "ur") for motion in ("joint", "cartesian") for setup in ("positioner", "track", BOTH)
-}
+REFUSED = (
+    {
+        ("fanuc", "cartesian", "part-on-robot"): (
+            "REMOTE_TCP",
+            "what the position records of such moves",
+        ),
+        ("ur", "cartesian", "part-on-robot"): ("REMOTE_TCP", "no documented instruction"),
+        ("yaskawa", "cartesian", "part-on-robot"): ("REMOTE_TCP", "external reference point"),
+        ("kuka", "joint", "part-on-robot"): ("REMOTE_TCP", "fixed tool"),
+        ("kuka", "cartesian", "part-on-robot"): ("REMOTE_TCP", "fixed tool"),
+        ("kuka", "joint", "tool-on-robot"): ("JOINT_DEPOSIT", "whole percents"),
+        ("kuka", "joint", "positioner"): ("JOINT_DEPOSIT", "whole percents"),
+        ("kuka", "joint", "track"): ("JOINT_DEPOSIT", "whole percents"),
+        ("kuka", "joint", BOTH): ("JOINT_DEPOSIT", "whole percents"),
+    }
+    | {(post, "cartesian", "track"): ("COORDINATED_MOTION", word) for post, word in RAIL.items()}
+    | {
+        (post, "cartesian", setup): ("COORDINATED_MOTION", word)
+        for post, word in COUPLED.items()
+        for setup in ("positioner", BOTH)
+    }
+    | {
+        (post, motion, setup): NOT_WRITTEN
+        for post in ("staubli", "ur")
+        for motion in ("joint", "cartesian")
+        for setup in ("positioner", "track", BOTH)
+    }
+)
 
 
 def refusal(post, motion, setup):
     """The error that a program of this kind ends with before it is planned, None of one that is written."""
-    cell = cells.resolve(CellParameters(machine=ROBOTS[post], mount="part", **SETUPS[setup]), np.eye(4), "developable")
+    cell = cells.resolve(
+        CellParameters(machine=ROBOTS[post], mount="part", **SETUPS[setup]),
+        np.eye(4),
+        "developable",
+    )
     if post == "yaskawa":  # what only a user's machine file tells
-        cell = dataclasses.replace(cell, machine=dataclasses.replace(
-            cell.machine, pulses_per_degree=PULSES[: cell.machine.chain.axes], speed_unit="mm/s"))
+        cell = dataclasses.replace(
+            cell,
+            machine=dataclasses.replace(
+                cell.machine, pulses_per_degree=PULSES[: cell.machine.chain.axes], speed_unit="mm/s"
+            ),
+        )
     try:
         controllers.check_controller(cell.robot, post)
         controllers.check_external(cell, post)
@@ -75,10 +101,14 @@ OF_ROBOTS = [post for post in catalogue.NAMES if post not in ON_TABLES]
 
 def test_every_refusal_is_of_a_cell_that_is_looked_at():
     assert set(REFUSED) <= set(itertools.product(OF_ROBOTS, ("joint", "cartesian"), SETUPS))
-    assert set(catalogue.NAMES) == {way[0] for way in WAYS}  # and every post there is writes something
+    assert set(catalogue.NAMES) == {
+        way[0] for way in WAYS
+    }  # and every post there is writes something
 
 
-@pytest.mark.parametrize("cell", itertools.product(OF_ROBOTS, ("joint", "cartesian"), SETUPS), ids=" ".join)
+@pytest.mark.parametrize(
+    "cell", itertools.product(OF_ROBOTS, ("joint", "cartesian"), SETUPS), ids=" ".join
+)
 def test_written_or_refused_with_its_reason(cell):
     post, motion, setup = cell
     error = refusal(*cell)
@@ -88,4 +118,6 @@ def test_written_or_refused_with_its_reason(cell):
         return
     assert (post, motion, "time", f"{post} {setup}") not in WAYS
     code, word = REFUSED[cell]
-    assert error.code == code and word in error.message and "; " in error.message  # a reason, and what to do
+    assert (
+        error.code == code and word in error.message and "; " in error.message
+    )  # a reason, and what to do

@@ -43,7 +43,9 @@ def spoilt(way, kind, draw):
 def test_what_is_written_passes(way, most):
     assert found(way, written(way, most)[3], most) == set()
     files = written(way, most)[3]
-    parts = files["job.script"].count(b"  def job") if way[0] == "ur" else len(files)  # functions in one file
+    parts = (
+        files["job.script"].count(b"  def job") if way[0] == "ur" else len(files)
+    )  # functions in one file
     assert (parts > (4 if way[0] == "staubli" else 1)) == (most == PARTS)
 
 
@@ -83,19 +85,29 @@ def test_the_least_change_of_a_number_that_is_more_than_its_digits_explain_is_re
 
 
 @pytest.mark.parametrize("name", ["yaskawa track", "yaskawa track and positioner"])
-def test_a_share_of_the_axes_speeds_is_known_as_well_with_axes_that_slide_and_turn_beside_the_robot(name):
+def test_a_share_of_the_axes_speeds_is_known_as_well_with_axes_that_slide_and_turn_beside_the_robot(
+    name,
+):
     """Digits of the track are millimetres, and its speed is too: neither counts for the axes that turn."""
     way = ("yaskawa", "joint", "time", name)
-    (file, content), = written(way)[3].items()
+    ((file, content),) = written(way)[3].items()
     text = content.decode()
     shares = list(re.finditer(r"VJ=(\d+\.\d\d)", text))
     assert len(shares) > 40
     for share in shares[1:]:  # the first move of all goes at its own
         other = f"{float(share[1]) + 0.04:.2f}"
-        assert found(way, {file: (text[: share.start(1)] + other + text[share.end(1) :]).encode()}, 2000), share[0]
+        assert found(
+            way, {file: (text[: share.start(1)] + other + text[share.end(1) :]).encode()}, 2000
+        ), share[0]
 
 
 def test_every_kind_of_damage_was_done():
     for post, kinds in KINDS.items():
-        done = {kind for way in WAYS if way[0] == post for kind in kinds if spoilt(way, kind, 0)[0] is not None}
+        done = {
+            kind
+            for way in WAYS
+            if way[0] == post
+            for kind in kinds
+            if spoilt(way, kind, 0)[0] is not None
+        }
         assert done == set(kinds), post

@@ -53,7 +53,11 @@ JOINT = program(
 def tip_bead(layer):
     tilt = np.radians([10.0, 11.0, 12.0])
     directions = np.stack([np.sin(tilt), np.zeros(3), np.cos(tilt)], axis=1)
-    axes = [[10.0, 0.25, 5.0, 10.0, 90.0], [11.0, 0.25, 5.0, 11.0, 90.0], [12.0, 0.5, 5.0, 12.0, 91.0]]
+    axes = [
+        [10.0, 0.25, 5.0, 10.0, 90.0],
+        [11.0, 0.25, 5.0, 11.0, 90.0],
+        [12.0, 0.5, 5.0, 12.0, 91.0],
+    ]
     return [
         LayerStart(layer), moves("rapid", axes[:1], layer=layer), DepositOn(0.5),
         moves("deposit", axes, layer=layer, speed=5.0, direction=directions,
@@ -81,7 +85,9 @@ def test_golden_programs_to_the_byte(root, name, post):
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
+@pytest.mark.parametrize(
+    ("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)]
+)
 def test_random_programs_come_back(post, seed, motion, feed):
     of = with_options(random_program(seed, motion, seed % 2 == 1), path_feed=feed)
     files = post.write(of)
@@ -97,19 +103,35 @@ def test_random_programs_come_back(post, seed, motion, feed):
         assert read.shorter_way.tolist() == list(of.continuous)
         apart[:, 4] -= 2.0 * np.pi * np.rint(apart[:, 4] / (2.0 * np.pi)) * of.continuous[4]
     told = np.isfinite(apart)
-    assert (told[~tip].all(), told[tip, :3].any(), told[tip, 3:].all()) == (True, False, post is linuxcnc or not tip.any())
-    assert np.abs(apart[:, :3][told[:, :3]]).max() <= 5e-6 + 1e-9 and np.abs(apart[:, 3:][told[:, 3:]]).max() < 8.8e-8
+    assert (told[~tip].all(), told[tip, :3].any(), told[tip, 3:].all()) == (
+        True,
+        False,
+        post is linuxcnc or not tip.any(),
+    )
+    assert (
+        np.abs(apart[:, :3][told[:, :3]]).max() <= 5e-6 + 1e-9
+        and np.abs(apart[:, 3:][told[:, 3:]]).max() < 8.8e-8
+    )
     timed = np.isfinite(read.duration)
     assert (timed == ~tip).all()
     moving = timed & (np.abs(np.diff(np.round(joints, 9), axis=0, prepend=0.0)).max(axis=1) > 0.0)
-    assert (np.abs(read.duration - duration) <= read.duration_digits + 1e-9 * duration)[moving].all()
+    assert (np.abs(read.duration - duration) <= read.duration_digits + 1e-9 * duration)[
+        moving
+    ].all()
     assert (read.duration_digits / duration)[moving].max() <= 5.1e-7  # seven digits
     if motion == "cartesian":
         position, direction = column(of, "position"), column(of, "direction")
-        assert np.abs(read.position - position)[tip].max() <= 5e-6 + 1e-9 and np.isnan(read.position[~tip]).all()
-        assert (np.abs(read.speed - speed) / speed)[tip].max() < 1e-6 and np.isnan(read.speed[~tip]).all()
+        assert (
+            np.abs(read.position - position)[tip].max() <= 5e-6 + 1e-9
+            and np.isnan(read.position[~tip]).all()
+        )
+        assert (np.abs(read.speed - speed) / speed)[tip].max() < 1e-6 and np.isnan(
+            read.speed[~tip]
+        ).all()
         if post is siemens:
-            assert np.abs(read.direction - direction)[tip].max() < 1.5e-6 and read.direction_digits == pytest.approx(5e-7)
+            assert np.abs(read.direction - direction)[
+                tip
+            ].max() < 1.5e-6 and read.direction_digits == pytest.approx(5e-7)
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
@@ -119,7 +141,9 @@ def test_the_parts_of_a_program_are_the_program(post):
         assert len(files[0]) == 1 and len(files[1]) > 2
         whole, parts = map(post.read, files)
         for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
-            np.testing.assert_array_equal(getattr(parts, field.name), getattr(whole, field.name), field.name)
+            np.testing.assert_array_equal(
+                getattr(parts, field.name), getattr(whole, field.name), field.name
+            )
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
@@ -127,7 +151,9 @@ def test_the_parts_of_a_program_are_the_program(post):
 def test_a_dry_run_moves_the_same_and_switches_nothing(post, motion):
     of = random_program(5, motion, max_points=10**4, deposit_output=7)
     wet, dry = text(post.write(of)), text(post.write(dataclasses.replace(of, dry_run=True)))
-    assert "dry run: no deposit" in dry and not re.search(r"H7=|M6[2-5]|G4 [FP](?:0\.[2-9]|1\.250)", dry)
+    assert "dry run: no deposit" in dry and not re.search(
+        r"H7=|M6[2-5]|G4 [FP](?:0\.[2-9]|1\.250)", dry
+    )
     assert [line.partition("G1 ")[2] for line in wet.split("\n") if "G1 " in line] == [
         line.partition("G1 ")[2] for line in dry.split("\n") if "G1 " in line
     ]
@@ -136,40 +162,62 @@ def test_a_dry_run_moves_the_same_and_switches_nothing(post, motion):
 
 def test_only_speeds_are_compressed():
     """Compressed blocks have the F of the last one: right for a speed, wrong for a time."""
-    for motion, feed, compress in (("joint", False, True), ("cartesian", False, True), ("cartesian", False, False)):
-        of = with_options(random_program(3, motion, max_points=10**4), path_feed=feed, compress=compress)
+    for motion, feed, compress in (
+        ("joint", False, True),
+        ("cartesian", False, True),
+        ("cartesian", False, False),
+    ):
+        of = with_options(
+            random_program(3, motion, max_points=10**4), path_feed=feed, compress=compress
+        )
         written = text(siemens.write(of))
         assert ("COMPCAD" in written) == (compress and (motion == "cartesian"))
         for inside in re.findall(r"COMPCAD\n(.*?)COMPOF", written, re.DOTALL):
-            assert re.fullmatch(r"(?:N\d+ (?:G9 )?G1 X\S+ Y\S+ Z\S+ A3=\S+ B3=\S+ C3=\S+ F\S+\n)+N\d+ $", inside)
+            assert re.fullmatch(
+                r"(?:N\d+ (?:G9 )?G1 X\S+ Y\S+ Z\S+ A3=\S+ B3=\S+ C3=\S+ F\S+\n)+N\d+ $", inside
+            )
     line = with_options(JOINT, path_feed=True)
     assert text(siemens.write(line)).count("COMPCAD") == 1  # the ring tells times, the line speeds
-    assert "COMPCAD" not in text(siemens.write(dataclasses.replace(line, nc=dataclasses.replace(line.nc, compress=False))))
+    assert "COMPCAD" not in text(
+        siemens.write(dataclasses.replace(line, nc=dataclasses.replace(line.nc, compress=False)))
+    )
 
 
 def test_path_feeds_are_speeds_of_the_linear_axes():
     """Dai 2020, section 3: V_s; by hand from the line of the golden program."""
     step = math.hypot(1.0, 0.25)
     for post in POSTS:
-        feeds = re.findall(r"G1 X1[34].* F([\d.]+)\n", text(post.write(with_options(JOINT, path_feed=True))))
+        feeds = re.findall(
+            r"G1 X1[34].* F([\d.]+)\n", text(post.write(with_options(JOINT, path_feed=True)))
+        )
         # two moves of the bead, then a rapid of one second
-        assert [float(feed) for feed in feeds] == pytest.approx([60.0 * step / 0.2, 60.0 * step / 0.25, 60.0], rel=1e-6)
+        assert [float(feed) for feed in feeds] == pytest.approx(
+            [60.0 * step / 0.2, 60.0 * step / 0.25, 60.0], rel=1e-6
+        )
 
 
 def test_linuxcnc_is_told_the_speed_of_slow_moves():
     """Its interpreter takes 0.1 mm/min where the time asks for less: on a ring the linear axes go 0.00001 mm."""
     written = text(linuxcnc.write(JOINT))
-    ring = re.findall(r"\n((?:G9[34] )?)G1 X10.00000 \S+ Z5.00000 \S+ C(?:15|30|45)\.\S+ F(\S+)", written)
-    assert [float(feed) for _, feed in ring] == pytest.approx([60.0 * 0.00001 / 0.5] * 2 + [60.0 * 0.00001 / 0.4], rel=1e-6)
+    ring = re.findall(
+        r"\n((?:G9[34] )?)G1 X10.00000 \S+ Z5.00000 \S+ C(?:15|30|45)\.\S+ F(\S+)", written
+    )
+    assert [float(feed) for _, feed in ring] == pytest.approx(
+        [60.0 * 0.00001 / 0.5] * 2 + [60.0 * 0.00001 / 0.4], rel=1e-6
+    )
     assert "G94\nG1 X10.00000 Y0.00001" in written
-    assert linuxcnc.read(linuxcnc.write(JOINT)).duration[2:5] == pytest.approx([0.5, 0.5, 0.4], rel=1e-6)
+    assert linuxcnc.read(linuxcnc.write(JOINT)).duration[2:5] == pytest.approx(
+        [0.5, 0.5, 0.4], rel=1e-6
+    )
     assert "G94" not in text(siemens.write(JOINT))
 
 
 @pytest.mark.parametrize("value", [1e-9, 0.001, 0.99999999, 1.0, 123.4567891, 999999.0])
 def test_feeds_have_seven_digits_and_no_exponent(value):
     word = nc_numbers.feed(value)
-    assert re.fullmatch(r"F\d+(?:\.\d+)?", word) and float(word[1:]) == pytest.approx(value, rel=5.1e-7)
+    assert re.fullmatch(r"F\d+(?:\.\d+)?", word) and float(word[1:]) == pytest.approx(
+        value, rel=5.1e-7
+    )
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
@@ -179,11 +227,21 @@ def test_times_and_speeds_that_cannot_be_written(post):
         return program(moves("rapid", RING[0]), DepositOn(), bead, DepositOff())
 
     for duration in (0.0, 5e-5, 6.1e4, math.nan):
-        assert "cannot be written" in refusal(post, ring(duration), code="MOVE_TIME", where="layer 2 bead 1")
+        assert "cannot be written" in refusal(
+            post, ring(duration), code="MOVE_TIME", where="layer 2 bead 1"
+        )
     post.write(ring(7e-5))
     for speed in (0.0, 1e-6, 2e4, math.nan):
-        blocks = [dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b for b in TIP.blocks]
-        refusal(post, dataclasses.replace(TIP, blocks=tuple(blocks)), code="MOVE_SPEED", where="layer 0 bead 0")
+        blocks = [
+            dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b
+            for b in TIP.blocks
+        ]
+        refusal(
+            post,
+            dataclasses.replace(TIP, blocks=tuple(blocks)),
+            code="MOVE_SPEED",
+            where="layer 0 bead 0",
+        )
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
@@ -207,15 +265,35 @@ def test_words_that_switch_the_deposit(post):
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 def test_what_cannot_be_said_is_refused(post):
     still = program(moves("rapid", RING))
-    refusal(post, dataclasses.replace(still, setup="part-on-robot"), code="UNSUPPORTED_SETUP", where="cell.setup")
+    refusal(
+        post,
+        dataclasses.replace(still, setup="part-on-robot"),
+        code="UNSUPPORTED_SETUP",
+        where="cell.setup",
+    )
     for last in "DA":
         other = dataclasses.replace(still, axis_names=("X", "Y", "Z", "A", last))
         refusal(post, other, code="UNSUPPORTED_AXES", where="cell.machine")
-    refusal(post, dataclasses.replace(still, axis_names=()), code="UNSUPPORTED_AXES", where="program.post")
+    refusal(
+        post,
+        dataclasses.replace(still, axis_names=()),
+        code="UNSUPPORTED_AXES",
+        where="program.post",
+    )
     refusal(post, program(LayerStart(0)), code="NOTHING_TO_WRITE")
     refusal(post, program(moves("rapid", [0, 0, math.nan, 0, 0])), code="UNREACHABLE")
-    refusal(post, dataclasses.replace(JOINT, motion="cartesian"), code="NO_POSITIONS", where="program.motion")
-    refusal(post, dataclasses.replace(JOINT, deposit_output=100), code="DEPOSIT_OUTPUT", where="program.deposit_output")
+    refusal(
+        post,
+        dataclasses.replace(JOINT, motion="cartesian"),
+        code="NO_POSITIONS",
+        where="program.motion",
+    )
+    refusal(
+        post,
+        dataclasses.replace(JOINT, deposit_output=100),
+        code="DEPOSIT_OUTPUT",
+        where="program.deposit_output",
+    )
     where = "process.between_layers.input"
     refusal(post, program(moves("rapid", RING), WaitInput(65)), code="DEPOSIT_INPUT", where=where)
 
@@ -224,11 +302,16 @@ def test_what_cannot_be_said_is_refused(post):
 def test_a_bead_longer_than_a_part_is_a_part_by_itself(post):
     """These controllers read files of any length: `max_points` cuts between beads and refuses none."""
     sizes = (2, 40, 3, 3, 25)
-    blocks = [block for n, size in enumerate(sizes) for block in (
-        moves("rapid", RING[:1], bead=n), DepositOn(),
-        moves("deposit", [[n, k, 5.0, 0.0, 0.0] for k in range(size)], bead=n),
-        DepositOff(),
-    )]
+    blocks = [
+        block
+        for n, size in enumerate(sizes)
+        for block in (
+            moves("rapid", RING[:1], bead=n),
+            DepositOn(),
+            moves("deposit", [[n, k, 5.0, 0.0, 0.0] for k in range(size)], bead=n),
+            DepositOff(),
+        )
+    ]
     files = post.write(program(*blocks, max_points=10))
     counts = [content.decode().count("G1 ") for _, content in sorted(files.items())]
     assert counts == [0, 3, 41, 8, 26]  # the main program; both short beads together
@@ -238,26 +321,44 @@ def test_a_bead_longer_than_a_part_is_a_part_by_itself(post):
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
+@pytest.mark.parametrize(
+    ("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)]
+)
 def test_the_speed_of_the_wire_comes_back(post, seed, motion, feed):
     plain = with_options(random_program(seed, motion), path_feed=feed)
-    of = with_options(random_program(seed, motion, wire=True), path_feed=feed, wire_output=3, wire_gain=400.0)
+    of = with_options(
+        random_program(seed, motion, wire=True), path_feed=feed, wire_output=3, wire_gain=400.0
+    )
     files = post.write(of)
     read, deposit = post.read(files), np.array(deposit_of(of))
-    wanted = np.concatenate([np.full(len(run), np.nan) if run.wire is None else run.wire for run in of.moves])
+    wanted = np.concatenate(
+        [np.full(len(run), np.nan) if run.wire is None else run.wire for run in of.moves]
+    )
     told = wanted[deposit] * 0.06 * 400.0  # at a gain of 400 a value of 400 is 1 m/min
     assert np.abs(read.wire[deposit] / told - 1.0).max() <= 5.1e-5
     assert (np.abs(read.wire[deposit] - told) <= read.wire_digits[deposit] + 1e-9).all()
     assert (read.wire_digits[deposit] <= 5.1e-5 * told).all()
     written = "".join(content.decode() for _, content in sorted(files.items()))
-    within, before = (r"DO \$A_OUTA\[3\]=", r"N\d+ \$A_OUTA\[3\]=") if post is siemens else (r"M67 E2 Q", r"M68 E2 Q")
+    within, before = (
+        (r"DO \$A_OUTA\[3\]=", r"N\d+ \$A_OUTA\[3\]=")
+        if post is siemens
+        else (r"M67 E2 Q", r"M68 E2 Q")
+    )
     beads = [run.wire for run in of.moves if run.wire is not None]
     assert len(re.findall(before, written)) == len(beads)
-    assert len(re.findall(within, written)) == sum(int((np.diff(wire) != 0.0).sum()) for wire in beads)
+    assert len(re.findall(within, written)) == sum(
+        int((np.diff(wire) != 0.0).sum()) for wire in beads
+    )
     # nothing else is different, but that blocks with a value of their own are not compressed
-    ours, theirs = ([re.sub(r"^N\d+ ", "", line) for _, content in sorted(some.items())
-                     for line in content.decode().split("\n") if not re.search(r"OUTA|M6[78]|COMP", line)]
-                    for some in (files, post.write(plain)))
+    ours, theirs = (
+        [
+            re.sub(r"^N\d+ ", "", line)
+            for _, content in sorted(some.items())
+            for line in content.decode().split("\n")
+            if not re.search(r"OUTA|M6[78]|COMP", line)
+        ]
+        for some in (files, post.write(plain))
+    )
     assert ours == theirs
     for inside in re.findall(r"COMPCAD\n(.*?)COMPOF", written, re.DOTALL):
         assert "OUTA" not in inside
@@ -269,11 +370,27 @@ def test_the_wire_of_a_dry_run_and_of_outputs_that_are_not_there(post):
     last = {siemens: 8, linuxcnc: 64}[post]
     post.write(with_options(of, wire_output=last))
     where = "program.nc.wire_output"
-    assert f"1 to {last}" in refusal(post, with_options(of, wire_output=last + 1), code="WIRE_OUTPUT", where=where)
-    still = text(post.write(with_options(random_program(5, max_points=10**4), wire_output=last + 1)))
+    assert f"1 to {last}" in refusal(
+        post, with_options(of, wire_output=last + 1), code="WIRE_OUTPUT", where=where
+    )
+    still = text(
+        post.write(with_options(random_program(5, max_points=10**4), wire_output=last + 1))
+    )
     assert "OUTA" not in still and not re.search(r"M6[78]", still)
-    dry = text(post.write(dataclasses.replace(of, dry_run=True, blocks=tuple(
-        dataclasses.replace(block, wire=None) if isinstance(block, (Moves, DepositOn)) else block for block in of.blocks))))
+    dry = text(
+        post.write(
+            dataclasses.replace(
+                of,
+                dry_run=True,
+                blocks=tuple(
+                    dataclasses.replace(block, wire=None)
+                    if isinstance(block, (Moves, DepositOn))
+                    else block
+                    for block in of.blocks
+                ),
+            )
+        )
+    )
     assert "OUTA" not in dry and not re.search(r"M6[78]", dry)
     assert post.read(post.write(random_program(5))).wire is None
 
@@ -284,18 +401,23 @@ def test_what_one_controller_alone_cannot_say():
         refusal(linuxcnc, other, code="UNSUPPORTED_FRAME", where="program.user_frame")
     tilted = dataclasses.replace(TIP, carried=(0.0, 0.0, 0.0, 0.1, 0.0, 0.0))
     assert "cell.platform: [0, 0, 0, 0, 0, 0]" in refusal(
-        linuxcnc, tilted, code="UNSUPPORTED_FRAME", where="program.origin")
+        linuxcnc, tilted, code="UNSUPPORTED_FRAME", where="program.origin"
+    )
     siemens.write(tilted)
     fixed = with_options(TIP, switch_kinematics=False)
     refusal(linuxcnc, fixed, code="NO_TIP_KINEMATICS", where="program.nc.switch_kinematics")
     assert "M42" not in text(linuxcnc.write(with_options(JOINT, switch_kinematics=False)))
     turns = [[0.0, 0.0, 0.0, 0.0, angle] for angle in (0.0, 179.0, 359.5)]
     continuous = program(moves("rapid", turns), continuous=(False,) * 4 + (True,))
-    assert "C turns 180.5 deg" in refusal(siemens, continuous, code="ENDLESS_STEP", where="layer 0 bead 0")
+    assert "C turns 180.5 deg" in refusal(
+        siemens, continuous, code="ENDLESS_STEP", where="layer 0 bead 0"
+    )
     linuxcnc.write(continuous)
 
 
-@pytest.mark.parametrize(("user_frame", "word"), [(0, "G500"), (1, "G54"), (4, "G57"), (5, "G505"), (61, "G561")])
+@pytest.mark.parametrize(
+    ("user_frame", "word"), [(0, "G500"), (1, "G54"), (4, "G57"), (5, "G505"), (61, "G561")]
+)
 def test_work_offsets_of_sinumerik(user_frame, word):
     of = dataclasses.replace(TIP, user_frame=user_frame, max_points=100)
     written = text(siemens.write(of))
@@ -307,9 +429,15 @@ def test_the_angles_of_a_work_offset_are_the_controllers():
     from scipy.spatial.transform import Rotation
 
     rng = np.random.default_rng(3)
-    for bryant in [*rng.uniform(-3.0, 3.0, (20, 3)), np.array([0.3, math.pi / 2.0, 0.2]), np.zeros(3)]:
+    for bryant in [
+        *rng.uniform(-3.0, 3.0, (20, 3)),
+        np.array([0.3, math.pi / 2.0, 0.2]),
+        np.zeros(3),
+    ]:
         of = dataclasses.replace(TIP, carried=(1.0, 2.0, 3.0, *bryant))
-        found = re.search(r"then Z (\S+) Y (\S+) X (\S+) deg", siemens.write(of)["TIP.MPF"].decode())
+        found = re.search(
+            r"then Z (\S+) Y (\S+) X (\S+) deg", siemens.write(of)["TIP.MPF"].decode()
+        )
         told = Rotation.from_euler("ZYX", [float(angle) for angle in found.groups()], degrees=True)
         assert (told.inv() * Rotation.from_euler("XYZ", bryant)).magnitude() < 3e-6
 
@@ -324,7 +452,9 @@ def test_the_angles_of_a_work_offset_are_the_controllers():
     (linuxcnc, "Con", "reserved", "am_con"),
 ])  # fmt: skip
 def test_names_the_controllers_refuse(post, name, why, proposal):
-    message = refusal(post, dataclasses.replace(JOINT, name=name), code="PROGRAM_NAME", where="name")
+    message = refusal(
+        post, dataclasses.replace(JOINT, name=name), code="PROGRAM_NAME", where="name"
+    )
     assert why in message and message.endswith(f"use {proposal!r}")
     post.write(dataclasses.replace(JOINT, name=proposal))
 

@@ -82,22 +82,40 @@ def test_a_sinumerik_program_by_hand():
     read = siemens.read(mpf())
     shown = read.joints * [1, 1, 1, 180 / np.pi, 180 / np.pi]
     np.testing.assert_allclose(
-        shown[[0, 1, 3]], [[10, 0.25, 5, -12.5, 45], [13, 4.25, 5, -12.5, 50], [14, 5, 5, -10, 51.25]], atol=1e-12
+        shown[[0, 1, 3]],
+        [[10, 0.25, 5, -12.5, 45], [13, 4.25, 5, -12.5, 50], [14, 5, 5, -10, 51.25]],
+        atol=1e-12,
     )
-    assert np.isnan(shown[2]).all() and np.isnan(np.hstack([read.position, read.direction])[[0, 1, 3]]).all()
+    assert (
+        np.isnan(shown[2]).all()
+        and np.isnan(np.hstack([read.position, read.direction])[[0, 1, 3]]).all()
+    )
     np.testing.assert_allclose(read.position[2], [1.5, 2.0, -3.125])
     np.testing.assert_allclose(read.direction[2], [0.0, 0.6, 0.8])
     np.testing.assert_allclose(read.duration, [10.0, 5.0, np.nan, 0.5])  # 5 mm at 60 mm/min
     np.testing.assert_allclose(read.speed, [np.nan, np.nan, 5.0, np.nan])
-    assert read.linear.tolist() == [False, False, True, False] and read.stops.tolist() == [False, False, False, True]
-    assert read.user_frame.tolist()[2] == 1.0 and np.isnan(read.user_frame[[0, 1, 3]]).all() and read.rounding is None
+    assert read.linear.tolist() == [False, False, True, False] and read.stops.tolist() == [
+        False,
+        False,
+        False,
+        True,
+    ]
+    assert (
+        read.user_frame.tolist()[2] == 1.0
+        and np.isnan(read.user_frame[[0, 1, 3]]).all()
+        and read.rounding is None
+    )
     assert set(read.tool_frame.tolist()) == {2.0}
     assert [(event.row, event.kind, *event.value) for event in read.events] == [
         (2, "on", 2.0, "$A_OUT[2]=1"), (2, "wait", 0.5), (3, "off", 2.0, "$A_OUT[2]=0"), (4, "input", 4.0),
         (4, "call", "CLEANING"),
     ]  # fmt: skip
-    assert read.deposit.tolist() == [False, False, True, False] and read.shorter_way.tolist() == [False] * 4 + [True]
-    assert (read.linear_digits, np.degrees(read.digits), read.direction_digits) == pytest.approx((0.5, 0.5, 0.5))
+    assert read.deposit.tolist() == [False, False, True, False] and read.shorter_way.tolist() == [
+        False
+    ] * 4 + [True]
+    assert (read.linear_digits, np.degrees(read.digits), read.direction_digits) == pytest.approx(
+        (0.5, 0.5, 0.5)
+    )
 
 
 def test_a_linuxcnc_program_by_hand():
@@ -113,10 +131,20 @@ def test_a_linuxcnc_program_by_hand():
     assert read.deposit.tolist() == [False] * 3 + [True, False] and read.direction is None
     assert read.linear.tolist() == [False] * 3 + [True, False]
     # what changes the kinematics waits for the end of the motion; so does the end
-    assert read.stops.tolist() == [False, False, True, True, False] and set(read.rounding[:2].tolist()) == {np.inf}
-    assert read.user_frame[3] == 1.0 and read.tool_frame[:4].tolist() == [2.0] * 4 and np.isnan(read.tool_frame[4])
+    assert read.stops.tolist() == [False, False, True, True, False] and set(
+        read.rounding[:2].tolist()
+    ) == {np.inf}
+    assert (
+        read.user_frame[3] == 1.0
+        and read.tool_frame[:4].tolist() == [2.0] * 4
+        and np.isnan(read.tool_frame[4])
+    )
     assert [(event.row, event.kind, *event.value) for event in read.events] == [
-        (3, "on", 4.0, "M62 P3"), (4, "off", 4.0, "M63 P3"), (4, "call", "CLEANING"), (4, "input", 3.0), (4, "wait", 1.0),
+        (3, "on", 4.0, "M62 P3"),
+        (4, "off", 4.0, "M63 P3"),
+        (4, "call", "CLEANING"),
+        (4, "input", 3.0),
+        (4, "wait", 1.0),
     ]
 
 
@@ -201,10 +229,23 @@ def test_what_is_not_understood_of_linuxcnc(old, new, where, why):
 
 
 FIRST = {
-    siemens: ["N1 G17 G40 G710 G90", "N2 G500", "N3 FGROUP(X,Y,Z)", "N4 G93", "N5 G1 X1 Y2 Z3 A4 C=DC(5.5) F6",
-              "N6 G1 X1.5 Y2 Z3 A4 C=DC(6.25) F6"],
-    linuxcnc: ["G21 G90 G17 G40", "M429", "G10 L2 P9 X0 Y0 Z0 A0 C0 R0", "G59.3", "G93", "G1 X1 Y2 Z3 A4 C5.5 F6",
-               "G1 X1.5 Y2 Z3 A4 C6.25 F6"],
+    siemens: [
+        "N1 G17 G40 G710 G90",
+        "N2 G500",
+        "N3 FGROUP(X,Y,Z)",
+        "N4 G93",
+        "N5 G1 X1 Y2 Z3 A4 C=DC(5.5) F6",
+        "N6 G1 X1.5 Y2 Z3 A4 C=DC(6.25) F6",
+    ],
+    linuxcnc: [
+        "G21 G90 G17 G40",
+        "M429",
+        "G10 L2 P9 X0 Y0 Z0 A0 C0 R0",
+        "G59.3",
+        "G93",
+        "G1 X1 Y2 Z3 A4 C5.5 F6",
+        "G1 X1.5 Y2 Z3 A4 C6.25 F6",
+    ],
 }
 
 
@@ -217,6 +258,7 @@ FIRST = {
 ])  # fmt: skip
 def test_a_block_after_one_alike_is_read_as_strictly(post, old, new, monkeypatch):
     """Blocks that look like the one before are read at once; what comes out is as without that."""
+
     def read(*lines):
         end = ["N9 M30"] if post is siemens else ["M2"]
         text = "\n".join([*lines, *end]) + "\n"
@@ -239,9 +281,17 @@ def test_a_block_after_one_alike_is_read_as_strictly(post, old, new, monkeypatch
 
 
 def test_files_that_hide_something_are_refused():
-    for files in ({**mpf(), "OTHER.MPF": b"N10 M30\n"}, {**mpf(), "data.txt": b""}, {"HAND.MPF": b"N10 M30\n"}):
+    for files in (
+        {**mpf(), "OTHER.MPF": b"N10 M30\n"},
+        {**mpf(), "data.txt": b""},
+        {"HAND.MPF": b"N10 M30\n"},
+    ):
         with pytest.raises(InputError, match=r"main programs|no moves"):
             siemens.read(files)
-    for files in ({**ngc(), "other.ngc": b"M2\n"}, {**ngc(), "data.txt": b""}, {"hand.ngc": b"M2\n"}):
+    for files in (
+        {**ngc(), "other.ngc": b"M2\n"},
+        {**ngc(), "data.txt": b""},
+        {"hand.ngc": b"M2\n"},
+    ):
         with pytest.raises(InputError):
             linuxcnc.read(files)

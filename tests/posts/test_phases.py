@@ -13,7 +13,16 @@ from freecad_am.core.parameters.bead_classes import BeadEnd, BeadStart
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, ScheduleParameters
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
-from tests.posts.planned_jobs import AT_ENDS, CHORD_ERROR, PROCESS, SIDES, SPEED, WAYS, wanted_speeds, written
+from tests.posts.planned_jobs import (
+    AT_ENDS,
+    CHORD_ERROR,
+    PROCESS,
+    SIDES,
+    SPEED,
+    WAYS,
+    wanted_speeds,
+    written,
+)
 from tests.programs import build
 
 FASTER = 1.05  # more than the coarsest steps of a text explain, of a hundredth of VJ
@@ -26,8 +35,16 @@ def laid_at(way, speed):
     duration = np.where(moves, motion.duration * motion.speed / speed, motion.duration)
     post, kind, feed, _ = way
     parameters = ProgramParameters(post=post, motion=kind, nc=NcParameters(feed=feed))
-    other = build(dataclasses.replace(motion, speed=speed, duration=duration), cell, PROCESS, parameters, "job")
-    found = verify(cell, motion, program, catalogue.load(post).write(other), catalogue.load(post), CHORD_ERROR)
+    other = build(
+        dataclasses.replace(motion, speed=speed, duration=duration),
+        cell,
+        PROCESS,
+        parameters,
+        "job",
+    )
+    found = verify(
+        cell, motion, program, catalogue.load(post).write(other), catalogue.load(post), CHORD_ERROR
+    )
     return {issue.code for issue in found.issues if issue.level == ERROR}
 
 
@@ -37,11 +54,15 @@ def speeds(motion):
     for layer in range(2):
         for side in range(SIDES):
             rows = np.flatnonzero(motion.deposit & (motion.layer == layer) & (motion.bead == side))
-            along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1))]
+            along = np.r_[
+                0.0, np.cumsum(np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1))
+            ]
             wanted[rows[1:]] = wanted_speeds(side, along)
             if AT_ENDS[side]:
                 first, _, last, _ = AT_ENDS[side]
-                assert max(np.abs(along - border).min() for border in (first, along[-1] - last)) < 2e-3
+                assert (
+                    max(np.abs(along - border).min() for border in (first, along[-1] - last)) < 2e-3
+                )
     return wanted
 
 
@@ -54,13 +75,21 @@ def test_another_speed_at_a_start_or_an_end_is_refused(way):
     differ = moves & (wanted != SPEED)
     assert set(wanted[differ]) == {5.0, 11.0, 4.0}
     refused = {"VERIFY_SPEED", "VERIFY_TIME"}
-    assert laid_at(way, np.where(differ, SPEED, motion.speed)) & refused  # laid as the rest of the bead
+    assert (
+        laid_at(way, np.where(differ, SPEED, motion.speed)) & refused
+    )  # laid as the rest of the bead
     for row in (np.flatnonzero(differ)[0], np.flatnonzero(differ)[-1]):
-        assert laid_at(way, np.where(np.arange(len(wanted)) == row, FASTER * motion.speed, motion.speed)) & refused
+        assert (
+            laid_at(
+                way, np.where(np.arange(len(wanted)) == row, FASTER * motion.speed, motion.speed)
+            )
+            & refused
+        )
 
 
 OWN_SCHEDULES = dataclasses.replace(
-    PROCESS, schedule=9, start=BeadStart(4.0, 5.0, 4), end=BeadEnd(2.5, 11.0, 5))
+    PROCESS, schedule=9, start=BeadStart(4.0, 5.0, 4), end=BeadEnd(2.5, 11.0, 5)
+)
 LINUXCNC = [way for way in WAYS if way[0] == "linuxcnc"]
 
 
@@ -69,7 +98,9 @@ def scheduled(way):
     cell, motion, _, _ = written(way)
     post, kind, feed, _ = way
     told = ScheduleParameters(output=20)
-    parameters = ProgramParameters(post=post, motion=kind, nc=NcParameters(feed=feed), schedule=told)
+    parameters = ProgramParameters(
+        post=post, motion=kind, nc=NcParameters(feed=feed), schedule=told
+    )
     program = build(motion, cell, OWN_SCHEDULES, parameters, "job")
     return cell, motion, program, catalogue.load(post).write(program)
 
@@ -78,7 +109,9 @@ def refused(way, text):
     cell, motion, program, files = scheduled(way)
     (name,) = files
     try:
-        found = verify(cell, motion, program, {name: text.encode()}, catalogue.load(way[0]), CHORD_ERROR)
+        found = verify(
+            cell, motion, program, {name: text.encode()}, catalogue.load(way[0]), CHORD_ERROR
+        )
     except InputError as error:
         return {error.code}
     return {issue.code for issue in found.issues if issue.level == ERROR}
@@ -98,14 +131,17 @@ def test_another_schedule_within_a_bead_another_place_or_way_of_telling_it_is_re
         move = next(k for k in range(at, len(lines)) if "G1 " in lines[k]) + 1
         last = next(k for k in range(at, 0, -1) if "G1 " in lines[k])
         moved = [*lines[:at], *lines[at + 1 : move], line, *lines[move:]]
-        before = [*lines[:last], line, *lines[last:at], *lines[at + 1:]]
+        before = [*lines[:last], line, *lines[last:at], *lines[at + 1 :]]
         for changed in (
-            [*lines[:at], line.replace("Q", "Q1"), *lines[at + 1:]],
-            [*lines[:at], line.replace("E19", "E18"), *lines[at + 1:]],
-            [*lines[:at], line.replace("M67", "M68"), *lines[at + 1:]], [*lines[:at], *lines[at + 1:]],
-            [*lines[:at], line, *lines[at:]], moved, before,
+            [*lines[:at], line.replace("Q", "Q1"), *lines[at + 1 :]],
+            [*lines[:at], line.replace("E19", "E18"), *lines[at + 1 :]],
+            [*lines[:at], line.replace("M67", "M68"), *lines[at + 1 :]],
+            [*lines[:at], *lines[at + 1 :]],
+            [*lines[:at], line, *lines[at:]],
+            moved,
+            before,
         ):
             assert refused(way, "\n".join(changed)), (line, at)
     ahead = next(k for k, line in enumerate(lines) if line.startswith("M68 E19 Q"))
-    later = [*lines[:ahead], lines[ahead].replace("M68", "M67"), *lines[ahead + 1:]]
+    later = [*lines[:ahead], lines[ahead].replace("M68", "M67"), *lines[ahead + 1 :]]
     assert refused(way, "\n".join(later))  # with the next move is after the deposit is on

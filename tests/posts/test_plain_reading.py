@@ -19,7 +19,11 @@ OFF, ENDS, SLOW = 0.1, 0.06, 0.005
 FANUC = r"^ *\d+:(J|L) P\[(\d+)\] (?:(\d+)msec|([\d.]+)sec|([\d.]+)mm/sec|\d+%) (FINE|CNT\d+)"
 ABB = r"MoveAbsJ \[\[([^\]]*)\].*\\T:=([\d.]+),(\w+),"
 UR = r"movej\(\[([^\]]*)\].* t=([\d.]+), r=([\d.]+)\)"
-SIDES_OF = {"fanuc": r"DO\[1\]=(ON|OFF)", "abb": r"SetDO \w+,(1|0);", "ur": r"set_standard_digital_out\(0, (True|False)\)"}
+SIDES_OF = {
+    "fanuc": r"DO\[1\]=(ON|OFF)",
+    "abb": r"SetDO \w+,(1|0);",
+    "ur": r"set_standard_digital_out\(0, (True|False)\)",
+}
 
 
 def lines_of(files):
@@ -38,7 +42,14 @@ def fanuc(lines):
             axes = [float(value) for value in re.findall(r"J[1-6]= *(-?\d*\.\d+) deg", text)]
             place = [float(value) for value in re.findall(r"[XYZ] = *(-?\d*\.\d+) +mm", text)]
             seconds = float(found[3]) / 1000.0 if found[3] else float(found[4] or "nan")
-            yield line, axes or place, straight, seconds, float(found[5] or "nan"), found[6] == "FINE"
+            yield (
+                line,
+                axes or place,
+                straight,
+                seconds,
+                float(found[5] or "nan"),
+                found[6] == "FINE",
+            )
         else:
             yield line, None, False, 0.0, 0.0, False
 
@@ -49,23 +60,35 @@ def told(pattern, scale, stop):
     def moves(lines):
         for line in lines:
             found = re.search(pattern, line)
-            axes = None if found is None else [scale * float(value) for value in found[1].split(",")]
-            yield line, axes, False, float(found[2]) if found else 0.0, np.nan, found is not None and stop(found[3])
+            axes = (
+                None if found is None else [scale * float(value) for value in found[1].split(",")]
+            )
+            yield (
+                line,
+                axes,
+                False,
+                float(found[2]) if found else 0.0,
+                np.nan,
+                found is not None and stop(found[3]),
+            )
 
     return moves
 
 
 READERS = {
-    "fanuc": fanuc, "abb": told(ABB, 1.0, lambda zone: zone == "fine"),
+    "fanuc": fanuc,
+    "abb": told(ABB, 1.0, lambda zone: zone == "fine"),
     "ur": told(UR, np.degrees(1.0), lambda radius: float(radius) == 0.0),
 }
 
 
 def pose(place, rpy):
     x, y, z = np.radians(rpy)
-    around = [np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]]),
-              np.array([[np.cos(y), 0, np.sin(y)], [0, 1, 0], [-np.sin(y), 0, np.cos(y)]]),
-              np.array([[np.cos(z), -np.sin(z), 0], [np.sin(z), np.cos(z), 0], [0, 0, 1]])]
+    around = [
+        np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]]),
+        np.array([[np.cos(y), 0, np.sin(y)], [0, 1, 0], [-np.sin(y), 0, np.cos(y)]]),
+        np.array([[np.cos(z), -np.sin(z), 0], [np.sin(z), np.cos(z), 0], [0, 0, 1]]),
+    ]
     made = np.eye(4)
     made[:3, :3], made[:3, 3] = around[2] @ around[1] @ around[0], place
     return made
@@ -82,7 +105,9 @@ def turned(axis, degrees):
 
 def flange(machine, shown):
     """The pose of the flange in the base frame of a machine file, of joint values as its controller shows them."""
-    values = np.linalg.solve(machine["controller"]["matrix"], np.array(shown) - machine["controller"]["offset"])
+    values = np.linalg.solve(
+        machine["controller"]["matrix"], np.array(shown) - machine["controller"]["offset"]
+    )
     made = np.eye(4)
     for joint, value in zip(machine["joints"], values, strict=True):
         made = made @ pose(joint["origin"], joint["rpy"]) @ turned(joint["axis"], value)
@@ -98,15 +123,31 @@ def tips(way, moves):
     for values in moves:
         if len(values) == 6:
             seen = flange(machine, values)
-            rows.append((cell.mount @ np.linalg.inv(seen @ cell.carried) @ cell.station if setup.setup == "part-on-robot"
-                         else cell.mount @ np.linalg.inv(cell.station) @ seen @ cell.carried)[:3, 3])
+            rows.append(
+                (
+                    cell.mount @ np.linalg.inv(seen @ cell.carried) @ cell.station
+                    if setup.setup == "part-on-robot"
+                    else cell.mount @ np.linalg.inv(cell.station) @ seen @ cell.carried
+                )[:3, 3]
+            )
         else:
-            rows.append((cell.mount @ [*values, 1.0])[:3])  # the program's origin is where the part is mounted
+            rows.append(
+                (cell.mount @ [*values, 1.0])[:3]
+            )  # the program's origin is where the part is mounted
     return np.array(rows)
 
 
-@pytest.mark.parametrize("way", [way for way in WAYS if way[0] in READERS and not re.search("positioner|track", way[3]) and (
-    way[1] == "joint" or way[0] == "fanuc")], ids=" ".join)
+@pytest.mark.parametrize(
+    "way",
+    [
+        way
+        for way in WAYS
+        if way[0] in READERS
+        and not re.search("positioner|track", way[3])
+        and (way[1] == "joint" or way[0] == "fanuc")
+    ],
+    ids=" ".join,
+)
 def test_the_tip_runs_along_the_beads_at_their_speed_and_stops_on_rapids(way):
     post, files = way[0], written(way)[3]
     on, moves, rest = False, [], []
@@ -128,10 +169,19 @@ def test_the_tip_runs_along_the_beads_at_their_speed_and_stops_on_rapids(way):
         length = np.linalg.norm(np.diff(run, axis=0), axis=1)
         given, time = speeds[start : end + 1], seconds[start : end + 1]
         time = np.where(np.isnan(given), time, length / given)
-        beads = {(layer, side): _bead(SETUPS[way[3]].hub, side, layer).points for layer in range(2) for side in range(SIDES)}
+        beads = {
+            (layer, side): _bead(SETUPS[way[3]].hub, side, layer).points
+            for layer in range(2)
+            for side in range(SIDES)
+        }
         away = {}
         for key, points in beads.items():
-            dense = np.concatenate([a + np.linspace(0.0, 1.0, 400)[:, None] * (b - a) for a, b in zip(points, points[1:])])
+            dense = np.concatenate(
+                [
+                    a + np.linspace(0.0, 1.0, 400)[:, None] * (b - a)
+                    for a, b in zip(points, points[1:])
+                ]
+            )
             away[key] = np.linalg.norm(run[:, None] - dense, axis=2).min(axis=1).max()
         best = min(away, key=away.get)
         assert away[best] < OFF
@@ -143,6 +193,8 @@ def test_the_tip_runs_along_the_beads_at_their_speed_and_stops_on_rapids(way):
         for speed in set(wanted):
             stretch = wanted == speed
             more = 0.0 if len(set(wanted)) == 1 else ENDS / length[stretch].sum()
-            assert length[stretch].sum() / time[stretch].sum() == pytest.approx(speed, rel=SLOW + more)
+            assert length[stretch].sum() / time[stretch].sum() == pytest.approx(
+                speed, rel=SLOW + more
+            )
         taken.append(best)
     assert sorted(taken) == sorted(beads)

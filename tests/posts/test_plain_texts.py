@@ -15,7 +15,10 @@ from tests.posts.planned_jobs import PROCESS, PULSES, SETUPS, SIDES, WAYS, wante
 from tests.posts.test_plain_reading import ENDS, MACHINES, SLOW, pose, turned
 
 NUMBER = r"(-?[\d.]+)"
-LEAN, AXIS = 0.03, 0.002  # deg, between the tool and the direction that a text tells in so many digits; of an axis, or mm
+LEAN, AXIS = (
+    0.03,
+    0.002,
+)  # deg, between the tool and the direction that a text tells in so many digits; of an axis, or mm
 DWELLS = r"(?:delay\(|TIMER T=|WAIT SEC |G4 [FP])([\d.]+)"
 POLLED = 0.1  # s, between two looks at an input
 POSTS = ("kuka", "staubli", "yaskawa", "siemens", "linuxcnc")
@@ -43,7 +46,9 @@ def numbers(pattern, line):
 
 
 def text_of(files, ending):
-    return next(content for name, content in files.items() if name.endswith(ending)).decode("utf-8-sig")
+    return next(content for name, content in files.items() if name.endswith(ending)).decode(
+        "utf-8-sig"
+    )
 
 
 def kuka(files):
@@ -56,17 +61,31 @@ def kuka(files):
         axes = numbers(r"^PTP \{" + ",".join(rf"A{k} {NUMBER}" for k in range(1, 7)) + r"\}$", line)
         if axes:
             yield Move(on, True, False, axes, rate=rate)
-        base = numbers(r"^LIN \{" + ",".join(rf"{k} {NUMBER}" for k in "XYZABC") + r"\}(?: C_DIS)?$", line)
+        base = numbers(
+            r"^LIN \{" + ",".join(rf"{k} {NUMBER}" for k in "XYZABC") + r"\}(?: C_DIS)?$", line
+        )
         if base:
-            frame = turned((0, 0, 1), base[3]) @ turned((0, 1, 0), base[4]) @ turned((1, 0, 0), base[5])
-            yield Move(on, not line.endswith("C_DIS"), True, place=base[:3], way=tuple(-frame[:3, 2]), speed=speed)
+            frame = (
+                turned((0, 0, 1), base[3]) @ turned((0, 1, 0), base[4]) @ turned((1, 0, 0), base[5])
+            )
+            yield Move(
+                on,
+                not line.endswith("C_DIS"),
+                True,
+                place=base[:3],
+                way=tuple(-frame[:3, 2]),
+                speed=speed,
+            )
 
 
 def staubli(files):
     """Loops over arrays of the data: joints, points or tools, and how each is moved to."""
     data, on, loop = text_of(files, ".dtx"), False, range(0)
     array = {
-        name: [dict(re.findall(r'(\w+)="([^"]*)"', value)) for value in re.findall("<Value (.*?)/>", body)]
+        name: [
+            dict(re.findall(r'(\w+)="([^"]*)"', value))
+            for value in re.findall("<Value (.*?)/>", body)
+        ]
         for name, body in re.findall(r'<Data name="(\w+)".*?>(.*?)</Data>', data, re.DOTALL)
     }
     for line in text_of(files, "start.pgx").splitlines():
@@ -75,10 +94,16 @@ def staubli(files):
         loop = range(int(turns[0]), int(turns[1]) + 1) if turns else loop
         if "waitEndMove()" in line:
             yield None
-        moved = re.match(r" *move([jl])\((\w+)(?:\[(.*?)\])?,(\w+)(?:\[(.*?)\])?,mPath\[(.*?)\]\)", line)
+        moved = re.match(
+            r" *move([jl])\((\w+)(?:\[(.*?)\])?,(\w+)(?:\[(.*?)\])?,mPath\[(.*?)\]\)", line
+        )
         for k in loop if moved and "l_nI" in line else range(1) if moved else ():
-            index = [None if text is None else sum(int(p) for p in text.replace("l_nI", str(k)).split("+"))
-                     for text in (moved[3], moved[5], moved[6])]
+            index = [
+                None
+                if text is None
+                else sum(int(p) for p in text.replace("l_nI", str(k)).split("+"))
+                for text in (moved[3], moved[5], moved[6])
+            ]
             how, point = array["mPath"][index[2]], array[moved[2]][index[0] or 0]
             stop = how["blend"] == "off"
             if moved[1] == "j":
@@ -107,13 +132,18 @@ def waited(moves):
 def yaskawa(files):
     """MOVJ at a share of the axes' speeds, MOVL at the tip's; all to pulses."""
     text, on = text_of(files, ".JBI"), False
-    pulses = {name: [float(value) for value in row.split(",")] for name, row in re.findall(r"^(C\d+)=(.*)$", text, re.M)}
+    pulses = {
+        name: [float(value) for value in row.split(",")]
+        for name, row in re.findall(r"^(C\d+)=(.*)$", text, re.M)
+    }
     for line in text.splitlines():
         on = line.endswith("ON") if line.startswith("DOUT OT#(1)") else on
         moved = re.match(rf"MOV([JL]) (C\d+) V(J?)={NUMBER} PL=(\d)$", line)
         if moved:
             axes = tuple(value / scale for value, scale in zip(pulses[moved[2]], PULSES))
-            told = {"rate": float(moved[4]) / 100.0} if moved[1] == "J" else {"speed": float(moved[4])}
+            told = (
+                {"rate": float(moved[4]) / 100.0} if moved[1] == "J" else {"speed": float(moved[4])}
+            )
             yield Move(on, moved[5] == "0", moved[1] == "L", axes, **told)
 
 
@@ -126,22 +156,40 @@ def nc(on_line, off_line, stopped, dwells):
         for line in "".join(content.decode("utf-8") for content in files.values()).splitlines():
             on = True if on_line in line else False if off_line in line else on
             inverse = True if "G93" in line else False if "G94" in line else inverse
-            part = True if re.search(r"TRAORI|M428", line) else False if re.search(r"TRAFOOF|M429", line) else part
+            part = (
+                True
+                if re.search(r"TRAORI|M428", line)
+                else False
+                if re.search(r"TRAFOOF|M429", line)
+                else part
+            )
             exact = {"G61.1": True, "G64": False}.get(line.split(" ")[0], exact)
             if dwells and re.search(r"\bG4 ", line):
                 yield None
             if not re.search(r"\bG1 ", line):
                 continue
-            words |= dict(re.findall(r"([ABC]3(?==)|[A-Z])=?(?:DC\()?(-?[\d.]+)", line.split("G1 ")[1]))
+            words |= dict(
+                re.findall(r"([ABC]3(?==)|[A-Z])=?(?:DC\()?(-?[\d.]+)", line.split("G1 ")[1])
+            )
             stop = stopped(line, exact)
             place = tuple(float(words[name]) for name in "XYZ")
             moved = np.inf if last is None else float(np.linalg.norm(np.subtract(place, last)))
             time = 60.0 / float(words["F"]) if inverse else 60.0 * moved / float(words["F"])
             last = place
             if part:
-                way = tuple(float(words[name]) for name in ("A3", "B3", "C3")) if "A3" in words else ()
-                axes = () if way else tuple(np.nan if name in "XYZ" else float(words[name]) for name in names)
-                yield Move(on, stop, True, axes, place=place, way=way, speed=float(words["F"]) / 60.0)
+                way = (
+                    tuple(float(words[name]) for name in ("A3", "B3", "C3"))
+                    if "A3" in words
+                    else ()
+                )
+                axes = (
+                    ()
+                    if way
+                    else tuple(np.nan if name in "XYZ" else float(words[name]) for name in names)
+                )
+                yield Move(
+                    on, stop, True, axes, place=place, way=way, speed=float(words["F"]) / 60.0
+                )
             else:
                 yield Move(on, stop, False, tuple(float(words[name]) for name in names), time=time)
 
@@ -156,12 +204,17 @@ NC = {
 
 def seen(machine, shown):
     """The pose of the flange in the base frame of a machine file, of values as the controller shows them."""
-    values = np.linalg.solve(machine["controller"]["matrix"], np.array(shown) - machine["controller"]["offset"])
+    values = np.linalg.solve(
+        machine["controller"]["matrix"], np.array(shown) - machine["controller"]["offset"]
+    )
     made = np.eye(4)
     for joint, value in zip(machine["joints"], values, strict=True):
         slid = pose(value * np.array(joint["axis"], float), (0, 0, 0))
-        made = made @ pose(joint["origin"], joint["rpy"]) @ (
-            slid if joint.get("type") == "prismatic" else turned(joint["axis"], value))
+        made = (
+            made
+            @ pose(joint["origin"], joint["rpy"])
+            @ (slid if joint.get("type") == "prismatic" else turned(joint["axis"], value))
+        )
     return made @ pose(machine["flange"]["origin"], machine["flange"]["rpy"])
 
 
@@ -169,7 +222,9 @@ def tip(cell, setup, machine, move):
     """Where a move ends in part coordinates, and the tool's direction; None where it does not tell that."""
     if move.place:
         way = cell.mount[:3, :3] @ move.way / np.linalg.norm(move.way) if move.way else None
-        return (cell.mount @ [*move.place, 1.0])[:3], way  # the program's origin is where the part is mounted
+        return (cell.mount @ [*move.place, 1.0])[
+            :3
+        ], way  # the program's origin is where the part is mounted
     flange = seen(machine, move.joints)
     if setup.setup == "tool-on-robot":
         frame = cell.mount @ np.linalg.inv(cell.station) @ flange @ cell.carried
@@ -191,7 +246,10 @@ def read(way):
 
 
 @pytest.mark.parametrize(
-    "way", [way for way in WAYS if way[0] in POSTS and not re.search("positioner|track", way[3])], ids=" ".join)
+    "way",
+    [way for way in WAYS if way[0] in POSTS and not re.search("positioner|track", way[3])],
+    ids=" ".join,
+)
 def test_every_move_comes_to_its_waypoint_within_limits_and_speeds(way):
     setup, machine, cell, motion, moves = read(way)
     rows = np.flatnonzero(motion.moves)
@@ -199,7 +257,9 @@ def test_every_move_comes_to_its_waypoint_within_limits_and_speeds(way):
     laid = motion.deposit[rows]
     assert [move.on for move in moves] == laid.tolist()
     assert all(move.stop for move in moves if not move.on)
-    assert [move.straight for move in moves] == (laid & (way[1] == "cartesian")).tolist()  # rapids run in the joints
+    assert [move.straight for move in moves] == (
+        laid & (way[1] == "cartesian")
+    ).tolist()  # rapids run in the joints
     ends = laid & ~np.r_[laid[1:], False]
     assert [move.stop for move in moves if move.on] == ends[laid].tolist()
     limits = machine["limits"]["maker"]["axes"]
@@ -215,7 +275,10 @@ def test_every_move_comes_to_its_waypoint_within_limits_and_speeds(way):
         if move.joints:
             turning = np.array([joint.get("type") != "prismatic" for joint in machine["joints"]])
             planned = np.where(turning, np.degrees(motion.joints[row]), motion.joints[row])
-            planned = np.array(machine["controller"]["matrix"]) @ planned + machine["controller"]["offset"]
+            planned = (
+                np.array(machine["controller"]["matrix"]) @ planned
+                + machine["controller"]["offset"]
+            )
             off = np.subtract(move.joints, planned)
             off = np.where(continuous, np.remainder(off + 180.0, 360.0) - 180.0, off)  # of DC
             assert np.nanmax(np.abs(off)) < AXIS
@@ -223,12 +286,16 @@ def test_every_move_comes_to_its_waypoint_within_limits_and_speeds(way):
                 assert bounds is None or np.isnan(value) or bounds[0] <= value <= bounds[1]
         if move.joints and before[1] and not move.place:
             asked = np.abs(np.subtract(move.joints, before[1]))
-            asked = np.where(continuous & (asked > 180.0), np.abs(asked - 360.0), asked)  # the shorter way of DC
+            asked = np.where(
+                continuous & (asked > 180.0), np.abs(asked - 360.0), asked
+            )  # the shorter way of DC
             share = float(np.nanmax(asked / speeds))
             time = move.time if np.isnan(move.rate) else share / move.rate
             assert np.isnan(time) or share <= time * 1.001
             whole = 0.005 / move.rate if way[0] == "kuka" else 0.0  # whole percents
-            assert move.on or time > (0.99 - whole) * motion.duration[row]  # rapids are no quicker than they were planned
+            assert (
+                move.on or time > (0.99 - whole) * motion.duration[row]
+            )  # rapids are no quicker than they were planned
         else:
             time = move.time
         assert np.isnan(move.rate) or 0.0 < move.rate <= 1.0
@@ -237,16 +304,26 @@ def test_every_move_comes_to_its_waypoint_within_limits_and_speeds(way):
             time = length / move.speed if np.isfinite(move.speed) else time
             runs.setdefault((motion.layer[row], motion.bead[row]), []).append((length, time))
         before = (motion.position[row], move.joints)
-    told = "".join(content.decode("utf-8-sig") for name, content in written(way)[3].items() if not name.endswith("stop.pgx"))
-    dwells = sorted(float(value) for value in re.findall(DWELLS, told) if float(value) not in (0.0, POLLED))
+    told = "".join(
+        content.decode("utf-8-sig")
+        for name, content in written(way)[3].items()
+        if not name.endswith("stop.pgx")
+    )
+    dwells = sorted(
+        float(value) for value in re.findall(DWELLS, told) if float(value) not in (0.0, POLLED)
+    )
     leads, wait = (PROCESS.lead_off, PROCESS.lead_on), PROCESS.between_layers.wait
     assert dwells == [*(lead for lead in leads for _ in range(2 * SIDES)), wait]
     assert len(runs) == 2 * SIDES
     for (_, side), run in runs.items():
         length, time = np.array(run).T
         wanted = wanted_speeds(side, np.r_[0.0, np.cumsum(length)])
-        assert np.isfinite(time).all() and np.abs(length - wanted * time).max() < max(ENDS, SLOW * length.max())
+        assert np.isfinite(time).all() and np.abs(length - wanted * time).max() < max(
+            ENDS, SLOW * length.max()
+        )
         for speed in set(wanted):  # VJ of Yaskawa has steps of a hundredth
             stretch = wanted == speed
             more = 0.0 if len(set(wanted)) == 1 else ENDS / length[stretch].sum()
-            assert length[stretch].sum() / time[stretch].sum() == pytest.approx(speed, rel=0.011 + more)
+            assert length[stretch].sum() / time[stretch].sum() == pytest.approx(
+                speed, rel=0.011 + more
+            )

@@ -12,7 +12,16 @@ from freecad_am.core.issues import ERROR
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
-from tests.posts.planned_jobs import AT_ENDS, CHORD_ERROR, PROCESS, SIDES, SPANNING, SPEED, WAYS, written
+from tests.posts.planned_jobs import (
+    AT_ENDS,
+    CHORD_ERROR,
+    PROCESS,
+    SIDES,
+    SPANNING,
+    SPEED,
+    WAYS,
+    written,
+)
 from tests.programs import build
 
 RAMPS = (5.0, 4.0)  # mm after the start and before the end
@@ -27,8 +36,16 @@ def refused(way, speed):
     duration = np.where(moves, motion.duration * motion.speed / speed, motion.duration)
     post, kind, feed, _ = way
     parameters = ProgramParameters(post=post, motion=kind, nc=NcParameters(feed=feed))
-    other = build(dataclasses.replace(motion, speed=speed, duration=duration), cell, PROCESS, parameters, "job")
-    found = verify(cell, motion, program, catalogue.load(post).write(other), catalogue.load(post), CHORD_ERROR)
+    other = build(
+        dataclasses.replace(motion, speed=speed, duration=duration),
+        cell,
+        PROCESS,
+        parameters,
+        "job",
+    )
+    found = verify(
+        cell, motion, program, catalogue.load(post).write(other), catalogue.load(post), CHORD_ERROR
+    )
     return {issue.code for issue in found.issues if issue.level == ERROR}
 
 
@@ -36,14 +53,22 @@ def steady(side, place, length):
     """mm/s where a point is so far along a bead of a side that is so long, by straight lines between the speeds."""
     first, slow, last, late = AT_ENDS[side]
     up, down = RAMPS
-    known = [(0.0, slow), (first, slow), (first + up, SPEED)] if slow else [(0.0, SPEED)]  # no ramp from no speed
+    known = (
+        [(0.0, slow), (first, slow), (first + up, SPEED)] if slow else [(0.0, SPEED)]
+    )  # no ramp from no speed
     known += [(length - last - down, SPEED), (length - last, late), (length, late)]
     return np.interp(place, *zip(*known))
 
 
-@pytest.mark.parametrize("way", [
-    way if " ".join(way) in USUAL else pytest.param(way, marks=pytest.mark.long) for way in WAYS if " ".join(way) in SPANNING
-    or " ".join(way) in USUAL], ids=" ".join)
+@pytest.mark.parametrize(
+    "way",
+    [
+        way if " ".join(way) in USUAL else pytest.param(way, marks=pytest.mark.long)
+        for way in WAYS
+        if " ".join(way) in SPANNING or " ".join(way) in USUAL
+    ],
+    ids=" ".join,
+)
 def test_the_speed_changes_steadily_and_a_text_that_changes_it_at_once_is_refused(way):
     motion = written(way, ramps=RAMPS)[1]
     moves = motion.deposit & (motion.point > 0)
@@ -51,7 +76,9 @@ def test_the_speed_changes_steadily_and_a_text_that_changes_it_at_once_is_refuse
     for layer in range(2):
         for side in range(SIDES):
             rows = np.flatnonzero(motion.deposit & (motion.layer == layer) & (motion.bead == side))
-            along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1))]
+            along = np.r_[
+                0.0, np.cumsum(np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1))
+            ]
             if not AT_ENDS[side]:
                 assert (motion.speed[rows[1:]] == SPEED).all()
                 continue
@@ -59,12 +86,18 @@ def test_the_speed_changes_steadily_and_a_text_that_changes_it_at_once_is_refuse
             wanted = steady(side, middle, length)
             off = np.abs(motion.speed[rows[1:]] - wanted)
             inside = np.abs(wanted - SPEED) > 1e-9
-            assert off.max() <= STEP * max(wanted.max(), SPEED) and off[~inside].max(initial=0.0) < 1e-9
+            assert (
+                off.max() <= STEP * max(wanted.max(), SPEED)
+                and off[~inside].max(initial=0.0) < 1e-9
+            )
             steps = np.abs(np.diff(motion.speed[rows[1:]]))
-            assert steps.max() <= STEP * max(wanted.max(), SPEED) + 1e-9  # without ramps it is 3 or 4 mm/s at once
+            assert (
+                steps.max() <= STEP * max(wanted.max(), SPEED) + 1e-9
+            )  # without ramps it is 3 or 4 mm/s at once
             first, _, last, _ = AT_ENDS[side]
             in_ramp = ((middle > first) & (middle < first + RAMPS[0]) & (first > 0.0)) | (
-                (middle > length - last - RAMPS[1]) & (middle < length - last))
+                (middle > length - last - RAMPS[1]) & (middle < length - last)
+            )
             ramped[rows[1:][in_ramp]] = True
             assert len(set(np.round(motion.speed[rows[1:]][in_ramp], 9))) >= 4
             # the time of a steady ramp, but for what steps are off it
@@ -74,19 +107,26 @@ def test_the_speed_changes_steadily_and_a_text_that_changes_it_at_once_is_refuse
     assert refused(way, motion.speed) == set()
     assert refused(way, np.where(ramped, SPEED, motion.speed)) & {"VERIFY_SPEED", "VERIFY_TIME"}
     row = int(np.flatnonzero(ramped & moves)[2])
-    assert refused(way, np.where(np.arange(len(moves)) == row, 1.05 * motion.speed, motion.speed)) & {
-        "VERIFY_SPEED", "VERIFY_TIME"}
+    assert refused(
+        way, np.where(np.arange(len(moves)) == row, 1.05 * motion.speed, motion.speed)
+    ) & {"VERIFY_SPEED", "VERIFY_TIME"}
 
 
 FOLLOWING = {
-    "siemens": re.compile(rb"(DO \$A_OUTA\[3\]=)([0-9.]+)"), "linuxcnc": re.compile(rb"(M67 E\d+ Q)([0-9.]+)"),
+    "siemens": re.compile(rb"(DO \$A_OUTA\[3\]=)([0-9.]+)"),
+    "linuxcnc": re.compile(rb"(M67 E\d+ Q)([0-9.]+)"),
 }
 
 
-@pytest.mark.parametrize("post, kind, feed, compress", [
-    ("siemens", "joint", "time", False), ("siemens", "joint", "path", True), ("siemens", "cartesian", "time", True),
-    pytest.param("linuxcnc", "joint", "time", False, marks=pytest.mark.long),
-])
+@pytest.mark.parametrize(
+    "post, kind, feed, compress",
+    [
+        ("siemens", "joint", "time", False),
+        ("siemens", "joint", "path", True),
+        ("siemens", "cartesian", "time", True),
+        pytest.param("linuxcnc", "joint", "time", False, marks=pytest.mark.long),
+    ],
+)
 def test_a_wire_that_follows_the_speed_is_read_back_through_a_ramp(post, kind, feed, compress):
     """Every value that the text sets in a ramp counts: another one, or one that is missing, is refused."""
     cell, motion, _, _ = written((post, kind, feed, "table"), ramps=RAMPS)
@@ -105,7 +145,9 @@ def test_a_wire_that_follows_the_speed_is_read_back_through_a_ramp(post, kind, f
     places = list(FOLLOWING[post].finditer(files[name]))
     ramped = len(set(np.round(motion.speed[moves], 6)))
     assert len(places) >= ramped > 8  # each step of a ramp has a value of its own
-    every = re.compile(rb"A_OUTA\[3\]=([0-9.]+)" if post == "siemens" else rb"M6[78] E\d+ Q([0-9.]+)")
+    every = re.compile(
+        rb"A_OUTA\[3\]=([0-9.]+)" if post == "siemens" else rb"M6[78] E\d+ Q([0-9.]+)"
+    )
     told = np.array([float(one) for text in files.values() for one in every.findall(text)])
     for wanted in 0.06 * 0.01 * 12.5 * np.unique(motion.speed[moves]):
         assert np.abs(told - wanted).min() <= 1e-4

@@ -36,7 +36,9 @@ def test_beads_end_where_they_were_before_their_end(way):
         # places on the way back are places of the way there, by the segments nearest to them
         for point in place[turn:]:
             a, b = place[:turn], place[1 : turn + 1]
-            share = np.clip(((point - a) * (b - a)).sum(axis=1) / ((b - a) ** 2).sum(axis=1), 0.0, 1.0)
+            share = np.clip(
+                ((point - a) * (b - a)).sum(axis=1) / ((b - a) ** 2).sum(axis=1), 0.0, 1.0
+            )
             assert np.linalg.norm(a + share[:, None] * (b - a) - point, axis=1).min() < CHORD_ERROR
     assert motion.stops[motion.halt].all()
 
@@ -52,12 +54,18 @@ def test_a_text_that_does_not_stop_there_is_refused(way):
     """Each stop of the text in turn is left out; where the text stops once more for each bead than without a retreat."""
     cell, motion, program, files = written(way, retreat=BACK)
     stop, passed = STOPS[way[0]]
-    first, plain = ({name: data.decode("ascii") for name, data in some.items()} for some in (files, written(way)[3]))
+    first, plain = (
+        {name: data.decode("ascii") for name, data in some.items()}
+        for some in (files, written(way)[3])
+    )
     here, there = (sum(text.count(stop) for text in some.values()) for some in (first, plain))
     assert here == there + int(motion.halt.sum())
     for name, text in first.items():
         places = [k for k in range(len(text)) if text.startswith(stop, k)]
         for place in places:
-            changed = {**files, name: (text[:place] + passed + text[place + len(stop) :]).encode("ascii")}
+            changed = {
+                **files,
+                name: (text[:place] + passed + text[place + len(stop) :]).encode("ascii"),
+            }
             checked = verify(cell, motion, program, changed, catalogue.load(way[0]), CHORD_ERROR)
             assert has_errors(checked.issues), text[place - 80 : place + 80]

@@ -20,33 +20,50 @@ from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
 from tests.programs import build
 
 ONE_EACH = (
-    ("fanuc", "joint", "time", "fanuc tool-on-robot"), ("fanuc", "cartesian", "time", "fanuc tool-on-robot"),
-    ("staubli", "joint", "time", "staubli tool-on-robot"), ("ur", "joint", "time", "ur tool-on-robot"),
-    ("abb", "joint", "time", "abb tool-on-robot"), ("abb", "cartesian", "time", "abb positioner"),
-    ("yaskawa", "joint", "time", "yaskawa tool-on-robot"), ("kuka", "cartesian", "time", "kuka tool-on-robot"),
-    ("siemens", "joint", "time", "table"), ("linuxcnc", "cartesian", "time", "table"),
+    ("fanuc", "joint", "time", "fanuc tool-on-robot"),
+    ("fanuc", "cartesian", "time", "fanuc tool-on-robot"),
+    ("staubli", "joint", "time", "staubli tool-on-robot"),
+    ("ur", "joint", "time", "ur tool-on-robot"),
+    ("abb", "joint", "time", "abb tool-on-robot"),
+    ("abb", "cartesian", "time", "abb positioner"),
+    ("yaskawa", "joint", "time", "yaskawa tool-on-robot"),
+    ("kuka", "cartesian", "time", "kuka tool-on-robot"),
+    ("siemens", "joint", "time", "table"),
+    ("linuxcnc", "cartesian", "time", "table"),
 )
 # the number of a schedule as the text of each controller tells it; {} is the output
 TOLD = {
-    ("fanuc", "output"): r"GO\[20\]=(\d+) ;", ("fanuc", "arc"): r"Arc Start\[(\d+)\]    ;",
-    ("abb", "output"): r"SetGO go20,(\d+);", ("abb", "arc"): r"ArcLStart .*,seam(\d+),",
+    ("fanuc", "output"): r"GO\[20\]=(\d+) ;",
+    ("fanuc", "arc"): r"Arc Start\[(\d+)\]    ;",
+    ("abb", "output"): r"SetGO go20,(\d+);",
+    ("abb", "arc"): r"ArcLStart .*,seam(\d+),",
     ("ur", "output"): r"write_output_integer_register\(20, (\d+)\)",
-    ("kuka", "output"): r"am_schedule=(\d+)", ("kuka", "arc"): r"ArcMainNG\(#ArcOnAfterMoveStd,WDAT(\d+),WSEAM\)",
+    ("kuka", "output"): r"am_schedule=(\d+)",
+    ("kuka", "arc"): r"ArcMainNG\(#ArcOnAfterMoveStd,WDAT(\d+),WSEAM\)",
     ("yaskawa", "output"): r"DOUT OG#\(20\) (\d+)",
-    ("yaskawa", "arc"): r"ARCON ASF#\((\d+)\)", ("siemens", "output"): r"H20=(\d+)",
+    ("yaskawa", "arc"): r"ARCON ASF#\((\d+)\)",
+    ("siemens", "output"): r"H20=(\d+)",
     ("linuxcnc", "output"): r"M68 E19 Q(\d+)",
 }
-ON = re.compile(r"DO\[1\]=ON|Arc Start\[|SetDO do1,1|digital_out\(0, True\)|\$OUT\[1\]=TRUE|OT#\(1\) ON|ARCON|"
-                r"#ArcOnAfter|H1=1|M64 P0|doDeposit=true|ArcLStart")
+ON = re.compile(
+    r"DO\[1\]=ON|Arc Start\[|SetDO do1,1|digital_out\(0, True\)|\$OUT\[1\]=TRUE|OT#\(1\) ON|ARCON|"
+    r"#ArcOnAfter|H1=1|M64 P0|doDeposit=true|ArcLStart"
+)
 OF = {"contour": 3, "fill": 12}  # schedules, and 7 of the rest
-WAYS = [(way, by) for way in ONE_EACH for by in ("output", "arc", "call") if by not in catalogue.load(way[0]).NO_SCHEDULE
-        and (*way[:2], by) != ("abb", "joint", "arc")]
+WAYS = [
+    (way, by)
+    for way in ONE_EACH
+    for by in ("output", "arc", "call")
+    if by not in catalogue.load(way[0]).NO_SCHEDULE and (*way[:2], by) != ("abb", "joint", "arc")
+]
 
 
 def classed(motion):
     """The motion with beads of three classes in turn."""
     number = (motion.layer + motion.bead) % 3
-    return dataclasses.replace(motion, bead_class=np.array([CLASSES.index(name) for name in ("wall", *OF)])[number])
+    return dataclasses.replace(
+        motion, bead_class=np.array([CLASSES.index(name) for name in ("wall", *OF)])[number]
+    )
 
 
 def process_of(**more):
@@ -64,7 +81,11 @@ def written(way, by):
     cell, _, motion = planned(name)
     motion = classed(motion)
     parameters = ProgramParameters(
-        post=post, motion=kind, nc=NcParameters(feed=feed), schedule=ScheduleParameters(by=by, output=20))
+        post=post,
+        motion=kind,
+        nc=NcParameters(feed=feed),
+        schedule=ScheduleParameters(by=by, output=20),
+    )
     process = process_of(**NO_POST_FLOW) if (post, by) == ("kuka", "arc") else process_of()
     program = build(motion, cell, process, parameters, "job")
     return cell, motion, program, catalogue.load(post).write(program)
@@ -85,7 +106,11 @@ def pattern(way, by):
 
 def lines_of(files):
     """All lines, program files after each other."""
-    programs = [files[name].decode("latin-1") for name in sorted(files) if not name.endswith((".dtx", ".pjx"))]
+    programs = [
+        files[name].decode("latin-1")
+        for name in sorted(files)
+        if not name.endswith((".dtx", ".pjx"))
+    ]
     return "\n".join(programs).splitlines()
 
 
@@ -125,21 +150,35 @@ def test_another_schedule_none_or_one_more_is_refused(way, by):
 @pytest.mark.parametrize("way", [way for way, by in WAYS if by == "output"], ids=str)
 def test_another_output_is_refused(way):
     files = written(way, "output")[3]
-    renamed = {name: re.sub(rb"GO\[20\]|go20,|register\(20|\$OUT\[20\] TO|OG#\(20\)|H20=|E19 ", lambda found: re.sub(
-        rb"20|19", b"24", found[0]), content) for name, content in files.items()}
+    renamed = {
+        name: re.sub(
+            rb"GO\[20\]|go20,|register\(20|\$OUT\[20\] TO|OG#\(20\)|H20=|E19 ",
+            lambda found: re.sub(rb"20|19", b"24", found[0]),
+            content,
+        )
+        for name, content in files.items()
+    }
     assert renamed != files and codes(way, "output", renamed)
 
 
-@pytest.mark.parametrize(("post", "by", "motion", "setup", "why"), [
-    ("staubli", "output", "joint", "staubli tool-on-robot", "VAL 3"),
-    ("ur", "arc", "joint", "ur tool-on-robot", "URScript"),
-    ("siemens", "arc", "joint", "table", ""), ("linuxcnc", "arc", "joint", "table", ""),
-    ("staubli", "arc", "joint", "staubli tool-on-robot", ""),
-])
-def test_what_a_controller_cannot_be_told_is_refused_and_its_page_says_so(post, by, motion, setup, why, root):
+@pytest.mark.parametrize(
+    ("post", "by", "motion", "setup", "why"),
+    [
+        ("staubli", "output", "joint", "staubli tool-on-robot", "VAL 3"),
+        ("ur", "arc", "joint", "ur tool-on-robot", "URScript"),
+        ("siemens", "arc", "joint", "table", ""),
+        ("linuxcnc", "arc", "joint", "table", ""),
+        ("staubli", "arc", "joint", "staubli tool-on-robot", ""),
+    ],
+)
+def test_what_a_controller_cannot_be_told_is_refused_and_its_page_says_so(
+    post, by, motion, setup, why, root
+):
     """Before anything is planned; whatever else is switched on, no word of it comes into a text."""
     cell, reason = planned(setup)[0], catalogue.load(post).NO_SCHEDULE[by]
-    asked = ProgramParameters(post=post, motion=motion, schedule=ScheduleParameters(by=by, output=20))
+    asked = ProgramParameters(
+        post=post, motion=motion, schedule=ScheduleParameters(by=by, output=20)
+    )
     with pytest.raises(InputError) as error:
         refuse(cell, process_of(), asked)
     assert error.value.code == "SCHEDULE" and reason in error.value.message and why in reason
@@ -147,18 +186,26 @@ def test_what_a_controller_cannot_be_told_is_refused_and_its_page_says_so(post, 
     assert ("(`SCHEDULE`)" in page or "rc instructions there are none" in page) and why in page
 
 
-@pytest.mark.parametrize(("process", "program", "code", "words"), [
-    ({"schedule": None}, {}, "NO_SCHEDULE", "beads of the class wall"),
-    ({}, {"output": 20, "post": "yaskawa"}, "", ""),
-    ({"schedule": 300}, {"post": "yaskawa"}, "SCHEDULE", "up to 255, not 300"),
-    ({"schedule": 300}, {"post": "yaskawa", "by": "arc"}, "", ""),
-    ({"schedule": 300}, {"post": "kuka"}, "SCHEDULE", "up to 255, not 300"),
-    ({}, {"post": "ur", "output": 48}, "SCHEDULE", "one of 1 to 47, not 48"),
-    ({}, {"post": "kuka", "output": 1}, "SCHEDULE", "one of them switches the deposit"),
-    ({}, {"post": "siemens", "output": 1}, "SCHEDULE", "H1 switches the deposit"),
-    ({"classes": "none", "schedule": None}, {"post": "fanuc", "by": "arc"}, "NO_SCHEDULE", "which arc instructions name"),
-    ({}, {"post": "fanuc", "by": "call", "call": "9 lives"}, "PROGRAM_NAME", "9 lives"),
-])
+@pytest.mark.parametrize(
+    ("process", "program", "code", "words"),
+    [
+        ({"schedule": None}, {}, "NO_SCHEDULE", "beads of the class wall"),
+        ({}, {"output": 20, "post": "yaskawa"}, "", ""),
+        ({"schedule": 300}, {"post": "yaskawa"}, "SCHEDULE", "up to 255, not 300"),
+        ({"schedule": 300}, {"post": "yaskawa", "by": "arc"}, "", ""),
+        ({"schedule": 300}, {"post": "kuka"}, "SCHEDULE", "up to 255, not 300"),
+        ({}, {"post": "ur", "output": 48}, "SCHEDULE", "one of 1 to 47, not 48"),
+        ({}, {"post": "kuka", "output": 1}, "SCHEDULE", "one of them switches the deposit"),
+        ({}, {"post": "siemens", "output": 1}, "SCHEDULE", "H1 switches the deposit"),
+        (
+            {"classes": "none", "schedule": None},
+            {"post": "fanuc", "by": "arc"},
+            "NO_SCHEDULE",
+            "which arc instructions name",
+        ),
+        ({}, {"post": "fanuc", "by": "call", "call": "9 lives"}, "PROGRAM_NAME", "9 lives"),
+    ],
+)
 def test_numbers_that_cannot_be_told_are_refused(process, program, code, words):
     post = program.pop("post", "fanuc")
     way = next(way for way in ONE_EACH if way[0] == post)
@@ -166,7 +213,9 @@ def test_numbers_that_cannot_be_told_are_refused(process, program, code, words):
     parameters = ProgramParameters(post=post, motion=way[1], schedule=ScheduleParameters(**program))
 
     def write():
-        return catalogue.load(post).write(build(classed(motion), cell, process_of(**process), parameters, "job"))
+        return catalogue.load(post).write(
+            build(classed(motion), cell, process_of(**process), parameters, "job")
+        )
 
     if not code:
         assert write()

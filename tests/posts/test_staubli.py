@@ -9,12 +9,25 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput
+from freecad_am.core.program import (
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Wait,
+    WaitInput,
+)
 from freecad_am.posts import catalogue
 from freecad_am.posts.staubli import post as staubli
 from tests.posts.fanuc_programs import with_tool
 
-VARIANTS = [("joint", "part-on-robot"), ("cartesian", "part-on-robot"), ("cartesian", "tool-on-robot")]
+VARIANTS = [
+    ("joint", "part-on-robot"),
+    ("cartesian", "part-on-robot"),
+    ("cartesian", "tool-on-robot"),
+]
 NOMINAL = (math.radians(287.0), math.radians(287.0), math.radians(319.0), math.radians(410.0), math.radians(320.0),
            math.radians(700.0))  # fmt: skip
 
@@ -22,7 +35,9 @@ NOMINAL = (math.radians(287.0), math.radians(287.0), math.radians(319.0), math.r
 def moves(kind, degrees, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
     degrees = np.atleast_2d(np.asarray(degrees, float))
     duration = np.broadcast_to(np.asarray(duration, float), len(degrees)).copy()
-    return Moves(kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), speed), **extra)
+    return Moves(
+        kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), speed), **extra
+    )
 
 
 def program(*blocks, name="part", **options):
@@ -47,7 +62,10 @@ def beads(count, points, layers=1, **options):
 
 def lines(files, name):
     text = files[name].decode("utf-8-sig")
-    return [line.strip() for line in text[text.index("begin\n") + 6 : text.index("end]]>")].split("\n")[:-1]]
+    return [
+        line.strip()
+        for line in text[text.index("begin\n") + 6 : text.index("end]]>")].split("\n")[:-1]
+    ]
 
 
 def values(files, name, array):
@@ -76,7 +94,11 @@ JOINT = program(
 )  # fmt: skip
 
 TURNED = np.array(
-    [[[1.0, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]]
+    [
+        [[1.0, 0, 0], [0, 1, 0], [0, 0, 1]],
+        [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
+        [[0, 0, 1], [0, 1, 0], [-1, 0, 0]],
+    ]
 )
 
 
@@ -87,13 +109,23 @@ def gauge_bead(layer):
         LayerStart(layer),
         moves("rapid", [at[0], at[0]], layer=layer, position=places[:2], rotation=TURNED[:2]),
         DepositOn(),
-        moves("deposit", at, [0.3, 0.4, 0.5], layer=layer, speed=5.0, position=places, rotation=TURNED,
-              interpolation="linear"),
+        moves(
+            "deposit",
+            at,
+            [0.3, 0.4, 0.5],
+            layer=layer,
+            speed=5.0,
+            position=places,
+            rotation=TURNED,
+            interpolation="linear",
+        ),
         DepositOff(),
     ]
 
 
-GAUGE = program(*gauge_bead(0), *gauge_bead(1), name="gauge", motion="cartesian", max_points=8, blend=50)
+GAUGE = program(
+    *gauge_bead(0), *gauge_bead(1), name="gauge", motion="cartesian", max_points=8, blend=50
+)
 GOLDENS = {"joint": JOINT, "gauge": GAUGE, "tool-joint": with_tool(JOINT), "tool": with_tool(GAUGE)}
 
 
@@ -101,7 +133,9 @@ GOLDENS = {"joint": JOINT, "gauge": GAUGE, "tool-joint": with_tool(JOINT), "tool
 def test_golden_applications_to_the_byte(root, name, assert_applications):
     files = staubli.write(GOLDENS[name])
     folder = root / "tests/golden/val3" / name
-    assert files == {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*.*")}
+    assert files == {
+        str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*.*")
+    }
     assert_applications(files)
 
 
@@ -111,30 +145,47 @@ def test_the_gauge_is_the_papers():
     assert [line for line in lines(files, "gauge/start.pgx") if "movel" in line] == [
         "movel(pTarget,tPath[l_nI],mPath[2])", "movel(pTarget,tPath[l_nI],mPath[5])",
     ]  # fmt: skip
-    (station,), (target,) = (values(files, "gauge/gauge.dtx", array) for array in ("fStation", "pTarget"))
-    assert [float(station[a]) for a in ("x", "y", "z", "rx", "ry", "rz")] == [300.0, 0.0, 310.5, 0.0, 0.0, 90.0]
+    (station,), (target,) = (
+        values(files, "gauge/gauge.dtx", array) for array in ("fStation", "pTarget")
+    )
+    assert [float(station[a]) for a in ("x", "y", "z", "rx", "ry", "rz")] == [
+        300.0,
+        0.0,
+        310.5,
+        0.0,
+        0.0,
+        90.0,
+    ]
     assert station["fatherId"] == "world[0]" and target["fatherId"] == "fStation[0]"
     assert all(float(target[a]) == 0.0 for a in ("x", "y", "z", "rx", "ry", "rz"))
     tools = [
-        [float(tool[a]) for a in ("x", "y", "z", "rx", "ry", "rz")] for tool in values(files, "gauge/gauge.dtx", "tPath")
+        [float(tool[a]) for a in ("x", "y", "z", "rx", "ry", "rz")]
+        for tool in values(files, "gauge/gauge.dtx", "tPath")
     ]
     assert tools[:3] == [
         [10.0, 0.25, 105.0, 0.0, 0.0, 0.0],
         [12.0, 0.25, 105.0, 0.0, 0.0, 90.0],
         [14.0, 0.5, 105.0, 0.0, 90.0, 0.0],
     ]
-    assert {speed["tmax"] for speed in values(files, "gauge/gauge.dtx", "mPath")} == {"99999", "5.000"}
+    assert {speed["tmax"] for speed in values(files, "gauge/gauge.dtx", "mPath")} == {
+        "99999",
+        "5.000",
+    }
 
 
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize(("motion", "setup"), VARIANTS)
 @pytest.mark.always
-def test_random_programs_are_applications(random_application, assert_applications, seed, motion, setup):
+def test_random_programs_are_applications(
+    random_application, assert_applications, seed, motion, setup
+):
     assert_applications(staubli.write(random_application(seed, motion, setup, max_points=60)))
 
 
 def test_same_program_same_bytes(random_application):
-    assert staubli.write(random_application(3, max_points=60)) == staubli.write(random_application(3, max_points=60))
+    assert staubli.write(random_application(3, max_points=60)) == staubli.write(
+        random_application(3, max_points=60)
+    )
 
 
 @pytest.mark.parametrize(("motion", "setup"), VARIANTS)
@@ -143,7 +194,10 @@ def test_a_dry_run_moves_the_same_and_switches_nothing(random_application, motio
     files, dry = staubli.write(wet), staubli.write(dataclasses.replace(wet, dry_run=True))
     assert not any(b"doDeposit" in content for content in dry.values())
     assert "// dry run: no deposit" in lines(dry, "Random/start.pgx")
-    moving = [[line for line in lines(f, "Random/start.pgx") if "move" in line or "for " in line] for f in (files, dry)]
+    moving = [
+        [line for line in lines(f, "Random/start.pgx") if "move" in line or "for " in line]
+        for f in (files, dry)
+    ]
     assert moving[0] == moving[1] and len(moving[0]) > 10
 
 
@@ -152,16 +206,22 @@ def test_a_dry_run_moves_the_same_and_switches_nothing(random_application, motio
 
 def test_percent_of_the_fastest_axis_gives_the_time_of_the_move():
     files = staubli.write(JOINT)
-    first, rapid, *deposit, last = [float(speed["vel"]) for speed in values(files, "Joint/Joint.dtx", "mPath")]
+    first, rapid, *deposit, last = [
+        float(speed["vel"]) for speed in values(files, "Joint/Joint.dtx", "mPath")
+    ]
     assert first == 10.0  # where the robot comes from is not known
     assert rapid == pytest.approx(100.0 * 5.0 / 700.0 / 0.8, abs=1e-5)
     # axis 6 leads although axis 3 is slower; at the end axis 1 does
-    assert deposit == pytest.approx([100.0 * 1.0 / 700.0 / 0.2, 100.0 * 1.4 / 700.0 / 0.25], abs=1e-5)
+    assert deposit == pytest.approx(
+        [100.0 * 1.0 / 700.0 / 0.2, 100.0 * 1.4 / 700.0 / 0.25], abs=1e-5
+    )
     assert last == pytest.approx(100.0 * 1.25 / 287.0, abs=1e-5)
 
 
 def test_moves_too_fast_or_too_slow_for_a_percentage_are_refused():
-    fast = program(moves("rapid", np.zeros(6)), moves("deposit", [0, 0, 32.0, 0, 0, 0], 0.1, layer=2, bead=1))
+    fast = program(
+        moves("rapid", np.zeros(6)), moves("deposit", [0, 0, 32.0, 0, 0, 0], 0.1, layer=2, bead=1)
+    )
     assert "100.3 %" in refusal(fast, code="JOINT_SPEED", where="layer 2 bead 1")
     slow = program(moves("rapid", np.zeros(6)), moves("deposit", [0, 0, 0.03, 0, 0, 0], 10.0))
     assert "0.0009404 %" in refusal(slow, code="JOINT_SPEED")
@@ -189,7 +249,10 @@ def test_blending_never_reaches_past_half_a_move():
 
 @pytest.mark.parametrize("speed", [0.004, 1e6, np.nan])
 def test_path_speeds_that_cannot_be_written_are_refused(speed):
-    blocks = tuple(dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b for b in GAUGE.blocks)
+    blocks = tuple(
+        dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b
+        for b in GAUGE.blocks
+    )
     refusal(dataclasses.replace(GAUGE, blocks=blocks), code="MOVE_SPEED", where="layer 0 bead 0")
 
 
@@ -216,14 +279,22 @@ def test_parts_hold_whole_beads_and_are_loaded_away_from_them(assert_application
 def test_the_parts_of_a_program_are_the_program(random_application):
     for seed in range(6):
         for motion, setup in VARIANTS:
-            whole = staubli.read(staubli.write(random_application(seed, motion, setup, max_points=10**5)))
-            parts = staubli.read(staubli.write(random_application(seed, motion, setup, max_points=50)))
+            whole = staubli.read(
+                staubli.write(random_application(seed, motion, setup, max_points=10**5))
+            )
+            parts = staubli.read(
+                staubli.write(random_application(seed, motion, setup, max_points=50))
+            )
             for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
-                np.testing.assert_array_equal(getattr(parts, field.name), getattr(whole, field.name), field.name)
+                np.testing.assert_array_equal(
+                    getattr(parts, field.name), getattr(whole, field.name), field.name
+                )
 
 
 def test_a_bead_longer_than_a_part_is_refused_with_what_it_needs():
-    message = refusal(beads(2, 25, max_points=20, layers=2), code="BEAD_TOO_LONG", where="program.max_points")
+    message = refusal(
+        beads(2, 25, max_points=20, layers=2), code="BEAD_TOO_LONG", where="program.max_points"
+    )
     assert "layer 0 bead 0 has 27 points" in message and message.endswith("use at least 28")
     staubli.write(beads(2, 25, max_points=28, layers=2))
 
@@ -260,7 +331,9 @@ def test_names_the_controller_refuses(name, why, proposal):
 
 def test_names_without_room_for_the_digits_of_the_parts_and_calls_of_own_programs_are_refused():
     staubli.write(beads(3, 20, name="x" * 13, max_points=25))
-    assert "2 digits" in refusal(beads(3, 20, name="x" * 14, max_points=25), code="PROGRAM_NAME", where="name")
+    assert "2 digits" in refusal(
+        beads(3, 20, name="x" * 14, max_points=25), code="PROGRAM_NAME", where="name"
+    )
     for called in ("Part", "part02", "two words", "start"):
         where = "process.between_layers.call"
         refusal(program(moves("rapid", np.ones(6)), Call(called)), code="PROGRAM_NAME", where=where)
@@ -269,13 +342,25 @@ def test_names_without_room_for_the_digits_of_the_parts_and_calls_of_own_program
 
 def test_what_cannot_be_said_is_refused():
     still = program(moves("rapid", np.ones(6)))
-    refusal(dataclasses.replace(still, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
+    refusal(
+        dataclasses.replace(still, setup="rotary-table"),
+        code="UNSUPPORTED_SETUP",
+        where="cell.setup",
+    )
     assert "axis 6" in refusal(
-        dataclasses.replace(still, continuous=(False,) * 5 + (True,)), code="ENDLESS_AXIS", where="cell.limits"
+        dataclasses.replace(still, continuous=(False,) * 5 + (True,)),
+        code="ENDLESS_AXIS",
+        where="cell.limits",
     )
     for speeds in ((), (1.0,) * 5 + (math.inf,)):
-        refusal(dataclasses.replace(still, max_speed=speeds), code="NO_JOINT_SPEED", where="cell.machine")
-    refusal(dataclasses.replace(still, motion="cartesian"), code="NO_POSITIONS", where="program.motion")
+        refusal(
+            dataclasses.replace(still, max_speed=speeds),
+            code="NO_JOINT_SPEED",
+            where="cell.machine",
+        )
+    refusal(
+        dataclasses.replace(still, motion="cartesian"), code="NO_POSITIONS", where="program.motion"
+    )
     refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
     refusal(program(moves("rapid", [0, 0, 0, np.nan, 0, 0])), code="UNREACHABLE")
     refusal(program(moves("rapid", np.ones(5))), code="UNSUPPORTED_AXES", where="program.post")

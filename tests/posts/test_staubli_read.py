@@ -111,19 +111,29 @@ def test_an_application_by_hand():
     read = staubli.read(by_hand())
     shown = np.degrees(read.joints)
     np.testing.assert_allclose(
-        shown[[0, 3]], [[0, -30, 120, 0, 90, 0], [1.25, -29.5, 119.75, 0.1, 89.9, -190.5]], atol=1e-12
+        shown[[0, 3]],
+        [[0, -30, 120, 0, 90, 0], [1.25, -29.5, 119.75, 0.1, 89.9, -190.5]],
+        atol=1e-12,
     )
     assert np.isnan(shown[1:3]).all() and np.isnan(read.position[[0, 3]]).all()
     np.testing.assert_array_equal(read.position[1:3], [[10, 0.25, 5], [20.5, 0.5, 5]])
     turned = Rotation.from_euler("XYZ", [[180, 0, 0], [179, 0.5, -33.25]], degrees=True).as_matrix()
     np.testing.assert_allclose(read.rotation[1:3], turned, atol=1e-15)
     np.testing.assert_allclose(
-        read.frame[:3, :3], Rotation.from_euler("XYZ", [10, 20, 30], degrees=True).as_matrix(), atol=1e-15
+        read.frame[:3, :3],
+        Rotation.from_euler("XYZ", [10, 20, 30], degrees=True).as_matrix(),
+        atol=1e-15,
     )
     np.testing.assert_allclose(
-        read.tool[1, :3, :3], Rotation.from_euler("XYZ", [5, 6, 7], degrees=True).as_matrix(), atol=1e-15
+        read.tool[1, :3, :3],
+        Rotation.from_euler("XYZ", [5, 6, 7], degrees=True).as_matrix(),
+        atol=1e-15,
     )
-    assert read.frame[:3, 3].tolist() == [600, 0, -200] and read.tool[2, :3, 3].tolist() == [1, 2, 250]
+    assert read.frame[:3, 3].tolist() == [600, 0, -200] and read.tool[2, :3, 3].tolist() == [
+        1,
+        2,
+        250,
+    ]
     assert read.deposit.tolist() == read.linear.tolist() == [False, True, True, False]
     assert read.stops.tolist() == [True, False, True, True] and read.rounding[1] == 0.5
     assert [(event.row, event.kind, *event.value) for event in read.events] == [
@@ -132,7 +142,9 @@ def test_an_application_by_hand():
     ]  # fmt: skip
     np.testing.assert_array_equal(read.speed, [np.nan, 30.5, 6.0, np.nan])
     np.testing.assert_array_equal(read.share, [0.2, np.nan, np.nan, 0.2])
-    assert np.degrees(read.digits) == pytest.approx(0.005) and read.position_digits == pytest.approx(0.005)
+    assert np.degrees(read.digits) == pytest.approx(
+        0.005
+    ) and read.position_digits == pytest.approx(0.005)
     assert np.isnan(read.duration).all() and read.speed_digits == pytest.approx(0.05)
 
 
@@ -150,35 +162,59 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
     assert read.deposit.tolist() == deposit
     linear = np.array(deposit) & (motion == "cartesian")
     joints, duration, speed = (
-        np.concatenate([getattr(run, name) for run in program.moves]) for name in ("joints", "duration", "speed")
+        np.concatenate([getattr(run, name) for run in program.moves])
+        for name in ("joints", "duration", "speed")
     )
     assert (np.isfinite(read.speed) == linear).all() and (np.isfinite(read.share) == ~linear).all()
     assert np.abs(np.degrees(read.joints - joints))[~linear].max() <= 5e-6 + 1e-9
     assert np.degrees(read.digits) == pytest.approx(5e-6)
     # the time of a move: its fastest axis at that share of its largest speed
     ends = np.flatnonzero(~linear[1:]) + 1
-    start = np.where(linear[ends - 1, None], np.radians(np.round(np.degrees(joints[ends - 1]), 5)), read.joints[ends - 1])
-    time = (np.abs(read.joints[ends] - start) / np.array(program.max_speed)).max(axis=1) / read.share[ends]
+    start = np.where(
+        linear[ends - 1, None],
+        np.radians(np.round(np.degrees(joints[ends - 1]), 5)),
+        read.joints[ends - 1],
+    )
+    time = (np.abs(read.joints[ends] - start) / np.array(program.max_speed)).max(
+        axis=1
+    ) / read.share[ends]
     slow = read.share[ends] > 1.01e-5  # slower than can be written: rapids that hardly move
-    assert np.abs(time / duration[ends] - 1.0)[slow].max() <= (5e-8 / read.share[ends][slow]).max() + 1e-9
+    assert (
+        np.abs(time / duration[ends] - 1.0)[slow].max()
+        <= (5e-8 / read.share[ends][slow]).max() + 1e-9
+    )
     assert slow.mean() > 0.5
     if motion == "joint":
         assert read.position is None and read.tool is None and read.frame is None
         return
     assert np.abs(read.speed - speed)[linear].max() <= 5e-4 + 1e-9
-    position, rotation = (np.concatenate([getattr(run, name) for run in program.moves]) for name in ("position", "rotation"))
+    position, rotation = (
+        np.concatenate([getattr(run, name) for run in program.moves])
+        for name in ("position", "rotation")
+    )
     carried = np.eye(4)
     carried[:3, :3], carried[:3, 3] = (
-        Rotation.from_euler("XYZ", np.round(np.degrees([0.3, 0.2, 0.1]), 5), degrees=True).as_matrix(), [1.0, 2.0, 105.0]
+        Rotation.from_euler(
+            "XYZ", np.round(np.degrees([0.3, 0.2, 0.1]), 5), degrees=True
+        ).as_matrix(),
+        [1.0, 2.0, 105.0],
     )
     gauge = np.linalg.inv(carried) @ read.tool[linear]
     seen, turned, other = gauge[:, :3, 3], gauge[:, :3, :3], read.position[linear]
     if setup == "tool-on-robot":
-        seen, turned, other = read.position[linear], read.rotation[linear], read.tool[linear][:, :3, 3] - [1.0, 2.0, 105.0]
+        seen, turned, other = (
+            read.position[linear],
+            read.rotation[linear],
+            read.tool[linear][:, :3, 3] - [1.0, 2.0, 105.0],
+        )
     assert np.abs(seen - position[linear]).max() <= 5e-5 + 1e-9 and np.abs(other).max() == 0.0
-    angle = np.linalg.norm(np.swapaxes(turned, 1, 2) @ rotation[linear] - np.eye(3), axis=(1, 2)) / np.sqrt(2.0)
+    angle = np.linalg.norm(
+        np.swapaxes(turned, 1, 2) @ rotation[linear] - np.eye(3), axis=(1, 2)
+    ) / np.sqrt(2.0)
     assert np.degrees(angle).max() <= 3.0 * 5e-6 + 1e-9
-    assert read.position_digits == pytest.approx(5e-5) and np.degrees(read.rotation_digits) == pytest.approx(5e-6)
+    assert read.position_digits == pytest.approx(5e-5) and np.degrees(
+        read.rotation_digits
+    ) == pytest.approx(5e-6)
     np.testing.assert_allclose(read.frame[:3, 3], [300.25, -20.5, 310.125], atol=1e-12)
     wanted = Rotation.from_euler("XYZ", [0.1, -0.2, 3.0]).as_matrix()
     np.testing.assert_allclose(read.frame[:3, :3], wanted, atol=3e-7)
@@ -240,7 +276,11 @@ def test_what_is_not_understood_is_refused(old, new, where, why):
 
 
 def test_files_that_hide_something_are_refused():
-    for more in ({"hand/more.pgx": code("more", "")}, {"other/other.pjx": PROJECT}, {"hand/two.pjx": PROJECT}):
+    for more in (
+        {"hand/more.pgx": code("more", "")},
+        {"other/other.pjx": PROJECT},
+        {"hand/two.pjx": PROJECT},
+    ):
         with pytest.raises(InputError) as raised:
             staubli.read(by_hand(**more))
         assert raised.value.code == "UNREADABLE_PROGRAM"
@@ -249,7 +289,12 @@ def test_files_that_hide_something_are_refused():
         staubli.read(entity)
     project = next(name for name in entity if name.endswith(".pjx"))
     with pytest.raises(InputError, match="UTF-8"):  # the same in signs of two bytes
-        staubli.read({**entity, project: entity[project].decode().replace("utf-8", "utf-16").encode("utf-16")})
+        staubli.read(
+            {
+                **entity,
+                project: entity[project].decode().replace("utf-8", "utf-16").encode("utf-16"),
+            }
+        )
     with pytest.raises(InputError, match="no moves"):
         staubli.read(by_hand(START, "  delay(1)"))
 

@@ -12,7 +12,11 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.motion import UNKNOWN
 from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.process import CoolingParameters
-from freecad_am.core.parameters.program import ProgramParameters, ScheduleParameters, TriggerParameters
+from freecad_am.core.parameters.program import (
+    ProgramParameters,
+    ScheduleParameters,
+    TriggerParameters,
+)
 from freecad_am.core.planning.program import linear_approach
 from freecad_am.core.program import DepositOff, DepositOn, Moves, WaitBelow
 from freecad_am.core.read_moves import Event
@@ -26,8 +30,14 @@ from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
 from tests.programs import build
 
 CELL = {
-    "fanuc": "fanuc tool-on-robot", "staubli": "staubli tool-on-robot", "ur": "ur tool-on-robot", "siemens": "table",
-    "linuxcnc": "table", "yaskawa": "yaskawa tool-on-robot", "abb": "abb tool-on-robot", "kuka": "kuka tool-on-robot",
+    "fanuc": "fanuc tool-on-robot",
+    "staubli": "staubli tool-on-robot",
+    "ur": "ur tool-on-robot",
+    "siemens": "table",
+    "linuxcnc": "table",
+    "yaskawa": "yaskawa tool-on-robot",
+    "abb": "abb tool-on-robot",
+    "kuka": "kuka tool-on-robot",
 }
 CANNOT = [post for post in catalogue.NAMES if catalogue.load(post).NO_TRIGGER]
 
@@ -38,7 +48,9 @@ def switched(process, **program):
     names = ("wall", "contour", "fill")
     number = (motion.layer + motion.bead) % 3
     assert (motion.bead_class == UNKNOWN).all()
-    motion = dataclasses.replace(motion, bead_class=number * 0 + [CLASSES.index(names[k]) for k in number])
+    motion = dataclasses.replace(
+        motion, bead_class=number * 0 + [CLASSES.index(names[k]) for k in number]
+    )
     parameters = ProgramParameters(trigger=TriggerParameters(lead=0.05), **program)
     blocks = build(motion, cell, dataclasses.replace(PROCESS, **process), parameters, "job").blocks
     found = {}
@@ -46,20 +58,28 @@ def switched(process, **program):
         if isinstance(block, (DepositOn, DepositOff)):
             moves = after if isinstance(block, DepositOn) else before
             assert isinstance(moves, Moves) and moves.kind == "deposit"
-            found.setdefault(names[(moves.layer + moves.bead) % 3], set()).add((type(block).__name__, block.ahead))
+            found.setdefault(names[(moves.layer + moves.bead) % 3], set()).add(
+                (type(block).__name__, block.ahead)
+            )
     return found
 
 
 def test_what_waits_is_switched_where_the_robot_stands():
     own = "contour: lead_on 0, lead_off 0; fill: lead_on 0"
     assert switched({"classes": own, "lead_on": 0.5, "lead_off": 0.25}) == {
-        "wall": {("DepositOn", None), ("DepositOff", None)}, "contour": {("DepositOn", 0.05), ("DepositOff", 0.05)},
+        "wall": {("DepositOn", None), ("DepositOff", None)},
+        "contour": {("DepositOn", 0.05), ("DepositOff", 0.05)},
         "fill": {("DepositOn", 0.05), ("DepositOff", None)},
     }
     bare = {"lead_on": 0.0, "lead_off": 0.0, "schedule": 3}
-    told = {("DepositOn", None), ("DepositOff", 0.05)}  # the schedule is told where it stands, before the deposit is on
+    told = {
+        ("DepositOn", None),
+        ("DepositOff", 0.05),
+    }  # the schedule is told where it stands, before the deposit is on
     assert switched(bare) == dict.fromkeys(("wall", "contour", "fill"), told)
-    assert switched(bare, schedule=ScheduleParameters(by="call")) == dict.fromkeys(("wall", "contour", "fill"), told)
+    assert switched(bare, schedule=ScheduleParameters(by="call")) == dict.fromkeys(
+        ("wall", "contour", "fill"), told
+    )
 
 
 @pytest.mark.parametrize("post", CANNOT)
@@ -78,7 +98,9 @@ def test_controllers_that_cannot_refuse_it_before_planning_and_by_themselves(pos
         refuse(cell, PROCESS, dataclasses.replace(asked, dry_run=True))  # nothing is switched
         if kind == "joint" or post in ("abb", "kuka"):
             with pytest.raises(InputError) as error:
-                catalogue.load(post).write(build(motion, cell, dataclasses.replace(PROCESS, lead_off=0.0), asked, "job"))
+                catalogue.load(post).write(
+                    build(motion, cell, dataclasses.replace(PROCESS, lead_off=0.0), asked, "job")
+                )
             assert error.value.code == "TRIGGER"
 
 
@@ -86,17 +108,26 @@ def test_a_lead_longer_than_the_move_it_stands_on_is_refused_with_its_bead():
     cell, _, motion = planned("fanuc tool-on-robot")
     process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
     for lead, refused in ((0.05, False), (0.5, True)):
-        program = build(motion, cell, process, ProgramParameters(trigger=TriggerParameters(lead=lead)), "job")
-        assert {block.ahead for block in program.blocks if isinstance(block, (DepositOn, DepositOff))} == {lead}
+        program = build(
+            motion, cell, process, ProgramParameters(trigger=TriggerParameters(lead=lead)), "job"
+        )
+        assert {
+            block.ahead for block in program.blocks if isinstance(block, (DepositOn, DepositOff))
+        } == {lead}
         shortest = min(run.duration[-1] for run in program.moves[:-1])
         assert bool(shortest < lead) == refused
         if refused:
             with pytest.raises(InputError) as error:
                 refuse_triggers(program, "")
             assert error.value.code == "TRIGGER_LEAD" and error.value.where.startswith("layer ")
-            ends = [run.duration[-1] for run, after in zip(program.blocks, program.blocks[1:], strict=False)
-                    if isinstance(run, Moves) and isinstance(after, (DepositOn, DepositOff))]
-            assert f"takes {min(ends):.4g} s" in error.value.message  # so that one correction is enough
+            ends = [
+                run.duration[-1]
+                for run, after in zip(program.blocks, program.blocks[1:], strict=False)
+                if isinstance(run, Moves) and isinstance(after, (DepositOn, DepositOff))
+            ]
+            assert (
+                f"takes {min(ends):.4g} s" in error.value.message
+            )  # so that one correction is enough
             refuse_triggers(dataclasses.replace(program, dry_run=True), "")
         else:
             refuse_triggers(program, "")
@@ -107,10 +138,17 @@ def largest(error):
     return float(re.search(r"program\.trigger\.lead of ([\d.]+) s at most", error.value.message)[1])
 
 
-@pytest.mark.parametrize(("post", "motion", "blend"), [
-    ("fanuc", "joint", 100), ("fanuc", "cartesian", 100), ("abb", "cartesian", 100), ("kuka", "cartesian", 100),
-    ("kuka", "cartesian", 30), ("kuka", "cartesian", 0),
-])
+@pytest.mark.parametrize(
+    ("post", "motion", "blend"),
+    [
+        ("fanuc", "joint", 100),
+        ("fanuc", "cartesian", 100),
+        ("abb", "cartesian", 100),
+        ("kuka", "cartesian", 100),
+        ("kuka", "cartesian", 30),
+        ("kuka", "cartesian", 0),
+    ],
+)
 @pytest.mark.parametrize("only", [None, DepositOn, DepositOff])
 def test_the_largest_lead_is_told_and_read_back_and_more_is_refused(post, motion, blend, only):
     """Of all that is switched, of starts of beads alone, and of ends. More is a millisecond, or what is written as more."""
@@ -120,10 +158,16 @@ def test_the_largest_lead_is_told_and_read_back_and_more_is_refused(post, motion
         motion_ = linear_approach.with_short_approaches(motion_, cell)
 
     def made(lead):
-        asked = ProgramParameters(post=post, motion=motion, blend=blend, trigger=TriggerParameters(lead=lead))
+        asked = ProgramParameters(
+            post=post, motion=motion, blend=blend, trigger=TriggerParameters(lead=lead)
+        )
         program = build(motion_, cell, process, asked, "job")
-        kept = [dataclasses.replace(block, ahead=None) if isinstance(block, (DepositOn, DepositOff))
-                and only not in (None, type(block)) else block for block in program.blocks]
+        kept = [
+            dataclasses.replace(block, ahead=None)
+            if isinstance(block, (DepositOn, DepositOff)) and only not in (None, type(block))
+            else block
+            for block in program.blocks
+        ]
         return dataclasses.replace(program, blocks=tuple(kept))
 
     with pytest.raises(InputError) as error:
@@ -133,10 +177,16 @@ def test_the_largest_lead_is_told_and_read_back_and_more_is_refused(post, motion
     assert 0.0 < most < 0.499
     program = made(most)
     files = catalogue.load(post).write(program)
-    if post == "fanuc":  # it writes hundredths of a second: none is longer than its move, and one more would be
+    if (
+        post == "fanuc"
+    ):  # it writes hundredths of a second: none is longer than its move, and one more would be
         ends = [run.duration[-1] for run, block in switching(program) if block.ahead is not None]
-        written = [float(one) for text in files.values() for one in re.findall(rb"TB +([\d.]+)sec", text)]
-        assert len(written) == len(ends) and set(written) == {most} and most <= min(ends) < most + 0.01
+        written = [
+            float(one) for text in files.values() for one in re.findall(rb"TB +([\d.]+)sec", text)
+        ]
+        assert (
+            len(written) == len(ends) and set(written) == {most} and most <= min(ends) < most + 0.01
+        )
         assert catalogue.load(post).write(made(most + 0.004)) == files  # written the same
     read = verify(cell, motion_, program, files, catalogue.load(post), CHORD_ERROR)
     assert not [issue for issue in read.issues if issue.level == ERROR]
@@ -157,20 +207,43 @@ def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_
     for k, block in enumerate(blocks):
         if isinstance(block, DepositOn):
             onto = blocks[k - 1]
-            assert (onto.kind, onto.interpolation, len(onto), block.ahead) == ("rapid", "linear", 1, 0.02)
+            assert (onto.kind, onto.interpolation, len(onto), block.ahead) == (
+                "rapid",
+                "linear",
+                1,
+                0.02,
+            )
     # the same moves, waits and places as without, but for the points put in on the way
-    plain = build(motion, cell, bare, dataclasses.replace(ahead, trigger=TriggerParameters()), "job", returns=returns)
+    plain = build(
+        motion,
+        cell,
+        bare,
+        dataclasses.replace(ahead, trigger=TriggerParameters()),
+        "job",
+        returns=returns,
+    )
     assert all(run.interpolation == "joint" for run in plain.moves if run.kind == "rapid")
-    before = [plain.blocks[k - 1].joints[-1] for k, block in enumerate(plain.blocks) if isinstance(block, WaitBelow)]
+    before = [
+        plain.blocks[k - 1].joints[-1]
+        for k, block in enumerate(plain.blocks)
+        if isinstance(block, WaitBelow)
+    ]
     np.testing.assert_array_equal([blocks[k - 1].joints[-1] for k in waits], before)
-    assert sum(map(len, plain.moves)) <= sum(len(block) for block in blocks if isinstance(block, Moves))
+    assert sum(map(len, plain.moves)) <= sum(
+        len(block) for block in blocks if isinstance(block, Moves)
+    )
 
 
 def test_a_program_that_begins_at_a_bead_cannot_go_straight_onto_it():
     cell, _, motion = planned("abb tool-on-robot")
     first = int(np.argmax(motion.deposit))
-    bare = dataclasses.replace(motion, **{
-        field.name: getattr(motion, field.name)[first - 1:] for field in dataclasses.fields(motion)})
+    bare = dataclasses.replace(
+        motion,
+        **{
+            field.name: getattr(motion, field.name)[first - 1 :]
+            for field in dataclasses.fields(motion)
+        },
+    )
     ahead = ProgramParameters(post="abb", motion="cartesian", trigger=TriggerParameters(lead=0.02))
     with pytest.raises(InputError) as error:
         build(bare, cell, PROCESS, ahead, "job")
@@ -178,19 +251,34 @@ def test_a_program_that_begins_at_a_bead_cannot_go_straight_onto_it():
 
 
 @pytest.mark.parametrize("post", ["fanuc", "kuka"])
-def test_a_bead_onto_which_nothing_moves_or_that_the_program_begins_at_is_switched_on_where_the_robot_stands(post):
+def test_a_bead_onto_which_nothing_moves_or_that_the_program_begins_at_is_switched_on_where_the_robot_stands(
+    post,
+):
     """How long the first move takes is not known, and a move to where the robot stands takes no time to be ahead by."""
     cell, _, motion = planned(CELL[post])
-    first, last = int(np.argmax(motion.deposit)), int(np.flatnonzero(motion.deposit & (motion.point == 0))[-1])
-    bare = dataclasses.replace(motion, **{
-        field.name: getattr(motion, field.name)[first - 1:] for field in dataclasses.fields(motion)})
+    first, last = (
+        int(np.argmax(motion.deposit)),
+        int(np.flatnonzero(motion.deposit & (motion.point == 0))[-1]),
+    )
+    bare = dataclasses.replace(
+        motion,
+        **{
+            field.name: getattr(motion, field.name)[first - 1 :]
+            for field in dataclasses.fields(motion)
+        },
+    )
     assert not bare.deposit[0] and bare.deposit[1]
     joints = bare.joints.copy()
-    joints[last - first] = joints[last - first - 1]  # there already, where the way onto the last bead begins
+    joints[last - first] = joints[
+        last - first - 1
+    ]  # there already, where the way onto the last bead begins
     bare = dataclasses.replace(bare, joints=joints)
     process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
     asked = ProgramParameters(
-        post=post, motion="cartesian" if post == "kuka" else "joint", trigger=TriggerParameters(lead=0.02))
+        post=post,
+        motion="cartesian" if post == "kuka" else "joint",
+        trigger=TriggerParameters(lead=0.02),
+    )
     program = build(bare, cell, process, asked, "job")
     on = [block.ahead for block in program.blocks if isinstance(block, DepositOn)]
     assert on == [None, *(0.02,) * (len(on) - 2), None] and len(on) > 3
@@ -199,9 +287,16 @@ def test_a_bead_onto_which_nothing_moves_or_that_the_program_begins_at_is_switch
     assert [event.ahead for event in events if event.kind == "on"] == on
 
 
-@pytest.mark.parametrize(("found", "due", "alike"), [
-    (None, None, True), (None, 0.0, False), (0.0, None, False), (0.05, 0.0504, True), (0.05, 0.051, False),
-])
+@pytest.mark.parametrize(
+    ("found", "due", "alike"),
+    [
+        (None, None, True),
+        (None, 0.0, False),
+        (0.0, None, False),
+        (0.05, 0.0504, True),
+        (0.05, 0.051, False),
+    ],
+)
 def test_how_long_ahead_is_told_to_its_last_digit(found, due, alike):
     one, other = (Event(3, "on", (1.0,), 0.0005, value) for value in (found, due))
     assert _alike(_Robot, one, other) is alike

@@ -27,13 +27,21 @@ from freecad_am.posts.ur import post as ur
 from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program
 
 LIMITED = dataclasses.replace(
-    GOLDEN_JOINT, continuous=(False,) * 6, setup="tool-on-robot", carried=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0))
+    GOLDEN_JOINT,
+    continuous=(False,) * 6,
+    setup="tool-on-robot",
+    carried=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0),
+)
 TABLE = dataclasses.replace(
-    GOLDEN_TABLE, station=(700.0, 10.5, -100.0, 0.1, -0.2, 3.0), carried=(0.0, 0.0, 150.0, np.pi, 0.0, 0.5))
+    GOLDEN_TABLE,
+    station=(700.0, 10.5, -100.0, 0.1, -0.2, 3.0),
+    carried=(0.0, 0.0, 150.0, np.pi, 0.0, 0.5),
+)
 
 
 def carried(of, radius=100.0):
     """The program with a part on the robot, on a flange that turns with the first axis and shifts with the second."""
+
     def flange(run):
         poses = np.tile(np.eye(4), (len(run), 1, 1))
         sine, cosine = np.sin(run.joints[:, 0]), np.cos(run.joints[:, 0])
@@ -51,6 +59,7 @@ def tool_on(of):
 
 def shifted(of):
     """Beads that do not begin where the rapid to them ends."""
+
     def away(block):
         is_rapid = isinstance(block, Moves) and block.kind == "rapid"
         return dataclasses.replace(block, joints=block.joints - 0.01) if is_rapid else block
@@ -59,14 +68,15 @@ def shifted(of):
 
 
 GOLDENS = {
-    "joint": LIMITED, "table": TABLE,
+    "joint": LIMITED,
+    "table": TABLE,
     "carried": carried(shifted(beads(1, 12, layers=2, name="carried", max_points=14))),
 }
 
 
 @pytest.mark.parametrize("name", GOLDENS)
 def test_golden_programs_to_the_byte(root, name):
-    (file, content), = ur.write(GOLDENS[name]).items()
+    ((file, content),) = ur.write(GOLDENS[name]).items()
     assert content == (root / "tests/golden/ur" / file).read_bytes()
 
 
@@ -108,11 +118,19 @@ def executed(files):
         return 1e9 if len(waited) % 2 else -1e9
 
     names = {
-        "p": Poses(), "movej": keeps("movej"), "movep": keeps("movep"), "set_tcp": keeps("set_tcp"), "sleep": keeps("sleep"),
-        "set_standard_digital_out": keeps("out"), "set_configurable_digital_out": keeps("configurable"),
-        "get_standard_digital_in": inputs, "get_configurable_digital_in": lambda pin: inputs("configurable", pin),
-        "get_standard_analog_in": analogue, "pose_trans": lambda frame, pose: ("in", frame, pose),
-        "get_inverse_kin": lambda pose, near: ("of", pose, near), "clean": keeps("clean"),
+        "p": Poses(),
+        "movej": keeps("movej"),
+        "movep": keeps("movep"),
+        "set_tcp": keeps("set_tcp"),
+        "sleep": keeps("sleep"),
+        "set_standard_digital_out": keeps("out"),
+        "set_configurable_digital_out": keeps("configurable"),
+        "get_standard_digital_in": inputs,
+        "get_configurable_digital_in": lambda pin: inputs("configurable", pin),
+        "get_standard_analog_in": analogue,
+        "pose_trans": lambda frame, pose: ("in", frame, pose),
+        "get_inverse_kin": lambda pose, near: ("of", pose, near),
+        "clean": keeps("clean"),
     }
     exec(compile(text, "script", "exec"), names)
     (main,) = (name for name in re.findall(r"^def (\w+)\(\):", text, re.MULTILINE))
@@ -154,18 +172,35 @@ def due(of):
 def random_script(random_program, seed, motion):
     whole = random_program(seed, motion, continuous=False)
     blocks = tuple(
-        dataclasses.replace(block, duration=np.clip(block.duration, 0.05, 40.0), speed=np.clip(block.speed, 6.0, 200.0))
-        if isinstance(block, Moves) else block for block in whole.blocks)
+        dataclasses.replace(
+            block,
+            duration=np.clip(block.duration, 0.05, 40.0),
+            speed=np.clip(block.speed, 6.0, 200.0),
+        )
+        if isinstance(block, Moves)
+        else block
+        for block in whole.blocks
+    )
     return dataclasses.replace(
-        whole, name="script", blocks=blocks, setup="tool-on-robot", deposit_output=seed % 8 + 1,
-        station=(1.0, 2.0, 3.0, 0.1, 0.2, 0.3), carried=(4.0, 5.0, 6.0, 0.3, 0.2, 0.1))
+        whole,
+        name="script",
+        blocks=blocks,
+        setup="tool-on-robot",
+        deposit_output=seed % 8 + 1,
+        station=(1.0, 2.0, 3.0, 0.1, 0.2, 0.3),
+        carried=(4.0, 5.0, 6.0, 0.3, 0.2, 0.1),
+    )
 
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("motion", ["joint", "cartesian"])
 def test_a_script_run_as_python_asks_for_what_the_program_holds(random_program, seed, motion):
     of = random_script(random_program, seed, motion)
-    asked = [call for call in executed(ur.write(of)) if call[0] != "set_tcp" and call[:2] != ("sleep", 0.01)]
+    asked = [
+        call
+        for call in executed(ur.write(of))
+        if call[0] != "set_tcp" and call[:2] != ("sleep", 0.01)
+    ]
     wanted = [what for what in due(of) if what != ("sleep", 0.0)]
     assert len(asked) == len(wanted)
     for call, what in zip(asked, wanted):
@@ -188,7 +223,10 @@ def test_a_script_run_as_python_asks_for_what_the_program_holds(random_program, 
             np.testing.assert_allclose(rotated(pose[2][3:]), run.rotation[k], atol=2e-7)
             np.testing.assert_allclose(pose[1], [0.001, 0.002, 0.003, *pose[1][3:]], atol=1e-9)
         if linear:
-            assert (named["a"], named["v"]) == (1.2, pytest.approx(0.001 * run.speed[k], abs=5.1e-7))
+            assert (named["a"], named["v"]) == (
+                1.2,
+                pytest.approx(0.001 * run.speed[k], abs=5.1e-7),
+            )
         else:
             assert named["t"] == pytest.approx(run.duration[k], abs=5.1e-7)
         assert (named["r"] > 0.0) == (not run.stops[k] and of.blend > 0)
@@ -200,16 +238,24 @@ def test_random_programs_come_back(random_program, seed, motion):
     of = random_script(random_program, seed, motion)
     read = ur.read(ur.write(of))
     joints, duration, speed, stops = (
-        np.concatenate([getattr(run, name) for run in of.moves]) for name in ("joints", "duration", "speed", "stops"))
+        np.concatenate([getattr(run, name) for run in of.moves])
+        for name in ("joints", "duration", "speed", "stops")
+    )
     linear = np.concatenate([np.full(len(run), run.interpolation == "linear") for run in of.moves])
-    assert read.linear.tolist() == linear.tolist() and read.stops.tolist() == (stops | (of.blend == 0)).tolist()
+    assert (
+        read.linear.tolist() == linear.tolist()
+        and read.stops.tolist() == (stops | (of.blend == 0)).tolist()
+    )
     told = read.joints if motion == "joint" else read.near
     np.testing.assert_allclose(told[~linear], joints[~linear], atol=5.1e-8)
     assert read.digits == 0.5e-7 if motion == "joint" else read.near_digits == 0.5e-7
     np.testing.assert_allclose(read.duration[~linear], duration[~linear], atol=5.1e-7)
     np.testing.assert_allclose(read.speed[linear], speed[linear], atol=5.1e-4)
     if motion == "cartesian":
-        position, rotation = (np.concatenate([getattr(run, name) for run in of.moves]) for name in ("position", "rotation"))
+        position, rotation = (
+            np.concatenate([getattr(run, name) for run in of.moves])
+            for name in ("position", "rotation")
+        )
         np.testing.assert_allclose(read.position, position, atol=5.1e-5)
         np.testing.assert_allclose(read.rotation, rotation, atol=2e-7)
 
@@ -228,7 +274,10 @@ def test_rotations_of_half_a_turn_and_of_none():
 
 def radii(files):
     (content,) = files.values()
-    return [1000.0 * float(value) for value in re.findall(r"r=([\d.]+)\)$", content.decode(), re.MULTILINE)]
+    return [
+        1000.0 * float(value)
+        for value in re.findall(r"r=([\d.]+)\)$", content.decode(), re.MULTILINE)
+    ]
 
 
 @pytest.mark.parametrize("blend", [100, 50, 0])
@@ -238,7 +287,9 @@ def test_blends_are_two_fifths_of_the_shorter_neighbour_and_never_meet(blend):
     of = tool_on(program(moves("rapid", np.zeros(6)), DepositOn(), run, DepositOff(), blend=blend))
     ways = 6.0 * duration
     found = radii(ur.write(of))
-    assert found == pytest.approx([0.0, *(0.004 * blend * np.minimum(ways[:-1], ways[1:])), 0.0], abs=0.0011)
+    assert found == pytest.approx(
+        [0.0, *(0.004 * blend * np.minimum(ways[:-1], ways[1:])), 0.0], abs=0.0011
+    )
     assert all(one + other <= way for one, other, way in zip(found[1:], found[2:], ways[1:]))
 
 
@@ -246,7 +297,11 @@ def test_the_tool_that_blends_count_on_is_one_that_moves_where_the_part_spins():
     """A part that turns about the flange's own axis leaves the middle of the flange where it is."""
     values = np.zeros((9, 6))
     values[:, 0] = np.degrees(0.05 * np.arange(9))
-    of = carried(program(moves("rapid", values[0]), DepositOn(), moves("deposit", values[1:], 0.5), DepositOff()))
+    of = carried(
+        program(
+            moves("rapid", values[0]), DepositOn(), moves("deposit", values[1:], 0.5), DepositOff()
+        )
+    )
     files = ur.write(of)
     told = re.search(rb"set_tcp\(p\[(.*?), (.*?), ", files["part.script"])
     assert abs(float(told[1])) + abs(float(told[2])) == pytest.approx(0.2)
@@ -256,8 +311,12 @@ def test_the_tool_that_blends_count_on_is_one_that_moves_where_the_part_spins():
 
 def test_a_blend_too_small_to_be_written_is_refused():
     values = np.zeros((4, 6))
-    of = carried(program(moves("rapid", values[0]), DepositOn(), moves("deposit", values, 0.5), DepositOff()))
-    assert "stop there with the deposit on" in refusal(of, code="BLEND_RADIUS", where="layer 0 bead 0")
+    of = carried(
+        program(moves("rapid", values[0]), DepositOn(), moves("deposit", values, 0.5), DepositOff())
+    )
+    assert "stop there with the deposit on" in refusal(
+        of, code="BLEND_RADIUS", where="layer 0 bead 0"
+    )
     assert set(radii(ur.write(dataclasses.replace(of, blend=0)))) == {0.0}
 
 
@@ -270,7 +329,9 @@ def test_the_order_of_a_layer():
         DepositOff(0.125), Wait(0.0001), WaitInput(12), WaitBelow(2, 1.75, 12, 0), Call("clean_1"), deposit_output=9,
     )  # fmt: skip
     (content,) = ur.write(tool_on(of)).values()
-    lines = [re.sub(r"\(\[.*\], a=.*, t", "(t", line.strip()) for line in content.decode().split("\n")]
+    lines = [
+        re.sub(r"\(\[.*\], a=.*, t", "(t", line.strip()) for line in content.decode().split("\n")
+    ]
     assert lines[lines.index("# layer 12"):] == [
         "# layer 12", "movej(t=0.100000, r=0.000000)", "movej(t=0.100000, r=0.000000)",
         "set_configurable_digital_out(0, True)", "sleep(0.500)", "movej(t=0.100000, r=0.000000)", "sleep(0.125)",
@@ -286,8 +347,13 @@ def test_parts_are_functions_of_whole_beads_in_one_file():
     (content,) = ur.write(of).values()
     text = content.decode()
     parts = re.split(r"(?m)^  def part\d\d\(\):$", text)[1:]
-    assert len(parts) == 6 and re.findall(r"(?m)^  (part\d\d)\(\)$", text) == [f"part{n:02d}" for n in range(1, 7)]
-    assert all(part.count("True") == part.count("False") == 2 for part in parts) and "264 moves in 6 parts" in text
+    assert len(parts) == 6 and re.findall(r"(?m)^  (part\d\d)\(\)$", text) == [
+        f"part{n:02d}" for n in range(1, 7)
+    ]
+    assert (
+        all(part.count("True") == part.count("False") == 2 for part in parts)
+        and "264 moves in 6 parts" in text
+    )
     whole = executed(ur.write(dataclasses.replace(of, max_points=10**6)))
     assert executed({"part.script": content}) == whole
 
@@ -318,13 +384,29 @@ def test_what_no_script_says_is_refused():
     still = moves("rapid", np.zeros(6))
     carrying = dataclasses.replace(TABLE, setup="part-on-robot")
     assert "documented" in refusal(carrying, code="REMOTE_TCP", where="program.motion")
-    refusal(dataclasses.replace(LIMITED, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
+    refusal(
+        dataclasses.replace(LIMITED, setup="rotary-table"),
+        code="UNSUPPORTED_SETUP",
+        where="cell.setup",
+    )
     refusal(tool_on(GOLDEN_JOINT), code="ENDLESS_AXIS", where="cell.limits")
     refusal(program(still), code="NO_POSITIONS")  # a part on a robot whose flange is not told
-    refusal(tool_on(program(still, DepositOn(), deposit_output=17)), code="DEPOSIT_OUTPUT", where="program.deposit_output")
-    refusal(tool_on(program(still, WaitInput(17))), code="DEPOSIT_INPUT", where="process.between_layers.input")
+    refusal(
+        tool_on(program(still, DepositOn(), deposit_output=17)),
+        code="DEPOSIT_OUTPUT",
+        where="program.deposit_output",
+    )
+    refusal(
+        tool_on(program(still, WaitInput(17))),
+        code="DEPOSIT_INPUT",
+        where="process.between_layers.input",
+    )
     refusal(tool_on(program(still, WaitBelow(3, 1.0, 0, 0))), code="ANALOGUE_INPUT")
-    refusal(tool_on(program(still, Call("Part-2"))), code="PROGRAM_NAME", where="process.between_layers.call")
+    refusal(
+        tool_on(program(still, Call("Part-2"))),
+        code="PROGRAM_NAME",
+        where="process.between_layers.call",
+    )
     assert "this very job" in refusal(tool_on(program(still, Call("part"))), code="PROGRAM_NAME")
     short = tool_on(program(still, moves("deposit", np.zeros((3, 6)), 0.001, 4, 2)))
     assert "1 ms, less than the 2 ms" in refusal(short, code="MOVE_TIME", where="layer 4 bead 2")
@@ -380,7 +462,11 @@ def test_what_is_not_understood_is_refused(pattern, replacement, where, why):
 
 def test_two_files_and_other_characters_are_refused():
     text = by_hand()["TABLE.script"]
-    for files in ({}, {"TABLE.script": text, "OTHER.script": text}, {"TABLE.script": b"# \xe9\n" + text}):
+    for files in (
+        {},
+        {"TABLE.script": text, "OTHER.script": text},
+        {"TABLE.script": b"# \xe9\n" + text},
+    ):
         with pytest.raises(InputError) as raised:
             ur.read(files)
         assert raised.value.code == "UNREADABLE_PROGRAM"

@@ -25,7 +25,10 @@ from tests.programs import build
 SETUPS = {"fanuc": "fanuc tool-on-robot", "yaskawa": "yaskawa tool-on-robot"}
 BEGINS = {"fanuc": r"Weave Sine\[(\d+)\]", "yaskawa": r"WVON WEV#\((\d+)\)"}
 ENDS = {"fanuc": r"Weave End", "yaskawa": r"WVOF"}
-ON, OFF = {"fanuc": r"DO\[1\]=ON", "yaskawa": r"OT#\(1\) ON"}, {"fanuc": r"DO\[1\]=OFF", "yaskawa": r"OT#\(1\) OFF"}
+ON, OFF = (
+    {"fanuc": r"DO\[1\]=ON", "yaskawa": r"OT#\(1\) ON"},
+    {"fanuc": r"DO\[1\]=OFF", "yaskawa": r"OT#\(1\) OFF"},
+)
 MOVE = {"fanuc": r"^ *\d+:([JL]) P\[", "yaskawa": r"^MOV([JL]) "}
 OF = {"wall": 4, "contour": 2, "fill": None}  # that of the process, one of its own, straight
 
@@ -34,9 +37,17 @@ OF = {"wall": 4, "contour": 2, "fill": None}  # that of the process, one of its 
 def written(post, dry_run=False):
     cell, _, motion = planned(SETUPS[post])
     number = (motion.layer + motion.bead) % 3
-    motion = dataclasses.replace(motion, bead_class=np.array([CLASSES.index(name) for name in OF])[number])
+    motion = dataclasses.replace(
+        motion, bead_class=np.array([CLASSES.index(name) for name in OF])[number]
+    )
     process = dataclasses.replace(PROCESS, weave=4, classes="contour: weave 2; fill: weave 0")
-    program = build(motion, cell, process, ProgramParameters(post=post, motion="cartesian", dry_run=dry_run), "job")
+    program = build(
+        motion,
+        cell,
+        process,
+        ProgramParameters(post=post, motion="cartesian", dry_run=dry_run),
+        "job",
+    )
     return cell, motion, program, catalogue.load(post).write(program)
 
 
@@ -97,14 +108,25 @@ def test_a_text_with_another_weave_is_refused(post):
                 earlier = list(re.finditer(move, before))
                 changed = [before + after, before + line + line + after]
                 if following:
-                    changed.append(before + after[: following.end()] + line + after[following.end() :])
+                    changed.append(
+                        before + after[: following.end()] + line + after[following.end() :]
+                    )
                 if earlier:
-                    changed.append(before[: earlier[-1].start()] + line + before[earlier[-1].start() :] + after)
+                    changed.append(
+                        before[: earlier[-1].start()] + line + before[earlier[-1].start() :] + after
+                    )
                 if number := re.search(BEGINS[post], line):
-                    changed.append(before + line.replace(number[1] + number[0][-1], f"9{number[0][-1]}") + after)
+                    changed.append(
+                        before
+                        + line.replace(number[1] + number[0][-1], f"9{number[0][-1]}")
+                        + after
+                    )
                 for damaged in changed:
                     tried += 1
-                    assert codes(post, {**files, name: damaged.encode("latin-1")}) & {"VERIFY_WEAVE", "VERIFY_ORDER"}, line
+                    assert codes(post, {**files, name: damaged.encode("latin-1")}) & {
+                        "VERIFY_WEAVE",
+                        "VERIFY_ORDER",
+                    }, line
     assert tried > 20
 
 
@@ -135,42 +157,66 @@ def test_a_woven_bead_is_not_cut_apart_and_a_straight_one_is(post):
     assert (error.value.code, error.value.where) == ("BEAD_TOO_LONG", "program.max_points")
     assert "woven" in error.value.message
     straight = tuple(block for block in program.blocks if not isinstance(block, Weave))
-    assert len(catalogue.load(post).write(dataclasses.replace(program, blocks=straight, max_points=most))) > 1
+    assert (
+        len(
+            catalogue.load(post).write(
+                dataclasses.replace(program, blocks=straight, max_points=most)
+            )
+        )
+        > 1
+    )
 
 
-@pytest.mark.parametrize(("post", "motion", "setup", "where", "words"), [
-    ("abb", "cartesian", "abb tool-on-robot", "process.weave", "ArcL"),
-    ("kuka", "cartesian", "kuka tool-on-robot", "process.weave", "ArcTech"),
-    ("ur", "cartesian", "ur tool-on-robot", "process.weave", "URScript"),
-    ("staubli", "joint", "staubli tool-on-robot", "process.weave", "VAL 3"),
-    ("siemens", "joint", "table", "process.weave", "five-axis"),
-    ("linuxcnc", "joint", "table", "process.weave", "five-axis"),
-    ("fanuc", "joint", "fanuc part-on-robot", "program.motion", "joint moves"),
-    ("yaskawa", "joint", "yaskawa tool-on-robot", "program.motion", "joint moves"),
-])
-@pytest.mark.parametrize("process", [ProcessParameters(weave=1), ProcessParameters(classes="fill: weave 3")])
-def test_what_cannot_be_woven_is_refused_before_planning(post, motion, setup, where, words, process):
+@pytest.mark.parametrize(
+    ("post", "motion", "setup", "where", "words"),
+    [
+        ("abb", "cartesian", "abb tool-on-robot", "process.weave", "ArcL"),
+        ("kuka", "cartesian", "kuka tool-on-robot", "process.weave", "ArcTech"),
+        ("ur", "cartesian", "ur tool-on-robot", "process.weave", "URScript"),
+        ("staubli", "joint", "staubli tool-on-robot", "process.weave", "VAL 3"),
+        ("siemens", "joint", "table", "process.weave", "five-axis"),
+        ("linuxcnc", "joint", "table", "process.weave", "five-axis"),
+        ("fanuc", "joint", "fanuc part-on-robot", "program.motion", "joint moves"),
+        ("yaskawa", "joint", "yaskawa tool-on-robot", "program.motion", "joint moves"),
+    ],
+)
+@pytest.mark.parametrize(
+    "process", [ProcessParameters(weave=1), ProcessParameters(classes="fill: weave 3")]
+)
+def test_what_cannot_be_woven_is_refused_before_planning(
+    post, motion, setup, where, words, process
+):
     cell = planned(setup)[0]
     parameters = ProgramParameters(post=post, motion=motion)
-    refuse(cell, ProcessParameters(weave=0, classes="fill: weave 0"), parameters)  # straight can be said by all
+    refuse(
+        cell, ProcessParameters(weave=0, classes="fill: weave 0"), parameters
+    )  # straight can be said by all
     with pytest.raises(InputError) as error:
         refuse(cell, process, parameters)
     assert (error.value.code, error.value.where) == ("WEAVE", where)
-    assert words in error.value.message and "fanuc, yaskawa; abb with program.schedule.by: arc" in error.value.message
+    assert (
+        words in error.value.message
+        and "fanuc, yaskawa; abb with program.schedule.by: arc" in error.value.message
+    )
 
 
 @pytest.mark.parametrize("post", SETUPS)
 def test_posts_refuse_what_they_are_given_wrongly(post):
     program = written(post)[2]
     joint = dataclasses.replace(program, motion="joint")
-    large = tuple(Weave(256) if isinstance(block, Weave) and block.number else block for block in program.blocks)
+    large = tuple(
+        Weave(256) if isinstance(block, Weave) and block.number else block
+        for block in program.blocks
+    )
     for wrong in (joint, dataclasses.replace(program, blocks=large)):
         with pytest.raises(InputError) as error:
             catalogue.load(post).write(wrong)
         assert error.value.code == "WEAVE"
 
 
-@pytest.mark.parametrize("text", ["fill: weave 256", "fill: weave -1", "fill: weave 2.5", "fill: weave sine"])
+@pytest.mark.parametrize(
+    "text", ["fill: weave 256", "fill: weave -1", "fill: weave 2.5", "fill: weave sine"]
+)
 def test_weaves_that_are_not_numbers_of_one_are_refused(text):
     with pytest.raises(InputError) as error:
         ProcessParameters(classes=text)

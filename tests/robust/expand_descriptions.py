@@ -14,12 +14,19 @@ from pathlib import Path
 
 import xacro
 
-FAMILY, MEMBERS = "ur_type", "config"  # the argument that says which robot of a family it is, and where these are
+FAMILY, MEMBERS = (
+    "ur_type",
+    "config",
+)  # the argument that says which robot of a family it is, and where these are
 
 
 def main(checkouts: Path, target: Path) -> None:
     for checkout in sorted(path for path in checkouts.iterdir() if path.is_dir()):
-        packages = {name: folder for other in [*checkouts.iterdir(), checkout] for name, folder in _packages(other)}
+        packages = {
+            name: folder
+            for other in [*checkouts.iterdir(), checkout]
+            for name, folder in _packages(other)
+        }
         _installed(packages)
         for path in sorted(checkout.rglob("*.urdf")):
             _keep(path.read_text(encoding="utf-8"), target, checkout, path)
@@ -27,8 +34,13 @@ def main(checkouts: Path, target: Path) -> None:
             for mappings in _variants(path):
                 try:
                     text = xacro.process_file(str(path), mappings=mappings).toxml()
-                except Exception as error:  # whatever xacro, and the Python within a file, may raise
-                    print(f"{path.relative_to(checkouts)}: {' '.join(str(error).split())[:160]}", file=sys.stderr)
+                except (
+                    Exception
+                ) as error:  # whatever xacro, and the Python within a file, may raise
+                    print(
+                        f"{path.relative_to(checkouts)}: {' '.join(str(error).split())[:160]}",
+                        file=sys.stderr,
+                    )
                     continue
                 _keep(text, target, checkout, path, *mappings.get(FAMILY, "").split())
 
@@ -56,7 +68,9 @@ def _variants(path: Path) -> list[dict[str, str]]:
     members = path.parents[1] / MEMBERS
     if f'arg name="{FAMILY}"' not in text or not members.is_dir():
         return [{}]
-    named = (one.name for one in sorted(members.iterdir()) if (one / "default_kinematics.yaml").is_file())
+    named = (
+        one.name for one in sorted(members.iterdir()) if (one / "default_kinematics.yaml").is_file()
+    )
     return [{FAMILY: name, "name": name} for name in named]
 
 

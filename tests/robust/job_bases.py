@@ -29,56 +29,96 @@ LAYERS = {
 }
 # fmt: on
 FAMILIES = {
-    "revolution": {"part": {"file": "cup.step"}, "strategy": {"kind": "revolution", "layer_height": "8 mm"}},
+    "revolution": {
+        "part": {"file": "cup.step"},
+        "strategy": {"kind": "revolution", "layer_height": "8 mm"},
+    },
     "surface": {
-        "part": {"file": "tube.brep"}, "substrate": {"file": "block.step"},
+        "part": {"file": "tube.brep"},
+        "substrate": {"file": "block.step"},
         "strategy": {"kind": "surface", "layer_height": "10 mm"},
     },
     "developable": {
-        "part": {"file": "boxes.brep"}, "substrate": {"file": "hub.step"},
+        "part": {"file": "boxes.brep"},
+        "substrate": {"file": "hub.step"},
         "strategy": {"kind": "developable", "layer_height": "4 mm", "bead_spacing": "9 mm"},
     },
     "curves": {
-        "part": {"file": "beads.csv"}, "strategy": {"kind": "curves", "layer_height": "3 mm", "repeat": 2},
+        "part": {"file": "beads.csv"},
+        "strategy": {"kind": "curves", "layer_height": "3 mm", "repeat": 2},
     },
     "solid": {
-        "part": {"file": "bracket.step"}, "strategy": {"kind": "solid", "layer_height": "10 mm", "bead_spacing": "10 mm"},
+        "part": {"file": "bracket.step"},
+        "strategy": {"kind": "solid", "layer_height": "10 mm", "bead_spacing": "10 mm"},
     },
     "cladding": {
         "part": {"file": "hub.step", "faces": ["Face1"]},
-        "strategy": {"kind": "cladding", "layer_height": "3 mm", "bead_spacing": "14 mm", "layers": 2},
+        "strategy": {
+            "kind": "cladding",
+            "layer_height": "3 mm",
+            "bead_spacing": "14 mm",
+            "layers": 2,
+        },
     },
     "features": {
         "strategy": {"layer_height": "10 mm"},
         "features": [
-            {"name": "bracket", "part": {"file": "bracket.step"}, "strategy": {"kind": "solid", "bead_spacing": "10 mm"}},
+            {
+                "name": "bracket",
+                "part": {"file": "bracket.step"},
+                "strategy": {"kind": "solid", "bead_spacing": "10 mm"},
+            },
             {"name": "post", "part": {"file": "post.step"}, "strategy": {"kind": "revolution"}},
         ],
     },
 }
 CLASSES = {
-    "first_layer": {"travel_speed": "4 mm/s", "schedule": 1}, "fill": {"lead": "3 deg", "lead_on": "0.2 s"},
-    "contour": {"travel_speed": "8 mm/s", "schedule": 3, "start": {"length": "2 mm", "travel_speed": "3 mm/s"}},
+    "first_layer": {"travel_speed": "4 mm/s", "schedule": 1},
+    "fill": {"lead": "3 deg", "lead_on": "0.2 s"},
+    "contour": {
+        "travel_speed": "8 mm/s",
+        "schedule": 3,
+        "start": {"length": "2 mm", "travel_speed": "3 mm/s"},
+    },
     "wall": {"tilt": "2 deg", "end": {"length": "2 mm", "travel_speed": "9 mm/s"}},
 }
-ENDS = {"start": {"length": "2 mm", "travel_speed": "5 mm/s"}, "end": {"length": "3 mm", "travel_speed": "8 mm/s"}}
+ENDS = {
+    "start": {"length": "2 mm", "travel_speed": "5 mm/s"},
+    "end": {"length": "3 mm", "travel_speed": "8 mm/s"},
+}
 # what may be told of any family, and the families that it is told of
 TOLD = {
-    "classes": ({"process": {"schedule": 2, "classes": CLASSES, **ENDS}}, ("solid", "surface", "features")),
+    "classes": (
+        {"process": {"schedule": 2, "classes": CLASSES, **ENDS}},
+        ("solid", "surface", "features"),
+    ),
     "scan": ({"substrate": {"file": "block.step", "scan": "block.csv"}}, ("surface", "post")),
     "place": (
-        {"place": {"x": "100 mm", "y": "0 mm", "z": "100 mm", "points": 40, "proven": 1}}, ("revolution", "curves"),
+        {"place": {"x": "100 mm", "y": "0 mm", "z": "100 mm", "points": 40, "proven": 1}},
+        ("revolution", "curves"),
     ),
 }
 TOLD_ON = ("abb-irb1600-6-12", "fanuc-arcmate120ic", "table-xyzac", "ur-ur10e")
-POST = {"part": {"file": "pin.step"}, "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "5 mm"}}
-PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75)  # of an axis each, as a user's machine file tells them
+POST = {
+    "part": {"file": "pin.step"},
+    "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "5 mm"},
+}
+PULSES = (
+    1435.3,
+    1308.25,
+    -1313.5,
+    980.0,
+    876.8125,
+    454.75,
+)  # of an axis each, as a user's machine file tells them
 RAIL = {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"}
 TURNS = {"machine": "motoman-motopos-d500", "pose": [850, 60, -300, 0, 0, 20], "carries": "part"}
 # machine: where the part stands, and its post
 RAILS = {
-    "fanuc-arcmate120ic": ([1000, 500, -100, 0, 0, 0], "fanuc"), "motoman-ma2010": ([1000, 500, -300, 0, 0, 0], "yaskawa"),
-    "kuka-kr16-2": ([1050, 500, 200, 0, 0, 0], "kuka"), "abb-irb1600-6-12": ([800, 500, 100, 0, 0, 0], "abb"),
+    "fanuc-arcmate120ic": ([1000, 500, -100, 0, 0, 0], "fanuc"),
+    "motoman-ma2010": ([1000, 500, -300, 0, 0, 0], "yaskawa"),
+    "kuka-kr16-2": ([1050, 500, 200, 0, 0, 0], "kuka"),
+    "abb-irb1600-6-12": ([800, 500, 100, 0, 0, 0], "abb"),
 }
 
 
@@ -92,7 +132,9 @@ def write_parts(folder):
     tube.exportBrep(str(folder / "tube.brep"))
     Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStep(str(folder / "block.step"))
     angle = Part.makeBox(50, 40, 15).fuse(Part.makeBox(15, 40, 40))
-    angle.cut(Part.makeCylinder(8, 60, FreeCAD.Vector(32, 20, -5))).exportStep(str(folder / "bracket.step"))
+    angle.cut(Part.makeCylinder(8, 60, FreeCAD.Vector(32, 20, -5))).exportStep(
+        str(folder / "bracket.step")
+    )
     Part.makeCylinder(6, 20, FreeCAD.Vector(7.5, 20, 40)).exportStep(str(folder / "post.step"))
     Part.makeCylinder(9, 25).exportStep(str(folder / "pin.step"))
     scan = [(x, y, 0.01 * x) for x in range(-20, 21) for y in range(-20, 21)]
@@ -102,10 +144,19 @@ def write_parts(folder):
     (folder / "block.xyz").write_text("\n".join([*lines, ""]), encoding="utf-8")
     rows = ["x,y,z", *(line.replace(" ", ",") for line in lines), ""]
     (folder / "block.csv").write_text("\n".join(rows), encoding="utf-8")
-    head = ("ply", "format ascii 1.0", f"element vertex {len(lines)}", *(f"property float {axis}" for axis in "xyz"))
-    (folder / "block.ply").write_text("\n".join([*head, "end_header", *lines, ""]), encoding="utf-8")
+    head = (
+        "ply",
+        "format ascii 1.0",
+        f"element vertex {len(lines)}",
+        *(f"property float {axis}" for axis in "xyz"),
+    )
+    (folder / "block.ply").write_text(
+        "\n".join([*head, "end_header", *lines, ""]), encoding="utf-8"
+    )
     Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStl(str(folder / "block.stl"))
-    (folder / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n30,20,0,1\n0,6,0,2\n20,6,0,2\n", encoding="utf-8")
+    (folder / "beads.csv").write_text(
+        "x,y,z,bead\n0,0,0,1\n30,0,0,1\n30,20,0,1\n0,6,0,2\n20,6,0,2\n", encoding="utf-8"
+    )
     hub = Part.makeCylinder(25.0, 80.0)
     hub.exportStep(str(folder / "hub.step"))
     hub.exportStl(str(folder / "hub.stl"))
@@ -115,7 +166,10 @@ def write_parts(folder):
     Part.Compound(boxes).exportStl(str(folder / "boxes.stl"))
     for name in ("motoman-ma2010", "mechanisms/kuka-kl100-2", "mechanisms/motoman-motopos-d500"):
         machine = json.loads((MACHINE_FILES / f"{name}.json").read_text(encoding="utf-8"))
-        machine["controller"] |= {"pulses_per_degree": PULSES[: len(machine["joints"])], "speed_unit": "mm/s"}
+        machine["controller"] |= {
+            "pulses_per_degree": PULSES[: len(machine["joints"])],
+            "speed_unit": "mm/s",
+        }
         machine["id"] += "-of-a-user"
         (folder / f"{Path(name).name}.json").write_text(json.dumps(machine), encoding="utf-8")
     document = FreeCAD.newDocument("Parts")
@@ -131,7 +185,10 @@ def bases(folder):
     """(name, job) of all, the job as values with absolute paths of its parts, of which the small ones are in `folder`."""
     found = [(path.stem, _example(path)) for path in sorted(EXAMPLES.rglob("*.yaml"))]
     for machine in sorted(MACHINES, key="{}.json".format):
-        found += [(f"{family} on {machine}", _on(machine, sections, folder)) for family, sections in FAMILIES.items()]
+        found += [
+            (f"{family} on {machine}", _on(machine, sections, folder))
+            for family, sections in FAMILIES.items()
+        ]
     return found + [*_told(folder), *_on_rails(folder)]
 
 
@@ -150,13 +207,21 @@ def _on_rails(folder):
         for family in ("curves", "solid"):
             for external in ([RAIL], [TURNS], [RAIL, TURNS]):
                 job = _on(machine, FAMILIES[family], folder)
-                cell = {"machine": machine, "setup": "tool-on-robot", "mount": "part", "branch": "auto",
-                        "external": copy.deepcopy(external), "platform_diameter": "100 mm",
-                        "nozzle": {"tool": [0, 0, 250, 0, 0, 0]}}
+                cell = {
+                    "machine": machine,
+                    "setup": "tool-on-robot",
+                    "mount": "part",
+                    "branch": "auto",
+                    "external": copy.deepcopy(external),
+                    "platform_diameter": "100 mm",
+                    "nozzle": {"tool": [0, 0, 250, 0, 0, 0]},
+                }
                 if post == "yaskawa":
                     for one in (cell, *cell["external"]):
                         one["machine"] = str(Path(folder) / f"{one['machine']}.json")
-                cell.update({"platform": "10 mm"} if TURNS in external else {"deposition_point": point})
+                cell.update(
+                    {"platform": "10 mm"} if TURNS in external else {"deposition_point": point}
+                )
                 program = {"post": post, "motion": "cartesian" if post == "kuka" else "joint"}
                 yield f"rail of {family} on {machine}", {**job, "cell": cell, "program": program}
 
@@ -167,7 +232,13 @@ def _on(name, sections, folder):
     job = copy.deepcopy(sections)
     for where in (job, *job.get("features", ())):
         for section in (where[key] for key in ("part", "substrate") if key in where):
-            section.update({key: str(Path(folder) / section[key]) for key in ("file", "scan") if key in section})
+            section.update(
+                {
+                    key: str(Path(folder) / section[key])
+                    for key in ("file", "scan")
+                    if key in section
+                }
+            )
     job["strategy"]["chord_error"] = "0.5 mm"
     job["cell"] = _cell(machine)
     posts = written_by(machines.load(machine["id"], ())) or ()

@@ -20,19 +20,40 @@ from freecad_am.core.parameters.scan import ScanParameters
 from freecad_am.core.strategies import families
 
 SECTIONS = {
-    "build_direction": BuildDirectionParameters, "cell": CellParameters, "joints": JointParameters,
-    "process": ProcessParameters, "program": ProgramParameters,
+    "build_direction": BuildDirectionParameters,
+    "cell": CellParameters,
+    "joints": JointParameters,
+    "process": ProcessParameters,
+    "program": ProgramParameters,
 }
 LATER = {"place": PlaceParameters, "substrate": ScanParameters}  # sections that few jobs have,
-LATER_BY = {"place": {"points", "proven"}, "substrate": {"scan"}}  # and which of their keys tell that
+LATER_BY = {
+    "place": {"points", "proven"},
+    "substrate": {"scan"},
+}  # and which of their keys tell that
 STRATEGIES = {kind: family.parameters for kind, family in families.KINDS.items()}
 OTHER_KEYS = (
-    "version", "name", "part.file", "part.object", "part.faces", "part.start_edges", "part.scale", "part.set", "fixtures",
-    "substrate.file", "substrate.faces", "strategy.kind",
+    "version",
+    "name",
+    "part.file",
+    "part.object",
+    "part.faces",
+    "part.start_edges",
+    "part.scale",
+    "part.set",
+    "fixtures",
+    "substrate.file",
+    "substrate.faces",
+    "strategy.kind",
 )
 SCAN_KEYS = {
-    "substrate.scan_unit": ("auto", "mm", "cm", "m", "um", "inch"), "substrate.scan_fit": ("auto", "best", "none"),
-    "substrate.scan_pairs": ("0 0 0 > 0 0 0; 9 0 0 > 9 0 0; 0 9 0 > 0 9 0", "20 20 0 > 20 20 0.3", "1 2 > 3"),
+    "substrate.scan_unit": ("auto", "mm", "cm", "m", "um", "inch"),
+    "substrate.scan_fit": ("auto", "best", "none"),
+    "substrate.scan_pairs": (
+        "0 0 0 > 0 0 0; 9 0 0 > 9 0 0; 0 9 0 > 0 9 0",
+        "20 20 0 > 20 20 0.3",
+        "1 2 > 3",
+    ),
 }
 # fmt: off
 ODD = (
@@ -91,9 +112,14 @@ def specs(job):
     """(dotted key, Spec, default) of all parameters that the job may have."""
     kind = str(job.get("strategy", {}).get("kind", "revolution"))
     kind = kind if kind in STRATEGIES else "revolution"  # what was done to it before
-    own = {name: factory for name, factory in LATER.items() if _section(job, name).keys() & LATER_BY[name]}
+    own = {
+        name: factory
+        for name, factory in LATER.items()
+        if _section(job, name).keys() & LATER_BY[name]
+    }
     return [
-        entry for name, factory in {"strategy": STRATEGIES[kind], **SECTIONS, **own}.items()
+        entry
+        for name, factory in {"strategy": STRATEGIES[kind], **SECTIONS, **own}.items()
         for entry in _specs(factory, name)
     ]
 
@@ -121,7 +147,10 @@ def _valid(job, chance):
         return "process.classes", _classes(chance)
     while True:
         key, spec, default = chance.choice(specs(job))
-        if key in ("cell.machine", "cell.setup", "strategy.base.axis", "process.bead_model") or spec.kind == f.TEXT:
+        if (
+            key in ("cell.machine", "cell.setup", "strategy.base.axis", "process.bead_model")
+            or spec.kind == f.TEXT
+        ):
             continue
         return key, valid_value(key, spec, default, chance)
 
@@ -169,7 +198,12 @@ def valid_value(key, spec, default, chance):
     high = low + 360.0 if spec.high is None else spec.high * scale
     if spec.kind == f.COUNT:
         return chance.randint(int(low), int(min(high, low + chance.choice((3, 60)))))
-    if spec.kind != f.ANGLE and isinstance(default, (int, float)) and not isinstance(default, bool) and default > 0.0:
+    if (
+        spec.kind != f.ANGLE
+        and isinstance(default, (int, float))
+        and not isinstance(default, bool)
+        and default > 0.0
+    ):
         number = default * scale * 10 ** chance.uniform(-1.0, 1.0)
     else:
         number = chance.choice((low, high, chance.uniform(low, high), chance.uniform(low, high)))
@@ -184,25 +218,39 @@ def _odd(job, chance, folder):
     key, spec, _ = chosen
     if key in ("process.classes", "cell.external") and chance.random() < 0.8:
         return key, _odd_entries(job, key, chance, folder)
-    if key.endswith((".file", ".scan")) or (key in ("cell.machine", "process.bead_model") and chance.random() < 0.7):
+    if key.endswith((".file", ".scan")) or (
+        key in ("cell.machine", "process.bead_model") and chance.random() < 0.7
+    ):
         name = chance.choice(PATHS)
         return key, f"{folder}/{name}" if chance.random() < 0.6 else name
     if spec is not None and spec.low is not None and chance.random() < 0.3:
-        return key, chance.choice((1.0, 1.0 - 1e-12, 1.0 + 1e-12, 0.999, 1e-6)) * spec.low / f.TO_INNER.get(spec.kind, 1.0)
+        return key, chance.choice(
+            (1.0, 1.0 - 1e-12, 1.0 + 1e-12, 0.999, 1e-6)
+        ) * spec.low / f.TO_INNER.get(spec.kind, 1.0)
     if spec is not None and spec.high is not None and chance.random() < 0.3:
-        return key, chance.choice((1.0, 1.0 - 1e-12, 1.0 + 1e-12, 1.001, 1e6)) * spec.high / f.TO_INNER.get(spec.kind, 1.0)
+        return key, chance.choice(
+            (1.0, 1.0 - 1e-12, 1.0 + 1e-12, 1.001, 1e6)
+        ) * spec.high / f.TO_INNER.get(spec.kind, 1.0)
     if key == "fixtures":
         other = {"file": "x.step", "faces": ["Face1"]}
-        return key, chance.choice(([], {}, [{}], [{"file": f"{folder}/block.step"}], [other], "x", [None]))
+        return key, chance.choice(
+            ([], {}, [{}], [{"file": f"{folder}/block.step"}], [other], "x", [None])
+        )
     if key == "part.set":
         properties = {"Radius": "9 mm"}, {"Shape": 1}, {}, {"Radius": [1]}
-        return key, chance.choice((*({name: chance.choice(properties)} for name in ("Cylinder", "Cup", "x")), "x"))
+        return key, chance.choice(
+            (*({name: chance.choice(properties)} for name in ("Cylinder", "Cup", "x")), "x")
+        )
     return key, chance.choice(ODD)
 
 
 def _others(job):
     """Keys that no dataclass has."""
-    return (*OTHER_KEYS, "substrate.scan", *SCAN_KEYS) if "scan" in _section(job, "substrate") else OTHER_KEYS
+    return (
+        (*OTHER_KEYS, "substrate.scan", *SCAN_KEYS)
+        if "scan" in _section(job, "substrate")
+        else OTHER_KEYS
+    )
 
 
 def _odd_entries(job, key, chance, folder):
@@ -213,13 +261,28 @@ def _odd_entries(job, key, chance, folder):
         inner = chance.choice((*bead_classes.SPECS, "start", "end", "length", "classes"))
         found[chance.choice((name, name, "seam", ""))] = {inner: chance.choice(ODD)}
         return found
-    name, parent = chance.choice(("machine", "pose", "carries", "x")), _section(job, "cell").get("external")
-    found = copy.deepcopy(parent) if isinstance(parent, list) and parent else [
-        {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"},
-    ]
+    name, parent = (
+        chance.choice(("machine", "pose", "carries", "x")),
+        _section(job, "cell").get("external"),
+    )
+    found = (
+        copy.deepcopy(parent)
+        if isinstance(parent, list) and parent
+        else [
+            {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"},
+        ]
+    )
     if not isinstance(found[0], dict) or chance.random() < 0.2:
         return found * chance.randint(2, 4)
-    odd = (*ODD, "robot", "part", "kuka-kl100-2", "ur-ur10e", "table-xyzac", f"{folder}/{chance.choice(PATHS)}")
+    odd = (
+        *ODD,
+        "robot",
+        "part",
+        "kuka-kl100-2",
+        "ur-ur10e",
+        "table-xyzac",
+        f"{folder}/{chance.choice(PATHS)}",
+    )
     found[0][name] = chance.choice(odd)
     return found
 
@@ -236,7 +299,9 @@ def _restructured(job, chance):
             section.pop(key, None)
         elif done == 1:
             at = chance.randrange(len(key) + 1)
-            section[key[:at] + chance.choice("abz_- éß\u00a0") + key[at + chance.randint(0, 1):]] = section.pop(key, None)
+            section[
+                key[:at] + chance.choice("abz_- éß\u00a0") + key[at + chance.randint(0, 1) :]
+            ] = section.pop(key, None)
         elif done == 2:
             chance.choice(sections)[key] = value
         elif done == 3:
@@ -246,7 +311,11 @@ def _restructured(job, chance):
                 value = {key: value}
             section[key] = value
         elif done == 5:
-            section[chance.choice(("x", "", "part.file", "<<", "=", "null", "1", "é", "\u2028", "x" * 3000))] = value
+            section[
+                chance.choice(
+                    ("x", "", "part.file", "<<", "=", "null", "1", "é", "\u2028", "x" * 3000)
+                )
+            ] = value
         else:
             section[key] = chance.choice(ODD)
     return _written(job)
@@ -263,11 +332,11 @@ def damaged_text(data, chance):
         if done == 0:
             data = data[:at]
         elif done == 1:
-            data = data[:at] + bytes([chance.randrange(256)]) + data[at + 1:]
+            data = data[:at] + bytes([chance.randrange(256)]) + data[at + 1 :]
         elif done == 2:
             data = data[:at] + chance.choice(PUT_IN) + data[at:]
         elif done == 3:
-            data = b"\n".join([*lines[:row], *lines[row + 1:]])
+            data = b"\n".join([*lines[:row], *lines[row + 1 :]])
         elif done == 4:
             data = b"\n".join([*lines[:row], lines[row], *lines[row:]])
         elif done == 5:
@@ -277,7 +346,11 @@ def damaged_text(data, chance):
             digits = [k for k, sign in enumerate(data) if sign in b"0123456789"]
             if digits:
                 place = chance.choice(digits)
-                data = data[:place] + chance.choice((b"-", b"9", b"0", b"e", b".", b"1e", b"999")) + data[place + 1:]
+                data = (
+                    data[:place]
+                    + chance.choice((b"-", b"9", b"0", b"e", b".", b"1e", b"999"))
+                    + data[place + 1 :]
+                )
         elif done == 7:
             data = data[:low] + data[high:]
         elif done == 8:
@@ -286,7 +359,9 @@ def damaged_text(data, chance):
             coding = chance.choice(("utf-16", "latin-1", "utf-7", "utf-8-sig"))
             data = data.decode("utf-8", "replace").encode(coding, "replace")
         elif done == 10:
-            data = data.replace(b"\n", chance.choice((b"\r\n", b"\r", b"\n\n", b"\x0b", b"\xe2\x80\xa8")))
+            data = data.replace(
+                b"\n", chance.choice((b"\r\n", b"\r", b"\n\n", b"\x0b", b"\xe2\x80\xa8"))
+            )
         else:
             unit = chance.choice((b" m", b" in", b"mm", b" um", b" km", b" deg", b""))
             data = data.replace(b" mm", unit, chance.randint(1, 3))
@@ -296,6 +371,8 @@ def damaged_text(data, chance):
 def _written(job):
     """The job as YAML; what YAML cannot write is written as JSON would, which YAML reads."""
     try:
-        return yaml.safe_dump(job, allow_unicode=True, sort_keys=False).encode("utf-8", "surrogatepass")
+        return yaml.safe_dump(job, allow_unicode=True, sort_keys=False).encode(
+            "utf-8", "surrogatepass"
+        )
     except (yaml.YAMLError, UnicodeError):
         return json.dumps(job).encode()

@@ -17,13 +17,19 @@ import pytest
 HERE = Path(__file__).resolve()
 ENVIRONMENT = HERE.parents[2] / ".test-env"
 MAKERS = {
-    "ros-industrial/abb": "ABB", "ros-industrial/abb_experimental": "ABB", "ros-industrial/fanuc": "FANUC",
-    "ros-industrial/fanuc_experimental": "FANUC", "FANUC-CORPORATION/fanuc_description": "FANUC",
-    "ros-industrial/kuka_experimental": "KUKA", "kroshu/kuka_robot_descriptions": "KUKA",
+    "ros-industrial/abb": "ABB",
+    "ros-industrial/abb_experimental": "ABB",
+    "ros-industrial/fanuc": "FANUC",
+    "ros-industrial/fanuc_experimental": "FANUC",
+    "FANUC-CORPORATION/fanuc_description": "FANUC",
+    "ros-industrial/kuka_experimental": "KUKA",
+    "kroshu/kuka_robot_descriptions": "KUKA",
     "ros-industrial/motoman": "Motoman",
-    "ros-industrial/staubli": "Staubli", "ros-industrial/staubli_experimental": "Staubli",
+    "ros-industrial/staubli": "Staubli",
+    "ros-industrial/staubli_experimental": "Staubli",
     "ros-industrial/universal_robot": "Universal Robots",
-    "UniversalRobots/Universal_Robots_ROS2_Description": "Universal Robots", "Kawasaki-Robotics/khi_robot": "Kawasaki",
+    "UniversalRobots/Universal_Robots_ROS2_Description": "Universal Robots",
+    "Kawasaki-Robotics/khi_robot": "Kawasaki",
     "doosan-robotics/doosan-robot2": "Doosan",
 }
 READ = r"\.(xacro|urdf|yaml|xml)$"  # of a checkout: no meshes
@@ -35,7 +41,10 @@ def expanded(target: Path) -> list[tuple[str, Path]]:
     python = _with_xacro()
     for repository in MAKERS:
         _checkout(repository)
-    _done([python, str(HERE.with_name("expand_descriptions.py")), str(_checkouts()), str(target)], "xacro ended in an error")
+    _done(
+        [python, str(HERE.with_name("expand_descriptions.py")), str(_checkouts()), str(target)],
+        "xacro ended in an error",
+    )
     names = {repository.replace("/", "+"): maker for repository, maker in MAKERS.items()}
     return [(names[path.name.split("+urdfs+")[0]], path) for path in sorted(target.glob("*.urdf"))]
 
@@ -52,18 +61,32 @@ def _checkout(repository: str) -> None:
         source = f"https://github.com/{repository}"
         reason = f"{source} cannot be cloned: put a checkout at {folder.name} in the folder that ROBOT_DESCRIPTIONS names"
         folder.parent.mkdir(parents=True, exist_ok=True)
-        _done(["git", "clone", "-q", "-n", "--depth", "1", "--filter=blob:none", source, str(folder)], reason)
+        _done(
+            ["git", "clone", "-q", "-n", "--depth", "1", "--filter=blob:none", source, str(folder)],
+            reason,
+        )
         listed = f"git ls-files | grep -E '{READ}' | git checkout -q HEAD --pathspec-from-file=-"
-        _done(["sh", "-c", f"cd '{folder}' && git reset -q && {listed}"], f"{source} cannot be checked out")
+        _done(
+            ["sh", "-c", f"cd '{folder}' && git reset -q && {listed}"],
+            f"{source} cannot be checked out",
+        )
 
 
 def _with_xacro() -> str:
     """A Python that has xacro."""
     python = ENVIRONMENT / "xacro" / "bin" / "python"
     if not python.exists():
-        _done([sys.executable, "-m", "venv", str(python.parents[1])], "no Python environment can be made")
-    if subprocess.run([str(python), "-c", "import xacro"], capture_output=True, check=False).returncode:
-        _done([str(python), "-m", "pip", "install", "-q", "xacro", "PyYAML"], "xacro cannot be installed by pip")
+        _done(
+            [sys.executable, "-m", "venv", str(python.parents[1])],
+            "no Python environment can be made",
+        )
+    if subprocess.run(
+        [str(python), "-c", "import xacro"], capture_output=True, check=False
+    ).returncode:
+        _done(
+            [str(python), "-m", "pip", "install", "-q", "xacro", "PyYAML"],
+            "xacro cannot be installed by pip",
+        )
     return str(python)
 
 

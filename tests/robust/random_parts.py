@@ -24,10 +24,14 @@ def write(chance, folder, machines):
     job = {"part": _write(part.transformed(placed.toMatrix(), True), folder, "part", chance), **job}
     if substrate is not None:
         mesh = chance.random() < 0.25
-        job["substrate"] = _write(substrate.transformed(placed.toMatrix(), True), folder, "substrate", chance, mesh)
+        job["substrate"] = _write(
+            substrate.transformed(placed.toMatrix(), True), folder, "substrate", chance, mesh
+        )
     strategy = job["strategy"]
     strategy["layer_height"] = f"{size / chance.uniform(5.0, 14.0):.4g} mm"
-    strategy["chord_error"] = f"{min(10.0, max(1e-5, size * 10 ** chance.uniform(-4.0, -2.0))):.4g} mm"
+    strategy["chord_error"] = (
+        f"{min(10.0, max(1e-5, size * 10 ** chance.uniform(-4.0, -2.0))):.4g} mm"
+    )
     if strategy["kind"] in FILLED:
         strategy["bead_spacing"] = f"{size / chance.uniform(5.0, 14.0):.4g} mm"
     if chance.random() < 0.5:
@@ -42,8 +46,17 @@ def _set(job, chance):
     """One parameter as it may well be."""
     key, spec, default = chance.choice(mutations.specs(job))
     section = key.split(".")[0]
-    lengths = ("strategy.layer_height", "strategy.chord_error", "strategy.bead_spacing", "strategy.base.axis")
-    words = spec.kind == "text" or key in ("cell.machine", "cell.setup", *lengths) or key.startswith("strategy.base")
+    lengths = (
+        "strategy.layer_height",
+        "strategy.chord_error",
+        "strategy.bead_spacing",
+        "strategy.base.axis",
+    )
+    words = (
+        spec.kind == "text"
+        or key in ("cell.machine", "cell.setup", *lengths)
+        or key.startswith("strategy.base")
+    )
     if not words and (section in job or section in ("build_direction", "process")):
         mutations.put(job, key, mutations.valid_value(key, spec, default, chance))
 
@@ -53,10 +66,16 @@ def _excess(job, away, margin, placed, points, build):
     if not len(points):
         return 0.0
     inverse = np.array(placed.inverse().toMatrix().A).reshape(4, 4)
-    high = job_length(job["strategy"]["layer_height"]) if job["strategy"]["kind"] == "solid" else 0.0
-    shares = (0.0, 0.5, 1.0) if high else (0.0,)  # plane layers are cut at their bottom, middle or top
+    high = (
+        job_length(job["strategy"]["layer_height"]) if job["strategy"]["kind"] == "solid" else 0.0
+    )
+    shares = (
+        (0.0, 0.5, 1.0) if high else (0.0,)
+    )  # plane layers are cut at their bottom, middle or top
     cuts = [points + share * high * build for share in shares]
-    farthest = np.min([away(cut @ inverse[:3, :3].T + inverse[:3, 3]) for cut in cuts], axis=0).max()
+    farthest = np.min(
+        [away(cut @ inverse[:3, :3].T + inverse[:3, 3]) for cut in cuts], axis=0
+    ).max()
     rounding = 1e-9 * np.abs(points).max() + 2e-6  # waypoints have six decimals
     return float(farthest) - margin(job) - rounding
 
@@ -72,7 +91,9 @@ def _placement(chance, size):
         return FreeCAD.Placement()
     axis = FreeCAD.Vector(*(chance.gauss(0.0, 1.0) for _ in range(3)))
     turned = FreeCAD.Rotation(axis, chance.uniform(0.0, 360.0))
-    return FreeCAD.Placement(FreeCAD.Vector(*(far * chance.gauss(0.0, 1.0) for _ in range(3))), turned)
+    return FreeCAD.Placement(
+        FreeCAD.Vector(*(far * chance.gauss(0.0, 1.0) for _ in range(3))), turned
+    )
 
 
 # revolution ------------------------------------------------------------------------------------------------------------
@@ -92,10 +113,17 @@ def turned(chance, size):
         edges, line = [arc.toShape()], np.array([(p.x, p.z) for p in arc.discretize(2000)])
     else:
         edges = Part.makePolygon([FreeCAD.Vector(r, 0, z) for r, z in line]).Edges
-    thick = size * 10 ** chance.uniform(-3.0, -1.0) if chance.random() < 0.5 and line[:, 0].min() > 0.0 else 0.0
+    thick = (
+        size * 10 ** chance.uniform(-3.0, -1.0)
+        if chance.random() < 0.5 and line[:, 0].min() > 0.0
+        else 0.0
+    )
     if thick:
         outer = [edge.translated(FreeCAD.Vector(thick, 0, 0)) for edge in edges]
-        ends = [Part.makeLine(FreeCAD.Vector(r, 0, z), FreeCAD.Vector(r + thick, 0, z)) for r, z in line[[0, -1]]]
+        ends = [
+            Part.makeLine(FreeCAD.Vector(r, 0, z), FreeCAD.Vector(r + thick, 0, z))
+            for r, z in line[[0, -1]]
+        ]
         wire = Part.Wire(Part.__sortEdges__([*edges, *outer, *ends]))
         shape = Part.Face(wire).revolve(FreeCAD.Vector(), UP, _turn(chance))
         shape = Part.Solid(shape.Shells[0]) if shape.ShapeType != "Solid" else shape
@@ -121,7 +149,9 @@ def _off_line(r, z, line):
     places = np.stack([r, z], axis=-1)[:, None]
     along = np.diff(line, axis=0)
     share = ((places - line[:-1]) * along).sum(2) / np.maximum((along**2).sum(1), 1e-300)
-    return np.linalg.norm(line[:-1] + np.clip(share, 0.0, 1.0)[..., None] * along - places, axis=2).min(axis=1)
+    return np.linalg.norm(
+        line[:-1] + np.clip(share, 0.0, 1.0)[..., None] * along - places, axis=2
+    ).min(axis=1)
 
 
 # tubes on parts --------------------------------------------------------------------------------------------------------
@@ -134,7 +164,11 @@ def tube(chance, size):
     low, high = -0.3 * size, tall
     wide = radius * (1.0 + grows)
     narrow, at = radius * (1.0 - grows * 0.3 * size / tall), FreeCAD.Vector(0, 0, low)
-    shape = Part.makeCone(narrow, wide, high - low, at) if grows else Part.makeCylinder(radius, high - low, at)
+    shape = (
+        Part.makeCone(narrow, wide, high - low, at)
+        if grows
+        else Part.makeCylinder(radius, high - low, at)
+    )
     wall = shape.Faces[0]
     slope = (wide - narrow) / (high - low)
     foot = _foot(chance, size, radius)
@@ -151,10 +185,14 @@ def tube(chance, size):
 def _foot(chance, size, radius):
     kind = chance.randrange(3)
     if kind == 0:
-        return Part.makeBox(size, size, 0.5 * size, FreeCAD.Vector(-0.5 * size, -0.5 * size, -0.5 * size))
+        return Part.makeBox(
+            size, size, 0.5 * size, FreeCAD.Vector(-0.5 * size, -0.5 * size, -0.5 * size)
+        )
     if kind == 1:
         wide = max(radius * chance.uniform(1.2, 3.0), 0.3 * size)
-        return Part.makeCylinder(wide, 3 * size, FreeCAD.Vector(-1.5 * size, 0, -0.9 * wide), FreeCAD.Vector(1, 0, 0))
+        return Part.makeCylinder(
+            wide, 3 * size, FreeCAD.Vector(-1.5 * size, 0, -0.9 * wide), FreeCAD.Vector(1, 0, 0)
+        )
     ball = max(radius * chance.uniform(1.3, 3.0), 0.3 * size)
     return Part.makeSphere(ball, FreeCAD.Vector(0, 0, -0.9 * ball))
 
@@ -166,19 +204,30 @@ def bend(chance, size):
     torus.MinorRadius = 1e-3  # at no time may it be more than the other
     torus.MajorRadius, torus.MinorRadius = max(big, 1.05 * small), small
     torus.Center, torus.Axis = FreeCAD.Vector(-torus.MajorRadius, 0, 0), FreeCAD.Vector(0, -1, 0)
-    shape = torus.toShape(0.0, math.radians(chance.choice((30.0, 90.0, 120.0, 150.0, 170.0, chance.uniform(10.0, 175.0)))))
-    foot = Part.makeBox(3 * small, 3 * small, small, FreeCAD.Vector(-1.5 * small, -1.5 * small, -small))
+    shape = torus.toShape(
+        0.0,
+        math.radians(chance.choice((30.0, 90.0, 120.0, 150.0, 170.0, chance.uniform(10.0, 175.0)))),
+    )
+    foot = Part.makeBox(
+        3 * small, 3 * small, small, FreeCAD.Vector(-1.5 * small, -1.5 * small, -small)
+    )
     middle = torus.MajorRadius
 
     def away(points):
-        return np.abs(np.hypot(np.hypot(points[:, 0] + middle, points[:, 2]) - middle, points[:, 1]) - small)
+        return np.abs(
+            np.hypot(np.hypot(points[:, 0] + middle, points[:, 2]) - middle, points[:, 1]) - small
+        )
 
     return _surface(), shape, foot, away, _on_wall
 
 
 def sheared(chance, size):
     """A circle pushed along a slanted line, on a block or a ball."""
-    radius, tall, lean = size * chance.uniform(0.05, 0.3), size * chance.uniform(0.5, 1.2), chance.uniform(0.0, 1.2)
+    radius, tall, lean = (
+        size * chance.uniform(0.05, 0.3),
+        size * chance.uniform(0.5, 1.2),
+        chance.uniform(0.0, 1.2),
+    )
     low = -0.3 * size
     circle = Part.makeCircle(radius, FreeCAD.Vector(lean * low, 0, low))
     wall = circle.extrude(FreeCAD.Vector(lean * (tall - low), 0, tall - low))
@@ -197,16 +246,26 @@ def lofted(chance, size):
     wires = []
     for k in range(chance.randint(2, 4)):
         a, b = sorted((size * chance.uniform(0.1, 0.4) for _ in range(2)), reverse=True)
-        ellipse = (Part.Ellipse(FreeCAD.Vector(), a, b) if k else Part.Circle(FreeCAD.Vector(), UP, a)).toShape()
+        ellipse = (
+            Part.Ellipse(FreeCAD.Vector(), a, b) if k else Part.Circle(FreeCAD.Vector(), UP, a)
+        ).toShape()
         shift = 0.05 * size * min(k, 1)
         at = FreeCAD.Vector(shift * chance.gauss(0, 1), shift * chance.gauss(0, 1), 0.4 * size * k)
         leans = FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), chance.uniform(-10, 10) * min(k, 1))
         ellipse.Placement = FreeCAD.Placement(at, leans)
         wires.append(Part.Wire([ellipse]))
     shape = Part.makeLoft(wires, False, chance.random() < 0.3)
-    foot = Part.makeBox(size, size, 0.2 * size, FreeCAD.Vector(-0.5 * size, -0.5 * size, -0.2 * size))
+    foot = Part.makeBox(
+        size, size, 0.2 * size, FreeCAD.Vector(-0.5 * size, -0.5 * size, -0.2 * size)
+    )
     facets = _facets(shape)
-    return _surface(), shape, foot, lambda points: triangles.distance(points, facets), lambda job: _on_wall(job) + DEFLECTION
+    return (
+        _surface(),
+        shape,
+        foot,
+        lambda points: triangles.distance(points, facets),
+        lambda job: _on_wall(job) + DEFLECTION,
+    )
 
 
 def _surface():
@@ -220,12 +279,18 @@ def boxes_on_hub(chance, size):
     """Boxes around a cylinder or cone, fused or side by side."""
     radius, tall = size * chance.uniform(0.3, 0.8), 2.0 * size
     top = radius * chance.uniform(0.4, 0.95)
-    hub = Part.makeCylinder(radius, tall) if chance.random() < 0.6 else Part.makeCone(radius, top, tall)
+    hub = (
+        Part.makeCylinder(radius, tall)
+        if chance.random() < 0.6
+        else Part.makeCone(radius, top, tall)
+    )
     solids = []
     for _ in range(chance.randint(1, 4)):
         wide, high = (size * 10 ** chance.uniform(-1.3, -0.2) for _ in range(2))
         box = Part.makeBox(radius + size * chance.uniform(0.1, 0.6), wide, high)
-        box.translate(FreeCAD.Vector(0, -0.5 * box.BoundBox.YLength, size * chance.uniform(0.1, 1.2)))
+        box.translate(
+            FreeCAD.Vector(0, -0.5 * box.BoundBox.YLength, size * chance.uniform(0.1, 1.2))
+        )
         box.rotate(FreeCAD.Vector(), UP, chance.uniform(0.0, 360.0))
         solids.append(box)
     whole = solids[0].multiFuse(solids[1:]) if len(solids) > 1 else solids[0]
@@ -240,21 +305,31 @@ def boxes_on_hub(chance, size):
 
 def _beside_solids(job):
     strategy = job["strategy"]
-    widest = max(job_length(strategy["bead_spacing"]), job_length(job.get("process", {}).get("bead_width", 8.0)))
+    widest = max(
+        job_length(strategy["bead_spacing"]),
+        job_length(job.get("process", {}).get("bead_width", 8.0)),
+    )
     return 0.5 * widest + job_length(strategy.get("margin", 0.0)) + _on_wall(job) + DEFLECTION
 
 
 def mixed(chance, size):
     """Something for no family, or of several solids."""
     things = [
-        Part.makeBox(*(size * 10 ** chance.uniform(-2.0, 0.0) for _ in range(3))), Part.makeSphere(0.4 * size),
-        Part.makeTorus(0.5 * size, 0.2 * size), Part.makeCylinder(0.3 * size, size).cut(Part.makeCylinder(0.2 * size, size)),
-        Part.makeCone(0.5 * size, 0.1 * size, size), Part.makeBox(size, size, size).cut(Part.makeSphere(0.9 * size)),
+        Part.makeBox(*(size * 10 ** chance.uniform(-2.0, 0.0) for _ in range(3))),
+        Part.makeSphere(0.4 * size),
+        Part.makeTorus(0.5 * size, 0.2 * size),
+        Part.makeCylinder(0.3 * size, size).cut(Part.makeCylinder(0.2 * size, size)),
+        Part.makeCone(0.5 * size, 0.1 * size, size),
+        Part.makeBox(size, size, size).cut(Part.makeSphere(0.9 * size)),
     ]
     chosen = chance.sample(things, chance.randint(1, 3))
     for one in chosen[1:]:
         one.translate(FreeCAD.Vector(*(size * chance.choice((0.0, 0.5, 3.0)) for _ in range(3))))
-    shape = chosen[0].multiFuse(chosen[1:]) if len(chosen) > 1 and chance.random() < 0.5 else Part.Compound(chosen)
+    shape = (
+        chosen[0].multiFuse(chosen[1:])
+        if len(chosen) > 1 and chance.random() < 0.5
+        else Part.Compound(chosen)
+    )
     kind = chance.choice(("revolution", "surface", "developable", "solid", "solid", "solid"))
     foot = None if kind in ("revolution", "solid") else _foot(chance, size, 0.2 * size)
     facets = _facets(shape)
@@ -262,7 +337,9 @@ def mixed(chance, size):
     def margin(job):
         if kind in FILLED:
             return _beside_solids(job)
-        return _on_wall(job) + DEFLECTION + (size if job["strategy"].get("wall") == "middle" else 0.0)
+        return (
+            _on_wall(job) + DEFLECTION + (size if job["strategy"].get("wall") == "middle" else 0.0)
+        )
 
     def away(points):
         off = triangles.distance(points, facets)
@@ -272,7 +349,19 @@ def mixed(chance, size):
 
 
 FILLED = ("developable", "solid")
-KINDS = (turned, turned, tube, tube, bend, sheared, lofted, boxes_on_hub, boxes_on_hub, mixed, mixed)
+KINDS = (
+    turned,
+    turned,
+    tube,
+    tube,
+    bend,
+    sheared,
+    lofted,
+    boxes_on_hub,
+    boxes_on_hub,
+    mixed,
+    mixed,
+)
 
 
 def job_length(value):
@@ -293,7 +382,9 @@ def _write(shape, folder, name, chance, mesh=False):
     """The section of a job about a file of a shape, or of its triangles, which may be damaged."""
     if mesh:
         facets = _facets(shape)
-        (folder / f"{name}.stl").write_text(_stl(_damaged(facets, chance) if chance.random() < 0.5 else facets))
+        (folder / f"{name}.stl").write_text(
+            _stl(_damaged(facets, chance) if chance.random() < 0.5 else facets)
+        )
         return {"file": f"{name}.stl"}
     ending = chance.choice(("step", "step", "brep", "igs"))
     file = str(folder / f"{name}.{ending}")
@@ -313,7 +404,11 @@ def _damaged(facets, chance):
     elif kind == 2:
         return np.concatenate([facets, facets[some]])
     elif kind == 3:
-        facets += 1e-4 * np.ptp(facets) * np.random.default_rng(chance.randrange(1000)).normal(size=facets.shape)
+        facets += (
+            1e-4
+            * np.ptp(facets)
+            * np.random.default_rng(chance.randrange(1000)).normal(size=facets.shape)
+        )
     elif kind == 4:
         facets[some, 1] = facets[some, 0]
     else:
@@ -324,8 +419,13 @@ def _damaged(facets, chance):
 def _stl(facets):
     lines = ["solid part"]
     for corners in facets:
-        lines += ["facet normal 0 0 0", "outer loop", *("vertex {:.9g} {:.9g} {:.9g}".format(*corner) for corner in corners),
-                  "endloop", "endfacet"]
+        lines += [
+            "facet normal 0 0 0",
+            "outer loop",
+            *("vertex {:.9g} {:.9g} {:.9g}".format(*corner) for corner in corners),
+            "endloop",
+            "endfacet",
+        ]
     return "\n".join([*lines, "endsolid part", ""])
 
 
@@ -333,4 +433,8 @@ def machines(parts):
     """The sections of cells and programs that parts are planned on; those that stand there once more for families that came
     later are left out, so that seeds make the parts they made."""
     later = ("cladding on", "features on", *job_bases.TOLD, "rail")
-    return [job for name, job in job_bases.bases(parts) if "cell" in job and "program" in job and not name.startswith(later)]
+    return [
+        job
+        for name, job in job_bases.bases(parts)
+        if "cell" in job and "program" in job and not name.startswith(later)
+    ]

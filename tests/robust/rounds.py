@@ -16,7 +16,11 @@ import numpy as np
 from tests.batch.conftest import COMMANDS
 
 SECONDS, MEMORY = 60.0, 2000.0  # s of the processor, MB, of a job that was not told to be large
-PATIENCE_SECONDS, PATIENCE_BYTES, PATIENCE = 65, 6 << 30, 300  # where they are stopped in any case; the last one s of sleep
+PATIENCE_SECONDS, PATIENCE_BYTES, PATIENCE = (
+    65,
+    6 << 30,
+    300,
+)  # where they are stopped in any case; the last one s of sleep
 LARGE = re.compile(r"\[(LARGE|TOO_MANY|TOO_FINE)\]")
 LOOKED_AT = 60  # deposit points of a job
 
@@ -37,7 +41,10 @@ def assert_sound(make, count, seed, folder):
     """
     log = os.environ.get("ROBUST_LOG")
     known = _logged(Path(log), seed) if log else {}
-    first, count = int(os.environ.get("ROBUST_FIRST") or 0), int(os.environ.get("ROBUST_COUNT") or count)
+    first, count = (
+        int(os.environ.get("ROBUST_FIRST") or 0),
+        int(os.environ.get("ROBUST_COUNT") or count),
+    )
     for number in range(first, first + count):
         if number in known:
             continue
@@ -47,7 +54,11 @@ def assert_sound(make, count, seed, folder):
                 stream.write(json.dumps({"seed": seed, "number": number, **known[number]}) + "\n")
     rows = [known[number] for number in range(first, first + count)]
     print(summary(rows))
-    wrong = {number: row["wrong"] for number, row in zip(range(first, first + count), rows, strict=True) if row["wrong"]}
+    wrong = {
+        number: row["wrong"]
+        for number, row in zip(range(first, first + count), rows, strict=True)
+        if row["wrong"]
+    }
     assert not wrong, f"seed {seed}: {wrong}"
 
 
@@ -69,8 +80,12 @@ def run(make, number, seed, folder):
             if not farthest <= 0.0:
                 wrong.append(f"off the part: {farthest:.4g} mm more than it may be")
         return {
-            "status": done.status, "seconds": done.seconds, "memory": done.memory, "wrong": wrong,
-            "told": " ".join(dict.fromkeys(told)), **({"err": done.err[-2000:]} if wrong else {}),
+            "status": done.status,
+            "seconds": done.seconds,
+            "memory": done.memory,
+            "wrong": wrong,
+            "told": " ".join(dict.fromkeys(told)),
+            **({"err": done.err[-2000:]} if wrong else {}),
         }
     finally:
         shutil.rmtree(place)
@@ -89,9 +104,14 @@ def faults(done, folder):
             wrong.append(found[0])
     if "Traceback" in done.err:
         wrong.append("Traceback")
-    if done.status == 2 and not re.fullmatch(r"((note|warning)\[\w+\] .+\n)*error\[[A-Z_]+\] .+\n", done.err):
+    if done.status == 2 and not re.fullmatch(
+        r"((note|warning)\[\w+\] .+\n)*error\[[A-Z_]+\] .+\n", done.err
+    ):
         wrong.append("status 2 without one line that tells why")
-    if any(unicodedata.category(sign) in ("Cc", "Cf", "Cs", "Zl", "Zp") for sign in done.err.replace("\n", "")):
+    if any(
+        unicodedata.category(sign) in ("Cc", "Cf", "Cs", "Zl", "Zp")
+        for sign in done.err.replace("\n", "")
+    ):
         wrong.append("control signs in what is told")
     if not LARGE.search(done.err):
         if done.seconds > SECONDS:
@@ -115,12 +135,23 @@ def deposited(path):
         return None
     with path.open(encoding="utf-8", newline="") as stream:
         rows = [
-            (row["layer"], row["bead"], *(float(row[name]) for name in ("x_mm", "y_mm", "z_mm", "bx", "by", "bz")))
-            for row in csv.DictReader(stream) if row["kind"] == "deposit"
+            (
+                row["layer"],
+                row["bead"],
+                *(float(row[name]) for name in ("x_mm", "y_mm", "z_mm", "bx", "by", "bz")),
+            )
+            for row in csv.DictReader(stream)
+            if row["kind"] == "deposit"
         ]
-    ends = [k for k in range(len(rows)) if k in (0, len(rows) - 1) or rows[k][:2] != rows[k - 1][:2]]
-    some = [ends[k] for k in np.linspace(0, len(ends) - 1, LOOKED_AT // 3).astype(int)] if rows else []
-    some += np.linspace(0, len(rows) - 1, LOOKED_AT - len(some)).astype(int).tolist() if rows else []
+    ends = [
+        k for k in range(len(rows)) if k in (0, len(rows) - 1) or rows[k][:2] != rows[k - 1][:2]
+    ]
+    some = (
+        [ends[k] for k in np.linspace(0, len(ends) - 1, LOOKED_AT // 3).astype(int)] if rows else []
+    )
+    some += (
+        np.linspace(0, len(rows) - 1, LOOKED_AT - len(some)).astype(int).tolist() if rows else []
+    )
     chosen = np.array([rows[k][2:] for k in sorted(set(some))]).reshape(-1, 6)
     return chosen[:, :3], chosen[:, 3:]
 

@@ -26,7 +26,13 @@ def tree(folder):
     found = {}
     for path in sorted(folder.rglob("*")):
         name = str(path.relative_to(folder))
-        found[name] = os.readlink(path) if path.is_symlink() else path.read_bytes() if path.is_file() else None
+        found[name] = (
+            os.readlink(path)
+            if path.is_symlink()
+            else path.read_bytes()
+            if path.is_file()
+            else None
+        )
     return found
 
 
@@ -72,9 +78,17 @@ def test_a_planted_report_removes_nothing_behind_a_link(tmp_path, elsewhere, tol
     (out / "program" / "x").symlink_to(elsewhere)
     (out / "report.json").write_text(planted_report(told))
     before = tree(elsewhere)
-    assert publish(out, {"report.json": b"{}", "program/CUP.LS": b"new"}) == ["program/CUP.LS", "report.json"]
+    assert publish(out, {"report.json": b"{}", "program/CUP.LS": b"new"}) == [
+        "program/CUP.LS",
+        "report.json",
+    ]
     assert tree(elsewhere) == before
-    assert tree(out) == {"program": None, "program/CUP.LS": b"new", "program/x": str(elsewhere), "report.json": b"{}"}
+    assert tree(out) == {
+        "program": None,
+        "program/CUP.LS": b"new",
+        "program/x": str(elsewhere),
+        "report.json": b"{}",
+    }
 
 
 @pytest.mark.parametrize("name", ["../elsewhere/OTHER", "..", "/etc/passwd", "a\0b", "", "."])
@@ -114,8 +128,13 @@ def test_the_users_own_programs_stay(workshop):
     assert workshop.run("plan", "cup.yaml", "--no-page").status == 0
     program = workshop.folder / "out" / "cup" / "program"
     ours = (program / "CUP.LS").read_bytes()
-    theirs = {"HOME.LS": b"/PROG  HOME\n", "notes.txt": b"mine", "CUPBOARD.LS": b"/PROG  CUPBOARD\n", "CUP07.LS": b"mine",
-              "TUNED.LS": ours}
+    theirs = {
+        "HOME.LS": b"/PROG  HOME\n",
+        "notes.txt": b"mine",
+        "CUPBOARD.LS": b"/PROG  CUPBOARD\n",
+        "CUP07.LS": b"mine",
+        "TUNED.LS": ours,
+    }
     for name, content in theirs.items():
         (program / name).write_bytes(content)
     workshop.change("name: cup", "name: bowl")
@@ -125,7 +144,9 @@ def test_the_users_own_programs_stay(workshop):
     assert all(found[name] == content for name, content in theirs.items())
 
 
-def test_a_hidden_folder_of_somebody_else_stays_and_a_planted_one_reaches_nothing_outside(tmp_path, elsewhere):
+def test_a_hidden_folder_of_somebody_else_stays_and_a_planted_one_reaches_nothing_outside(
+    tmp_path, elsewhere
+):
     out = tmp_path / "out"
     (out / ".unfinished-mine").mkdir(parents=True)
     (out / ".unfinished-mine" / "notes.txt").write_text("mine")
@@ -139,13 +160,18 @@ def test_a_hidden_folder_of_somebody_else_stays_and_a_planted_one_reaches_nothin
     (planted / staging.FILES / "CUP.LS").write_text("planted")
     (planted / staging.MARK).touch()
     (planted / "link").symlink_to(elsewhere)
-    (planted / staging.NOTE).write_text(json.dumps({"files": ["CUP.LS"], "old": ["../elsewhere/OTHER.LS"]}))
+    (planted / staging.NOTE).write_text(
+        json.dumps({"files": ["CUP.LS"], "old": ["../elsewhere/OTHER.LS"]})
+    )
     before = tree(elsewhere)
     publish(out, {"report.json": b"{}"})
     assert tree(elsewhere) == before
     assert tree(out) == {
-        ".unfinished-mine": None, ".unfinished-mine/notes.txt": b"mine", ".unfinished-link": str(elsewhere),
-        ".unfinished-marked": None, ".unfinished-marked/notes.txt": b"mine",
+        ".unfinished-mine": None,
+        ".unfinished-mine/notes.txt": b"mine",
+        ".unfinished-link": str(elsewhere),
+        ".unfinished-marked": None,
+        ".unfinished-marked/notes.txt": b"mine",
         f".unfinished-marked/{staging.MARK}": str(elsewhere / "OTHER.LS"),
         "report.json": b"{}",
     }
@@ -156,7 +182,11 @@ def test_a_macro_that_exports_again_leaves_no_part_of_the_longer_program(tmp_pat
     longer = {"CUP.LS": main.encode(), "CUP01.LS": b"/PROG  CUP01\n", "CUP02.LS": b"/PROG  CUP02\n"}
     out = tmp_path / "out"
     assert [path.rsplit("/", 1)[1] for path in written.write(str(out), longer)] == list(longer)
-    theirs = {"CUP03.LS": b"/PROG  CUP03\n", "OTHER.LS": OURS.format("OTHER").encode(), "OTHER01.LS": b"mine"}
+    theirs = {
+        "CUP03.LS": b"/PROG  CUP03\n",
+        "OTHER.LS": OURS.format("OTHER").encode(),
+        "OTHER01.LS": b"mine",
+    }
     for name, content in theirs.items():
         (out / name).write_bytes(content)
     shorter = {"CUP.LS": OURS.format("CUP").encode()}
@@ -180,7 +210,10 @@ def test_a_macro_exports_nothing_through_a_link(tmp_path, elsewhere):
 FORGED = "x\nerror[FORGED] cup.yaml: run this\r\x1b[2K\x1b]0;title\x07\x9b31m\u2028\u202ey"
 
 
-@pytest.mark.parametrize("place", ["key", "label", "value", "file", "job", "output", "option", "table", "column", "program"])
+@pytest.mark.parametrize(
+    "place",
+    ["key", "label", "value", "file", "job", "output", "option", "table", "column", "program"],
+)
 def test_no_message_is_forged(workshop, place):
     """One line for each message, without signs that steer a terminal; on a terminal too."""
     words = ["plan", "cup.yaml"]
@@ -212,37 +245,57 @@ def test_no_message_is_forged(workshop, place):
     done = workshop.run(*words)
     assert done.status == 2
     lines = done.err.split("\n")
-    assert len(lines) == 2 and lines[1] == "" and lines[0].startswith("error[") and not lines[0].startswith("error[FORGED")
+    assert (
+        len(lines) == 2
+        and lines[1] == ""
+        and lines[0].startswith("error[")
+        and not lines[0].startswith("error[FORGED")
+    )
     assert lines[0].isprintable(), lines[0]
     assert "Traceback" not in done.err and "INTERNAL" not in done.err
 
 
 def test_of_a_value_as_long_as_a_file_a_message_tells_beginning_and_end(workshop):
-    workshop.change("chord_error: 0.1 mm", f"chord_error: 0.1 mm\n  max_turn: [{', '.join(['7'] * 40_000)}]")
+    workshop.change(
+        "chord_error: 0.1 mm", f"chord_error: 0.1 mm\n  max_turn: [{', '.join(['7'] * 40_000)}]"
+    )
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 2 and len(done.err) < 4200 and done.err.count("\n") == 1
     workshop.change("chord_error: 0.1 mm", f"chord_error: {'7' * 200_000} mm")
     done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2 and len(done.err) < 4200 and done.err.startswith("error[") and "cup.yaml" in done.err
+    assert (
+        done.status == 2
+        and len(done.err) < 4200
+        and done.err.startswith("error[")
+        and "cup.yaml" in done.err
+    )
 
 
 def test_paths_and_cells_that_are_told_stay_on_their_lines(workshop):
     folder = FORGED.replace("/", "")
     done = workshop.run("plan", "cup.yaml", "--no-page", "-o", folder)
     assert done.status == 0, done.err
-    assert len(done.out.split("\n")) == 5 and all(line.isprintable() for line in done.out.split("\n"))
-    (workshop.folder / "rows.csv").write_text(f'name,strategy.layer_height\n"{FORGED}",5 mm\n', encoding="utf-8")
+    assert len(done.out.split("\n")) == 5 and all(
+        line.isprintable() for line in done.out.split("\n")
+    )
+    (workshop.folder / "rows.csv").write_text(
+        f'name,strategy.layer_height\n"{FORGED}",5 mm\n', encoding="utf-8"
+    )
     done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows")
     assert done.status == 2 and len(done.out.split("\n")) == 3
     assert all(line.isprintable() for line in done.out.split("\n"))
 
 
 def test_progress_on_a_terminal_is_escaped(workshop):
-    workshop.change("name: cup", "name: cup\nfixtures: [{file: \"a\\nb\\e[31m.step\"}]")
+    workshop.change("name: cup", 'name: cup\nfixtures: [{file: "a\\nb\\e[31m.step"}]')
     reader, writer = pty.openpty()
     process = subprocess.Popen(
-        [str(workshop.launcher), "plan", "cup.yaml"], cwd=workshop.folder, env=workshop.environment(), stdin=writer,
-        stdout=writer, stderr=writer,
+        [str(workshop.launcher), "plan", "cup.yaml"],
+        cwd=workshop.folder,
+        env=workshop.environment(),
+        stdin=writer,
+        stdout=writer,
+        stderr=writer,
     )
     os.close(writer)
     text = b""
@@ -279,14 +332,25 @@ def test_the_page_shows_markup_in_names_as_text(workshop):
 
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
     Reader().feed(page)
-    assert not [tag for tag, _ in found if tag in ("iframe", "object", "embed", "base", "link", "form")]
+    assert not [
+        tag for tag, _ in found if tag in ("iframe", "object", "embed", "base", "link", "form")
+    ]
     # the page's own: the figures and columns of the path, and what draws it, which alone a browser runs
     assert [attributes for tag, attributes in found if tag == "script"] == [
-        {"type": "application/json", "id": "path-facts"}, {"type": "text/plain", "id": "path-columns"}, {},
+        {"type": "application/json", "id": "path-facts"},
+        {"type": "text/plain", "id": "path-columns"},
+        {},
     ]
-    (policy,) = (one["content"] for _, one in found if one.get("http-equiv") == "Content-Security-Policy")
-    digest = base64.b64encode(hashlib.sha256(page.rpartition("<script>")[2].partition("</script>")[0].encode()).digest())
-    assert f"script-src 'sha256-{digest.decode()}'" in policy and "alert(" not in page.partition("<script")[2]
+    (policy,) = (
+        one["content"] for _, one in found if one.get("http-equiv") == "Content-Security-Policy"
+    )
+    digest = base64.b64encode(
+        hashlib.sha256(page.rpartition("<script>")[2].partition("</script>")[0].encode()).digest()
+    )
+    assert (
+        f"script-src 'sha256-{digest.decode()}'" in policy
+        and "alert(" not in page.partition("<script")[2]
+    )
     assert not [name for _, attributes in found for name in attributes if name.startswith("on")]
     assert not [tag for tag, attributes in found if attributes.get("src") == "x"]
     assert "&lt;script&gt;" in page

@@ -47,8 +47,12 @@ def assert_refused(workshop, *words, says=""):
     errors = workshop.folder / "errors.txt"
     with errors.open("wb") as stream:
         process = subprocess.Popen(
-            [str(workshop.launcher), *map(str, words)], cwd=workshop.folder, env=workshop.environment(),
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=stream,
+            [str(workshop.launcher), *map(str, words)],
+            cwd=workshop.folder,
+            env=workshop.environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=stream,
         )
         watch = threading.Timer(120.0, process.kill)
         watch.start()
@@ -60,7 +64,9 @@ def assert_refused(workshop, *words, says=""):
     assert re.fullmatch(r"error\[[A-Z_]+\] [^\n]+\n", text) and "INTERNAL" not in text, text
     assert says in text, text
     assert seconds < SECONDS and memory < MEMORY, (seconds, memory)
-    assert not list(workshop.folder.rglob(".unfinished*")) and not (workshop.folder / "out").exists()
+    assert (
+        not list(workshop.folder.rglob(".unfinished*")) and not (workshop.folder / "out").exists()
+    )
     return text
 
 
@@ -70,7 +76,13 @@ def refused(read, *given):
     with pytest.raises(InputError) as told:
         read(*given)
     after = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
-    assert sum(b.ru_utime + b.ru_stime - a.ru_utime - a.ru_stime for a, b in zip(before, after, strict=True)) < SECONDS
+    assert (
+        sum(
+            b.ru_utime + b.ru_stime - a.ru_utime - a.ru_stime
+            for a, b in zip(before, after, strict=True)
+        )
+        < SECONDS
+    )
     assert after[0].ru_maxrss / 1e3 < MEMORY
     return told.value
 
@@ -126,27 +138,48 @@ def assert_read_or_refused(sound, tmp_path, damages):
             opened(path)
             told[suffix][0] += 1
         except InputError as error:
-            assert error.code in ("BAD_FILE", "EMPTY_FILE", "NO_OBJECT", "UNSUPPORTED_FILE"), (suffix, kind, seed, error)
+            assert error.code in ("BAD_FILE", "EMPTY_FILE", "NO_OBJECT", "UNSUPPORTED_FILE"), (
+                suffix,
+                kind,
+                seed,
+                error,
+            )
             told[suffix][1] += 1
         except Exception as error:
             raise AssertionError((suffix, kind, seed)) from error
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < SECONDS, (suffix, kind, seed)
+        assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < SECONDS, (
+            suffix,
+            kind,
+            seed,
+        )
         assert not FreeCAD.listDocuments()
     return told
 
 
 def test_damaged_files_are_read_or_refused(sound, tmp_path):
-    damages = [(suffix, kind, seed) for suffix in sorted(sound) for kind in damage.KINDS for seed in range(4)]
+    damages = [
+        (suffix, kind, seed)
+        for suffix in sorted(sound)
+        for kind in damage.KINDS
+        for seed in range(4)
+    ]
     told = assert_read_or_refused(sound, tmp_path, damages)
-    assert all(count[1] for count in told.values()) and sum(count[0] for count in told.values()) > 5, told
+    assert (
+        all(count[1] for count in told.values()) and sum(count[0] for count in told.values()) > 5
+    ), told
 
 
 @pytest.mark.long
 def test_many_damaged_files_are_read_or_refused(sound, tmp_path):
     first = int(os.environ.get("ROBUST_SEED") or random.SystemRandom().randrange(1 << 30))
     print(f"seed {first}: ROBUST_SEED={first} makes the same damages")
-    damages = [(suffix, kind, first + n) for suffix in sorted(sound) for kind in damage.KINDS for n in range(25)]
+    damages = [
+        (suffix, kind, first + n)
+        for suffix in sorted(sound)
+        for kind in damage.KINDS
+        for n in range(25)
+    ]
     print(assert_read_or_refused(sound, tmp_path, damages))
 
 
@@ -184,20 +217,32 @@ def test_limits_are_told(monkeypatch, tmp_path, read, says):
 
 def test_a_sound_file_is_read_as_it_is_in_this_process(sound, root):
     """Digit for digit, and nearly as soon."""
-    for path in [sound[".step"], sound[".igs"], sound[".brep"], *sorted((root / "resources" / "examples").glob("*.step"))]:
+    for path in [
+        sound[".step"],
+        sound[".igs"],
+        sound[".brep"],
+        *sorted((root / "resources" / "examples").glob("*.step")),
+    ]:
         here = Part.Shape()
         here.read(str(path))
         assert read_shape(path).exportBrepToString() == here.exportBrepToString()
     before = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
     read_shape(sound[".step"])
     after = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
-    assert sum(b.ru_utime + b.ru_stime - a.ru_utime - a.ru_stime for a, b in zip(before, after, strict=True)) < 0.3
+    assert (
+        sum(
+            b.ru_utime + b.ru_stime - a.ru_utime - a.ru_stime
+            for a, b in zip(before, after, strict=True)
+        )
+        < 0.3
+    )
 
 
 def test_nobody_waits_for_a_copy_whose_process_was_killed(tmp_path):
     """A run that is killed while it reads leaves no process."""
     pid = os.fork()
     if not pid:
+
         def read(_):
             (tmp_path / "pid").write_text(str(os.getpid()))
             time.sleep(1000.0)
@@ -240,7 +285,8 @@ def test_step_with_a_point_far_away(sound, tmp_path, number):
 
 COMPONENT = '<component objectid="{}"/>'
 NESTED = "".join(
-    f'<object id="{k}" type="model"><components>{10 * COMPONENT.format(k - 1)}</components></object>' for k in range(2, 9)
+    f'<object id="{k}" type="model"><components>{10 * COMPONENT.format(k - 1)}</components></object>'
+    for k in range(2, 9)
 )
 
 
@@ -253,26 +299,39 @@ NESTED = "".join(
 def test_three_mf_made_to_mislead(tmp_path, text, says):
     error = refused(read_mesh, zipped(tmp_path / "bad.3mf", text))
     # on a slow machine the limit of time may come first, which is told too
-    assert error.where == "bad.3mf" and (says in error.message or "more than 4 s" in error.message), error
+    assert error.where == "bad.3mf" and (
+        says in error.message or "more than 4 s" in error.message
+    ), error
 
 
 @pytest.mark.parametrize("where", ["between elements", "in an element"])
 @pytest.mark.always("in an element")
 def test_three_mf_of_blanks(tmp_path, where):
     blanks = " " * 1_000_000
-    before, after = model(MESH).split("<build>") if where == "between elements" else model(MESH).split(' objectid="1"/>')
+    before, after = (
+        model(MESH).split("<build>")
+        if where == "between elements"
+        else model(MESH).split(' objectid="1"/>')
+    )
     after = f"<build>{after}" if where == "between elements" else f' objectid="1"/>{after}'
     error = refused(read_mesh, zipped(tmp_path / "blanks.3mf", [before, *[blanks] * 700, after]))
-    assert error.where == "blanks.3mf" and re.search("unpacks to more|longer than 4 MB", error.message), error
+    assert error.where == "blanks.3mf" and re.search(
+        "unpacks to more|longer than 4 MB", error.message
+    ), error
 
 
 def with_document_type(sound, path, name="Document.xml", blanks=0):
-    with zipfile.ZipFile(sound[".FCStd"]) as source, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+    with (
+        zipfile.ZipFile(sound[".FCStd"]) as source,
+        zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive,
+    ):
         for entry in source.namelist():
             text = source.read(entry)
             if entry == name:
                 body = text.decode().partition("?>")[2].replace("Cup", "&b9;")
-                text = (BOMB[: BOMB.index("\n")] + " " * blanks + BOMB[BOMB.index("\n") :] + body).encode()
+                text = (
+                    BOMB[: BOMB.index("\n")] + " " * blanks + BOMB[BOMB.index("\n") :] + body
+                ).encode()
             archive.writestr(entry, text)
     return path
 
@@ -282,7 +341,9 @@ def test_documents_of_entities_are_refused_before_they_are_opened(sound, tmp_pat
     path = with_document_type(sound, tmp_path / "bomb.FCStd", blanks=blanks)
     for read in (lambda: part_shape(str(path)), lambda: document_file.opened(str(path), "bomb")):
         error = refused(read)
-        assert error.code == "BAD_FILE" and ("document type" in error.message or "begin as XML" in error.message)
+        assert error.code == "BAD_FILE" and (
+            "document type" in error.message or "begin as XML" in error.message
+        )
     assert not FreeCAD.listDocuments()
 
 
@@ -312,7 +373,9 @@ def test_texts_of_a_document(workshop, stage, name):
         cup = document.addObject("Part::Feature", "Cup")
         cup.Shape = Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 60, 360)
         cell = api.make_cell(document, limits="paper")
-        toolpath = api.make_toolpath(document, api.make_feature(document, cup, layer_height=20, chord_error=1), cell)
+        toolpath = api.make_toolpath(
+            document, api.make_feature(document, cup, layer_height=20, chord_error=1), cell
+        )
         api.make_program(document, api.make_joint_path(document, toolpath, cell), name="cup")
         hostile = "[" * 200_000 + "]" * 200_000
         known = getattr(document.getObject(stage), name)
@@ -357,7 +420,9 @@ def test_machine_files(workshop, name, content):
 def test_a_machine_file_with_a_number_of_400_digits(workshop, root):
     text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text()
     number = re.search(r"\[\s*-?\d+(?:\.\d+)?,", text)
-    (workshop.folder / "m.json").write_text(text[: number.start()] + f"[{HUGE}," + text[number.end() :])
+    (workshop.folder / "m.json").write_text(
+        text[: number.start()] + f"[{HUGE}," + text[number.end() :]
+    )
     workshop.change("limits: paper", "machine: m.json")
     assert_refused(workshop, "plan", "cup.yaml", says="m.json")
 
@@ -390,12 +455,20 @@ def test_devices_and_pipes_in_the_place_of_files(workshop, kind):
 
 
 @pytest.mark.parametrize(
-    "words", [["plan", "cup.yaml", "-o", b"\xff\xfe"], ["plan", b"cup\xff.yaml"], ["export", b"\xff.FCStd"]]
+    "words",
+    [["plan", "cup.yaml", "-o", b"\xff\xfe"], ["plan", b"cup\xff.yaml"], ["export", b"\xff.FCStd"]],
 )
 def test_arguments_that_are_not_utf_8(workshop, words):
     done = subprocess.run(
-        [str(workshop.launcher), *words], cwd=workshop.folder, env=workshop.environment(), capture_output=True, check=False,
-        timeout=60, stdin=subprocess.DEVNULL,
+        [str(workshop.launcher), *words],
+        cwd=workshop.folder,
+        env=workshop.environment(),
+        capture_output=True,
+        check=False,
+        timeout=60,
+        stdin=subprocess.DEVNULL,
     )
-    assert done.returncode == 2 and done.stderr.startswith(b"error[USAGE]") and b"UTF-8" in done.stderr
+    assert (
+        done.returncode == 2 and done.stderr.startswith(b"error[USAGE]") and b"UTF-8" in done.stderr
+    )
     assert done.stderr.count(b"\n") == 1 and done.stderr.decode().strip().isprintable()

@@ -32,7 +32,11 @@ class Elements(html.parser.HTMLParser):
         self.pictures += tag == "svg"
         kind = tag, tuple(name for name, _ in attributes)
         self.drawn.add(kind) if self.pictures else self.found.append(kind)
-        self.acts += [value for name, value in attributes if name.startswith("on") or name in ("href", "src", "action")]
+        self.acts += [
+            value
+            for name, value in attributes
+            if name.startswith("on") or name in ("href", "src", "action")
+        ]
         self.texts += [value for name, value in attributes if name in ("aria-label", "title")]
 
     def handle_endtag(self, tag):
@@ -55,7 +59,9 @@ def machine_file(folder, name, plain, text):
 def page_of(shop, command, job, file="report.html"):
     (shop.folder / "job.yaml").write_text(json.dumps(job), encoding="utf-8")
     done = shop.run(command, "job.yaml", "-o", "out")
-    assert done.status in (0, 3) and "Traceback" not in done.err and "INTERNAL" not in done.err, done.err
+    assert done.status in (0, 3) and "Traceback" not in done.err and "INTERNAL" not in done.err, (
+        done.err
+    )
     assert all(line.isprintable() for line in done.err.split("\n"))
     return (shop.folder / "out" / file).read_text(encoding="utf-8")
 
@@ -63,16 +69,27 @@ def page_of(shop, command, job, file="report.html"):
 def revolution(folder, name, text):
     up = FreeCAD.Vector(0, 0, 1)
     Part.makeSphere(40.0, FreeCAD.Vector(), up, 0, 60, 360).exportStep(str(folder / "cup.step"))
-    Part.makeBox(10, 10, 5, FreeCAD.Vector(80, 0, 0)).exportStep(str(folder / f"fixture {name}.step"))
+    Part.makeBox(10, 10, 5, FreeCAD.Vector(80, 0, 0)).exportStep(
+        str(folder / f"fixture {name}.step")
+    )
     machine_file(folder, "fanuc-arcmate120ic", "paper", text)
     return {
-        "name": f"job {name}", "part": {"file": "cup.step"}, "fixtures": [{"file": f"fixture {name}.step"}],
+        "name": f"job {name}",
+        "part": {"file": "cup.step"},
+        "fixtures": [{"file": f"fixture {name}.step"}],
         "strategy": {"layer_height": "8 mm", "chord_error": "0.5 mm"},
         "process": {"material": {"name": f"wire {text}", "source": f"source {text}"}},
         "cell": {
-            "machine": "own.json", "limits": f"set {text}", "branch": "auto",
-            "obstacles": [{"name": f"post {text.replace('=', '').replace(';', '')}", "box": [60, 60, 60],
-                           "pose": [0, 1500, 0, 0, 0, 0]}],
+            "machine": "own.json",
+            "limits": f"set {text}",
+            "branch": "auto",
+            "obstacles": [
+                {
+                    "name": f"post {text.replace('=', '').replace(';', '')}",
+                    "box": [60, 60, 60],
+                    "pose": [0, 1500, 0, 0, 0, 0],
+                }
+            ],
         },
         "program": {"post": "none"},
         "place": {"x": "100 mm", "y": "0 mm", "z": "0 mm", "points": 20, "proven": 1},
@@ -86,18 +103,29 @@ def solids(folder, name, text):
     rows = [f"{x},{y},{0.01 * x}" for x in range(-10, 51, 2) for y in range(-10, 51, 2)]
     (folder / f"scan {name}.csv").write_text("\n".join(["x,y,z", *rows, ""]), encoding="utf-8")
     return {
-        "name": f"job {name}", "part": {"file": "foot.step"},
+        "name": f"job {name}",
+        "part": {"file": "foot.step"},
         "substrate": {"file": "plate.step", "scan": f"scan {name}.csv", "scan_fit": "none"},
-        "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "8 mm", "chord_error": "0.5 mm"},
+        "strategy": {
+            "kind": "solid",
+            "layer_height": "5 mm",
+            "bead_spacing": "8 mm",
+            "chord_error": "0.5 mm",
+        },
     }
 
 
 def several(folder, name, text):
     for at, high in ((0, 10), (60, 20)):
-        Part.makeBox(30, 30, high, FreeCAD.Vector(at, 0, 0)).exportStep(str(folder / f"box{at}.step"))
+        Part.makeBox(30, 30, high, FreeCAD.Vector(at, 0, 0)).exportStep(
+            str(folder / f"box{at}.step")
+        )
     return {
-        "name": f"job {name}", "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "8 mm"},
-        "features": [{"name": f"feature {at} {name}", "part": {"file": f"box{at}.step"}} for at in (0, 60)],
+        "name": f"job {name}",
+        "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "8 mm"},
+        "features": [
+            {"name": f"feature {at} {name}", "part": {"file": f"box{at}.step"}} for at in (0, 60)
+        ],
     }
 
 
@@ -113,15 +141,21 @@ def pages(folder, root, job, command, file, name, text):
     (several, "plan", "report.html", ["job {name}", "feature 60 {name}"]),
     pytest.param(revolution, "place", "place.html", ["job {name}"], marks=pytest.mark.long),
 ], ids=["revolution", "scan", "features", "place"])  # fmt: skip
-def test_a_page_has_the_elements_of_the_same_job_in_plain_words(tmp_path, root, job, command, file, shown):
+def test_a_page_has_the_elements_of_the_same_job_in_plain_words(
+    tmp_path, root, job, command, file, shown
+):
     plain = Elements(pages(tmp_path / "plain", root, job, command, file, "plain", "words"))
     page = pages(tmp_path / "hostile", root, job, command, file, NAME, TEXT)
     hostile = Elements(page)
-    assert hostile.found == plain.found and hostile.drawn <= plain.drawn  # long names leave room for fewer of a key
+    assert (
+        hostile.found == plain.found and hostile.drawn <= plain.drawn
+    )  # long names leave room for fewer of a key
     assert not [act for act in hostile.acts if act not in plain.acts]
     told = "\n".join(hostile.texts)
     for text in shown:
         assert text.format(name=NAME, text=TEXT) in told, text
     facts = re.search(r'id="path-facts">(.*?)</script>', page, re.DOTALL)
     if facts is not None and "1 {text}" in shown:
-        assert f"1 {TEXT}" in {one["name"] for one in json.loads(facts[1])["axes"]}  # whole, for what draws it
+        assert f"1 {TEXT}" in {
+            one["name"] for one in json.loads(facts[1])["axes"]
+        }  # whole, for what draws it

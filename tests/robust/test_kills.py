@@ -29,14 +29,32 @@ from tests.batch.conftest import COMMANDS, ended, used_by
 KINDS = ("plan", "plan", "export", "batch")
 TICK = 0.01  # s, in which the system counts what of the processor was used
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
-OLD = {"cup.FCStd": b"old", "program/CUP.LS": b"old", "program/CUP01.LS": b"old", "report.html": b"old"}
-NEW = {"cup.FCStd": b"new", "program/CUP.LS": b"new", "report.html": b"new", "waypoints.csv": b"new"}
-NEW["report.json"] = json.dumps({"name": "cup", "programs": ["program/CUP.LS"], "issues": []}).encode()
-OLD["report.json"] = json.dumps({"name": "cup", "programs": ["program/CUP.LS", "program/CUP01.LS"], "issues": []}).encode()
+OLD = {
+    "cup.FCStd": b"old",
+    "program/CUP.LS": b"old",
+    "program/CUP01.LS": b"old",
+    "report.html": b"old",
+}
+NEW = {
+    "cup.FCStd": b"new",
+    "program/CUP.LS": b"new",
+    "report.html": b"new",
+    "waypoints.csv": b"new",
+}
+NEW["report.json"] = json.dumps(
+    {"name": "cup", "programs": ["program/CUP.LS"], "issues": []}
+).encode()
+OLD["report.json"] = json.dumps(
+    {"name": "cup", "programs": ["program/CUP.LS", "program/CUP01.LS"], "issues": []}
+).encode()
 
 
 def files(folder):
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
 
 
 def publish(folder, content, session=None):
@@ -91,7 +109,11 @@ def test_killed_at_any_step_the_next_run_finds_one_set(monkeypatch, tmp_path, be
 
         status = in_child(work)
         for name, data in files(out).items():
-            assert name.startswith(".unfinished") or data in (before.get(name), NEW.get(name), b"mine")
+            assert name.startswith(".unfinished") or data in (
+                before.get(name),
+                NEW.get(name),
+                b"mine",
+            )
         with outputs.Outputs(str(out)):  # the next run, which comes to nothing
             pass
         found = files(out)
@@ -130,14 +152,18 @@ def test_asked_to_end_while_files_are_moved_it_ends_with_all_of_them(monkeypatch
         if status == 0:
             break
         assert status == 130
-        assert told.read_text() == ("nothing was written" if found == OLD else "the outputs were in place already")
+        assert told.read_text() == (
+            "nothing was written" if found == OLD else "the outputs were in place already"
+        )
     assert found == NEW and step > 8
 
 
 def test_what_cannot_be_moved_leaves_the_earlier_set(tmp_path, monkeypatch):
     publish(tmp_path, OLD)
     real = os.access
-    monkeypatch.setattr(os, "access", lambda path, mode: not str(path).endswith("program") and real(path, mode))
+    monkeypatch.setattr(
+        os, "access", lambda path, mode: not str(path).endswith("program") and real(path, mode)
+    )
     with pytest.raises(InputError, match=r"closed.*-o"):
         publish(tmp_path, NEW)
     assert files(tmp_path) == OLD
@@ -171,8 +197,13 @@ class Launched:
     def __init__(self, shop, words):
         self.before = used_by_ended()
         self.process = subprocess.Popen(
-            [str(shop.launcher), *words], cwd=shop.folder, env=shop.environment(), start_new_session=True,
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            [str(shop.launcher), *words],
+            cwd=shop.folder,
+            env=shop.environment(),
+            start_new_session=True,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
         self.pid = self.process.pid
 
@@ -217,8 +248,11 @@ class Bench:
         """A command of a speed that none before had."""
         self.speed = round(self.speed + 0.01, 2)
         self.shop.write_job(
-            self.shop.text.replace("layer_height: 4 mm", "layer_height: 8 mm").replace("6 mm/s", f"{self.speed} mm/s")
-            .replace("post: fanuc", "post: fanuc\n  max_points: " + self.random.choice(["2000", "100"])),
+            self.shop.text.replace("layer_height: 4 mm", "layer_height: 8 mm")
+            .replace("6 mm/s", f"{self.speed} mm/s")
+            .replace(
+                "post: fanuc", "post: fanuc\n  max_points: " + self.random.choice(["2000", "100"])
+            ),
         )
         if kind == "plan":
             words = ["plan", "cup.yaml", "-o", "plan"]
@@ -233,7 +267,9 @@ class Bench:
     def save(self):
         """The document that is exported, of the speed at hand."""
         path = self.shop.folder / "saved.FCStd"
-        document = FreeCAD.openDocument(str(path)) if path.exists() else FreeCAD.newDocument("Saved")
+        document = (
+            FreeCAD.openDocument(str(path)) if path.exists() else FreeCAD.newDocument("Saved")
+        )
         try:
             if path.exists():
                 api.stages_of(document, "toolpath")[0].TravelSpeed = f"{self.speed} mm/s"
@@ -257,29 +293,49 @@ class Bench:
             time.sleep(TICK)
         time.sleep(self.random.uniform(0.0, TICK))
         with contextlib.suppress(ProcessLookupError):
-            (os.killpg if number == signal.SIGKILL or kind == "batch" else os.kill)(process.pid, number)
+            (os.killpg if number == signal.SIGKILL or kind == "batch" else os.kill)(
+                process.pid, number
+            )
         process.waited()
         return f"{share:.3f} {signal.Signals(number).name}"
 
     def folders(self):
         top = self.shop.folder
-        return [folder for folder in (top / "plan", top / "export", *sorted((top / "batch").glob("*"))) if folder.is_dir()]
+        return [
+            folder
+            for folder in (top / "plan", top / "export", *sorted((top / "batch").glob("*")))
+            if folder.is_dir()
+        ]
 
     def assert_one_set(self):
         for folder in self.folders():
-            if list(folder.glob(f"{staging.PREFIX}*/{staging.NOTE}")):  # killed in the milliseconds in which files are moved
+            if list(
+                folder.glob(f"{staging.PREFIX}*/{staging.NOTE}")
+            ):  # killed in the milliseconds in which files are moved
                 for name, data in files(folder).items():
                     if not name.startswith(staging.PREFIX):
                         speed(name, data)  # each is whole
-                with outputs.Outputs(str(folder)):  # and the next run, whatever comes of it, finishes that first
+                with outputs.Outputs(
+                    str(folder)
+                ):  # and the next run, whatever comes of it, finishes that first
                     pass
                 self.finished += 1
-            found = {name: data for name, data in files(folder).items() if not name.startswith(".unfinished")}
+            found = {
+                name: data
+                for name, data in files(folder).items()
+                if not name.startswith(".unfinished")
+            }
             speeds = {name: speed(name, data) for name, data in found.items()}
             assert len(set(speeds.values()) - {None}) <= 1, speeds
             if found and folder.name != "export":
                 programs = json.loads(found["report.json"])["programs"]
-                assert set(found) == {"cup.FCStd", "report.json", "report.html", "waypoints.csv", *programs}
+                assert set(found) == {
+                    "cup.FCStd",
+                    "report.json",
+                    "report.html",
+                    "waypoints.csv",
+                    *programs,
+                }
             called = re.findall(rb"CALL (CUP\d+)", found.get("program/CUP.LS", b""))
             parts = {name for name in found if re.fullmatch(r"program/CUP\d+\.LS", name)}
             assert {f"program/{name.decode()}.LS" for name in called} == parts
@@ -299,12 +355,21 @@ def speed(name, data):
     if name.endswith(".csv"):
         lines = data.decode().splitlines()
         rows = [dict(zip(lines[0].split(","), line.split(","), strict=True)) for line in lines[1:]]
-        return round(float(next(row["speed_mm_s"] for row in reversed(rows) if row["kind"] == "deposit")), 2)
+        return round(
+            float(next(row["speed_mm_s"] for row in reversed(rows) if row["kind"] == "deposit")), 2
+        )
     if name.endswith(".FCStd"):
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             assert archive.testzip() is None
             text = archive.read("Document.xml").decode()
-        return round(float(re.search(r'<Property name="TravelSpeed".*?<Float value="([^"]*)"', text, re.DOTALL)[1]), 2)
+        return round(
+            float(
+                re.search(
+                    r'<Property name="TravelSpeed".*?<Float value="([^"]*)"', text, re.DOTALL
+                )[1]
+            ),
+            2,
+        )
     assert data.rstrip().endswith(b"/END")
     found = re.search(rb"Travel speed ([\d.]+) mm/s", data)
     return float(found[1]) if found else None
@@ -325,7 +390,9 @@ def assert_survives(workshop, seed, kills, whole_every, start):
                 bench.assert_one_set()
                 bench.assert_no_litter()
         except AssertionError as error:
-            raise AssertionError(f"seed {seed}, kill {number} of {kind}, {moment}: {error}") from error
+            raise AssertionError(
+                f"seed {seed}, kill {number} of {kind}, {moment}: {error}"
+            ) from error
     print(f"{kills} kills, {bench.finished} of them while files were moved")
 
 

@@ -40,7 +40,9 @@ def test_parts(workshop, ending):
 def test_what_a_job_names(workshop, text):
     for ending in ("json", "step", "obj", "yaml", "csv"):
         huge(workshop.folder / f"huge.{ending}")
-    workshop.write_job(f"part: {{file: cup.step}}\nstrategy: {{kind: solid, layer_height: 8 mm}}\n{text}")
+    workshop.write_job(
+        f"part: {{file: cup.step}}\nstrategy: {{kind: solid, layer_height: 8 mm}}\n{text}"
+    )
     assert_refused(workshop, "plan", "cup.yaml", says="larger than")
 
 
@@ -51,7 +53,11 @@ def test_tables_of_points(tmp_path, ending):
     try:
         os.mkfifo(tmp_path / f"pipe.{ending}")
         (tmp_path / f"zero.{ending}").symlink_to("/dev/zero")
-        for path in (huge(tmp_path / f"huge.{ending}"), tmp_path / f"pipe.{ending}", tmp_path / f"zero.{ending}"):
+        for path in (
+            huge(tmp_path / f"huge.{ending}"),
+            tmp_path / f"pipe.{ending}",
+            tmp_path / f"zero.{ending}",
+        ):
             assert refused(table_part.open_points, document, str(path)).code == "BAD_FILE"
     finally:
         FreeCAD.closeDocument(document.Name)
@@ -64,7 +70,10 @@ def test_obstacles_of_a_document(tmp_path, name):
     os.mkfifo(tmp_path / "pipe.step")
     (tmp_path / "zero.step").symlink_to("/dev/zero")
     text = f"post = {tmp_path / name} at 0 0 0 0 0 0"
-    assert refused(cell_obstacles.bodies_of, CellParameters(obstacles=text)).where == "cell.obstacles post"
+    assert (
+        refused(cell_obstacles.bodies_of, CellParameters(obstacles=text)).where
+        == "cell.obstacles post"
+    )
     if name == "huge.step":
         assert refused(cell_obstacles.hashes_of, text, "").code == "BAD_FILE"
     else:

@@ -13,7 +13,9 @@ import yaml
 
 from tests.robust import job_bases, mutations, rounds, triangles
 
-STRIDE = 61  # a prime: neighbouring jobs are of other families and machines, and each base has its turn
+STRIDE = (
+    61  # a prime: neighbouring jobs are of other families and machines, and each base has its turn
+)
 DEFLECTION = 0.05  # mm of the triangles that deposit points are held against
 
 
@@ -51,7 +53,10 @@ def off(path, points, build):
     job = yaml.safe_load(path.read_bytes())
     if not len(points):
         return 0.0
-    found = [_excess(path.parent, _merged(job, feature), points, build) for feature in job.get("features") or [{}]]
+    found = [
+        _excess(path.parent, _merged(job, feature), points, build)
+        for feature in job.get("features") or [{}]
+    ]
     return float(np.min(found, axis=0).max())
 
 
@@ -73,16 +78,33 @@ def _excess(folder, job, points, build):
     if file.suffix not in (".step", ".brep", ".igs"):
         return np.zeros(len(points))
     around = triangles_of(str(file.resolve()))
-    away = np.min([triangles.distance(place, around) for place in cuts(points, build, strategy)], axis=0)
-    away -= length(scan.get("scan_within", 5.0)) if scan.get("scan") else 0.0  # layers lie on what was scanned
+    away = np.min(
+        [triangles.distance(place, around) for place in cuts(points, build, strategy)], axis=0
+    )
+    away -= (
+        length(scan.get("scan_within", 5.0)) if scan.get("scan") else 0.0
+    )  # layers lie on what was scanned
     chord = length(strategy.get("chord_error", 0.01))
-    if strategy.get("kind") in ("developable", "solid", "auto"):  # of parts in these jobs the last comes to a solid
+    if strategy.get("kind") in (
+        "developable",
+        "solid",
+        "auto",
+    ):  # of parts in these jobs the last comes to a solid
         inside = [triangles.inside(place, around) for place in cuts(points, build, strategy)]
         away = np.where(np.any(inside, axis=0), 0.0, away)
-        widest = max(length(strategy.get("bead_spacing", 5.0)), length(process.get("bead_width", 8.0)))
-        return away - (0.5 * widest + length(strategy.get("margin", 0.0)) + chord + DEFLECTION + 0.02)
+        widest = max(
+            length(strategy.get("bead_spacing", 5.0)), length(process.get("bead_width", 8.0))
+        )
+        return away - (
+            0.5 * widest + length(strategy.get("margin", 0.0)) + chord + DEFLECTION + 0.02
+        )
     if strategy.get("kind") == "cladding":  # along the normals of its faces
-        return away - (strategy.get("layers", 1) * length(strategy.get("layer_height", 1.0)) + chord + DEFLECTION + 0.02)
+        return away - (
+            strategy.get("layers", 1) * length(strategy.get("layer_height", 1.0))
+            + chord
+            + DEFLECTION
+            + 0.02
+        )
     if strategy.get("wall") == "middle":  # halfway between two walls of the part
         return away - 10.0
     return away - (chord + DEFLECTION + 0.02)
@@ -91,7 +113,9 @@ def _excess(folder, job, points, build):
 def cuts(points, build, strategy):
     """Where the part may have been cut for the layers that points lie in: plane layers at bottom, middle or top."""
     high = length(strategy.get("layer_height", 1.0)) if strategy.get("kind") == "solid" else 0.0
-    high = high if math.isfinite(high) else 0.0  # what lies off the part is judged by it too, endlessly mild
+    high = (
+        high if math.isfinite(high) else 0.0
+    )  # what lies off the part is judged by it too, endlessly mild
     return [points + share * high * build for share in ((0.0, 0.5, 1.0) if high else (0.0,))]
 
 
@@ -101,7 +125,10 @@ def length(value):
         return float(value)
     written = re.fullmatch(r"([-+.\de]*[.\d]) *([a-z]*)", str(value))
     try:
-        return float(written[1]) * {"mm": 1.0, "": 1.0, "m": 1000.0, "in": 25.4, "um": 1e-3}[written[2]]
+        return (
+            float(written[1])
+            * {"mm": 1.0, "": 1.0, "m": 1000.0, "in": 25.4, "um": 1e-3}[written[2]]
+        )
     except (TypeError, ValueError, KeyError):
         return math.inf
 
@@ -109,7 +136,9 @@ def length(value):
 def test_every_base_is_sound(parts):
     """Names of parts and machines as they are: all of them are found."""
     for name, job in job_bases.bases(str(parts)):
-        assert all(Path(job[key]["file"]).is_file() for key in ("part", "substrate") if key in job), name
+        assert all(
+            Path(job[key]["file"]).is_file() for key in ("part", "substrate") if key in job
+        ), name
 
 
 def test_mutated_jobs(parts, tmp_path):
@@ -118,4 +147,6 @@ def test_mutated_jobs(parts, tmp_path):
 
 @pytest.mark.long
 def test_ten_thousand_mutated_jobs(parts, tmp_path):
-    rounds.assert_sound(functools.partial(mutated_job, parts), 10_000, rounds.seed_of_round(), tmp_path)
+    rounds.assert_sound(
+        functools.partial(mutated_job, parts), 10_000, rounds.seed_of_round(), tmp_path
+    )

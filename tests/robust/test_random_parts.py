@@ -19,7 +19,9 @@ def random_part(machines, number, chance, folder):
 
 
 def test_random_parts(parts, tmp_path):  # noqa: F811
-    rounds.assert_sound(functools.partial(random_part, random_parts.machines(str(parts))), 8, 83101, tmp_path)
+    rounds.assert_sound(
+        functools.partial(random_part, random_parts.machines(str(parts))), 8, 83101, tmp_path
+    )
 
 
 @pytest.mark.long

@@ -28,8 +28,11 @@ print("status", status)
 def ended(root, work, *actions):
     """Status told, stderr, of a supervised work, with actions (s, function of its process) meanwhile."""
     process = subprocess.Popen(
-        [sys.executable, "-c", SCRIPT.format(root=str(root), work=work)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, start_new_session=True,
+        [sys.executable, "-c", SCRIPT.format(root=str(root), work=work)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
     )
     for seconds, act in actions:
         time.sleep(seconds)
@@ -56,7 +59,11 @@ def test_a_status_is_passed_on(root):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("group", [False, True])
 def test_signals_are_passed_on(root, number, group):
-    kill = (lambda process: os.killpg(process.pid, number)) if group else (lambda process: os.kill(process.pid, number))
+    kill = (
+        (lambda process: os.killpg(process.pid, number))
+        if group
+        else (lambda process: os.kill(process.pid, number))
+    )
     out, err = ended(root, "time.sleep(60)", (2.0, kill))
     assert out == "status 130\n" and "Traceback" not in err
 
@@ -88,4 +95,6 @@ def test_a_crash_leaves_the_outputs_as_they_were(tmp_path, before):
     assert supervised.supervised(work, "cup.yaml", lines.append) == 2
     assert len(lines) == 1 and lines[0].startswith("error[CRASHED] cup.yaml: ")
     assert files(tmp_path) == {f"new/out/{name}": data for name, data in before.items()}
-    assert (tmp_path / "new").exists() == bool(before) and not list(out.glob(".*") if before else [])
+    assert (tmp_path / "new").exists() == bool(before) and not list(
+        out.glob(".*") if before else []
+    )

@@ -34,7 +34,10 @@ def _nearest(point, triangles):
     normal = np.cross(b - a, c - a)
     square = np.maximum((normal**2).sum(1), 1e-300)
     foot = point - normal * (((point - a) * normal).sum(1) / square)[:, None]
-    sides = [np.einsum("ij,ij->i", np.cross(q - p, foot - p), normal) for p, q in ((a, b), (b, c), (c, a))]
+    sides = [
+        np.einsum("ij,ij->i", np.cross(q - p, foot - p), normal)
+        for p, q in ((a, b), (b, c), (c, a))
+    ]
     within = (np.min(sides, axis=0) >= 0.0) & (square > 1e-24)
     on_sides = np.stack([_on_side(point, p, q) for p, q in ((a, b), (b, c), (c, a))])
     nearest = np.linalg.norm(on_sides - point, axis=2).argmin(axis=0)

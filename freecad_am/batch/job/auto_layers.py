@@ -31,7 +31,9 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
     model = bead_table.of_process(process)
     if model is None:
         raise InputError(
-            "BAD_VALUE", f"strategy.{key}", "auto is what a bead model says, and there is none; give a length, a "
+            "BAD_VALUE",
+            f"strategy.{key}",
+            "auto is what a bead model says, and there is none; give a length, a "
             "process.bead_model or a process.material that has one",
         )
     speed = model.straight_speed(process.bead_width)
@@ -42,12 +44,22 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
     if found.get(SPACING) == WORD:
         height = quantity.read(found.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}")
         if not height > 0.0:
-            raise InputError("BAD_VALUE", f"strategy.{HEIGHT}", "{:g} mm is out of range; give more than 0 mm", height)
+            raise InputError(
+                "BAD_VALUE",
+                f"strategy.{HEIGHT}",
+                "{:g} mm is out of range; give more than 0 mm",
+                height,
+            )
         spacing = process.wire.section * with_model(process, model) / speed / height
         if spacing > process.bead_width:
             raise InputError(
-                "BAD_VALUE", f"strategy.{SPACING}", "layers of {:.4g} mm take beads {:.4g} mm apart to hold the wire fed, "
-                "and beads are {:g} mm wide; make layers higher, or beads wider", height, spacing, process.bead_width,
+                "BAD_VALUE",
+                f"strategy.{SPACING}",
+                "layers of {:.4g} mm take beads {:.4g} mm apart to hold the wire fed, "
+                "and beads are {:g} mm wide; make layers higher, or beads wider",
+                height,
+                spacing,
+                process.bead_width,
             )
         found[SPACING] = f"{spacing!r} mm"
     return found

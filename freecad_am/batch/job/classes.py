@@ -18,12 +18,19 @@ def as_text(section: dict[str, Any]) -> dict[str, Any]:
         return {key: value for key, value in section.items() if key != "classes"}
     if not isinstance(given, dict):
         raise InputError(
-            "BAD_VALUE", bead_classes.WHERE, "{} is not understood; write classes below it such as contour: {{travel_speed: "
-            "8 mm/s, schedule: 3}}", quantity.shown(given),
+            "BAD_VALUE",
+            bead_classes.WHERE,
+            "{} is not understood; write classes below it such as contour: {{travel_speed: "
+            "8 mm/s, schedule: 3}}",
+            quantity.shown(given),
         )
     fields.known_keys(given, bead_classes.CLASSES, bead_classes.WHERE)
     found = {
-        name: fields.build(bead_classes.BeadClass, _flat({} if own is None else own, name), f"{bead_classes.WHERE}.{name}")
+        name: fields.build(
+            bead_classes.BeadClass,
+            _flat({} if own is None else own, name),
+            f"{bead_classes.WHERE}.{name}",
+        )
         for name, own in given.items()
     }
     for name, one in found.items():

@@ -31,7 +31,9 @@ def save(document: Any, path: str) -> None:
         with _without_deflating(document):
             document.saveAs(path)
     except (OSError, RuntimeError) as error:
-        raise InputError("UNWRITABLE", path, "the document cannot be saved ({}); free the disk", error) from None
+        raise InputError(
+            "UNWRITABLE", path, "the document cannot be saved ({}); free the disk", error
+        ) from None
     if not os.path.isfile(path):
         raise InputError("UNWRITABLE", path, "the document cannot be saved; free the disk")
 
@@ -40,7 +42,9 @@ def save(document: Any, path: str) -> None:
 def _without_deflating(document: Any) -> Iterator[None]:
     """While a document of large results is saved FreeCAD leaves its parts as they are: results are packed already, and to
     pack them once more takes 50 ns a byte for a twentieth of them. The user's own choice comes back."""
-    results = sum(thing.MemSize for thing in document.Objects if thing.isDerivedFrom("App::FeaturePython"))
+    results = sum(
+        thing.MemSize for thing in document.Objects if thing.isDerivedFrom("App::FeaturePython")
+    )
     if results < max(LARGE, 0.5 * document.MemSize):
         yield
         return

@@ -50,41 +50,59 @@ def substrate_of(section: Any, strategy: Any, part: PartSource) -> PartSource | 
     """Where what a feature grows on comes from; None where it stands on the platform."""
     family = family_of(strategy)
     if part.start_edges and not family.edges:
-        raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
-        "them out")
+        raise InputError(
+            "NOT_FOR_FAMILY",
+            "part.start_edges",
+            "only strategy.kind surface starts from edges; leave them out",
+        )
     table = part.file.lower().endswith(tuple(POINT_FILES))
     if family.kind != "curves" and (part.edges or table):
         where, what = ("part.edges", "edges") if part.edges else ("part.file", "tables of points")
-        raise InputError("NOT_FOR_FAMILY", where, "only strategy.kind curves lays {} as beads; use it", what)
+        raise InputError(
+            "NOT_FOR_FAMILY", where, "only strategy.kind curves lays {} as beads; use it", what
+        )
     if table and (part.edges or part.faces):
-        raise InputError("NOT_FOR_FAMILY", "part.edges" if part.edges else "part.faces", "a table of points has no edges "
-                         "and no faces; leave them out")
+        raise InputError(
+            "NOT_FOR_FAMILY",
+            "part.edges" if part.edges else "part.faces",
+            "a table of points has no edges and no faces; leave them out",
+        )
     if part.faces and not family.faces:
-        raise InputError("NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out")
+        raise InputError(
+            "NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out"
+        )
     if family.substrate == NEEDED:
         if section is None:
             return None
         found = part_of(fields.mapping(section, "substrate"), "substrate")
         if found.faces:
             raise InputError(
-                "NOT_YET", "substrate.faces", "{!r} is not supported yet; use the whole solid", ", ".join(found.faces)
+                "NOT_YET",
+                "substrate.faces",
+                "{!r} is not supported yet; use the whole solid",
+                ", ".join(found.faces),
             )
         if not part.start_edges and _alike(part, found):
             raise InputError(
-                "OWN_SUBSTRATE", "substrate", "the wall and what it grows on are the same, {}; give the part that is there "
+                "OWN_SUBSTRATE",
+                "substrate",
+                "the wall and what it grows on are the same, {}; give the part that is there "
                 "before it, or leave the substrate out where the wall starts on the platform or from part.start_edges",
                 os.path.basename(found.file),
             )
         return found
     if section is not None and family.substrate == NONE:
-        raise InputError("NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out")
+        raise InputError(
+            "NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out"
+        )
     return None if section is None else part_of(fields.mapping(section, "substrate"), "substrate")
 
 
 def _alike(part: PartSource, other: PartSource) -> bool:
     """Whether two sources are the same, whichever faces are meant."""
     return os.path.realpath(part.file) == os.path.realpath(other.file) and (
-        (part.object, part.solids, part.settings, part.scale) == (other.object, other.solids, other.settings, other.scale)
+        (part.object, part.solids, part.settings, part.scale)
+        == (other.object, other.solids, other.settings, other.scale)
     )
 
 
@@ -94,7 +112,10 @@ def strategy_of(section: Any) -> LayerParameters:
     if not isinstance(kind, str) or kind not in KINDS:
         raise f.unknown_choice("strategy.kind", kind, (*KINDS, AUTO.kind))
     if kind == "solid" and section.get("layers") == "developable":  # which has a name of its own
-        kind, section = "developable", {key: value for key, value in section.items() if key != "layers"}
+        kind, section = (
+            "developable",
+            {key: value for key, value in section.items() if key != "layers"},
+        )
     if kind == "developable":
         section = _with_base(section)
     if kind in ("solid", "curves"):
@@ -121,7 +142,10 @@ def _with_base(section: dict[str, Any]) -> dict[str, Any]:
         return section
     rows = base["axis"] if all(isinstance(row, list) for row in base["axis"]) else [base["axis"]]
     numbers = [
-        quantity.read(number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, "strategy.base.axis")
-        for k, row in enumerate(rows) for number in row
+        quantity.read(
+            number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, "strategy.base.axis"
+        )
+        for k, row in enumerate(rows)
+        for number in row
     ]
     return {**section, "base": {**base, "axis": " ".join(f"{number:.15g}" for number in numbers)}}

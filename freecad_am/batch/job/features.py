@@ -16,16 +16,29 @@ from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family, famil
 from freecad_am.sections import fields, tree
 
 from . import auto_layers
-from .feature_sections import kept_clear, process_of, refuse_direction, strategy_of, substrate_of, with_direction
+from .feature_sections import (
+    kept_clear,
+    process_of,
+    refuse_direction,
+    strategy_of,
+    substrate_of,
+    with_direction,
+)
 from .part_source import PartSource, faces_of, fixtures_of, guide_of, part_of
 from .scan_source import ScanSource, scan_of, split
 
 # what a job calls the links of a feature, which the window picks in a document
 _KEYS = {
-    "Feature": "substrate", "Feature.BaseFaces": "substrate.faces", "Feature.Source": "part.faces",
-    "Feature.StartEdges": "part.start_edges", "Feature.StartFaces": "strategy.start_faces",
+    "Feature": "substrate",
+    "Feature.BaseFaces": "substrate.faces",
+    "Feature.Source": "part.faces",
+    "Feature.StartEdges": "part.start_edges",
+    "Feature.StartFaces": "strategy.start_faces",
 }
-WALLS, UPRIGHT = ("revolution", "surface"), "fixed"  # families whose directions follow the wall; the mode of one direction
+WALLS, UPRIGHT = (
+    ("revolution", "surface"),
+    "fixed",
+)  # families whose directions follow the wall; the mode of one direction
 KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", "process")
 
 
@@ -43,7 +56,9 @@ class JobFeature:
     build_direction: BuildDirectionParameters
     process: ProcessParameters
     guide: PartSource | None = None
-    sections: Any = dataclasses.field(default=None, repr=False, compare=False)  # of the job, where the family is left to us
+    sections: Any = dataclasses.field(
+        default=None, repr=False, compare=False
+    )  # of the job, where the family is left to us
     start_faces: tuple[str, ...] = ()
     scan: ScanSource | None = None
 
@@ -62,36 +77,67 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
         return _left_open(values, section, name)
     strategy = strategy_of(_with_fuse(values.get("strategy") or {}, part_section))
     process = process_of(values.get("process") or {}, strategy)
-    build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
+    build_direction = fields.build(
+        BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"
+    )
     refuse_direction(strategy, build_direction)
     part = part_of({key: value for key, value in part_section.items() if key != "fuse"})
     guide = guide_of((values.get("strategy") or {}).get("guide"), part_section)
     if guide is not None and getattr(strategy, "layers", "") != "along":
-        raise InputError("NOT_FOR_FAMILY", "strategy.guide", "only layers: along have a guide; leave it out, or use them")
-    start_faces = faces_of((values.get("strategy") or {}).get("start_faces"), "strategy.start_faces")
+        raise InputError(
+            "NOT_FOR_FAMILY",
+            "strategy.guide",
+            "only layers: along have a guide; leave it out, or use them",
+        )
+    start_faces = faces_of(
+        (values.get("strategy") or {}).get("start_faces"), "strategy.start_faces"
+    )
     if start_faces and getattr(strategy, "layers", "") not in ("geodesic", "offset"):
         raise InputError(
-            "NOT_FOR_FAMILY", "strategy.start_faces", "only layers: geodesic and offset start from faces; leave them out, "
+            "NOT_FOR_FAMILY",
+            "strategy.start_faces",
+            "only layers: geodesic and offset start from faces; leave them out, "
             "or use those layers",
         )
     ground, scanned = split(values.get("substrate"))
     return JobFeature(
-        name, part, substrate_of(ground, strategy, part), fixtures_of(values.get("fixtures")), strategy,
-        build_direction, process, guide, start_faces=start_faces, scan=scan_of(scanned, strategy),
+        name,
+        part,
+        substrate_of(ground, strategy, part),
+        fixtures_of(values.get("fixtures")),
+        strategy,
+        build_direction,
+        process,
+        guide,
+        start_faces=start_faces,
+        scan=scan_of(scanned, strategy),
     )
 
 
 def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> JobFeature:
     """A feature whose family is chosen once its part is known; keys may be those of any family."""
-    fields.known_keys(section, ("kind", *sorted({key for family in KINDS.values() for key in _keys(family)})), "strategy")
+    fields.known_keys(
+        section,
+        ("kind", *sorted({key for family in KINDS.values() for key in _keys(family)})),
+        "strategy",
+    )
     common = {key: value for key, value in section.items() if key in _keys(AUTO)}
-    part = {key: value for key, value in fields.mapping(values["part"], "part").items() if key != "fuse"}
+    part = {
+        key: value for key, value in fields.mapping(values["part"], "part").items() if key != "fuse"
+    }
     ground, _ = split(values.get("substrate"))
-    substrate = None if ground is None else part_of(fields.mapping(ground, "substrate"), "substrate")
+    substrate = (
+        None if ground is None else part_of(fields.mapping(ground, "substrate"), "substrate")
+    )
     return JobFeature(
-        name, part_of(part), substrate,
-        fixtures_of(values.get("fixtures")), fields.build(LayerParameters, common, "strategy"),
-        fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"),
+        name,
+        part_of(part),
+        substrate,
+        fixtures_of(values.get("fixtures")),
+        fields.build(LayerParameters, common, "strategy"),
+        fields.build(
+            BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"
+        ),
         process_of(values.get("process") or {}),
         sections=values,
     )
@@ -113,7 +159,10 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str =
     the job says. Raises InputError as any."""
     values, family = dict(feature.sections), KINDS[kind]
     section = {key: value for key, value in values["strategy"].items() if key in _keys(family)}
-    proposed = {**({"layers": layers} if layers else {}), **({"mend": f"{mend!r} mm"} if mend else {})}
+    proposed = {
+        **({"layers": layers} if layers else {}),
+        **({"mend": f"{mend!r} mm"} if mend else {}),
+    }
     values["strategy"] = {**proposed, **section, "kind": kind}
     if mode:
         values["build_direction"] = {**(values.get("build_direction") or {}), "mode": mode}
@@ -140,16 +189,27 @@ def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
     entries = values["features"]
     if not isinstance(entries, list) or not entries:
         raise InputError(
-            "BAD_VALUE", "features", "features are a list; write features: [{name: hub, part: {file: hub.step}}, ...]"
+            "BAD_VALUE",
+            "features",
+            "features are a list; write features: [{name: hub, part: {file: hub.step}}, ...]",
         )
     made: list[JobFeature] = []
     for number, entry in enumerate(entries):
         here = f"features[{number}]"
         own = fields.mapping(entry, here)
         fields.known_keys(own, KEYS, here)
-        name = fields.text(own["name"], f"{here}.name").strip() if own.get("name") is not None else f"feature {number + 1}"
+        name = (
+            fields.text(own["name"], f"{here}.name").strip()
+            if own.get("name") is not None
+            else f"feature {number + 1}"
+        )
         if name in [one.name for one in made]:
-            raise InputError("BAD_VALUE", f"{here}.name", "{!r} is the name of another feature; give each its own", name)
+            raise InputError(
+                "BAD_VALUE",
+                f"{here}.name",
+                "{!r} is the name of another feature; give each its own",
+                name,
+            )
         try:
             made.append(one_feature(_with_defaults(own, values), name))
         except InputError as error:
@@ -159,7 +219,11 @@ def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
 
 def in_words_of_job(error: InputError, label: str = "Feature") -> InputError:
     """An error about a link of the feature with that label as one about a key of the job."""
-    where = f"Feature{error.where.removeprefix(label)}" if error.where.startswith(label) else error.where
+    where = (
+        f"Feature{error.where.removeprefix(label)}"
+        if error.where.startswith(label)
+        else error.where
+    )
     return InputError(error.code, _KEYS[where], error.message) if where in _KEYS else error
 
 
@@ -193,16 +257,24 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
     family = KINDS[kind]
     given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
     known = (*kept_clear(kind), *_keys(family))
-    mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
+    mixed["strategy"] = {
+        key: value for key, value in strategy.items() if key in known or key in given
+    }
     if "substrate" not in own and family.substrate == NONE:
         mixed.pop("substrate", None)
     direction = mixed.get("build_direction")
-    if isinstance(direction, dict) and "mode" not in (own.get("build_direction") or {}) and (
-        direction.get("mode") not in family.modes
+    if (
+        isinstance(direction, dict)
+        and "mode" not in (own.get("build_direction") or {})
+        and (direction.get("mode") not in family.modes)
     ):
         mixed["build_direction"] = {key: value for key, value in direction.items() if key != "mode"}
     process = mixed.get("process")
-    if isinstance(process, dict) and not family.filled and "bead_model" not in (own.get("process") or {}):
+    if (
+        isinstance(process, dict)
+        and not family.filled
+        and "bead_model" not in (own.get("process") or {})
+    ):
         mixed["process"] = {key: value for key, value in process.items() if key != "bead_model"}
     return mixed
 
@@ -219,5 +291,7 @@ def _with_fuse(section: Any, part: dict[str, Any]) -> Any:
     if "fuse" not in part:
         return section
     if fields.mapping(section, "strategy").get("kind") != "solid":
-        raise InputError("NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; leave it out")
+        raise InputError(
+            "NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; leave it out"
+        )
     return {**section, "fuse": part["fuse"]}

@@ -26,8 +26,20 @@ from .part_source import PartSource
 
 SEQUENCES = (BY_FEATURE, BY_HEIGHT)
 SECTIONS = (
-    "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "features", "sequence", "cell",
-    "joints", "process", "program", "place",
+    "version",
+    "name",
+    "part",
+    "substrate",
+    "fixtures",
+    "strategy",
+    "build_direction",
+    "features",
+    "sequence",
+    "cell",
+    "joints",
+    "process",
+    "program",
+    "place",
 )
 _LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
 
@@ -99,11 +111,20 @@ def _checked(job: tree.Tree, path: str) -> Job:
     fields.known_keys(values, SECTIONS, "")
     version = values.get("version", 1)
     if version != 1 or isinstance(version, bool):
-        raise InputError("BAD_VERSION", "version", "{} is not understood; write version: 1", quantity.shown(version))
+        raise InputError(
+            "BAD_VERSION",
+            "version",
+            "{} is not understood; write version: 1",
+            quantity.shown(version),
+        )
     name = _name(values.get("name"), path)
     if values.get("features") is None:
         if values.get("sequence") is not None:
-            raise InputError("BAD_VALUE", "sequence", "there is one feature alone; leave it out, or list features")
+            raise InputError(
+                "BAD_VALUE",
+                "sequence",
+                "there is one feature alone; leave it out, or list features",
+            )
         features: tuple[JobFeature, ...] = (one_feature(values, name),)
         process = features[0].process
     else:
@@ -112,8 +133,12 @@ def _checked(job: tree.Tree, path: str) -> Job:
     program = _program(values.get("program"))
     scan = next((one.scan for one in features if one.scan is not None), None)
     if scan is not None and len(features) > 1:
-        raise InputError("NOT_YET", "substrate.scan", "several features in one job are not fitted to a scan yet; leave it "
-                         "out, or give each feature a job of its own")
+        raise InputError(
+            "NOT_YET",
+            "substrate.scan",
+            "several features in one job are not fitted to a scan yet; leave it "
+            "out, or give each feature a job of its own",
+        )
     if scan is not None and program is not None:
         program = _resumed(program, scan.parameters.first)
     sequence = values.get("sequence") or SEQUENCES[0]
@@ -140,16 +165,29 @@ def _name(name: Any, path: str) -> str:
         name = str(name)
     name = fields.text(name, "name").strip()
     if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
-        raise InputError("BAD_NAME", "name", "{} names files; use no slash, control sign or leading dot",
-                         quantity.shown(name))
+        raise InputError(
+            "BAD_NAME",
+            "name",
+            "{} names files; use no slash, control sign or leading dot",
+            quantity.shown(name),
+        )
     if len(name.encode()) > _LONGEST_NAME:
-        raise InputError("BAD_NAME", "name", "the name is too long for a file; use at most {} letters", _LONGEST_NAME)
+        raise InputError(
+            "BAD_NAME",
+            "name",
+            "the name is too long for a file; use at most {} letters",
+            _LONGEST_NAME,
+        )
     return name
 
 
 def _joints(section: Any) -> JointParameters:
     one = fields.mapping(section, "joints").get("compare")
-    return fields.build(JointParameters, {**section, "compare": [one]} if isinstance(one, str) else section, "joints")
+    return fields.build(
+        JointParameters,
+        {**section, "compare": [one]} if isinstance(one, str) else section,
+        "joints",
+    )
 
 
 def _resumed(program: ProgramParameters, layer: int) -> ProgramParameters:

@@ -55,7 +55,10 @@ def _file(name: str) -> Path:
     if name.removesuffix(ENDING) in built_in():
         return known
     raise InputError(
-        "NO_FILE", KEY, "there is no material {}; give one of {}, or the path of a material file", quantity.shown(name),
+        "NO_FILE",
+        KEY,
+        "there is no material {}; give one of {}, or the path of a material file",
+        quantity.shown(name),
         ", ".join(built_in()),
     )
 
@@ -65,13 +68,20 @@ def _defaults(values: dict[str, Any], file: Path) -> dict[str, Any]:
     fields.known_keys(values, KEYS, "")
     for key in NEEDED:
         if values.get(key) in (None, {}):
-            raise InputError("BAD_VALUE", key, "a material needs its {}, and there is none; write {}: ...", key, key)
+            raise InputError(
+                "BAD_VALUE",
+                key,
+                "a material needs its {}, and there is none; write {}: ...",
+                key,
+                key,
+            )
     source = " ".join(fields.text(values["source"], "source").split())
     slowest, fastest = _range(values.get("speed_range"))
     name = values.get("name")
     stated: dict[str, Any] = {
         "material": {
-            "name": file.stem if name in (None, {}) else fields.text(name, "name"), "source": source,
+            "name": file.stem if name in (None, {}) else fields.text(name, "name"),
+            "source": source,
             **({} if slowest is None else {"slowest": slowest, "fastest": fastest}),
         },
         **{key: values[key] for key in CARRIED if values.get(key) not in (None, {})},
@@ -89,29 +99,66 @@ def _range(value: Any) -> tuple[float | None, float | None]:
     if value in (None, {}):
         return None, None
     if not isinstance(value, list) or len(value) != 2:
-        raise InputError("BAD_VALUE", "speed_range", "{} is not a range; give [slowest, fastest]", quantity.shown(value))
+        raise InputError(
+            "BAD_VALUE",
+            "speed_range",
+            "{} is not a range; give [slowest, fastest]",
+            quantity.shown(value),
+        )
     low, high = (quantity.read(end, f.SPEED, "speed_range") for end in value)
     if not 0.0 < low <= high < 1e9:
-        raise InputError("BAD_VALUE", "speed_range", "{:g} to {:g} mm/s is not a range; give the slower speed first, both "
-                         "more than 0", low, high)
+        raise InputError(
+            "BAD_VALUE",
+            "speed_range",
+            "{:g} to {:g} mm/s is not a range; give the slower speed first, both more than 0",
+            low,
+            high,
+        )
     return low, high
 
 
-def _checked(stated: dict[str, Any], values: dict[str, Any], slowest: float | None, fastest: float | None) -> dict[str, Any]:
+def _checked(
+    stated: dict[str, Any], values: dict[str, Any], slowest: float | None, fastest: float | None
+) -> dict[str, Any]:
     """The wire; what numbers there are is looked at, so that it is told with the line of this file."""
-    for key, kind in (("density", f.NUMBER), ("temperature", f.NUMBER), ("stand_off", f.LENGTH), ("travel_speed", f.SPEED)):
+    for key, kind in (
+        ("density", f.NUMBER),
+        ("temperature", f.NUMBER),
+        ("stand_off", f.LENGTH),
+        ("travel_speed", f.SPEED),
+    ):
         number = quantity.read(stated[key], kind, key) if key in stated else 1.0
         if key in ("density", "travel_speed") and not 0.0 < number < 1e9:
-            raise InputError("BAD_VALUE", key, "{} is out of range; give more than 0", quantity.shown(stated[key]))
-        if key == "travel_speed" and key in stated and slowest is not None and not slowest <= number <= (fastest or 0.0):
-            raise InputError("BAD_VALUE", key, "{} is outside of speed_range; mend one of them", quantity.shown(stated[key]))
+            raise InputError(
+                "BAD_VALUE",
+                key,
+                "{} is out of range; give more than 0",
+                quantity.shown(stated[key]),
+            )
+        if (
+            key == "travel_speed"
+            and key in stated
+            and slowest is not None
+            and not slowest <= number <= (fastest or 0.0)
+        ):
+            raise InputError(
+                "BAD_VALUE",
+                key,
+                "{} is outside of speed_range; mend one of them",
+                quantity.shown(stated[key]),
+            )
     if values.get("wire") in (None, {}):
         return {}
     wire = fields.mapping(values["wire"], "wire")
     fields.known_keys(wire, WIRE, "wire")
     for key, kind in zip(WIRE, (f.LENGTH, f.SPEED), strict=True):
         if key in wire and not 0.0 < quantity.read(wire[key], kind, f"wire.{key}") < 1e9:
-            raise InputError("BAD_VALUE", f"wire.{key}", "{} is out of range; give more than 0", quantity.shown(wire[key]))
+            raise InputError(
+                "BAD_VALUE",
+                f"wire.{key}",
+                "{} is out of range; give more than 0",
+                quantity.shown(wire[key]),
+            )
     return {"wire": dict(wire)}
 
 
@@ -120,11 +167,23 @@ def _schedules(value: Any) -> dict[str, Any]:
     table = fields.mapping(value, "schedules")
     fields.known_keys(table, (ALL, *bead_classes.CLASSES), "schedules")
     for name, number in table.items():
-        if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= bead_classes.LARGEST_SCHEDULE:
-            raise InputError("BAD_VALUE", f"schedules.{name}", "{} is not a number of a schedule; give a whole number from "
-                             "1 to {}", quantity.shown(number), bead_classes.LARGEST_SCHEDULE)
+        if (
+            isinstance(number, bool)
+            or not isinstance(number, int)
+            or not 1 <= number <= bead_classes.LARGEST_SCHEDULE
+        ):
+            raise InputError(
+                "BAD_VALUE",
+                f"schedules.{name}",
+                "{} is not a number of a schedule; give a whole number from 1 to {}",
+                quantity.shown(number),
+                bead_classes.LARGEST_SCHEDULE,
+            )
     classes = {name: {"schedule": number} for name, number in table.items() if name != ALL}
-    return {**({"schedule": table[ALL]} if ALL in table else {}), **({"classes": classes} if classes else {})}
+    return {
+        **({"schedule": table[ALL]} if ALL in table else {}),
+        **({"classes": classes} if classes else {}),
+    }
 
 
 def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: float | None) -> str:
@@ -136,8 +195,15 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
     low, high = model.speeds
     if slowest is not None and fastest is not None and (fastest < low or slowest > high):
         raise InputError(
-            "BAD_VALUE", "beads", "the beads of {} were laid at {:.4g} to {:.4g} mm/s, and speed_range is {:.4g} to {:.4g} "
-            "mm/s; mend one of them", os.path.basename(name), low, high, slowest, fastest,
+            "BAD_VALUE",
+            "beads",
+            "the beads of {} were laid at {:.4g} to {:.4g} mm/s, and speed_range is {:.4g} to {:.4g} "
+            "mm/s; mend one of them",
+            os.path.basename(name),
+            low,
+            high,
+            slowest,
+            fastest,
         )
     feed = (values.get("wire") or {}).get("feed")
     if feed not in (None, "auto"):
@@ -145,8 +211,14 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
         least, most = model.feeds or (model.wire_feed, model.wire_feed)
         if not 0.99 * least <= given <= 1.01 * most:
             raise InputError(
-                "BAD_VALUE", "wire.feed", "{:.4g} mm/s is not a wire feed of {}, whose beads were laid at {:.4g} to {:.4g} "
-                "mm/s; leave it out, or give one of these", given, os.path.basename(name), least, most,
+                "BAD_VALUE",
+                "wire.feed",
+                "{:.4g} mm/s is not a wire feed of {}, whose beads were laid at {:.4g} to {:.4g} "
+                "mm/s; leave it out, or give one of these",
+                given,
+                os.path.basename(name),
+                least,
+                most,
             )
     return name
 
@@ -160,7 +232,8 @@ def _over(stated: dict[str, Any], section: dict[str, Any]) -> dict[str, Any]:
             found[key] = {**stated[key], **own}
             if key == "classes":
                 found[key] |= {
-                    name: {**stated[key][name], **(one or {})} for name, one in own.items()
+                    name: {**stated[key][name], **(one or {})}
+                    for name, one in own.items()
                     if name in stated[key] and (one is None or isinstance(one, dict))
                 }
     return found

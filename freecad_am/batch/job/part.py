@@ -36,7 +36,9 @@ def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = Fal
 
 def _no_surfaces() -> InputError:
     return InputError(
-        "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces; give a part of this family as STEP, IGES, "
+        "UNSUPPORTED_FILE",
+        "part.file",
+        "a mesh has no exact surfaces; give a part of this family as STEP, IGES, "
         "BREP or FCStd; a mesh may be the substrate, or a fixture",
     )
 
@@ -55,14 +57,23 @@ def _only_solids(obj: Any, part: PartSource, key: str) -> Any:
     if not part.solids:
         return obj
     if getattr(obj, "Mesh", None) is not None:
-        raise InputError("BAD_VALUE", f"{key}.solids", "{} is a mesh, which has no solids; leave them out", obj.Label)
+        raise InputError(
+            "BAD_VALUE",
+            f"{key}.solids",
+            "{} is a mesh, which has no solids; leave them out",
+            obj.Label,
+        )
     solids = obj.Shape.Solids
     numbers = [int(name.removeprefix("Solid")) for name in part.solids]
     wrong = [name for name, number in zip(part.solids, numbers) if number > len(solids)]
     if wrong:
         raise InputError(
-            "BAD_VALUE", f"{key}.solids", "{} has {} solid(s), and no {}; name others", obj.Label, len(solids),
-            ", ".join(wrong)
+            "BAD_VALUE",
+            f"{key}.solids",
+            "{} has {} solid(s), and no {}; name others",
+            obj.Label,
+            len(solids),
+            ", ".join(wrong),
         )
     obj.Shape = solids_of(obj.Shape, numbers)
     obj.Label = f"{obj.Label} {', '.join(part.solids)}"
@@ -80,7 +91,12 @@ def _save_changed(part: PartSource, path: str, section: str) -> None:
         invalid = [obj.Label for obj in source.Objects if "Invalid" in obj.State]
         if invalid:
             names = ", ".join(invalid)
-            raise InputError("BAD_PART", f"{section}.set", "with these values {} cannot be built; change them", names)
+            raise InputError(
+                "BAD_PART",
+                f"{section}.set",
+                "with these values {} cannot be built; change them",
+                names,
+            )
         source.saveAs(path)
     finally:
         App.closeDocument(source.Name)
@@ -91,10 +107,19 @@ def _save_changed(part: PartSource, path: str, section: str) -> None:
 def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
     place = f"{section}.set.{name}.{key}"
     name, constraints, _ = name.partition(".Constraints")
-    found = [obj for obj in document.Objects if obj.Name == name] or document.getObjectsByLabel(name)
+    found = [obj for obj in document.Objects if obj.Name == name] or document.getObjectsByLabel(
+        name
+    )
     if len(found) != 1:
         names = ", ".join(obj.Label for obj in document.Objects)
-        raise InputError("NO_OBJECT", place, "{} objects are called {!r}; name one of {}", len(found), name, names)
+        raise InputError(
+            "NO_OBJECT",
+            place,
+            "{} objects are called {!r}; name one of {}",
+            len(found),
+            name,
+            names,
+        )
     obj = found[0]
     try:
         if constraints:
@@ -104,11 +129,15 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
         elif obj.TypeId == "Spreadsheet::Sheet":
             obj.set(obj.getCellFromAlias(key) or key, text)
         else:
-            obj.setExpression(key, None)  # a value that is set is meant, whatever it was computed from
+            obj.setExpression(
+                key, None
+            )  # a value that is set is meant, whatever it was computed from
             setattr(obj, key, _typed(getattr(obj, key), text))
     except AttributeError:
         near = ", ".join(sorted(obj.PropertiesList))
-        raise InputError("BAD_VALUE", place, "{} has no property {!r}; use one of {}", name, key, near) from None
+        raise InputError(
+            "BAD_VALUE", place, "{} has no property {!r}; use one of {}", name, key, near
+        ) from None
     except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
         message = Text("{!r} does not fit this property; give a value such as it has now", text)
         raise InputError("BAD_VALUE", place, message) from None

@@ -39,13 +39,17 @@ def fixtures_of(section: Any) -> tuple[PartSource, ...]:
     """The fixtures of a section `fixtures`. InputError naming key and what to do."""
     entries = [] if section is None else section
     if not isinstance(entries, list):
-        raise InputError("BAD_VALUE", "fixtures", "fixtures are a list; write fixtures: [{file: clamp.step}]")
+        raise InputError(
+            "BAD_VALUE", "fixtures", "fixtures are a list; write fixtures: [{file: clamp.step}]"
+        )
     found = []
     for number, entry in enumerate(entries):
         key = f"fixtures[{number}]"
         fixture = part_of(fields.mapping(entry, key), key)
         if fixture.faces:
-            raise InputError("BAD_VALUE", f"{key}.faces", "a fixture counts as a whole; leave out its faces")
+            raise InputError(
+                "BAD_VALUE", f"{key}.faces", "a fixture counts as a whole; leave out its faces"
+            )
         found.append(fixture)
     return tuple(found)
 
@@ -55,7 +59,9 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
     further = ("start_edges", "edges") if key == "part" else ()
     fields.known_keys(section, ("file", "object", "solids", "faces", "set", "scale", *further), key)
     if "file" not in section:
-        raise InputError("NO_PART", f"{key}.file", "there is no file; write {}: {{file: shape.step}}", key)
+        raise InputError(
+            "NO_PART", f"{key}.file", "there is no file; write {}: {{file: shape.step}}", key
+        )
     file = fields.text(section["file"], f"{key}.file")
     is_document = file.lower().endswith(".fcstd")
     for entry in ("object", "set"):
@@ -63,12 +69,19 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
             message = Text("only an FCStd part has objects, {} has none", os.path.basename(file))
             raise InputError("BAD_VALUE", f"{key}.{entry}", message)
     if not is_there(file):
-        raise InputError("NO_FILE", f"{key}.file", "there is no file {}; check the path, relative to the file with it",
-                         file)
+        raise InputError(
+            "NO_FILE",
+            f"{key}.file",
+            "there is no file {}; check the path, relative to the file with it",
+            file,
+        )
     name, solids = section.get("object"), _names(section.get("solids"), f"{key}.solids", _SOLID)
     if solids and (section.get("faces") or section.get("start_edges")):
-        raise InputError("BAD_VALUE", f"{key}.solids", "faces and edges are those of the whole file; name "
-                         "either solids or them")
+        raise InputError(
+            "BAD_VALUE",
+            f"{key}.solids",
+            "faces and edges are those of the whole file; name either solids or them",
+        )
     if solids and file.lower().endswith(MESHES):
         message = Text("{} is a mesh, which has no solids; leave them out", os.path.basename(file))
         raise InputError("BAD_VALUE", f"{key}.solids", message)
@@ -92,8 +105,11 @@ def guide_of(given: Any, part: dict[str, Any]) -> PartSource | None:
         return None
     if not isinstance(given, dict):
         raise InputError(
-            "BAD_VALUE", key, "{} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: spine.step}}, or "
-            "auto", quantity.shown(given),
+            "BAD_VALUE",
+            key,
+            "{} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: spine.step}}, or "
+            "auto",
+            quantity.shown(given),
         )
     fields.known_keys(given, ("file", "object", "edges", "set"), key)
     own = {name: given[name] for name in ("file", "object", "set") if name in given}
@@ -119,10 +135,18 @@ def _scale(value: Any, file: str, key: str) -> float:
 def _names(value: Any, key: str, wanted: re.Pattern[str]) -> tuple[str, ...]:
     """Names of faces, edges or solids."""
     names = [value] if isinstance(value, str) else value or []
-    if not isinstance(names, list) or not all(isinstance(name, str) and wanted.fullmatch(name) for name in names):
+    if not isinstance(names, list) or not all(
+        isinstance(name, str) and wanted.fullmatch(name) for name in names
+    ):
         kind = wanted.pattern.partition("[")[0]
         raise InputError(
-            "BAD_VALUE", key, "{} names no {}s; write [{}1, {}2]", quantity.shown(value), kind.lower(), kind, kind
+            "BAD_VALUE",
+            key,
+            "{} names no {}s; write [{}1, {}2]",
+            quantity.shown(value),
+            kind.lower(),
+            kind,
+            kind,
         )
     return tuple(names)
 
@@ -132,6 +156,10 @@ def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:
     for name, properties in fields.mapping(section, f"{part}.set").items():
         for key, value in fields.mapping(properties, f"{part}.set.{name}").items():
             if isinstance(value, (dict, list)) or value is None:
-                raise InputError("BAD_VALUE", f"{part}.set.{name}.{key}", "give one value such as 45 mm")
-            settings.append((name, key, quantity.shown(value) if isinstance(value, bool) else str(value)))
+                raise InputError(
+                    "BAD_VALUE", f"{part}.set.{name}.{key}", "give one value such as 45 mm"
+                )
+            settings.append(
+                (name, key, quantity.shown(value) if isinstance(value, bool) else str(value))
+            )
     return settings

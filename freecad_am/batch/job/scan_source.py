@@ -46,11 +46,20 @@ def scan_of(given: dict[str, Any], strategy: Any) -> ScanSource | None:
         return None
     if "scan" not in given:
         key = next(iter(given))
-        raise InputError("BAD_VALUE", f"{PREFIX}.{key}", "there is no scan; give its file as {}.scan, or leave it", PREFIX)
+        raise InputError(
+            "BAD_VALUE",
+            f"{PREFIX}.{key}",
+            "there is no scan; give its file as {}.scan, or leave it",
+            PREFIX,
+        )
     file = job_fields.text(given["scan"], f"{PREFIX}.scan")
     if not is_there(file):
-        raise InputError("NO_FILE", f"{PREFIX}.scan", "there is no file {}; check the path, relative to the file with it",
-                         file)
+        raise InputError(
+            "NO_FILE",
+            f"{PREFIX}.scan",
+            "there is no file {}; check the path, relative to the file with it",
+            file,
+        )
     for key, choices in (("scan_unit", (AUTO, *UNITS)), ("scan_fit", FITS)):
         if given.get(key, AUTO) not in choices:
             raise f.unknown_choice(f"{PREFIX}.{key}", given[key], choices)
@@ -64,14 +73,20 @@ def scan_of(given: dict[str, Any], strategy: Any) -> ScanSource | None:
         raise InputError(error.code, f"{PREFIX}.scan_pairs", error.message) from None
     if parameters.after_layer is not None and fit not in (AUTO, NONE):
         raise InputError(
-            "BAD_VALUE", f"{PREFIX}.scan_fit", "{}: only a scan in the part's own coordinates shows how far a part has "
-            "grown; give none", fit
+            "BAD_VALUE",
+            f"{PREFIX}.scan_fit",
+            "{}: only a scan in the part's own coordinates shows how far a part has "
+            "grown; give none",
+            fit,
         )
     layers = getattr(strategy, "layers", "planes")
     kind = type(strategy).__name__.removesuffix("Parameters").lower()
     if kind not in ("solid", "surface") or layers != "planes":
         raise InputError(
-            "NOT_YET", f"{PREFIX}.scan", "{} is not fitted to a scan yet; solids in plane layers and walls on a substrate "
-            "are: leave it out", kind if kind != "solid" else f"layers: {layers}"
+            "NOT_YET",
+            f"{PREFIX}.scan",
+            "{} is not fitted to a scan yet; solids in plane layers and walls on a substrate "
+            "are: leave it out",
+            kind if kind != "solid" else f"layers: {layers}",
         )
     return ScanSource(file, given.get("scan_unit", AUTO), fit, pairs, parameters)

@@ -35,15 +35,23 @@ class Shapes:
         chosen."""
         self.document, self.job, self.number, self.fails = document, job, number, fails
         self.of = job.features[number]
-        self.scan: Any = None  # the inspection of the substrate by its scan, once the feature is made
+        self.scan: Any = (
+            None  # the inspection of the substrate by its scan, once the feature is made
+        )
         try:
             self.part = bring(document, self.of.part, meshes=family_of(self.of.strategy).meshes)
-            self.substrate = None if self.of.substrate is None else bring(document, self.of.substrate, "substrate")
+            self.substrate = (
+                None
+                if self.of.substrate is None
+                else bring(document, self.of.substrate, "substrate")
+            )
             self.guide = None if self.of.guide is None else self._guide(self.of.guide)
             self.faces = (*self.of.part.edges, *self.of.part.faces)
             if len(job.features) > 1:
                 self._set_apart()
-            self.fixtures = [bring(document, one, f"fixtures[{k}]") for k, one in enumerate(self.of.fixtures)]
+            self.fixtures = [
+                bring(document, one, f"fixtures[{k}]") for k, one in enumerate(self.of.fixtures)
+            ]
         except InputError as error:
             raise self.placed(error) from None
 
@@ -58,19 +66,30 @@ class Shapes:
         if self.of.sections is None:
             return None
         from freecad_am.core.parameters.filled import GEODESIC, PLANES
-        from freecad_am.objects.planned.proposed_family import proposed  # what it imports takes long
+        from freecad_am.objects.planned.proposed_family import (
+            proposed,  # what it imports takes long
+        )
 
-        ground = next(iter(self._touched(earlier)), None) if self.substrate is None else self.substrate
+        ground = (
+            next(iter(self._touched(earlier)), None) if self.substrate is None else self.substrate
+        )
         try:
             planes = planes_of(self.of)
             found = proposed(
-                taken(self.part), self.faces, None if ground is None else taken(ground), bool(self.of.part.start_edges),
-                self.of.process.bead_width, self.job.cell is not None,
-                base=() if self.of.substrate is None else self.of.substrate.faces, direction=planes.stacking(),
+                taken(self.part),
+                self.faces,
+                None if ground is None else taken(ground),
+                bool(self.of.part.start_edges),
+                self.of.process.bead_width,
+                self.job.cell is not None,
+                base=() if self.of.substrate is None else self.of.substrate.faces,
+                direction=planes.stacking(),
                 layer_height=planes.layer_height,
             )
             if found.layers == GEODESIC and self.fails:
-                found = replace(found, layers=PLANES, reason=found.reason + INSTEAD.format(self.fails))
+                found = replace(
+                    found, layers=PLANES, reason=found.reason + INSTEAD.format(self.fails)
+                )
             of = chosen(self.of, found.kind, found.layers, found.mend)
             if self.fails and leans(self.of, of.strategy):
                 found = replace(found, reason=found.reason + FIXED.format(self.fails))
@@ -87,13 +106,21 @@ class Shapes:
         substrate = self._standing(earlier)
         bases = () if self.of.substrate is None else self.of.substrate.faces
         links = {
-            "Substrate": substrate, "Fixtures": self.fixtures, "StartEdges": self.of.part.start_edges, "BaseFaces": bases,
-            "Guide": self.guide, "StartFaces": list(self.of.start_faces),
+            "Substrate": substrate,
+            "Fixtures": self.fixtures,
+            "StartEdges": self.of.part.start_edges,
+            "BaseFaces": bases,
+            "Guide": self.guide,
+            "StartFaces": list(self.of.start_faces),
         }
         try:
             made = api.make_feature_of(
-                self.document, family_of(self.of.strategy).kind, self.part, self.faces,
-                label=self.of.name if several else "Feature", links=links,
+                self.document,
+                family_of(self.of.strategy).kind,
+                self.part,
+                self.faces,
+                label=self.of.name if several else "Feature",
+                links=links,
                 parameters=[self.of.strategy, self.of.build_direction],
             )
             self.scan = None if self.of.scan is None else self._scan(self.of.scan)
@@ -104,9 +131,16 @@ class Shapes:
     def _scan(self, source: ScanSource) -> Any:
         """The points of a scan laid onto the substrate; after a layer onto nothing, for what has grown is not drawn."""
         if source.parameters.after_layer is not None:
-            return api.inspect(self.document, self.part, source.file, "Scan", unit=source.unit, fit=AS_MEASURED)
+            return api.inspect(
+                self.document, self.part, source.file, "Scan", unit=source.unit, fit=AS_MEASURED
+            )
         return api.make_scan(
-            self.document, self.substrate, source.file, fit=source.fit, unit=source.unit, pairs=source.pairs,
+            self.document,
+            self.substrate,
+            source.file,
+            fit=source.fit,
+            unit=source.unit,
+            pairs=source.pairs,
             within=source.parameters.scan_within,
         )
 
@@ -153,10 +187,20 @@ class Shapes:
 def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, scan: Any) -> Any:
     """The toolpath of the features of a job, of one fitted to its scan where there is one."""
     if len(features) == 1:
-        fitting = None if scan is None or job.features[0].scan is None else job.features[0].scan.parameters
-        return api.make_toolpath(document, features[0], cell, process=job.process, scan=scan, fitting=fitting)
+        fitting = (
+            None
+            if scan is None or job.features[0].scan is None
+            else job.features[0].scan.parameters
+        )
+        return api.make_toolpath(
+            document, features[0], cell, process=job.process, scan=scan, fitting=fitting
+        )
     return api.make_toolpath(
-        document, features, cell, sequence=job.sequence, process=job.process,
+        document,
+        features,
+        cell,
+        sequence=job.sequence,
+        process=job.process,
         processes=[one.process for one in job.features],
     )
 

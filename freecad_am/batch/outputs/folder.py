@@ -14,7 +14,13 @@ from freecad_am.posts import earlier as earlier_posts
 from .. import supervised
 from . import staging
 
-WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES = "waypoints.csv", "report.json", "report.html", "program", "wires"
+WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES = (
+    "waypoints.csv",
+    "report.json",
+    "report.html",
+    "program",
+    "wires",
+)
 DOCUMENT_ENDING = ".FCStd"
 LARGEST_REPORT = 1 << 28  # bytes of a report that is looked into for what an earlier run wrote
 
@@ -43,8 +49,10 @@ class Outputs:
             raise
         supervised.tell_outputs(self.folder, self._made)
         if self._staging.others and session is not None:
-            session.say(f"note[BUSY] {self.folder}: another run writes into this folder too; what ends last stays; give one "
-                        "of them another folder with -o")
+            session.say(
+                f"note[BUSY] {self.folder}: another run writes into this folder too; what ends last stays; give one "
+                "of them another folder with -o"
+            )
 
     def __enter__(self) -> Outputs:
         return self
@@ -63,7 +71,9 @@ class Outputs:
         """Write a file of this run; text in pieces, as UTF-8 with the line ends it has."""
         try:
             with open(self.path(name), "wb") as stream:
-                stream.writelines([data] if isinstance(data, bytes) else (piece.encode() for piece in data))
+                stream.writelines(
+                    [data] if isinstance(data, bytes) else (piece.encode() for piece in data)
+                )
         except OSError as error:
             raise self._unwritable(os.path.join(self.folder, *name.split("/")), error) from None
 
@@ -76,7 +86,10 @@ class Outputs:
         names = sorted(_files(self._staging.files))
         with staging.uninterrupted():
             try:
-                self._staging.publish(sorted(names, key=lambda name: (name == REPORT, name)), sorted(earlier - set(names)))
+                self._staging.publish(
+                    sorted(names, key=lambda name: (name == REPORT, name)),
+                    sorted(earlier - set(names)),
+                )
             except OSError as error:
                 raise self._unwritable(error.filename or self.folder, error) from None
             if self._session is not None:
@@ -85,7 +98,9 @@ class Outputs:
 
     def _unwritable(self, path: str, error: Exception) -> InputError:
         reason = getattr(error, "strerror", None) or str(error)
-        message = Text("outputs cannot be written here ({}); free it or choose another folder with -o", reason)
+        message = Text(
+            "outputs cannot be written here ({}); free it or choose another folder with -o", reason
+        )
         return InputError("UNWRITABLE", path, message)
 
     def _make_folder(self) -> None:
@@ -124,7 +139,11 @@ def earlier_outputs(folder: str) -> set[str]:
     report = _earlier_report(folder)
     if report is None:
         return names
-    listed = {name for name in report["programs"] if staging.is_inside(name) and name.startswith(PROGRAMS + "/")}
+    listed = {
+        name
+        for name in report["programs"]
+        if staging.is_inside(name) and name.startswith(PROGRAMS + "/")
+    }
     whole = {name for name in listed if not _is_behind_link(folder, name)}
     return names | whole | {WAYPOINTS, REPORT, PAGE, report["name"] + DOCUMENT_ENDING}
 
@@ -146,7 +165,11 @@ def _earlier_report(folder: str) -> dict[str, Any] | None:
             report = json.load(stream)
     except (OSError, ValueError, RecursionError):
         return None
-    if not isinstance(report, dict) or not isinstance(report.get("programs"), list) or "issues" not in report:
+    if (
+        not isinstance(report, dict)
+        or not isinstance(report.get("programs"), list)
+        or "issues" not in report
+    ):
         return None  # somebody else's
     name = report.get("name")
     return report if staging.is_inside(name) and "/" not in str(name) else None

@@ -17,11 +17,17 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
     from freecad_am.report.asked import Results
 
     path = stages.joint_path
-    survey = functools.cache(stages.survey or preflight.survey_of(stages.toolpath, path, stages.job.program))
+    survey = functools.cache(
+        stages.survey or preflight.survey_of(stages.toolpath, path, stages.job.program)
+    )
     return Results(
-        api.result(stages.toolpath), None if path is None else api.result(path), 0.0 if path is None else path.Seconds,
-        stages.issues, programs,
-        lambda: survey().distances, lambda: preflight.of_stages(stages.toolpath, path, stages.program, survey),
+        api.result(stages.toolpath),
+        None if path is None else api.result(path),
+        0.0 if path is None else path.Seconds,
+        stages.issues,
+        programs,
+        lambda: survey().distances,
+        lambda: preflight.of_stages(stages.toolpath, path, stages.program, survey),
     )
 
 
@@ -30,7 +36,13 @@ def job(of: Job, stages: Any) -> Any:
     from freecad_am.report import asked
 
     features = tuple(
-        asked.Feature(one.name, one.strategy, one.build_direction, one.process, functools.partial(_result, feature))
+        asked.Feature(
+            one.name,
+            one.strategy,
+            one.build_direction,
+            one.process,
+            functools.partial(_result, feature),
+        )
         for one, feature in zip(of.features, stages.features, strict=True)
     )
     return asked.Job(of.name, features, of.process, of.joints, of.cell)

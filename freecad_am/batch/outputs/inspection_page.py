@@ -23,14 +23,19 @@ _DOT = 1.7
 def render(planned: str, made: list[Any], labels: list[str]) -> str:
     """The page of inspections of the same object."""
     title = f"{escape(planned)}: measured against planned"
-    parts = [f"<header><h1>{title}</h1></header><p class=\"sub\">Defects are widths of the narrowest zone (ISO 1101); "
-             "deviations are positive where there is more than planned.</p>", _table(made, labels)]
+    parts = [
+        f'<header><h1>{title}</h1></header><p class="sub">Defects are widths of the narrowest zone (ISO 1101); '
+        "deviations are positive where there is more than planned.</p>",
+        _table(made, labels),
+    ]
     for one, label in zip(made, labels, strict=True):
-        parts.append(f"<h2>{escape(label)}</h2><div class=\"grid\"><figure>{_map(one)}{_key(one.tolerance)}</figure>"
-                     f"<figure>{_histogram(one)}</figure></div>{_notes(one)}")
+        parts.append(
+            f'<h2>{escape(label)}</h2><div class="grid"><figure>{_map(one)}{_key(one.tolerance)}</figure>'
+            f"<figure>{_histogram(one)}</figure></div>{_notes(one)}"
+        )
     return (
-        f"<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>"
-        f"<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><style>{STYLE}</style></head>"
+        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        f'<meta name="viewport" content="width=device-width,initial-scale=1"><style>{STYLE}</style></head>'
         f"<body><main>{''.join(parts)}</main></body></html>\n"
     )
 
@@ -41,9 +46,11 @@ def _table(made: list[Any], labels: list[str]) -> str:
     rows = ["<tr><th></th>" + "".join(f"<th>{escape(head)}</th>" for head in heads) + "</tr>"]
     for name, unit, values, mean, deviation in table.compared(made):
         cells = [*values, *((mean, deviation) if several else ())]
-        texts = "".join(f"<td>{'–' if cell is None else _number(cell, unit)}</td>" for cell in cells)
+        texts = "".join(
+            f"<td>{'–' if cell is None else _number(cell, unit)}</td>" for cell in cells
+        )
         rows.append(f"<tr><th>{escape(f'{name}, {unit}' if unit else name)}</th>{texts}</tr>")
-    return f"<div class=\"table\"><table>{''.join(rows)}</table></div>"
+    return f'<div class="table"><table>{"".join(rows)}</table></div>'
 
 
 def _number(value: float, unit: str) -> str:
@@ -58,10 +65,14 @@ def _map(one: Any) -> str:
     up = z * np.cos(_TILT) + y * np.sin(_TILT)
     order = np.argsort(-y)  # the nearer ones last
     plot = _framed("Deviation map, seen from the front", x, up)
-    shades, number = [css(band.colour) for band in bands(one.tolerance)], band_of(one.deviation[chosen], one.tolerance)
+    shades, number = (
+        [css(band.colour) for band in bands(one.tolerance)],
+        band_of(one.deviation[chosen], one.tolerance),
+    )
     px, py = plot.to_x(x), plot.to_y(up)
     plot.parts += [
-        f'<circle cx="{px[k]:.1f}" cy="{py[k]:.1f}" r="{_DOT}" fill="{shades[number[k]]}"/>' for k in order
+        f'<circle cx="{px[k]:.1f}" cy="{py[k]:.1f}" r="{_DOT}" fill="{shades[number[k]]}"/>'
+        for k in order
     ]
     return plot.text()
 
@@ -72,7 +83,10 @@ def _framed(title: str, x: Array, y: Array) -> Plot:
     wide, high = plot.width - plot.left - plot.right, plot.height - plot.top - plot.bottom
     scale = 1.08 * max(float(np.ptp(x)) / wide, float(np.ptp(y)) / high, 1e-6)
     plot.x, plot.y = (
-        (0.5 * (values.min() + values.max()) - 0.5 * scale * size, 0.5 * (values.min() + values.max()) + 0.5 * scale * size)
+        (
+            0.5 * (values.min() + values.max()) - 0.5 * scale * size,
+            0.5 * (values.min() + values.max()) + 0.5 * scale * size,
+        )
         for values, size in ((x, wide), (y, high))
     )
     return plot
@@ -81,16 +95,26 @@ def _framed(title: str, x: Array, y: Array) -> Plot:
 def _histogram(one: Any) -> str:
     edges, counts = one.spread.edges, one.spread.counts
     low, high = min(float(edges[0]), -one.tolerance), max(float(edges[-1]), one.tolerance)
-    plot = Plot("Points by deviation", (low, high), (0.0, 1.05 * float(counts.max())), "deviation, mm", "points", height=330)
+    plot = Plot(
+        "Points by deviation",
+        (low, high),
+        (0.0, 1.05 * float(counts.max())),
+        "deviation, mm",
+        "points",
+        height=330,
+    )
     shades = [css(band.colour) for band in bands(one.tolerance)]
     number = band_of(0.5 * (edges[:-1] + edges[1:]), one.tolerance)
     left, top, ground = plot.to_x(edges), plot.to_y(counts), float(plot.to_y(np.zeros(1))[0])
     plot.parts += [
         f'<rect x="{left[k]:.1f}" y="{top[k]:.1f}" width="{max(left[k + 1] - left[k] - 0.5, 0.5):.1f}" '
-        f'height="{ground - top[k]:.1f}" fill="{shades[number[k]]}"/>' for k in range(len(counts))
+        f'height="{ground - top[k]:.1f}" fill="{shades[number[k]]}"/>'
+        for k in range(len(counts))
     ]
     for limit in plot.to_x(np.array([-one.tolerance, one.tolerance])):
-        plot.parts.append(f'<line class="asked" x1="{limit:.1f}" x2="{limit:.1f}" y1="{plot.top}" y2="{ground:.1f}"/>')
+        plot.parts.append(
+            f'<line class="asked" x1="{limit:.1f}" x2="{limit:.1f}" y1="{plot.top}" y2="{ground:.1f}"/>'
+        )
     return plot.text()
 
 

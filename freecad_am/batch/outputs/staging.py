@@ -43,7 +43,9 @@ class Staging:
             with locked(folder), uninterrupted():
                 self.others = _cleared(folder)
                 self.path = tempfile.mkdtemp(prefix=PREFIX, dir=folder)
-                self._mark = os.open(os.path.join(self.path, MARK), os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
+                self._mark = os.open(
+                    os.path.join(self.path, MARK), os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600
+                )
                 _lock(self._mark)
                 self.files = os.path.join(self.path, FILES)
                 os.mkdir(self.files)
@@ -91,8 +93,11 @@ def refuse(folder: str, names: Sequence[str]) -> None:
 
 def is_inside(name: Any) -> bool:
     """Whether this is the name of a file inside a folder, with slashes."""
-    return isinstance(name, str) and "\0" not in name and "\\" not in name and all(
-        word not in ("", ".", "..") for word in name.split("/")
+    return (
+        isinstance(name, str)
+        and "\0" not in name
+        and "\\" not in name
+        and all(word not in ("", ".", "..") for word in name.split("/"))
     )
 
 
@@ -214,7 +219,9 @@ def uninterrupted() -> Iterator[None]:
         return
     numbers = [getattr(signal, name) for name in HELD if hasattr(signal, name)]
     came: list[int] = []
-    before = {number: signal.signal(number, lambda number, _: came.append(number)) for number in numbers}
+    before = {
+        number: signal.signal(number, lambda number, _: came.append(number)) for number in numbers
+    }
     try:
         yield
     finally:

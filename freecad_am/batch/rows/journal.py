@@ -36,7 +36,11 @@ class Journal:
     def known(self, row: Row, dry: bool) -> dict[str, Any] | None:
         """The result of a row that was done before; None without one."""
         found = self._known.get(self._digest(row, dry))
-        if found is None or found["folder"] != row.folder or (not dry and found["report"] != self._report(row)):
+        if (
+            found is None
+            or found["folder"] != row.folder
+            or (not dry and found["report"] != self._report(row))
+        ):
             return None
         result: dict[str, Any] = found["result"]
         return result
@@ -46,8 +50,14 @@ class Journal:
         if result["exit"] not in KEPT:
             return
         kept = {name: value for name, value in result.items() if name != "lines"}
-        line = json.dumps({"digest": self._digest(row, dry), "folder": row.folder,
-                           "report": "" if result.get("status") == CHECKED else self._report(row), "result": kept})
+        line = json.dumps(
+            {
+                "digest": self._digest(row, dry),
+                "folder": row.folder,
+                "report": "" if result.get("status") == CHECKED else self._report(row),
+                "result": kept,
+            }
+        )
         with contextlib.suppress(OSError):  # then the row is done again
             os.makedirs(self._folder, exist_ok=True)
             flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
@@ -62,7 +72,12 @@ class Journal:
                 for text in stream:
                     with contextlib.suppress(ValueError, TypeError, KeyError):
                         line = json.loads(text)
-                        line["result"]["exit"], line["result"]["message"], line["folder"], line["report"]
+                        (
+                            line["result"]["exit"],
+                            line["result"]["message"],
+                            line["folder"],
+                            line["report"],
+                        )
                         found.append((str(line["digest"]), line))
         except OSError:
             return []
@@ -70,7 +85,10 @@ class Journal:
 
     def _digest(self, row: Row, dry: bool) -> str:
         files = {name: self._file(name) for name in sorted(row.files)}
-        content = json.dumps([self._made_by, row.tree().values, os.path.abspath(row.path), files, dry], sort_keys=True)
+        content = json.dumps(
+            [self._made_by, row.tree().values, os.path.abspath(row.path), files, dry],
+            sort_keys=True,
+        )
         return hashlib.sha256(content.encode()).hexdigest()
 
     def _file(self, name: str) -> str:

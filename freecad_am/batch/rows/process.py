@@ -37,7 +37,9 @@ class Order:
 
 def started(order: Order) -> tuple[Any, Any]:
     """The end of a pipe that its result comes out of, and the process."""
-    context: Any = multiprocessing.get_context("fork" if sys.platform.startswith("linux") else "spawn")
+    context: Any = multiprocessing.get_context(
+        "fork" if sys.platform.startswith("linux") else "spawn"
+    )
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_carry_out, args=(order, sender))
     process.start()
@@ -94,7 +96,9 @@ def _carry_out(order: Order, sender: Any) -> None:
         quiet.say(error.line())
     except Exception as error:
         message = f"{type(error).__name__}: {error}"
-        quiet.say(f"error[INTERNAL] {' '.join(message.split())}; this is our fault, please report it")
+        quiet.say(
+            f"error[INTERNAL] {' '.join(message.split())}; this is our fault, please report it"
+        )
     sender.send({"exit": status, "message": message or quiet.first, "lines": quiet.lines, **result})
     sender.close()
     os._exit(0)
@@ -115,8 +119,12 @@ def figures(report: dict[str, Any]) -> dict[str, Any]:
     """What the summary of a batch tells of a report."""
     joints = report["joints"] or {}
     return {
-        "status": report["status"], **report["counts"], "length_mm": report["length_mm"], "duration_s": report["duration_s"],
-        "spacing_min_mm": report["spacing_mm"]["min"], "spacing_max_mm": report["spacing_mm"]["max"],
+        "status": report["status"],
+        **report["counts"],
+        "length_mm": report["length_mm"],
+        "duration_s": report["duration_s"],
+        "spacing_min_mm": report["spacing_mm"]["min"],
+        "spacing_max_mm": report["spacing_mm"]["max"],
         "condition_min": joints.get("condition_min"),
     }
 

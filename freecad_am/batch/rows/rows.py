@@ -19,7 +19,16 @@ from . import journal as row_journal
 from . import process as row_process
 from . import table
 
-FIGURES = ("layers", "beads", "points", "length_mm", "duration_s", "spacing_min_mm", "spacing_max_mm", "condition_min")
+FIGURES = (
+    "layers",
+    "beads",
+    "points",
+    "length_mm",
+    "duration_s",
+    "spacing_min_mm",
+    "spacing_max_mm",
+    "condition_min",
+)
 _WORST_FIRST = (1, 130, 2, 3, 0)
 
 
@@ -39,9 +48,13 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
     planning.import_all()  # once for all rows
     columns, rows = table.read(path, job_path)
     folder = output or os.path.join(
-        os.path.dirname(os.path.abspath(job_path)), "out", os.path.splitext(os.path.basename(path))[0]
+        os.path.dirname(os.path.abspath(job_path)),
+        "out",
+        os.path.splitext(os.path.basename(path))[0],
     )
-    journal = row_journal.Journal(folder, versions.code() + str(versions.found_versions()), how.resume)
+    journal = row_journal.Journal(
+        folder, versions.code() + str(versions.found_versions()), how.resume
+    )
     results: dict[int, dict[str, Any]] = {}
     waiting = []
     for row in rows:
@@ -53,14 +66,20 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
         else:
             waiting.append(row)
     if how.resume:
-        session.say(f"note[RESUMED] batch: {len(rows) - len(waiting)} of {len(rows)} rows need not be planned again")
-    session.outcome = "rows that were done are whole, of the others nothing was written; --resume plans those"
+        session.say(
+            f"note[RESUMED] batch: {len(rows) - len(waiting)} of {len(rows)} rows need not be planned again"
+        )
+    session.outcome = (
+        "rows that were done are whole, of the others nothing was written; --resume plans those"
+    )
     began, before = time.monotonic(), len(results)
     for row, result in _planned(waiting, folder, how, session, journal):
         for line in result.pop("lines", []):
             session.say(f"row {row.number}: {line}")
         results[row.number] = result
-        session.progress(_progress(len(results), len(rows), len(results) - before, time.monotonic() - began))
+        session.progress(
+            _progress(len(results), len(rows), len(results) - before, time.monotonic() - began)
+        )
     session.out(_summary(columns, rows, results))
     ends = {result["exit"] for result in results.values()}
     return next((status for status in _WORST_FIRST if status in ends), 1)
@@ -93,9 +112,15 @@ def _planned_here(
         while waiting or running:
             while waiting and len(running) < how.processes:
                 row = waiting.pop()
-                receiver, process = row_process.started(row_process.Order(
-                    row.label, row.tree().values, row.path, os.path.join(folder, row.folder), how.dry
-                ))
+                receiver, process = row_process.started(
+                    row_process.Order(
+                        row.label,
+                        row.tree().values,
+                        row.path,
+                        os.path.join(folder, row.folder),
+                        how.dry,
+                    )
+                )
                 running[receiver] = (row, process)
             for receiver in multiprocessing.connection.wait(list(running)):
                 row, process = running[receiver]
@@ -114,20 +139,30 @@ def _planned_here(
 def _progress(done: int, rows: int, now: int, seconds: float) -> str:
     """How far it is, and how long the rest will take at the pace so far."""
     left = (rows - done) * seconds / max(now, 1)
-    text = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
+    text = (
+        f"{left / 3600:.1f} h"
+        if left > 5400
+        else f"{left / 60:.0f} min"
+        if left > 90
+        else f"{left:.0f} s"
+    )
     return f"{done} of {rows} rows done" + (f", about {text} left" if done < rows else "")
 
 
 def _summary(columns: list[str], rows: list[table.Row], results: dict[int, dict[str, Any]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["row", *map(escaped, columns), "folder", "exit", "status", *FIGURES, "message"])
+    writer.writerow(
+        ["row", *map(escaped, columns), "folder", "exit", "status", *FIGURES, "message"]
+    )
     for row in rows:
         result = results[row.number]
         status = result.get("status", "failed")
         figures = [_cell(result.get(figure)) for figure in FIGURES]
         texts = map(escaped, (*row.cells.values(), row.folder))
-        writer.writerow([row.number, *texts, result["exit"], status, *figures, escaped(result["message"])])
+        writer.writerow(
+            [row.number, *texts, result["exit"], status, *figures, escaped(result["message"])]
+        )
     return text.getvalue()
 
 

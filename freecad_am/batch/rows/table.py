@@ -59,24 +59,42 @@ def read(table: str, job_path: str) -> tuple[list[str], list[Row]]:
 
 def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
     try:
-        lines = [[cell.strip() for cell in line] for line in csv.reader(io.StringIO(text, newline=""), strict=True)]
+        lines = [
+            [cell.strip() for cell in line]
+            for line in csv.reader(io.StringIO(text, newline=""), strict=True)
+        ]
     except csv.Error as error:
-        raise InputError("BAD_FILE", label, "this is not a table: {}; separate cells by commas", error) from None
+        raise InputError(
+            "BAD_FILE", label, "this is not a table: {}; separate cells by commas", error
+        ) from None
     lines = [line for line in lines if any(line)]
     if len(lines) < 2:
-        raise InputError("EMPTY_FILE", label, "there are no rows; give a line of job keys and a line per job below it")
+        raise InputError(
+            "EMPTY_FILE",
+            label,
+            "there are no rows; give a line of job keys and a line per job below it",
+        )
     columns = lines[0]
     for column in columns:
         if not column or columns.count(column) > 1:
-            raise InputError("BAD_FILE", label, "the column {!r} is empty or stands twice; name each one once", column)
+            raise InputError(
+                "BAD_FILE",
+                label,
+                "the column {!r} is empty or stands twice; name each one once",
+                column,
+            )
         if ";" in column or "\t" in column:
-            raise InputError("BAD_FILE", label, "cells are not separated by commas; save the table with commas")
+            raise InputError(
+                "BAD_FILE", label, "cells are not separated by commas; save the table with commas"
+            )
         if column.split(".")[0] not in job.SECTIONS:
             message = "there is no such key; use job keys such as strategy.layer_height"
             raise InputError("UNKNOWN_KEY", f"{label}: {column}", message)
     for number, line in enumerate(lines[1:], 1):
         if len(line) != len(columns):
-            message = Text("{} cells for {} columns; quote cells with commas", len(line), len(columns))
+            message = Text(
+                "{} cells for {} columns; quote cells with commas", len(line), len(columns)
+            )
             raise InputError("BAD_FILE", f"{label} row {number}", message)
     return columns, lines[1:]
 
@@ -102,7 +120,9 @@ def _checked(row: Row, known: dict[Any, frozenset[str]]) -> Row:
     if found.cell not in known:
         known[found.cell] = _files_of_cell(found)
     files = named | known[found.cell]
-    return replace(row, files=known.setdefault(frozenset(files), frozenset(files)))  # one set for all rows alike
+    return replace(
+        row, files=known.setdefault(frozenset(files), frozenset(files))
+    )  # one set for all rows alike
 
 
 def _files_of_cell(found: job.Job) -> frozenset[str]:
@@ -118,9 +138,13 @@ def _files_of_cell(found: job.Job) -> frozenset[str]:
 def _put(values: dict[str, Any], column: str, value: Any, changed: tree.Tree) -> None:
     keys = column.split(".")
     if column.startswith(SETTING):
-        name, _, key = column[len(SETTING):].rpartition(".")  # a Label may have dots, a property has none
+        name, _, key = column[len(SETTING) :].rpartition(
+            "."
+        )  # a Label may have dots, a property has none
         if not name:
-            raise InputError("UNKNOWN_KEY", changed.where(column), "write part.set.<object>.<property>")
+            raise InputError(
+                "UNKNOWN_KEY", changed.where(column), "write part.set.<object>.<property>"
+            )
         keys = ["part", "set", name, key]
     for key in keys[:-1]:
         if not isinstance(values.get(key), dict):

@@ -60,7 +60,11 @@ class _Unpickler(pickle.Unpickler):
 
 
 def tell(
-    answer_file: str, geometry: str, read: Callable[..., Any], path: str | os.PathLike[str], rest: tuple[Any, ...]
+    answer_file: str,
+    geometry: str,
+    read: Callable[..., Any],
+    path: str | os.PathLike[str],
+    rest: tuple[Any, ...],
 ) -> None:
     """In the other process: read, and write what was read or the InputError into the files."""
     try:

@@ -42,7 +42,9 @@ _is_apart = False  # whether this is such a process
 _begun: dict[tuple[Any, ...], _Reading] = {}  # by `_name`
 
 
-def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, patience: float = 1.0) -> T:
+def apart(
+    read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, patience: float = 1.0
+) -> T:
     """What `read(path, *rest)` returns or raises: a shape, a mesh, what pickles. `read` is a function of a module. patience:
     times the limit of time.
 
@@ -52,13 +54,17 @@ def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, pati
     size = _size(path) / MB
     where = os.path.basename(os.fspath(path)) or os.fspath(path)
     if size > LARGEST:
-        message = Text("the file is larger than {} MB, the most that is read; is it the right one?", LARGEST)
+        message = Text(
+            "the file is larger than {} MB, the most that is read; is it the right one?", LARGEST
+        )
         raise InputError("BAD_FILE", where, message)
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return read(path, *rest)
     limits = _limits(size, patience)
     if not FreeCAD.GuiUp:
-        with _begun.pop(_name(read, path, rest), None) or _Reading(read, path, rest, *limits) as copy:
+        with _begun.pop(_name(read, path, rest), None) or _Reading(
+            read, path, rest, *limits
+        ) as copy:
             ended, used = copy.wait()
             if ended:
                 raise _refused(where, ended, used, *limits)
@@ -81,7 +87,13 @@ def ahead(read: Callable[..., object], path: str | os.PathLike[str], *rest: Any)
     file is another one by then. Beside a window, with one processor, or where no copy can be made, nothing happens."""
     size, linux = _size(path) / MB, sys.platform.startswith("linux")
     copy = None
-    if linux and os.path.isfile(path) and size <= LARGEST and not FreeCAD.GuiUp and len(os.sched_getaffinity(0)) > 1:
+    if (
+        linux
+        and os.path.isfile(path)
+        and size <= LARGEST
+        and not FreeCAD.GuiUp
+        and len(os.sched_getaffinity(0)) > 1
+    ):
         with contextlib.suppress(OSError):
             copy = _begun[_name(read, path, rest)] = _Reading(read, path, rest, *_limits(size, 1.0))
     try:
@@ -92,7 +104,9 @@ def ahead(read: Callable[..., object], path: str | os.PathLike[str], *rest: Any)
             copy.close()
 
 
-def _name(read: Callable[..., object], path: str | os.PathLike[str], rest: tuple[Any, ...]) -> tuple[Any, ...]:
+def _name(
+    read: Callable[..., object], path: str | os.PathLike[str], rest: tuple[Any, ...]
+) -> tuple[Any, ...]:
     """What is read: the file as it is now, which may be replaced by another one while it is read."""
     with contextlib.suppress(OSError, ValueError):
         state = os.stat(path)
@@ -113,7 +127,13 @@ def _with_window() -> Iterator[tuple[str, str]]:
 
 
 def answer(
-    answer_file: str, geometry: str, module: str, function: str, path: Any, rest: tuple[Any, ...], seconds: float,
+    answer_file: str,
+    geometry: str,
+    module: str,
+    function: str,
+    path: Any,
+    rest: tuple[Any, ...],
+    seconds: float,
     memory: float,
 ) -> None:
     """In a process of `kernel_process`: read within limits, and tell."""
@@ -128,13 +148,18 @@ def answer(
     copies.take_no_signals()
     spent = resource.getrusage(resource.RUSAGE_SELF)
     with contextlib.ExitStack() as before:
-        limits = [(resource.RLIMIT_CPU, round(spent.ru_utime + spent.ru_stime + seconds)), (resource.RLIMIT_CORE, 0)]
+        limits = [
+            (resource.RLIMIT_CPU, round(spent.ru_utime + spent.ru_stime + seconds)),
+            (resource.RLIMIT_CORE, 0),
+        ]
         if sys.platform.startswith("linux"):
             limits.append((resource.RLIMIT_AS, _pages(0) + round(memory * MB)))
         for kind, value in limits:
             soft, hard = resource.getrlimit(kind)
             before.callback(resource.setrlimit, kind, (soft, hard))
-            resource.setrlimit(kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
+            resource.setrlimit(
+                kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard)
+            )
         answers.tell(answer_file, geometry, read, path, rest)
 
 
@@ -148,14 +173,26 @@ def _size(path: str | os.PathLike[str]) -> float:
 class _Reading:
     """A copy of this process that reads a file within limits; nothing is left of it once this is closed."""
 
-    def __init__(self, read: Callable[..., object], path: Any, rest: tuple[Any, ...], seconds: float, memory: float) -> None:
+    def __init__(
+        self,
+        read: Callable[..., object],
+        path: Any,
+        rest: tuple[Any, ...],
+        seconds: float,
+        memory: float,
+    ) -> None:
         self._before, self._longest, self._pid = _pages(1), LONGER * seconds, 0
         self._over, theirs = os.pipe()
         self._descriptors = [self._over, os.memfd_create("told"), os.memfd_create("geometry")]
         text, geometry = self._descriptors[1:]
-        self.files = f"/proc/self/fd/{text}", f"/proc/self/fd/{geometry}"  # that this process and its copies have
+        self.files = (
+            f"/proc/self/fd/{text}",
+            f"/proc/self/fd/{geometry}",
+        )  # that this process and its copies have
         try:
-            self._pid = copies.begun(lambda: _limited(seconds, memory, *self.files, read, path, rest))
+            self._pid = copies.begun(
+                lambda: _limited(seconds, memory, *self.files, read, path, rest)
+            )
         except BaseException:
             self.close()
             raise
@@ -171,14 +208,19 @@ class _Reading:
     def wait(self) -> tuple[int, float]:
         """How it ended, as Popen tells it, and the memory, MB, that it used beside what this process has."""
         until = time.monotonic() + self._longest
-        while not (over := bool(select.select([self._over], [], [], 0.5)[0])) and time.monotonic() < until:
+        while (
+            not (over := bool(select.select([self._over], [], [], 0.5)[0]))
+            and time.monotonic() < until
+        ):
             pass  # its end closes the pipe
         if not over:
             os.kill(self._pid, signal.SIGKILL)
         _, status, usage = os.wait4(self._pid, 0)
         self._pid = 0
         code = os.waitstatus_to_exitcode(status)
-        return (code if over else -signal.SIGXCPU), max(0.0, (1024.0 * usage.ru_maxrss - self._before) / MB)
+        return (code if over else -signal.SIGXCPU), max(
+            0.0, (1024.0 * usage.ru_maxrss - self._before) / MB
+        )
 
     def close(self) -> None:
         if self._pid:
@@ -216,9 +258,15 @@ def _limit(kind: int, value: int) -> None:
 
 def _refused(where: str, ended: int, used: float, seconds: float, memory: float) -> InputError:
     if ended == -signal.SIGXCPU:
-        why = Text("it takes more than {:.0f} s of the processor to read, the limit of a file of its size", seconds)
+        why = Text(
+            "it takes more than {:.0f} s of the processor to read, the limit of a file of its size",
+            seconds,
+        )
     elif ended == NO_MEMORY or used > 0.8 * memory:
-        why = Text("it takes more than {:.0f} MB of memory to read, the limit of a file of its size", memory)
+        why = Text(
+            "it takes more than {:.0f} MB of memory to read, the limit of a file of its size",
+            memory,
+        )
     else:
         why = "FreeCAD crashes on it"
     return InputError("BAD_FILE", where, "it is damaged: {}; export it again", Word(why))

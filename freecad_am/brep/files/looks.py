@@ -47,4 +47,6 @@ def _triangles(path: Path) -> tuple[Array, Integers]:
     else:
         shape = read_shape(path)
         points, corners = shape.tessellate(max(FINENESS * shape.BoundBox.DiagonalLength, 1e-3))
-    return np.array([(p.x, p.y, p.z) for p in points], dtype=float), np.array(corners, dtype=np.int64).reshape(-1, 3)
+    return np.array([(p.x, p.y, p.z) for p in points], dtype=float), np.array(
+        corners, dtype=np.int64
+    ).reshape(-1, 3)

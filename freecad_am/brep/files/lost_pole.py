@@ -35,7 +35,9 @@ def edges_of(face: Any) -> list[Any]:
     if _to_axis(face) is None:
         return list(face.Edges)
     return next(
-        list(wire.Edges) for wire in face.Wires if any(_leads_to_axis(edge, face.Surface) for edge in wire.Edges)
+        list(wire.Edges)
+        for wire in face.Wires
+        if any(_leads_to_axis(edge, face.Surface) for edge in wire.Edges)
     )
 
 
@@ -56,7 +58,10 @@ def _to_axis(face: Any) -> Any:
 
 
 def _leads_to_axis(edge: Any, surface: Any) -> bool:
-    away = [(vertex.Point - surface.Location).cross(surface.Direction).Length for vertex in edge.Vertexes]
+    away = [
+        (vertex.Point - surface.Location).cross(surface.Direction).Length
+        for vertex in edge.Vertexes
+    ]
     return bool(away and min(away) < ON_AXIS < max(away))
 
 

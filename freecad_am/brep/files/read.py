@@ -21,7 +21,9 @@ from ...core.issues import InputError
 from . import apart
 
 READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
-FARTHEST = 1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
+FARTHEST = (
+    1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
+)
 
 
 def read_shape(path: str | os.PathLike[str]) -> Any:
@@ -38,17 +40,26 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
         raise InputError("NO_FILE", where, "it is a folder; name the file of the part")
     if suffix in MESHES:
         raise InputError(
-            "UNSUPPORTED_FILE", where,
+            "UNSUPPORTED_FILE",
+            where,
             "a mesh has no exact surfaces; give a part of revolution as STEP, IGES or BREP",
         )
     if suffix not in READABLE:
-        raise InputError("UNSUPPORTED_FILE", where, "{} is not read; use {}", suffix or "no ending", ", ".join(READABLE))
+        raise InputError(
+            "UNSUPPORTED_FILE",
+            where,
+            "{} is not read; use {}",
+            suffix or "no ending",
+            ", ".join(READABLE),
+        )
     try:
         size = file.stat().st_size
         with file.open("rb") as stream:
             stream.read(1)
     except OSError as error:
-        raise InputError("BAD_FILE", where, "it cannot be read: {}; choose a file that can", error.strerror) from error
+        raise InputError(
+            "BAD_FILE", where, "it cannot be read: {}; choose a file that can", error.strerror
+        ) from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
     return apart.apart(_shape, file, where)
@@ -57,7 +68,9 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
 def reading_shape(path: str | os.PathLike[str]) -> AbstractContextManager[None]:
     """Within it reading that shape has begun, and `read_shape` waits for the rest alone."""
     file = located(path)
-    return apart.ahead(_shape, file, file.name) if file.suffix.lower() in READABLE else nullcontext()
+    return (
+        apart.ahead(_shape, file, file.name) if file.suffix.lower() in READABLE else nullcontext()
+    )
 
 
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
@@ -87,17 +100,28 @@ def _mesh(file: Path, where: str, scale: float) -> Any:
     if file.suffix.lower() == ".3mf":
         points, corners = three_mf.triangles(file)
         _refuse_far(float(np.abs(points).max()), where)
-        mesh.addFacets(([FreeCAD.Vector(*point) for point in points.tolist()], [tuple(row) for row in corners.tolist()]))
+        mesh.addFacets(
+            (
+                [FreeCAD.Vector(*point) for point in points.tolist()],
+                [tuple(row) for row in corners.tolist()],
+            )
+        )
         return mesh
     try:
         with _quiet():
             mesh.read(str(file))
-        more = obj_polygons.left_out(file, mesh.CountFacets) if file.suffix.lower() == ".obj" else ()
+        more = (
+            obj_polygons.left_out(file, mesh.CountFacets) if file.suffix.lower() == ".obj" else ()
+        )
         if len(more):
-            mesh.addFacets([[FreeCAD.Vector(*corner) for corner in triangle] for triangle in more.tolist()])
+            mesh.addFacets(
+                [[FreeCAD.Vector(*corner) for corner in triangle] for triangle in more.tolist()]
+            )
             mesh.removeDuplicatedPoints()
     except Exception as error:
-        raise InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again") from error
+        raise InputError(
+            "BAD_FILE", where, "it is damaged or not what its ending says; export the part again"
+        ) from error
     if not mesh.CountFacets:
         raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
     _refuse_far(_reach(mesh.BoundBox) * scale, where)
@@ -109,7 +133,9 @@ def _mesh(file: Path, where: str, scale: float) -> Any:
 
 
 def _shape(file: Path, where: str) -> Any:
-    bad = InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again")
+    bad = InputError(
+        "BAD_FILE", where, "it is damaged or not what its ending says; export the part again"
+    )
     shape = Part.Shape()
     try:
         with _quiet():
@@ -132,8 +158,12 @@ def _reach(box: Any) -> float:
 def _refuse_far(reach: float, where: str) -> None:
     if not reach <= FARTHEST:
         raise InputError(
-            "BAD_FILE", where, "it reaches to {:.3g} mm, farther than {:.3g} mm; a coordinate is damaged, or its unit is "
-            "wrong; export the part again", reach, FARTHEST,
+            "BAD_FILE",
+            where,
+            "it reaches to {:.3g} mm, farther than {:.3g} mm; a coordinate is damaged, or its unit is "
+            "wrong; export the part again",
+            reach,
+            FARTHEST,
         )
 
 

@@ -20,7 +20,14 @@ from freecad_am.core.types import Array, Index
 
 from ...core.issues import InputError, Text, Word
 
-UNITS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
+UNITS = {
+    "micron": 0.001,
+    "millimeter": 1.0,
+    "centimeter": 10.0,
+    "inch": 25.4,
+    "foot": 304.8,
+    "meter": 1000.0,
+}
 MODEL = "3D/3dmodel.model"  # where it is when the zip does not say
 MODEL_RELATION = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -61,7 +68,9 @@ def triangles(path: Path) -> tuple[Array, Index]:
     except expat.ExpatError as error:
         raise _bad(where, Text("its XML is damaged ({})", error)) from None
     except OverflowError:
-        raise _bad(where, "a triangle in it has a point with a number of more than 64 bits") from None
+        raise _bad(
+            where, "a triangle in it has a point with a number of more than 64 bits"
+        ) from None
 
 
 class _Package:
@@ -80,7 +89,9 @@ class _Package:
         for key, moved in self.items:
             self._add(key, moved, self.read[start], (), points, corners)
         if not corners:
-            raise InputError("EMPTY_FILE", self.where, "it builds no triangles; export the part again")
+            raise InputError(
+                "EMPTY_FILE", self.where, "it builds no triangles; export the part again"
+            )
         return np.vstack(points), np.vstack(corners)
 
     def _start(self) -> str:
@@ -113,7 +124,9 @@ class _Package:
             self.objects |= reader.objects
             if name == file:
                 self.items = reader.items
-            wanted = [key for made in reader.objects.values() for key, _ in made.parts] + [key for key, _ in reader.items]
+            wanted = [key for made in reader.objects.values() for key, _ in made.parts] + [
+                key for key, _ in reader.items
+            ]
             waiting += [key[0] for key in wanted]
 
     def _parse(self, name: str, start: object, prefix: object = None) -> None:
@@ -122,7 +135,9 @@ class _Package:
         except KeyError:
             raise _bad(self.where, Text("{} is missing in it", name)) from None
         if info.flag_bits & 1:
-            raise InputError("UNSUPPORTED_FILE", self.where, "it is encrypted; export it without protection")
+            raise InputError(
+                "UNSUPPORTED_FILE", self.where, "it is encrypted; export it without protection"
+            )
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise _bad(self.where, "it is compressed in a way that 3MF does not allow")
         parser = expat.ParserCreate(namespace_separator=" ")
@@ -135,18 +150,34 @@ class _Package:
             while chunk := stream.read(CHUNK):
                 size += len(chunk)  # what the zip tells of itself need not be true
                 if size > LARGEST:
-                    raise InputError("UNSUPPORTED_FILE", self.where, "{} unpacks to more than {} MB; export it with a "
-                                     "coarser mesh", name, LARGEST >> 20)
+                    raise InputError(
+                        "UNSUPPORTED_FILE",
+                        self.where,
+                        "{} unpacks to more than {} MB; export it with a coarser mesh",
+                        name,
+                        LARGEST >> 20,
+                    )
                 parser.Parse(chunk, False)
-                if size - max(parser.CurrentByteIndex, 0) > LONGEST:  # it would be read again with each chunk
-                    raise _bad(self.where, Text("an element of {} is longer than {} MB", name, LONGEST >> 20))
+                if (
+                    size - max(parser.CurrentByteIndex, 0) > LONGEST
+                ):  # it would be read again with each chunk
+                    raise _bad(
+                        self.where,
+                        Text("an element of {} is longer than {} MB", name, LONGEST >> 20),
+                    )
             parser.Parse(b"", True)
 
     def _refuse_doctype(self, *_: object) -> None:
         raise _bad(self.where, "it has a document type, which 3MF does not allow")
 
     def _add(
-        self, key: Key, moved: Array, unit: float, within: tuple[Key, ...], points: list[Array], corners: list[Index]
+        self,
+        key: Key,
+        moved: Array,
+        unit: float,
+        within: tuple[Key, ...],
+        points: list[Array],
+        corners: list[Index],
     ) -> None:
         """An object, moved (4, 3), behind the points and corners there are."""
         made = self.objects.get(key)
@@ -156,27 +187,47 @@ class _Package:
         self.placed += 1
         if self.placed > MOST_PLACED or len(within) > DEEPEST:
             text = Text("{:,} objects, or objects nested {} times", MOST_PLACED, DEEPEST)
-            raise InputError("UNSUPPORTED_FILE", self.where, "it builds more than {}; simplify it", Word(text))
+            raise InputError(
+                "UNSUPPORTED_FILE", self.where, "it builds more than {}; simplify it", Word(text)
+            )
         if made.kind in NOT_DEPOSITED:
             return
         for part, way in made.parts:
-            self._add(part, np.vstack([way[:3] @ moved[:3], way[3] @ moved[:3] + moved[3]]), unit, (*within, key),
-                      points, corners)
+            self._add(
+                part,
+                np.vstack([way[:3] @ moved[:3], way[3] @ moved[:3] + moved[3]]),
+                unit,
+                (*within, key),
+                points,
+                corners,
+            )
         if not made.triangles:
             return
         self.count += len(made.triangles)
         if self.count > MAX_TRIANGLES:
-            raise InputError("UNSUPPORTED_FILE", self.where, "it builds more than {:,} triangles; simplify it",
-                             MAX_TRIANGLES)
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "it builds more than {:,} triangles; simplify it",
+                MAX_TRIANGLES,
+            )
         own, some = np.array(made.points).reshape(-1, 3), np.array(made.triangles, dtype=np.intp)
         if some.min() < 0 or some.max() >= len(own):
-            raise _bad(self.where, Text("object {} of {} has triangles with points that it has not", key[1], key[0]))
+            raise _bad(
+                self.where,
+                Text("object {} of {} has triangles with points that it has not", key[1], key[0]),
+            )
         if self.points + len(own) > 3 * MAX_TRIANGLES:
             most = 3 * MAX_TRIANGLES
-            raise InputError("UNSUPPORTED_FILE", self.where, "it builds more than {:,} points; simplify it", most)
+            raise InputError(
+                "UNSUPPORTED_FILE", self.where, "it builds more than {:,} points; simplify it", most
+            )
         turned = np.linalg.det(moved[:3])
         if abs(turned) <= 1e-12 * np.abs(moved[:3]).max() ** 3:
-            raise _bad(self.where, Text("object {} of {} is moved by a matrix that flattens it", key[1], key[0]))
+            raise _bad(
+                self.where,
+                Text("object {} of {} is moved by a matrix that flattens it", key[1], key[0]),
+            )
         points.append((own @ moved[:3] + moved[3]) * unit)
         corners.append((some if turned > 0.0 else some[:, ::-1]) + self.points)
         self.points += len(own)
@@ -206,7 +257,9 @@ class _Model:
             elif name == "triangle":
                 self.now.triangles.append((int(values["v1"]), int(values["v2"]), int(values["v3"])))
             elif name == "object":
-                self.now = self.objects[self.name, int(values["id"])] = _Object(values.get("type", "model"))
+                self.now = self.objects[self.name, int(values["id"])] = _Object(
+                    values.get("type", "model")
+                )
             elif name == "component":
                 self.now.parts.append((self._key(values), _matrix(values)))
             elif name == "item" and values.get("printable", "1") not in ("0", "false"):
@@ -216,8 +269,10 @@ class _Model:
         except KeyError as error:
             raise _bad(self.where, Text("a {} in {} lacks {}", name, self.name, error)) from None
         except ValueError as error:
-            raise _bad(self.where, Text("a {} in {} has a value that is not a number ({})", name, self.name,
-                                        error)) from None
+            raise _bad(
+                self.where,
+                Text("a {} in {} has a value that is not a number ({})", name, self.name, error),
+            ) from None
 
     def _key(self, values: dict[str, str]) -> Key:
         path = next((text for name, text in values.items() if name.endswith(" path")), "")
@@ -231,15 +286,22 @@ class _Model:
         for prefix in values.get("requiredextensions", "").split():
             space = self.prefixes.get(prefix, prefix)
             if space not in KNOWN:
-                text = "it is encrypted" if "securecontent" in space else Text(
-                    "it needs an extension that is not read ({})", space
+                text = (
+                    "it is encrypted"
+                    if "securecontent" in space
+                    else Text("it needs an extension that is not read ({})", space)
                 )
-                raise InputError("UNSUPPORTED_FILE", self.where, "{}; export plain triangles", Word(text))
+                raise InputError(
+                    "UNSUPPORTED_FILE", self.where, "{}; export plain triangles", Word(text)
+                )
 
 
 def _matrix(values: dict[str, str]) -> Array:
     """(4, 3): a point (x, y, z, 1) as a row times it is the point moved."""
-    numbers = np.array(re.split(r"\s+", values.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").strip()), dtype=np.float64)
+    numbers = np.array(
+        re.split(r"\s+", values.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").strip()),
+        dtype=np.float64,
+    )
     if len(numbers) != 12 or not np.isfinite(numbers).all():
         raise ValueError(f"transform {values['transform']!r}")
     return numbers.reshape(4, 3)

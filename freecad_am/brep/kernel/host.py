@@ -57,7 +57,11 @@ def _tell(answers: BinaryIO, answer: Any) -> None:
 def _portable(error: Exception) -> Exception:
     """The error, or its text where it cannot travel."""
     try:
-        return error if isinstance(pickle.loads(pickle.dumps(error)), type(error)) else RuntimeError(str(error))
+        return (
+            error
+            if isinstance(pickle.loads(pickle.dumps(error)), type(error))
+            else RuntimeError(str(error))
+        )
     except Exception:
         return RuntimeError(str(error))
 

@@ -22,7 +22,9 @@ from ...core.issues import InputError
 FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)
 FAULTY = "BAD_SHAPE"
 SAMPLES = 720  # of an edge that may cross itself
-CROSSED = 1e-3  # of a step between samples; stretches of an edge nearer to each other than this cross
+CROSSED = (
+    1e-3  # of a step between samples; stretches of an edge nearer to each other than this cross
+)
 
 
 @contextmanager
@@ -33,12 +35,17 @@ def reported(label: str) -> Iterator[None]:
     except FAULTS as error:
         what = " ".join(str(error).split()) or type(error).__name__
         raise InputError(
-            FAULTY, label, "the geometry kernel cannot work with this shape ({}); repair it (Part, Check geometry), or "
-            "redraw its faces", what,
+            FAULTY,
+            label,
+            "the geometry kernel cannot work with this shape ({}); repair it (Part, Check geometry), or "
+            "redraw its faces",
+            what,
         ) from error
 
 
-def refuse_bare(named: Sequence[tuple[str, Any]], owner: Index, label: str, narrow: float = 0.0) -> None:
+def refuse_bare(
+    named: Sequence[tuple[str, Any]], owner: Index, label: str, narrow: float = 0.0
+) -> None:
     """InputError where the kernel has made no triangles of a face: SELF_INTERSECTION if an edge of it crosses itself, else
     BAD_SHAPE. owner: (m,) the number of the face of each triangle. narrow: a face no wider, mm, needs none."""
     for k, (name, face) in enumerate(named):
@@ -48,11 +55,16 @@ def refuse_bare(named: Sequence[tuple[str, Any]], owner: Index, label: str, narr
             found = _crossing(np.array([tuple(point) for point in edge.discretize(SAMPLES)]))
             if found is not None:
                 raise InputError(
-                    "SELF_INTERSECTION", f"{label} {name}", "an edge of the face crosses itself at {}; draw it without "
-                    "crossings, or divide it there and deposit its parts one after the other", place(found),
+                    "SELF_INTERSECTION",
+                    f"{label} {name}",
+                    "an edge of the face crosses itself at {}; draw it without "
+                    "crossings, or divide it there and deposit its parts one after the other",
+                    place(found),
                 )
         raise InputError(
-            FAULTY, f"{label} {name}", "the geometry kernel cannot divide this face into triangles; repair it (Part, "
+            FAULTY,
+            f"{label} {name}",
+            "the geometry kernel cannot divide this face into triangles; repair it (Part, "
             "Check geometry), or redraw it",
         )
 
@@ -65,12 +77,17 @@ def _crossing(chain: Array) -> Array | None:
     apart = pairs[:, 1] - pairs[:, 0]
     one, other = pairs[(apart > 2) & (apart < len(chord) - 2)].T
     a, b, gap = chord[one], chord[other], chain[other] - chain[one]
-    system = np.stack([np.stack([dot(a, a), -dot(a, b)], axis=1), np.stack([-dot(a, b), dot(b, b)], axis=1)], axis=1)
+    system = np.stack(
+        [np.stack([dot(a, a), -dot(a, b)], axis=1), np.stack([-dot(a, b), dot(b, b)], axis=1)],
+        axis=1,
+    )
     plain = np.abs(np.linalg.det(system)) > 1e-4 * dot(a, a) * dot(b, b)
     one, other, a, b, gap = (column[plain] for column in (one, other, a, b, gap))
     if not len(one):
         return None
-    at = np.linalg.solve(system[plain], np.stack([dot(a, gap), -dot(b, gap)], axis=1)[..., None])[..., 0]
+    at = np.linalg.solve(system[plain], np.stack([dot(a, gap), -dot(b, gap)], axis=1)[..., None])[
+        ..., 0
+    ]
     at = np.clip(at, 0.0, 1.0)
     miss = np.linalg.norm(gap + at[:, 1:] * b - at[:, :1] * a, axis=1)
     best = int(np.argmin(miss))

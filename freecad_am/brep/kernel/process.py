@@ -79,7 +79,9 @@ def in_kernel_process(function: Callable[..., T], shape: Any, *rest: Any) -> T:
     return function(shape, *rest)
 
 
-def limited(function: Callable[..., None], arguments: tuple[Any, ...], longest: float) -> tuple[int, float] | None:
+def limited(
+    function: Callable[..., None], arguments: tuple[Any, ...], longest: float
+) -> tuple[int, float] | None:
     """How the process ended in which `function(*arguments)`, which limits itself, was called, as Popen tells it: 0 where it
     came back; and the memory, MB, that it took for it. None where there can be no process.
 
@@ -155,13 +157,22 @@ class _Process:
 
     def __init__(self, python: str) -> None:
         self.popen: Any = subprocess.Popen(
-            [python, str(HOST)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-            env={**os.environ, **ENVIRONMENT}, creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            [python, str(HOST)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, **ENVIRONMENT},
+            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )
         self.kill = weakref.finalize(self, _kill, self.popen)
         self.answers: queue.Queue[Any] = queue.Queue()
         self.most = 0.0  # MB that the last question took, as far as it was seen
-        threading.Thread(target=_listen, args=(self.popen.stdout, self.answers), name="Kernel process", daemon=True).start()
+        threading.Thread(
+            target=_listen,
+            args=(self.popen.stdout, self.answers),
+            name="Kernel process",
+            daemon=True,
+        ).start()
 
     def ask(self, question: Any) -> None:
         """Send a question. Raises _Left where nobody is there."""
@@ -169,7 +180,7 @@ class _Process:
         try:
             with _without_signal():
                 while data:  # past Python's buffer, which would be written at the end too, to whoever is gone by then
-                    data = data[os.write(self.popen.stdin.fileno(), data):]
+                    data = data[os.write(self.popen.stdin.fileno(), data) :]
         except OSError:
             raise _Left from None
 
@@ -271,14 +282,24 @@ def _pythons() -> list[str]:
     home = FreeCAD.getHomePath()
     places = [sys.executable or ""]
     for folder in dict.fromkeys((sys.prefix, sys.base_prefix, home)):
-        places += [os.path.join(folder, "bin", name) for name in (f"python{version}", "python3", "python.exe", "python")]
+        places += [
+            os.path.join(folder, "bin", name)
+            for name in (f"python{version}", "python3", "python.exe", "python")
+        ]
         places.append(os.path.join(folder, "python.exe"))
     named = (one for one in places if os.path.basename(one).lower().startswith("python"))
-    return list(dict.fromkeys(one for one in named if os.access(one, os.X_OK) and os.path.isfile(one)))
+    return list(
+        dict.fromkeys(one for one in named if os.access(one, os.X_OK) and os.path.isfile(one))
+    )
 
 
 def _search_path() -> list[str]:
     """Where the modules that this FreeCAD has loaded, and ours, are found."""
     home = FreeCAD.getHomePath()
     part_folder = os.path.dirname(os.path.abspath(Part.__file__))
-    return [*sys.path, str(HOST.parents[3]), part_folder, *(os.path.join(home, name) for name in ("lib", "bin"))]
+    return [
+        *sys.path,
+        str(HOST.parents[3]),
+        part_folder,
+        *(os.path.join(home, name) for name in ("lib", "bin")),
+    ]

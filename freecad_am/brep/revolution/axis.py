@@ -17,7 +17,8 @@ Axis = tuple[Array, Array]
 
 # their axes are known, or they have none
 ANALYTIC = tuple(
-    "Part::Geom" + kind for kind in ("Plane", "Cylinder", "Cone", "Sphere", "Toroid", "SurfaceOfRevolution")
+    "Part::Geom" + kind
+    for kind in ("Plane", "Cylinder", "Cone", "Sphere", "Toroid", "SurfaceOfRevolution")
 )
 SAME_ANGLE = 1e-6  # rad
 SAME_LINE = 1e-4  # mm
@@ -41,7 +42,9 @@ def candidates(faces: list[Any]) -> list[Axis]:
 def _weighed(faces: list[Any]) -> list[tuple[Axis, float]]:
     """Axes of faces and their edges, each once, with all that speaks for it."""
     found: list[tuple[Axis, float]] = []
-    rows = np.zeros((64, 6))  # of those found, to be compared at once: a plate may have hundreds of holes
+    rows = np.zeros(
+        (64, 6)
+    )  # of those found, to be compared at once: a plate may have hundreds of holes
     for face in faces:
         for axis, weight in _of_face(face):
             same = np.flatnonzero(_alike(rows[: len(found)], axis))
@@ -69,7 +72,9 @@ def _of_face(face: Any) -> list[tuple[Axis, float]]:
         if edge.Degenerated or edge.isSeam(face):
             continue
         if edge.Curve.TypeId == "Part::GeomCircle":
-            found.append((_axis(edge.Curve.Center, edge.Curve.Axis), 1e-3 * edge.Length * edge.Curve.Radius))
+            found.append(
+                (_axis(edge.Curve.Center, edge.Curve.Axis), 1e-3 * edge.Length * edge.Curve.Radius)
+            )
         elif edge.Curve.TypeId == "Part::GeomBSplineCurve":
             fitted = _circle_through(edge_points(edge, 13))
             if fitted is not None:
@@ -85,7 +90,9 @@ def _circle_through(points: Array) -> Axis | None:
         return None
     flat = (points - middle) @ basis[:2].T
     # |p|^2 = 2 c.p + k is linear in the centre c and k
-    solved = np.linalg.lstsq(np.c_[2.0 * flat, np.ones(len(flat))], (flat**2).sum(axis=1), rcond=None)[0]
+    solved = np.linalg.lstsq(
+        np.c_[2.0 * flat, np.ones(len(flat))], (flat**2).sum(axis=1), rcond=None
+    )[0]
     radii = np.hypot(*(flat - solved[:2]).T)
     if np.ptp(radii) > 1e-6 * radii.mean():
         return None
@@ -133,7 +140,9 @@ def from_normals(faces: list[Any]) -> Axis | None:
     middle = p.mean(axis=0)
     size = np.abs(p - middle).max()
     rows = np.hstack([np.cross((p - middle) / size, n), n])
-    values, vectors = np.linalg.svd(rows, full_matrices=False)[1:]  # or it is as wide as the samples are many
+    values, vectors = np.linalg.svd(rows, full_matrices=False)[
+        1:
+    ]  # or it is as wide as the samples are many
     exact = int((values < 1e-6 * values[0]).sum())
     # a cylinder that is not quite round still slides along itself exactly: then the next best motion is asked for
     for count in (max(exact, 1), max(exact, 1) + 1):

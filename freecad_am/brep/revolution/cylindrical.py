@@ -87,7 +87,9 @@ def flattened(p: Array, d: Array, ending: Any) -> tuple[Array, Array]:
     r = np.hypot(p[:, 0], p[:, 1])
     on_axis = r < 1e-7
     slope = np.hypot(d[:, 0], d[:, 1]) * np.where(ending, -1.0, 1.0)
-    rate = np.where(on_axis, slope, (p[:, 0] * d[:, 0] + p[:, 1] * d[:, 1]) / np.where(on_axis, 1.0, r))
+    rate = np.where(
+        on_axis, slope, (p[:, 0] * d[:, 0] + p[:, 1] * d[:, 1]) / np.where(on_axis, 1.0, r)
+    )
     return np.stack([r, p[:, 2]], axis=1), np.stack([rate, d[:, 2]], axis=1)
 
 
@@ -98,7 +100,9 @@ def pieces_of(curve: Any, frame: AxisFrame, first: float, last: float) -> list[t
     return smooth_pieces(evaluate, corners, knots)
 
 
-def smooth_pieces(evaluate: Curve, corners: Sequence[float], knots: Sequence[float]) -> list[tuple[Array, Array]]:
+def smooth_pieces(
+    evaluate: Curve, corners: Sequence[float], knots: Sequence[float]
+) -> list[tuple[Array, Array]]:
     """Samples between neighbouring corners; the slope at a corner is taken just beside it. knots: other breaks."""
     result = []
     for a, b in pairwise(corners):

@@ -21,7 +21,12 @@ TOLERANCE = 1e-3  # mm a face may be off its own surface of revolution
 EDGE_TOLERANCE = 1e-2  # mm an edge may be off a parallel or a meridian
 FULL = 2.0 * np.pi - 1e-5
 # surfaces whose first parameter is the azimuth about their axis
-NATURAL = ("Part::GeomCylinder", "Part::GeomCone", "Part::GeomToroid", "Part::GeomSurfaceOfRevolution")
+NATURAL = (
+    "Part::GeomCylinder",
+    "Part::GeomCone",
+    "Part::GeomToroid",
+    "Part::GeomSurfaceOfRevolution",
+)
 
 
 @dataclass(frozen=True)
@@ -58,9 +63,13 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
         return Patch(name, (), deviation, "it is not of revolution")
     edge = _edge_deviation(face.Edges, frame)
     if edge > EDGE_TOLERANCE:
-        return Patch(name, (), edge, "it is cut out or slanted: an edge runs neither around nor along it")
+        return Patch(
+            name, (), edge, "it is cut out or slanted: an edge runs neither around nor along it"
+        )
     turn = _turn(face, frame)
-    return Patch(name, tuple(Piece(name, points, tangents, turn) for points, tangents in curves), deviation)
+    return Patch(
+        name, tuple(Piece(name, points, tangents, turn) for points, tangents in curves), deviation
+    )
 
 
 def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
@@ -68,12 +77,17 @@ def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
     curves, edges = restored(face, frame), edges_of(face)
     edge = _edge_deviation(edges, frame)
     if curves is None or edge > EDGE_TOLERANCE:
-        what = "it has an edge but no area, so the file is damaged or it does not turn about the axis"
+        what = (
+            "it has an edge but no area, so the file is damaged or it does not turn about the axis"
+        )
         return Patch(name, (), max(edge, 2.0 * TOLERANCE), what)
     points = np.vstack([edge_points(one, 181) for one in edges])
     turn, off = _reach(frame, points), _distance(frame, points, curves)
     return Patch(
-        name, tuple(Piece(name, samples, tangents, turn) for samples, tangents in curves), off, "it is not of revolution"
+        name,
+        tuple(Piece(name, samples, tangents, turn) for samples, tangents in curves),
+        off,
+        "it is not of revolution",
     )
 
 
@@ -82,7 +96,9 @@ def _ends_a_turn(face: Any, frame: AxisFrame) -> bool:
         return False
     points = np.vstack([frame.local(edge_points(edge, 5)) for edge in face.Edges])
     far = points[np.argmax(np.hypot(points[:, 0], points[:, 1]))]
-    off = np.abs(points[:, 0] * far[1] - points[:, 1] * far[0]) / max(np.hypot(far[0], far[1]), 1e-12)
+    off = np.abs(points[:, 0] * far[1] - points[:, 1] * far[0]) / max(
+        np.hypot(far[0], far[1]), 1e-12
+    )
     return bool(off.max() < EDGE_TOLERANCE)
 
 
@@ -148,9 +164,12 @@ def _along_parameter(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] |
     best, span = None, TOLERANCE
     for along_v, first, last in ((True, v0, v1), (False, u0, u1)):
         t = np.linspace(first, last, 17)
-        r, h, _ = frame.cylindrical([
-            surface.value(middle_u, value) if along_v else surface.value(value, middle_v) for value in t.tolist()
-        ])
+        r, h, _ = frame.cylindrical(
+            [
+                surface.value(middle_u, value) if along_v else surface.value(value, middle_v)
+                for value in t.tolist()
+            ]
+        )
         steps = np.hypot(np.diff(r), np.diff(h))
         if steps.sum() > span:
             best, span = (along_v, first, last, steps.min()), float(steps.sum())
@@ -159,7 +178,9 @@ def _along_parameter(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] |
     along_v, first, last, _ = best
     if surface.TypeId == "Part::GeomOffsetSurface":
         return smooth_pieces(_offset_line(face, frame, along_v, first, last), [first, last], [])
-    return pieces_of(surface.uIso(middle_u) if along_v else surface.vIso(middle_v), frame, first, last)
+    return pieces_of(
+        surface.uIso(middle_u) if along_v else surface.vIso(middle_v), frame, first, last
+    )
 
 
 def _offset_line(face: Any, frame: AxisFrame, along_v: bool, first: float, last: float) -> Curve:
@@ -168,9 +189,14 @@ def _offset_line(face: Any, frame: AxisFrame, along_v: bool, first: float, last:
     surface, order = face.Surface, (0, 1) if along_v else (1, 0)
 
     def evaluate(t: Array) -> tuple[Array, Array]:
-        places = [(0.5 * (u0 + u1), value) if along_v else (value, 0.5 * (v0 + v1)) for value in t.tolist()]
+        places = [
+            (0.5 * (u0 + u1), value) if along_v else (value, 0.5 * (v0 + v1))
+            for value in t.tolist()
+        ]
         d = as_array([surface.getDN(u, v, *order) for u, v in places]) @ frame.rotation
-        return flattened(frame.local([surface.value(u, v) for u, v in places]), d, t > 0.5 * (first + last))
+        return flattened(
+            frame.local([surface.value(u, v) for u, v in places]), d, t > 0.5 * (first + last)
+        )
 
     return evaluate
 
@@ -200,15 +226,25 @@ def _section(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
 
         return smooth_pieces(evaluate, [first, last], [])
 
-    kept = [edge for edge in edges if float(np.mean((as_array([edge.valueAt(
-        0.5 * sum(edge.ParameterRange))]) - frame.origin) @ outward)) > 0.0]
+    kept = [
+        edge
+        for edge in edges
+        if float(
+            np.mean(
+                (as_array([edge.valueAt(0.5 * sum(edge.ParameterRange))]) - frame.origin) @ outward
+            )
+        )
+        > 0.0
+    ]
     return [piece for edge in kept for piece in of_edge(edge)] or None
 
 
 def _grid(face: Any, inside_only: bool) -> list[Any]:
     u0, u1, v0, v1 = face.ParameterRange
     return [
-        face.Surface.value(u, v) for u in np.linspace(u0, u1, 13).tolist() for v in np.linspace(v0, v1, 13).tolist()
+        face.Surface.value(u, v)
+        for u in np.linspace(u0, u1, 13).tolist()
+        for v in np.linspace(v0, v1, 13).tolist()
         if not inside_only or face.isPartOfDomain(u, v)
     ]
 
@@ -221,7 +257,9 @@ def _deviation(face: Any, frame: AxisFrame, curves: list[tuple[Array, Array]]) -
     if off > TOLERANCE:
         # the surface goes on past the face's edges: only the face itself counts
         off = _distance(frame, _grid(face, True) or _grid(face, False), curves)
-    return max(off, _distance(frame, np.vstack([edge_points(edge, 9) for edge in face.Edges]), curves))
+    return max(
+        off, _distance(frame, np.vstack([edge_points(edge, 9) for edge in face.Edges]), curves)
+    )
 
 
 def _distance(frame: AxisFrame, points: Any, curves: list[tuple[Array, Array]]) -> float:
@@ -231,7 +269,9 @@ def _distance(frame: AxisFrame, points: Any, curves: list[tuple[Array, Array]]) 
     for samples, _ in curves:
         a, ab = samples[None, :-1], np.diff(samples, axis=0)[None]
         share = np.clip(((p - a) * ab).sum(-1) / np.maximum((ab * ab).sum(-1), 1e-30), 0.0, 1.0)
-        nearest = np.minimum(nearest, np.linalg.norm(p - a - share[..., None] * ab, axis=-1).min(axis=1))
+        nearest = np.minimum(
+            nearest, np.linalg.norm(p - a - share[..., None] * ab, axis=-1).min(axis=1)
+        )
     return float(nearest.max())
 
 

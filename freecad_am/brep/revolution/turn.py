@@ -27,7 +27,10 @@ def merged(pieces: Sequence[Piece], label: str) -> list[Piece]:
     firsts: list[int] = []
     for number, piece in enumerate(pieces):
         known = ends[firsts]
-        apart = [np.abs(known - way).max(axis=(1, 2), initial=0.0) for way in (ends[number], ends[number, ::-1])]
+        apart = [
+            np.abs(known - way).max(axis=(1, 2), initial=0.0)
+            for way in (ends[number], ends[number, ::-1])
+        ]
         for k in np.flatnonzero(np.minimum(*apart) <= MERIDIAN_MM).tolist():
             if _same_meridian(groups[k][0], piece):
                 groups[k].append(piece)
@@ -35,21 +38,28 @@ def merged(pieces: Sequence[Piece], label: str) -> list[Piece]:
         else:
             groups.append([piece])
             firsts.append(number)
-    return [replace(group[0], turn=_union([piece.turn for piece in group], group, label)) for group in groups]
+    return [
+        replace(group[0], turn=_union([piece.turn for piece in group], group, label))
+        for group in groups
+    ]
 
 
 def _same_meridian(one: Piece, other: Piece) -> bool:
     """Whether pieces with the same ends are one on the way, too."""
     middle = other.points[len(other.points) // 2]
     start, steps = one.points[:-1], np.diff(one.points, axis=0)
-    share = np.clip(((middle - start) * steps).sum(1) / np.maximum((steps * steps).sum(1), 1e-30), 0.0, 1.0)
+    share = np.clip(
+        ((middle - start) * steps).sum(1) / np.maximum((steps * steps).sum(1), 1e-30), 0.0, 1.0
+    )
     return bool(np.linalg.norm(middle - start - share[:, None] * steps, axis=1).min() < MERIDIAN_MM)
 
 
 def _union(turns: Sequence[Turn | None], group: Sequence[Piece], label: str) -> Turn | None:
     if any(turn is None for turn in turns):
         return None
-    known = sorted((turn[0] % (2.0 * np.pi), turn[1] - turn[0]) for turn in turns if turn is not None)
+    known = sorted(
+        (turn[0] % (2.0 * np.pi), turn[1] - turn[0]) for turn in turns if turn is not None
+    )
     joined: list[Turn] = []
     for start, span in [*known, *((start + 2.0 * np.pi, span) for start, span in known)]:
         if joined and start <= joined[-1][1] + SAME_AZIMUTH:
@@ -79,15 +89,26 @@ def common_turn(chain: Chain, label: str) -> Turn | None:
         same = (piece.turn is None) == (first.turn is None)
         if same and piece.turn is not None and first.turn is not None:
             off = abs(np.angle(np.exp(1j * (piece.turn[0] - first.turn[0]))))
-            same = max(off, abs((piece.turn[1] - piece.turn[0]) - (first.turn[1] - first.turn[0]))) < 1e-3
+            same = (
+                max(off, abs((piece.turn[1] - piece.turn[0]) - (first.turn[1] - first.turn[0])))
+                < 1e-3
+            )
         if not same:
             raise InputError(
-                "NOT_REVOLUTION", label,
-                "{} turns {} and {} {}; choose faces that turn alike", first.name, _degrees(first.turn), piece.name,
+                "NOT_REVOLUTION",
+                label,
+                "{} turns {} and {} {}; choose faces that turn alike",
+                first.name,
+                _degrees(first.turn),
+                piece.name,
                 _degrees(piece.turn),
             )
     return first.turn
 
 
 def _degrees(turn: Turn | None) -> str:
-    return "all around" if turn is None else Text("from {:.4g} to {:.4g} deg", np.degrees(turn[0]), np.degrees(turn[1]))
+    return (
+        "all around"
+        if turn is None
+        else Text("from {:.4g} to {:.4g} deg", np.degrees(turn[0]), np.degrees(turn[1]))
+    )

@@ -43,7 +43,9 @@ def normals_of(faces: Sequence[Any]) -> Normals:
         directions += [normal for _, normal in found]
         counts.append(len(found))
     wide = np.array([2.0 * face.Area > NARROW * face.Length for face in faces], dtype=bool)
-    return Normals(as_array(places), as_array(directions), np.repeat(np.arange(len(faces)), counts), flat, wide)
+    return Normals(
+        as_array(places), as_array(directions), np.repeat(np.arange(len(faces)), counts), flat, wide
+    )
 
 
 def surely_off(of: Normals, frame: AxisFrame) -> Mask:
@@ -51,7 +53,9 @@ def surely_off(of: Normals, frame: AxisFrame) -> Mask:
     along it, and only end a part of a turn, are not among them."""
     points, normals = frame.local(of.points), of.normals @ frame.rotation
     radius = np.hypot(points[:, 0], points[:, 1])
-    around = np.abs(points[:, 0] * normals[:, 1] - points[:, 1] * normals[:, 0]) / np.maximum(radius, ON_AXIS)
+    around = np.abs(points[:, 0] * normals[:, 1] - points[:, 1] * normals[:, 0]) / np.maximum(
+        radius, ON_AXIS
+    )
     through = np.abs((points[:, :2] * normals[:, :2]).sum(axis=1)) < NARROW
     ends = of.flat[of.face] & through & (np.abs(normals[:, 2]) < SLOPE)
     leans = (around > SLOPE) & (radius > NARROW) & ~ends
@@ -61,7 +65,9 @@ def surely_off(of: Normals, frame: AxisFrame) -> Mask:
 def _flat(face: Any) -> list[tuple[Any, Any]]:
     """Starts of its first edges: its normal is the same everywhere."""
     u, v = (0.5 * (low + high) for low, high in (face.ParameterRange[:2], face.ParameterRange[2:]))
-    return [(edge.valueAt(edge.FirstParameter), face.Surface.normal(u, v)) for edge in face.Edges[:4]]
+    return [
+        (edge.valueAt(edge.FirstParameter), face.Surface.normal(u, v)) for edge in face.Edges[:4]
+    ]
 
 
 def _curved(face: Any) -> list[tuple[Any, Any]]:

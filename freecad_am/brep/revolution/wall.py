@@ -30,7 +30,11 @@ Named = tuple[str, Any]
 
 
 def find_wall(
-    shape: Any, faces: Sequence[str] = (), wall: str = "outer", axis: tuple[Any, Any] | None = None, label: str = "part"
+    shape: Any,
+    faces: Sequence[str] = (),
+    wall: str = "outer",
+    axis: tuple[Any, Any] | None = None,
+    label: str = "part",
 ) -> RevolvedWall:
     """The wall of a Part.Shape as a meridian turned about its axis, in the shape's own coordinates.
 
@@ -56,66 +60,109 @@ def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]
     known = dict(named)
     for name in faces:
         if name not in known:
-            raise InputError("UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(named))
+            raise InputError(
+                "UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(named)
+            )
     return [(name, known[name]) for name in dict.fromkeys(faces)]
 
 
-def _only_solid(shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str) -> RevolvedWall:
+def _only_solid(
+    shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str
+) -> RevolvedWall:
     """The wall of the one solid that has one, where that is most of the shape."""
     found: list[tuple[str, RevolvedWall, float]] = []
     area = sum(solid.Area for solid in shape.Solids)
     for index, solid in enumerate(shape.Solids, start=1):
-        own = [(name, face) for name, face in named if any(face.isSame(other) for other in solid.Faces)]
+        own = [
+            (name, face) for name, face in named if any(face.isSame(other) for other in solid.Faces)
+        ]
         try:
             made = _from_faces(own, wall, axis, label, False, whole=True)
-            found.append((Text("Solid{} ({} to {})", index, own[0][0], own[-1][0]), made, solid.Area / area))
+            found.append(
+                (Text("Solid{} ({} to {})", index, own[0][0], own[-1][0]), made, solid.Area / area)
+            )
         except InputError:
             continue
     if len(found) == 1:
         name, made, share = found[0]
         if share < MOSTLY:
             raise InputError(
-                "NOT_OF_REVOLUTION", label, "of its {} solids only {} turns about an axis, {:.0%} of its surface; name the "
+                "NOT_OF_REVOLUTION",
+                label,
+                "of its {} solids only {} turns about an axis, {:.0%} of its surface; name the "
                 "faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub",
-                len(shape.Solids), name, share,
+                len(shape.Solids),
+                name,
+                share,
             )
         return made
     if not found:
         raise InputError(
-            "NO_WALL", label, "none of its {} solids is of revolution; name the faces of the wall", len(shape.Solids)
+            "NO_WALL",
+            label,
+            "none of its {} solids is of revolution; name the faces of the wall",
+            len(shape.Solids),
         )
     names = Text.joined(", ", (name for name, *_ in found))
-    raise InputError("SEVERAL_SOLIDS", label, "{} all have a wall; name the faces of the one to deposit", names)
+    raise InputError(
+        "SEVERAL_SOLIDS", label, "{} all have a wall; name the faces of the one to deposit", names
+    )
 
 
 def _from_faces(
-    named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str, selected: bool, whole: bool = False
+    named: list[Named],
+    wall: str,
+    axis: tuple[Any, Any] | None,
+    label: str,
+    selected: bool,
+    whole: bool = False,
 ) -> RevolvedWall:
     """whole: the faces are all of a closed surface."""
     wide = [
-        (name, face) for name, face in named if 2.0 * face.Area > SLIVER * face.Length or has_lost_pole(face)
+        (name, face)
+        for name, face in named
+        if 2.0 * face.Area > SLIVER * face.Length or has_lost_pole(face)
     ]
     if not wide:
         raise InputError("NO_WALL", label, "it has no face of any width; choose another object")
     lines = [axis] if axis is not None else list(candidates([face for _, face in wide]))
     if not lines:
-        raise InputError("NO_WALL", label, "no axis was found that its faces turn about; give it, or name the faces")
+        raise InputError(
+            "NO_WALL",
+            label,
+            "no axis was found that its faces turn about; give it, or name the faces",
+        )
     frame, patches = _about_best(wide, lines)
     if not all(patch.sound for patch in patches) and all(planar(face) for _, face in wide):
-        raise InputError("NO_WALL", label, "all its faces are flat; choose a part, or faces, of revolution")
+        raise InputError(
+            "NO_WALL", label, "all its faces are flat; choose a part, or faces, of revolution"
+        )
     worst = max(patches, key=lambda patch: patch.deviation)
     if not worst.sound:
-        hint = "choose other faces" if selected else "name the faces of the wall if it is not part of it"
+        hint = (
+            "choose other faces"
+            if selected
+            else "name the faces of the wall if it is not part of it"
+        )
         raise InputError(
-            "NOT_REVOLUTION", f"{label} {worst.name}", "{}: {:.4g} mm off; {}", worst.what, worst.deviation, Word(hint)
+            "NOT_REVOLUTION",
+            f"{label} {worst.name}",
+            "{}: {:.4g} mm off; {}",
+            worst.what,
+            worst.deviation,
+            Word(hint),
         )
     pieces = merged([piece for patch in patches for piece in patch.pieces], label)
     if not pieces:
-        raise InputError("NO_WALL", label, "it has no face that turns about the axis; name the faces of the wall")
+        raise InputError(
+            "NO_WALL", label, "it has no face that turns about the axis; name the faces of the wall"
+        )
     return _assembled(pieces, frame, wall, label, selected, whole)
 
 
-def _about_best(wide: Sequence[Named], lines: Sequence[tuple[Any, Any]]) -> tuple[AxisFrame, list[Patch]]:
+def _about_best(
+    wide: Sequence[Named], lines: Sequence[tuple[Any, Any]]
+) -> tuple[AxisFrame, list[Patch]]:
     """The axis about which all faces turn, and what they are about it; else the one that the least of their area is off, and
     the largest of the faces that are."""
     normals = normals_of([face for _, face in wide])
@@ -150,20 +197,34 @@ def _from_edges(shape: Any, wall: str, axis: tuple[Any, Any] | None, label: str)
 
 
 def _assembled(
-    pieces: list[Piece], frame: AxisFrame, wall: str, label: str, selected: bool, whole: bool = False
+    pieces: list[Piece],
+    frame: AxisFrame,
+    wall: str,
+    label: str,
+    selected: bool,
+    whole: bool = False,
 ) -> RevolvedWall:
     """The wall made of pieces about the axis of the frame."""
     chains, gap = contour.chains(pieces)
     if len(chains) > 1:
-        names = Text.joined(" and ", ("-".join(dict.fromkeys((chain[0].name, chain[-1].name))) for chain in chains))
+        names = Text.joined(
+            " and ", ("-".join(dict.fromkeys((chain[0].name, chain[-1].name))) for chain in chains)
+        )
         raise InputError(
-            "NO_WALL", label, "{} do not join to one wall; name the faces of the wall, or deposit them one by one", names
+            "NO_WALL",
+            label,
+            "{} do not join to one wall; name the faces of the wall, or deposit them one by one",
+            names,
         )
     chain, issues = chains[0], []
     closed = contour.is_closed(chain, whole) and (not selected or _loops(chain))
     gap = contour.opening(chain) if closed and not contour.is_closed(chain) else gap
     if gap > contour.JOIN:
-        issues.append(Issue(NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} is bridged", gap, label)))
+        issues.append(
+            Issue(
+                NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} is bridged", gap, label)
+            )
+        )
     if closed:
         chain, meridian = _wall_of_contour(chain, wall, label)
     else:
@@ -178,7 +239,13 @@ def _assembled(
     lowered = Meridian(meridian.s, meridian.points - [0.0, base], meridian.tangents)
     start, end = turn if turn is not None else (0.0, 2.0 * np.pi)
     return RevolvedWall(
-        lowered, _pose(frame, base), start, end, turn is None, tuple(issues), label,
+        lowered,
+        _pose(frame, base),
+        start,
+        end,
+        turn is None,
+        tuple(issues),
+        label,
         tuple(dict.fromkeys(piece.name for piece in chain)),
     )
 
@@ -191,7 +258,9 @@ def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridi
     """The wall asked for of a closed contour: its pieces and its meridian."""
     walls = contour.walls(chain)
     if not walls:
-        raise InputError("NO_WALL", label, "it has only flat faces across the axis; name the faces of the wall")
+        raise InputError(
+            "NO_WALL", label, "it has only flat faces across the axis; name the faces of the wall"
+        )
     if wall == "outer":
         return walls[0], contour.meridian_of(walls[0])
     if len(walls) == 1:
@@ -204,9 +273,16 @@ def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridi
 def _step_notes(chain: Chain, label: str) -> list[Issue]:
     """Notes on tiny faces inside the wall, such as the step of a curve given in two formulas."""
     return [
-        Issue(NOTE, "STEP", Text("{} of {} is a step of {:.3g} mm in the wall; it is kept", piece.name, label, span))
+        Issue(
+            NOTE,
+            "STEP",
+            Text(
+                "{} of {} is a step of {:.3g} mm in the wall; it is kept", piece.name, label, span
+            ),
+        )
         for piece in chain
-        if (span := float(np.hypot(*(piece.points[-1] - piece.points[0])))) < contour.BRIDGE and len(chain) > 1
+        if (span := float(np.hypot(*(piece.points[-1] - piece.points[0])))) < contour.BRIDGE
+        and len(chain) > 1
     ]
 
 

@@ -20,9 +20,13 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
     Raises InputError 'NOT_REVOLUTION' where the edges cross the axis or are not in one plane with it, 'NO_WALL' where
     none is left.
     """
-    edges = [(f"Edge{i}", edge) for i, edge in enumerate(shape.Edges, start=1) if not edge.Degenerated]
+    edges = [
+        (f"Edge{i}", edge) for i, edge in enumerate(shape.Edges, start=1) if not edge.Degenerated
+    ]
     points = {name: frame.local(edge_points(edge, 17)) for name, edge in edges}
-    off_axis = [(name, edge) for name, edge in edges if np.hypot(*points[name][:, :2].T).max() > ACROSS]
+    off_axis = [
+        (name, edge) for name, edge in edges if np.hypot(*points[name][:, :2].T).max() > ACROSS
+    ]
     if not off_axis:
         raise InputError("NO_WALL", label, "its edges lie on the axis; choose another axis")
     everything = np.vstack([points[name] for name, _ in off_axis])
@@ -32,13 +36,19 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
         across = np.abs(points[name][:, 0] * outward[1] - points[name][:, 1] * outward[0]).max()
         if across > ACROSS:
             raise InputError(
-                "NOT_REVOLUTION", f"{label} {name}", "it is {:.4g} mm off the plane of the wire and its axis; draw the wire "
-                "in a plane that holds the axis", across,
+                "NOT_REVOLUTION",
+                f"{label} {name}",
+                "it is {:.4g} mm off the plane of the wire and its axis; draw the wire "
+                "in a plane that holds the axis",
+                across,
             )
         behind = float((points[name][:, :2] @ outward).min())
         if behind < -ACROSS:
             raise InputError(
-                "NOT_REVOLUTION", f"{label} {name}", "it crosses the axis by {:.4g} mm; keep it on one side", -behind
+                "NOT_REVOLUTION",
+                f"{label} {name}",
+                "it crosses the axis by {:.4g} mm; keep it on one side",
+                -behind,
             )
     return [
         Piece(name, samples, tangents)

@@ -23,10 +23,15 @@ def owners_of(shape: Any, names: Sequence[str]) -> tuple[Any, tuple[str, ...]]:
     if not numbers or max(numbers) > len(faces):
         return shape, tuple(names)
     chosen = [faces[number - 1] for number in numbers]
-    solids = [solid for solid in shape.Solids if any(one.isSame(face) for face in solid.Faces for one in chosen)]
+    solids = [
+        solid
+        for solid in shape.Solids
+        if any(one.isSame(face) for face in solid.Faces for one in chosen)
+    ]
     held = [face for solid in solids for face in solid.Faces]
     own = [*solids, *(face for face in chosen if not any(face.isSame(one) for one in held))]
     made = own[0] if len(own) == 1 else Part.makeCompound(own)
     return made, tuple(
-        next(f"Face{k + 1}" for k, one in enumerate(made.Faces) if one.isSame(face)) for face in chosen
+        next(f"Face{k + 1}" for k, one in enumerate(made.Faces) if one.isSame(face))
+        for face in chosen
     )

@@ -35,7 +35,9 @@ class Skin:
 def skin(shape: Any, label: str) -> Skin:
     """The faces of a Part.Shape, to measure from. InputError NO_FACES."""
     if not shape.Faces:
-        raise InputError("NO_FACES", label, "it has no faces to compare points with; choose a solid or a surface")
+        raise InputError(
+            "NO_FACES", label, "it has no faces to compare points with; choose a solid or a surface"
+        )
     deflection = max(FINEST, SHARE * shape.BoundBox.DiagonalLength)
     vertices, triangles, face = in_kernel_process(_by_face, shape, deflection)
     mesh = SolidMesh(vertices, triangles)
@@ -58,7 +60,12 @@ def _by_face(shape: Any, deflection: float) -> tuple[Array, Index, Index]:
 
 
 def _exact(
-    points: Array, faces: list[Any], face: Index, mesh: SolidMesh, search: Search, deflection: float,
+    points: Array,
+    faces: list[Any],
+    face: Index,
+    mesh: SolidMesh,
+    search: Search,
+    deflection: float,
     closed: bool,
 ) -> tuple[Array, Array]:
     import FreeCAD
@@ -76,6 +83,8 @@ def _exact(
         past = np.linalg.norm(foot - near, axis=1) > slack
         away = points[past] - near[past]
         size = np.maximum(np.abs(rough[past]), 1e-12)[:, None]
-        normal[past] = np.where(size > 1e-9, np.sign(rough[past])[:, None] * away / size, mesh.units[triangle[past]])
+        normal[past] = np.where(
+            size > 1e-9, np.sign(rough[past])[:, None] * away / size, mesh.units[triangle[past]]
+        )
         distance[past] = rough[past]
     return distance, normal

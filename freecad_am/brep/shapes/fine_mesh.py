@@ -18,7 +18,10 @@ from ..walls.sheet_places import Places
 from ..walls.surface_patch import patch_of
 from .tessellate import Tessellation, tessellated
 
-SLOW, QUICK = 150_000, 40_000  # triangles of a face that take the kernel eight seconds, and half a second
+SLOW, QUICK = (
+    150_000,
+    40_000,
+)  # triangles of a face that take the kernel eight seconds, and half a second
 PLACES = 7  # along u and along v at which a face is looked at
 SHARE = 0.75  # triangles of the kernel, of the area over the distance and the mean radius
 NEARER = 0.7  # of what is asked for; of the few triangles some are a quarter farther off
@@ -47,7 +50,10 @@ def _fine(shape: Any, chord: float) -> Tessellation:
     times = math.ceil(math.log(about / QUICK, 4.0))
     vertices, triangles, owner, nodes = tessellated(shape, NEARER * chord * 4.0**times)
     ends = Edges(triangles).ends
-    edge = float(np.linalg.norm(vertices[ends[:, 0]] - vertices[ends[:, 1]], axis=1).mean()) * 0.5**times
+    edge = (
+        float(np.linalg.norm(vertices[ends[:, 0]] - vertices[ends[:, 1]], axis=1).mean())
+        * 0.5**times
+    )
     places = Places(shape, patches, nodes, vertices, edge)
     for _ in range(times):
         vertices, triangles, owner = quartered(vertices, triangles, owner, places.middles)

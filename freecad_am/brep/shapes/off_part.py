@@ -51,9 +51,13 @@ def off_edges(shape: Any, names: Sequence[str], points: Array) -> Array:
     """Distances (n,) mm of points (n, 3), as many as MOST_ON_EDGES spread over them and NaN at the others, from edges of a
     shape, by their names, or from all; by the kernel."""
     known = {f"Edge{number}": edge for number, edge in enumerate(shape.Edges, start=1)}
-    edges = Part.makeCompound([known[name] for name in dict.fromkeys(names) if name in known] or list(shape.Edges))
+    edges = Part.makeCompound(
+        [known[name] for name in dict.fromkeys(names) if name in known] or list(shape.Edges)
+    )
     found = np.full(len(points), np.nan)
-    for k in np.unique(np.linspace(0, len(points) - 1, min(len(points), MOST_ON_EDGES)).round().astype(int)).tolist():
+    for k in np.unique(
+        np.linspace(0, len(points) - 1, min(len(points), MOST_ON_EDGES)).round().astype(int)
+    ).tolist():
         try:
             found[k] = _by_kernel(edges, points[k], False)
         except (RuntimeError, Part.OCCError):  # nobody knows there
@@ -79,7 +83,9 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
         found[mine[closer]], nearest[mine[closer]] = away[closer], number
     for number, solid in enumerate(solids):
         mine = np.flatnonzero(nearest == number)
-        found[mine] = _exact(solid.copy(False), points[mine], found[mine], allowed, _deflection(solid), True)
+        found[mine] = _exact(
+            solid.copy(False), points[mine], found[mine], allowed, _deflection(solid), True
+        )
     return found
 
 
@@ -90,9 +96,13 @@ def off_mesh(vertices: Array, triangles: Integers, points: Array) -> Array:
     if whole is None:
         return _off_pieces(vertices, triangles, points)
     away = np.where(whole.holds(points), 0.0, _away(_searched(vertices, triangles), points))
-    doubtful = away > DEFLECTION  # a piece inside out takes away from those that it cuts: its own side counts
+    doubtful = (
+        away > DEFLECTION
+    )  # a piece inside out takes away from those that it cuts: its own side counts
     if doubtful.any():
-        away[doubtful] = np.minimum(away[doubtful], _off_pieces(vertices, triangles, points[doubtful]))
+        away[doubtful] = np.minimum(
+            away[doubtful], _off_pieces(vertices, triangles, points[doubtful])
+        )
     return away
 
 
@@ -104,7 +114,9 @@ def _off_pieces(vertices: Array, triangles: Integers, points: Array) -> Array:
         pieces = repaired(vertices, triangles.astype(np.intp), "", np.inf, True).solids
     except InputError:  # the side of the nearest triangle is all there is
         return np.maximum(_signed(_searched(vertices, triangles), points), 0.0)
-    away = np.min([_away(_searched(piece.vertices, piece.triangles), points) for piece in pieces], axis=0)
+    away = np.min(
+        [_away(_searched(piece.vertices, piece.triangles), points) for piece in pieces], axis=0
+    )
     for piece in pieces:
         inside = inside_of(Body("", piece.vertices, piece.triangles.astype(np.int64)))
         if inside is not None:
@@ -148,7 +160,9 @@ class _Triangles:
         if self.box is None:
             return np.zeros(len(points))
         low, high = self.box
-        off: Array = np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1)
+        off: Array = np.linalg.norm(
+            np.maximum(np.maximum(low - points, points - high), 0.0), axis=1
+        )
         return off
 
     def away(self, points: Array) -> Array:
@@ -176,7 +190,9 @@ def _pieces(points: Array) -> list[Array]:
     return np.array_split(points, max(1, len(points) // PIECE))
 
 
-def _exact(shape: Any, points: Array, found: Array, allowed: float, deflection: float, solid: bool) -> Array:
+def _exact(
+    shape: Any, points: Array, found: Array, allowed: float, deflection: float, solid: bool
+) -> Array:
     """The distances, found by triangles within `deflection` mm, with those of the farthest places, and of what is over what
     is allowed, as the kernel gives them; by finer triangles where it fails, as it does beside a surface of revolution. No
     other place is told to be farther than the farthest one asked about."""
@@ -201,4 +217,8 @@ def _exact(shape: Any, points: Array, found: Array, allowed: float, deflection: 
 
 def _by_kernel(shape: Any, place: Array, solid: bool) -> float:
     point = FreeCAD.Vector(*place.tolist())
-    return 0.0 if solid and shape.isInside(point, INSIDE, True) else float(shape.distToShape(Part.Vertex(point))[0])
+    return (
+        0.0
+        if solid and shape.isInside(point, INSIDE, True)
+        else float(shape.distToShape(Part.Vertex(point))[0])
+    )

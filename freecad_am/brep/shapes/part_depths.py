@@ -31,7 +31,9 @@ def of_revolved(shape: Any, wall: RevolvedWall, label: str) -> PartDepths | None
     return _of(shape, wall.faces, label, revolved_places(wall), None)
 
 
-def of_faces(shape: Any, faces: Sequence[str], label: str, substrate: Body | None) -> PartDepths | None:
+def of_faces(
+    shape: Any, faces: Sequence[str], label: str, substrate: Body | None
+) -> PartDepths | None:
     """Of the part that faces are the wall of; what lies in the substrate does not count."""
     return _of(shape, faces, label, None, substrate)
 
@@ -52,7 +54,9 @@ def revolved_places(wall: RevolvedWall) -> Surface:
     azimuth = wall.start + (number + 0.5) / counts[row] * turn
     across = np.stack([tangent[row, 1], np.zeros(len(row)), -tangent[row, 0]], axis=1)
     areas = (radius * turn * wall.meridian.length / rows / counts)[row]
-    return Surface(wall.points(radius[row], height[row], azimuth), wall.directions(across, azimuth), areas)
+    return Surface(
+        wall.points(radius[row], height[row], azimuth), wall.directions(across, azimuth), areas
+    )
 
 
 def _of(
@@ -73,16 +77,25 @@ def _of(
     surface = _places(body, on) if surface is None else surface
     if not len(surface.points):
         return None
-    depths, thickness, by_face, share = measured(body, made.owner, names, surface, 3.0 * chord, substrate)
+    depths, thickness, by_face, share = measured(
+        body, made.owner, names, surface, 3.0 * chord, substrate
+    )
     codes = {face.hashCode(): name for name, face in zip(names, shape.Faces, strict=True)}
     owned = [[codes.get(face.hashCode(), "") for face in solid.Faces] for solid in solids]
-    left = [k for k, own in enumerate(owned) if not set(own) & set(faces)] if len(solids) > 1 else []
+    left = (
+        [k for k, own in enumerate(owned) if not set(own) & set(faces)] if len(solids) > 1 else []
+    )
     known = {name for k in left for name in owned[k]} | set(faces)
     rest = [k for k, name in enumerate(names) if name not in known]
     volumes = [abs(float(solid.Volume)) for solid in solids]
     return PartDepths(
-        label, share * sum(volumes), float(surface.areas.sum()), depths, thickness,
-        tuple(names[k] for k in rest), tuple(float(by_face[k]) for k in rest),
+        label,
+        share * sum(volumes),
+        float(surface.areas.sum()),
+        depths,
+        thickness,
+        tuple(names[k] for k in rest),
+        tuple(float(by_face[k]) for k in rest),
         tuple(float(shape.Faces[k].Area) for k in rest),
         tuple((f"Solid{k + 1}", volumes[k]) for k in left),
     )

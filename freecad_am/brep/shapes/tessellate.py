@@ -22,9 +22,15 @@ ANGLE = 0.35  # rad; of a turn from triangle to triangle in the first, coarse me
 def body(source: Any, name: str) -> Body:
     """The triangles of a Part.Shape with faces, or of a Mesh.Mesh, in its coordinates; InputError 'NO_FACES'."""
     mesh = hasattr(source, "Topology")
-    vertices, triangles = _rows(*source.Topology) if mesh else in_kernel_process(triangles_of, source, DEFLECTION)
+    vertices, triangles = (
+        _rows(*source.Topology) if mesh else in_kernel_process(triangles_of, source, DEFLECTION)
+    )
     if not len(triangles):
-        raise InputError("NO_FACES", name, "it has no faces to keep the nozzle clear of; choose a solid or a mesh")
+        raise InputError(
+            "NO_FACES",
+            name,
+            "it has no faces to keep the nozzle clear of; choose a solid or a mesh",
+        )
     return Body(name, vertices, triangles)
 
 
@@ -34,7 +40,9 @@ def triangles_of(shape: Any, deflection: float) -> tuple[Array, Index]:
 
 
 def _rows(points: Any, triangles: Any) -> tuple[Array, Index]:
-    return np.array([tuple(point) for point in points], dtype=np.float64), np.array(triangles, dtype=np.int64)
+    return np.array([tuple(point) for point in points], dtype=np.float64), np.array(
+        triangles, dtype=np.int64
+    )
 
 
 class Tessellation(NamedTuple):
@@ -52,7 +60,9 @@ def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
     import MeshPart  # slow to import
 
     # all at once, so that shared edges are divided alike; coarser around than the faces' own call would have it
-    MeshPart.meshFromShape(Shape=shape, LinearDeflection=chord, AngularDeflection=angle, Relative=False)
+    MeshPart.meshFromShape(
+        Shape=shape, LinearDeflection=chord, AngularDeflection=angle, Relative=False
+    )
     points, corners, owner, nodes, count = [], [], [], [], 0
     for k, face in enumerate(shape.Faces):
         own, triangles = face.tessellate(chord) if divided(face) else ([], [])
@@ -61,7 +71,9 @@ def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
         owner.append(np.full(len(triangles), k, dtype=np.intp))
         nodes.append(np.array(face.getUVNodes() if triangles else [], dtype=float).reshape(-1, 2))
         count += len(own)
-    return Tessellation(*welded(np.vstack(points), np.vstack(corners), np.concatenate(owner)), nodes)
+    return Tessellation(
+        *welded(np.vstack(points), np.vstack(corners), np.concatenate(owner)), nodes
+    )
 
 
 def divided(face: Any) -> bool:

@@ -48,18 +48,34 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
         row = int(np.argmax(np.where(best < SLIT, best, -1.0)))
         k = near[row, int(np.argmin(gap[row]))]
         raise InputError(
-            "GAP", label, "{} and {} are {:.3g} mm apart at {}; close the gap: edges must meet within {:g} mm",
-            wall.faces[owner[row]], wall.faces[owner[k]], best[row], place(middle[row]), SEWN,
+            "GAP",
+            label,
+            "{} and {} are {:.3g} mm apart at {}; close the gap: edges must meet within {:g} mm",
+            wall.faces[owner[row]],
+            wall.faces[owner[k]],
+            best[row],
+            place(middle[row]),
+            SEWN,
         )
     if count > 1:
         one, other = (np.flatnonzero(part == k) for k in (0, 1))
         distance, index = cKDTree(wall.vertices[one]).query(wall.vertices[other])
         k = int(np.argmin(distance))
-        names = [wall.faces[wall.patch[np.flatnonzero((wall.triangles == v).any(axis=1))[0]]]
-                 for v in (one[index[k]], other[k])]
+        names = [
+            wall.faces[wall.patch[np.flatnonzero((wall.triangles == v).any(axis=1))[0]]]
+            for v in (one[index[k]], other[k])
+        ]
         raise InputError(
-            "GAP", label, "the faces form {} separate pieces: {} and {} are {:.4g} mm apart at {}; choose connected faces, "
-            "edges meeting within {:g} mm", count, names[0], names[1], distance[k], place(wall.vertices[other[k]]), SEWN,
+            "GAP",
+            label,
+            "the faces form {} separate pieces: {} and {} are {:.4g} mm apart at {}; choose connected faces, "
+            "edges meeting within {:g} mm",
+            count,
+            names[0],
+            names[1],
+            distance[k],
+            place(wall.vertices[other[k]]),
+            SEWN,
         )
 
 
@@ -78,7 +94,9 @@ def _owners(wall: PatchWall, ends: Index) -> Index:
 def _to_segments(points: Array, segments: Array) -> Array:
     """Distances (n, k) of points (n, 3) to segments (n, k, 2, 3)."""
     start, chord = segments[:, :, 0], segments[:, :, 1] - segments[:, :, 0]
-    t = np.clip(dot(points[:, None] - start, chord) / np.maximum(dot(chord, chord), 1e-300), 0.0, 1.0)
+    t = np.clip(
+        dot(points[:, None] - start, chord) / np.maximum(dot(chord, chord), 1e-300), 0.0, 1.0
+    )
     distance: Array = np.linalg.norm(points[:, None] - start - t[..., None] * chord, axis=-1)
     return distance
 
@@ -90,8 +108,11 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
     if (edges.count > 2).any():
         at = middle[np.argmax(edges.count > 2)]
         raise InputError(
-            "BRANCHING_FACES", label, "more than two faces meet in one edge at {}; a wall branches by smooth faces with "
-            "openings: leave one of them out", place(at),
+            "BRANCHING_FACES",
+            label,
+            "more than two faces meet in one edge at {}; a wall branches by smooth faces with "
+            "openings: leave one of them out",
+            place(at),
         )
     two = edges.count == 2
     pair = wall.patch[edges.faces]
@@ -104,20 +125,32 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
         for k in np.unique(pair[joint, side]):
             mine = pair[joint, side] == k
             normals[side, mine] = wall.patches[k].at(wall.patches[k].inverse(ends[mine]))[1]
-    angle = np.arctan2(np.linalg.norm(np.cross(normals[0], normals[1]), axis=1), dot(normals[0], normals[1]))
+    angle = np.arctan2(
+        np.linalg.norm(np.cross(normals[0], normals[1]), axis=1), dot(normals[0], normals[1])
+    )
     worst = int(np.argmax(angle))
     if angle[worst] > CREASE:
         names = [wall.faces[k] for k in pair[joint[worst]]]
         raise InputError(
-            "CREASE", f"{label} {_edge_at(shape, ends[worst])}".strip(), "{} and {} meet at an angle of {:.3g} deg at {}; a "
+            "CREASE",
+            f"{label} {_edge_at(shape, ends[worst])}".strip(),
+            "{} and {} meet at an angle of {:.3g} deg at {}; a "
             "wall's faces must run on smoothly, within {:g} deg: round the edge, or deposit the faces one after the other",
-            names[0], names[1], np.degrees(angle[worst]), place(ends[worst]), np.degrees(CREASE),
+            names[0],
+            names[1],
+            np.degrees(angle[worst]),
+            place(ends[worst]),
+            np.degrees(CREASE),
         )
 
 
 def _edge_at(shape: Any, point: Array) -> str:
     vertex = Part.Vertex(FreeCAD.Vector(*point))
-    found = min(enumerate(shape.Edges, start=1), key=lambda one: one[1].distToShape(vertex)[0], default=(0, None))
+    found = min(
+        enumerate(shape.Edges, start=1),
+        key=lambda one: one[1].distToShape(vertex)[0],
+        default=(0, None),
+    )
     return f"Edge{found[0]}" if found[0] else ""
 
 
@@ -140,7 +173,10 @@ def refuse_tight_tube(tube: SurfaceWall, height: float, label: str) -> None:
     slopes = surface.derivatives(u, v)[1:]
     turns = []
     for step_u, step_v in ((STEP * tube.end, 0.0), (0.0, STEP * tube.period)):
-        ahead, back = normals(surface, u + step_u, v + step_v), normals(surface, u - step_u, v - step_v)
+        ahead, back = (
+            normals(surface, u + step_u, v + step_v),
+            normals(surface, u - step_u, v - step_v),
+        )
         turns.append((ahead - back) / (2.0 * (step_u + step_v)))
     radius = principal_radii(slopes, turns)
     at = np.unravel_index(int(np.argmin(radius)), radius.shape)
@@ -151,8 +187,13 @@ def refuse_tight_tube(tube: SurfaceWall, height: float, label: str) -> None:
 def _refuse_below(height: float, radius: float, point: Array, where: str) -> None:
     if radius < height * (1.0 - 1e-6):
         raise InputError(
-            "LAYER_HEIGHT", where, "layers of {:g} mm are higher than the wall's smallest radius of curvature, {:.3g} mm at "
-            "{}; use lower layers, or a larger radius there", height, radius, place(point),
+            "LAYER_HEIGHT",
+            where,
+            "layers of {:g} mm are higher than the wall's smallest radius of curvature, {:.3g} mm at "
+            "{}; use lower layers, or a larger radius there",
+            height,
+            radius,
+            place(point),
         )
 
 

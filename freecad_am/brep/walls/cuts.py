@@ -16,9 +16,18 @@ from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError, Text
 
-BENT, FOLDED = 0.3, -0.7  # cosines between the normals at the ends of an edge, and of a small part of it
-STEPS, CLOSER = np.linspace(0.0, 1.0, 33), 4  # on an edge at which normals are asked for, and how often between two of them
-ASKED, CLOSING = 12, 20  # cuts of triangles that are followed up, and steps to the place where the faces meet
+BENT, FOLDED = (
+    0.3,
+    -0.7,
+)  # cosines between the normals at the ends of an edge, and of a small part of it
+STEPS, CLOSER = (
+    np.linspace(0.0, 1.0, 33),
+    4,
+)  # on an edge at which normals are asked for, and how often between two of them
+ASKED, CLOSING = (
+    12,
+    20,
+)  # cuts of triangles that are followed up, and steps to the place where the faces meet
 CROSSING = 0.05  # rad; faces that touch at less run into each other, or are the same one
 
 
@@ -47,8 +56,11 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
                 break
         if len(row):
             raise InputError(
-                "SELF_INTERSECTION", f"{label} {wall.faces[k]}", "the face folds back and cuts itself at {}; give the "
-                "bend a larger radius than the tube", place(patch.at(start[:1])[0][0]),
+                "SELF_INTERSECTION",
+                f"{label} {wall.faces[k]}",
+                "the face folds back and cuts itself at {}; give the "
+                "bend a larger radius than the tube",
+                place(patch.at(start[:1])[0][0]),
             )
 
 
@@ -67,13 +79,17 @@ def refuse_crossing(wall: PatchWall, label: str) -> None:
         odd = np.abs(dot(chord, normal[pairs[:, 0]])) > 0.3 * length
         odd |= dot(normal[pairs[:, 0]], normal[pairs[:, 1]]) < 0.7
         pairs = pairs[odd]
-        shared = (wall.triangles[pairs[:, 0]][:, :, None] == wall.triangles[pairs[:, 1]][:, None, :]).any(axis=(1, 2))
+        shared = (
+            wall.triangles[pairs[:, 0]][:, :, None] == wall.triangles[pairs[:, 1]][:, None, :]
+        ).any(axis=(1, 2))
         pairs = pairs[~shared]
         for one, other in (pairs.T, pairs.T[::-1]):
             _refuse_cuts(wall, corner, normal, one, other, label)
 
 
-def _refuse_cuts(wall: PatchWall, corner: Array, normal: Array, one: Index, other: Index, label: str) -> None:
+def _refuse_cuts(
+    wall: PatchWall, corner: Array, normal: Array, one: Index, other: Index, label: str
+) -> None:
     """InputError SELF_INTERSECTION where edges of the triangles `one` (k,) cut the triangles `other` (k,), and so do their
     faces."""
     for k in range(3):
@@ -83,7 +99,10 @@ def _refuse_cuts(wall: PatchWall, corner: Array, normal: Array, one: Index, othe
         across = np.flatnonzero(low * high < 0.0)
         t = (low[across] / (low[across] - high[across]))[:, None]
         point = start[across] + t * (end[across] - start[across])
-        cut = closest(a[across], b[across], c[across], point)[0] < 1e-9 + 1e-9 * wall.mesh.longest_edge
+        cut = (
+            closest(a[across], b[across], c[across], point)[0]
+            < 1e-9 + 1e-9 * wall.mesh.longest_edge
+        )
         for at in np.flatnonzero(cut)[:: max(1, int(cut.sum()) // ASKED)]:
             faces = one[across[at]], other[across[at]]
             found = _crossing(wall, faces, point[at])
@@ -91,8 +110,12 @@ def _refuse_cuts(wall: PatchWall, corner: Array, normal: Array, one: Index, othe
                 continue
             names = sorted({wall.faces[wall.patch[face]] for face in faces})
             raise InputError(
-                "SELF_INTERSECTION", label, "the wall cuts itself at {} ({}); give bends a larger radius than the "
-                "tube, and let no faces cross", place(found), Text.joined(" and ", names),
+                "SELF_INTERSECTION",
+                label,
+                "the wall cuts itself at {} ({}); give bends a larger radius than the "
+                "tube, and let no faces cross",
+                place(found),
+                Text.joined(" and ", names),
             )
 
 

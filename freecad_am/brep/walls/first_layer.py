@@ -29,7 +29,11 @@ EXACT = 1e-9  # mm
 
 
 def find_wall(
-    shape: Any, faces: Sequence[str], substrate: Any, label: str = "part", substrate_label: str = "substrate"
+    shape: Any,
+    faces: Sequence[str],
+    substrate: Any,
+    label: str = "part",
+    substrate_label: str = "substrate",
 ) -> SurfaceWall:
     """The wall of a Part.Shape that stands on the solid `substrate`, in the coordinates of both.
 
@@ -47,31 +51,59 @@ def find_wall(
     if not loops:
         gap = min(face.distToShape(solid)[0] for _, face in named)
         raise InputError(
-            "NO_CONTACT", label, "the wall does not meet {} in a closed curve (nearest {:.4g} mm); let it reach into it all "
-            "around", substrate_label, gap,
+            "NO_CONTACT",
+            label,
+            "the wall does not meet {} in a closed curve (nearest {:.4g} mm); let it reach into it all "
+            "around",
+            substrate_label,
+            gap,
         )
     chains = sorted((_chain(loop, surface, solid) for loop in loops), key=lambda chain: chain[1])
     points, _, error = chains[-1]
     _refuse_inside(tube, solid, label, substrate_label)
     _refuse_edges(tube, points, named, label)
-    found = Text("the first layer lies on the wall and on {} within {} mm", substrate_label, deviation(error))
+    found = Text(
+        "the first layer lies on the wall and on {} within {} mm", substrate_label, deviation(error)
+    )
     issues = [Issue(NOTE, "FIRST_LAYER", found)]
     if len(chains) > 1:
-        issues.append(Issue(
-            NOTE, "SEVERAL_LOOPS", Text("{} meets {} in {} loops; layers start at the uppermost", label, substrate_label,
-                len(chains))
-        ))
+        issues.append(
+            Issue(
+                NOTE,
+                "SEVERAL_LOOPS",
+                Text(
+                    "{} meets {} in {} loops; layers start at the uppermost",
+                    label,
+                    substrate_label,
+                    len(chains),
+                ),
+            )
+        )
     return SurfaceWall(
-        tube.kind, tube.sizes, tube.frame, tube.end, points, tube.u, tube.v, tube.table, tube.period, label, tube.faces,
+        tube.kind,
+        tube.sizes,
+        tube.frame,
+        tube.end,
+        points,
+        tube.u,
+        tube.v,
+        tube.table,
+        tube.period,
+        label,
+        tube.faces,
         tuple(issues),
     )
 
 
 def _solid(substrate: Any, label: str) -> Any:
     if substrate is None or substrate.isNull() or not substrate.Solids:
-        raise InputError("NO_SOLID", label, "it is not a solid; choose a solid part for the wall to grow on")
+        raise InputError(
+            "NO_SOLID", label, "it is not a solid; choose a solid part for the wall to grow on"
+        )
     if substrate.Volume <= 0.0:
-        raise InputError("INSIDE_OUT", label, "the solid is turned inside out; repair it (Part, Check geometry)")
+        raise InputError(
+            "INSIDE_OUT", label, "the solid is turned inside out; repair it (Part, Check geometry)"
+        )
     return substrate
 
 
@@ -114,7 +146,9 @@ def _longer(tube: Tube) -> Any:
     """The tube as a face, a little longer below; None for a table, whose face is taken as it is."""
     if tube.kind == TABLE:
         return None
-    origin, x, y, z = (FreeCAD.Vector(*column) for column in (tube.frame[:3, 3], *tube.frame[:3, :3].T))
+    origin, x, y, z = (
+        FreeCAD.Vector(*column) for column in (tube.frame[:3, 3], *tube.frame[:3, :3].T)
+    )
     if tube.kind == TORUS:
         bend, radius = tube.sizes
         torus = Part.makeTorus(bend, radius)  # about Z, in the plane of X and Y
@@ -125,16 +159,19 @@ def _longer(tube: Tube) -> Any:
     radius, slope = tube.sizes
     foot, height = -TOUCH * np.cos(slope), tube.end * np.cos(slope)
     line = Part.makeLine(
-        FreeCAD.Vector(radius - TOUCH * np.sin(slope), 0, foot), FreeCAD.Vector(radius + tube.end * np.sin(slope), 0, height)
+        FreeCAD.Vector(radius - TOUCH * np.sin(slope), 0, foot),
+        FreeCAD.Vector(radius + tube.end * np.sin(slope), 0, height),
     )
     face = line.revolve(FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(0, 0, 1), 360)
     return _posed(face, origin, x, y, z)
 
 
 def _posed(face: Any, origin: Any, x: Any, y: Any, z: Any) -> Any:
-    face.Placement = FreeCAD.Placement(FreeCAD.Matrix(
-        x.x, y.x, z.x, origin.x, x.y, y.y, z.y, origin.y, x.z, y.z, z.z, origin.z, 0, 0, 0, 1
-    ))
+    face.Placement = FreeCAD.Placement(
+        FreeCAD.Matrix(
+            x.x, y.x, z.x, origin.x, x.y, y.y, z.y, origin.y, x.z, y.z, z.z, origin.z, 0, 0, 0, 1
+        )
+    )
     return face
 
 
@@ -146,11 +183,15 @@ def _chain(edges: list[Any], surface: Placed, solid: Any) -> tuple[Array, float,
     for edge in edges:
         count = max(5, int(np.ceil(POINTS * edge.Length / length)) + 1)
         points = np.array([tuple(point) for point in edge.discretize(Number=count)])
-        if last is not None and np.linalg.norm(points[-1] - last) < np.linalg.norm(points[0] - last):
+        if last is not None and np.linalg.norm(points[-1] - last) < np.linalg.norm(
+            points[0] - last
+        ):
             points = points[::-1]
         elif last is None and len(edges) > 1:
             following = np.array([tuple(vertex.Point) for vertex in edges[1].Vertexes])
-            ahead, behind = (np.linalg.norm(following - end, axis=1).min() for end in (points[-1], points[0]))
+            ahead, behind = (
+                np.linalg.norm(following - end, axis=1).min() for end in (points[-1], points[0])
+            )
             if behind < ahead:
                 points = points[::-1]
         last = points[-1]
@@ -194,10 +235,15 @@ def _feet(points: Array, under: Any) -> tuple[Array, Array]:
 
 
 def _refuse_inside(tube: Tube, solid: Any, label: str, substrate_label: str) -> None:
-    inside = [solid.isInside(FreeCAD.Vector(*point), 1e-7, False) for point in _ring(tube, tube.end)]
+    inside = [
+        solid.isInside(FreeCAD.Vector(*point), 1e-7, False) for point in _ring(tube, tube.end)
+    ]
     if any(inside):
         raise InputError(
-            "INSIDE", label, "both ends of the wall lie in {}; let one of them end outside of it", substrate_label
+            "INSIDE",
+            label,
+            "both ends of the wall lie in {}; let one of them end outside of it",
+            substrate_label,
         )
 
 
@@ -217,6 +263,8 @@ def _refuse_edges(tube: Tube, points: Array, named: list[tuple[str, Any]], label
             above = (u - np.interp(v, first_v[order], first_u[order], period=tube.period)) * rate
             if from_end.max() > ON_EDGE and above.max() > TOUCH:
                 raise InputError(
-                    "WALL_EDGE", f"{label} {name}", "it has an edge that is neither straight across the tube at its end nor "
+                    "WALL_EDGE",
+                    f"{label} {name}",
+                    "it has an edge that is neither straight across the tube at its end nor "
                     "below the first layer, which cannot be deposited yet; fill openings, and cut ends straight",
                 )

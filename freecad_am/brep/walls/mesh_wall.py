@@ -33,7 +33,12 @@ ABOVE = 0.5  # layer heights over a floor at which the wall about it begins
 
 
 def find_mesh_wall(
-    body: Body, substrate: Substrate | None, height: float, label: str, start_edges: Sequence[str], mend: float
+    body: Body,
+    substrate: Substrate | None,
+    height: float,
+    label: str,
+    start_edges: Sequence[str],
+    mend: float,
 ) -> MeshWall:
     """The wall of a mesh for layers of `height` mm, on a substrate, from the edges named, or from the platform under its
     lowest place along Z. Its edges are the loops of its boundary, Edge1 and on, the lowest middle first.
@@ -46,9 +51,14 @@ def find_mesh_wall(
     if about > MAX_TRIANGLES:
         enough = at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES))))
         raise InputError(
-            "TOO_FINE", "strategy.layer_height", "layers of {:g} mm ask for a mesh of the wall of about {} triangles, and "
-            "more than {:,} cannot be worked with; give more than {:g} mm, or deposit the wall in parts", height,
-            count(about), MAX_TRIANGLES, enough,
+            "TOO_FINE",
+            "strategy.layer_height",
+            "layers of {:g} mm ask for a mesh of the wall of about {} triangles, and "
+            "more than {:,} cannot be worked with; give more than {:g} mm, or deposit the wall in parts",
+            height,
+            count(about),
+            MAX_TRIANGLES,
+            enough,
         )
     wall = mesh_wall(body.vertices, body.triangles.astype(np.intp), height, label, mend)
     rims = rims_of(wall)
@@ -62,8 +72,12 @@ def find_mesh_wall(
     _refuse_loose(wall, start, label)
     issues = [*wall.issues, *start.issues, *several_loops(start.first, label)]
     return replace(
-        wall, first=tuple(start.first), behind=start.behind, rims=with_ends(wall, rims, tuple(start.first), start.behind),
-        issues=tuple(issues), ground=_lowest(wall) if substrate is None else None,
+        wall,
+        first=tuple(start.first),
+        behind=start.behind,
+        rims=with_ends(wall, rims, tuple(start.first), start.behind),
+        issues=tuple(issues),
+        ground=_lowest(wall) if substrate is None else None,
     )
 
 
@@ -96,11 +110,22 @@ def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
     for name in dict.fromkeys(names):
         number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0
         if not 1 <= number <= len(loops):
-            known = Text.joined(
-                ", ", (Text("Edge{} at {}", k + 1, place(loop.mean(axis=0))) for k, loop in enumerate(loops[:8]))
-            ) or "none"
+            known = (
+                Text.joined(
+                    ", ",
+                    (
+                        Text("Edge{} at {}", k + 1, place(loop.mean(axis=0)))
+                        for k, loop in enumerate(loops[:8])
+                    ),
+                )
+                or "none"
+            )
             raise InputError(
-                "UNKNOWN_EDGE", label, "it has no {}; choose from the open ends of the mesh, by height: {}", name, known
+                "UNKNOWN_EDGE",
+                label,
+                "it has no {}; choose from the open ends of the mesh, by height: {}",
+                name,
+                known,
             )
         chosen.append(_curve(loops[number - 1]))
     return _Start(chosen, np.zeros(len(wall.vertices), dtype=bool), [])
@@ -117,10 +142,15 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
     loops = _loops(wall)
     standing = [loop for loop in loops if loop[:, 2].max() < lowest + height]
     if standing:
-        text = Text("the first layer is the edge of {} at {}, which stands on the platform", label,
-                    place(standing[0].mean(axis=0)))
+        text = Text(
+            "the first layer is the edge of {} at {}, which stands on the platform",
+            label,
+            place(standing[0].mean(axis=0)),
+        )
         return _Start(
-            [_curve(loop) for loop in standing], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", text)]
+            [_curve(loop) for loop in standing],
+            np.zeros(len(wall.vertices), dtype=bool),
+            [Issue(NOTE, "FIRST_LAYER", text)],
         )
     corner = wall.vertices[wall.triangles]
     normal = doubled_areas(corner)
@@ -129,17 +159,30 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
         ground = PlaneGround(lowest + ABOVE * height)
         value = levels(wall, ground)
         first, _ = first_curves(wall, ground, value, rims_of(wall))
-        text = Text("the first layer runs {:g} mm over the floor of {}, which is not deposited", ABOVE * height, label)
+        text = Text(
+            "the first layer runs {:g} mm over the floor of {}, which is not deposited",
+            ABOVE * height,
+            label,
+        )
         if first:
             return _Start(first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", text)])
     if not loops:
         raise InputError(
-            "NO_START", label, "it stands on a point and has no open end to start from; give a substrate that it grows on, "
+            "NO_START",
+            label,
+            "it stands on a point and has no open end to start from; give a substrate that it grows on, "
             "or turn it so that an end lies on the platform",
         )
-    text = Text("the first layer is the lowest open end of {}, Edge1 at {}, which does not lie on the platform", label,
-                place(loops[0].mean(axis=0)))
-    return _Start([_curve(loops[0])], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", text)])
+    text = Text(
+        "the first layer is the lowest open end of {}, Edge1 at {}, which does not lie on the platform",
+        label,
+        place(loops[0].mean(axis=0)),
+    )
+    return _Start(
+        [_curve(loops[0])],
+        np.zeros(len(wall.vertices), dtype=bool),
+        [Issue(NOTE, "FIRST_LAYER", text)],
+    )
 
 
 def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
@@ -154,7 +197,11 @@ def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
         away = near.query(mine)[0]
         if away.min() > reach and len(mine) > 2:
             raise InputError(
-                "GAP", label, "it is {} pieces that do not hang together, and no layer starts on the one at {}, {:.4g} mm "
-                "from where layers start; choose its edge to start from too, or deposit it by itself", number,
-                place(mine[np.argmin(away)]), away.min(),
+                "GAP",
+                label,
+                "it is {} pieces that do not hang together, and no layer starts on the one at {}, {:.4g} mm "
+                "from where layers start; choose its edge to start from too, or deposit it by itself",
+                number,
+                place(mine[np.argmin(away)]),
+                away.min(),
             )

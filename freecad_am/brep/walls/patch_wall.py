@@ -26,11 +26,18 @@ from .start_edges import curves_along, curves_of
 from .substrate import Substrate
 
 EQUAL = 0.433  # area of a triangle with equal sides of 1
-COARSE, SHARE = 4.0, 0.04  # edges of a first mesh, which tells the radii: of the layer height, of the size of the wall
+COARSE, SHARE = (
+    4.0,
+    0.04,
+)  # edges of a first mesh, which tells the radii: of the layer height, of the size of the wall
 
 
 def find_patch_wall(
-    shape: Any, named: Sequence[tuple[str, Any]], substrate: Substrate | None, height: float, label: str = "part",
+    shape: Any,
+    named: Sequence[tuple[str, Any]],
+    substrate: Substrate | None,
+    height: float,
+    label: str = "part",
     start_edges: Sequence[str] = (),
 ) -> PatchWall:
     """The wall of the faces `named` of a shape, for layers of `height` mm, on a substrate, from edges of its own, or
@@ -59,24 +66,36 @@ def find_patch_wall(
     refuse_tight(wall, ~behind, height, label)
     issues += several_loops(first, label)
     return replace(
-        wall, first=tuple(first), behind=behind, rims=with_ends(wall, rims, tuple(first), behind), issues=tuple(issues),
+        wall,
+        first=tuple(first),
+        behind=behind,
+        rims=with_ends(wall, rims, tuple(first), behind),
+        issues=tuple(issues),
         ground=float(wall.vertices[:, 2].min()) if substrate is None else None,
     )
 
 
-def _from_platform(wall: PatchWall, faces: Sequence[Any], label: str) -> tuple[list[FirstCurve], list[Issue]]:
+def _from_platform(
+    wall: PatchWall, faces: Sequence[Any], label: str
+) -> tuple[list[FirstCurve], list[Issue]]:
     """The edges that stand on the platform, and a note. InputError NO_SUBSTRATE."""
     lowest = wall.vertices[np.argmin(wall.vertices[:, 2])]
     edges = standing_edges(faces, float(lowest[2]))
     if not edges:
         raise InputError(
-            "NO_SUBSTRATE", label, "there is nothing to grow on: none of its edges lies on the platform, the plane Z = "
-            "{:.4g} mm through its lowest place {}; choose a substrate, or the edges to start from", lowest[2],
+            "NO_SUBSTRATE",
+            label,
+            "there is nothing to grow on: none of its edges lies on the platform, the plane Z = "
+            "{:.4g} mm through its lowest place {}; choose a substrate, or the edges to start from",
+            lowest[2],
             place(lowest),
         )
     first = curves_along(edges, wall)
-    text = Text("the first layer is the edge of {} at {}, which stands on the platform", label,
-                place(first[0].points.mean(axis=0)))
+    text = Text(
+        "the first layer is the edge of {} at {}, which stands on the platform",
+        label,
+        place(first[0].points.mean(axis=0)),
+    )
     return first, [Issue(NOTE, "FIRST_LAYER", text)]
 
 
@@ -85,21 +104,38 @@ def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:
     if len(first) < 2:
         return []
     places = Text.joined(", ", (place(curve.points.mean(axis=0)) for curve in first))
-    return [Issue(
-        NOTE, "SEVERAL_LOOPS", Text("{} starts in {} curves, about {}: layers grow from all of them; choose the edges to "
-            "start from if only some are meant", label, len(first), places),
-    )]
+    return [
+        Issue(
+            NOTE,
+            "SEVERAL_LOOPS",
+            Text(
+                "{} starts in {} curves, about {}: layers grow from all of them; choose the edges to "
+                "start from if only some are meant",
+                label,
+                len(first),
+                places,
+            ),
+        )
+    ]
 
 
 def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
     """InputError TOO_FINE where even triangles with sides of a layer height are more than a mesh may have."""
     area = sum(face.Area for _, face in named)
-    about, enough = area / (EQUAL * height) / height, at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES))))
+    about, enough = (
+        area / (EQUAL * height) / height,
+        at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES)))),
+    )
     if about > MAX_TRIANGLES:
         raise InputError(
-            "TOO_FINE", "strategy.layer_height", "layers of {:g} mm ask for a mesh of the wall of about {} triangles, and "
-            "more than {:,} cannot be worked with; give more than {:g} mm, or deposit the wall in parts", height,
-            count(about), MAX_TRIANGLES, enough,
+            "TOO_FINE",
+            "strategy.layer_height",
+            "layers of {:g} mm ask for a mesh of the wall of about {} triangles, and "
+            "more than {:,} cannot be worked with; give more than {:g} mm, or deposit the wall in parts",
+            height,
+            count(about),
+            MAX_TRIANGLES,
+            enough,
         )
 
 
@@ -127,7 +163,9 @@ def _outward(wall: PatchWall, shape: Any) -> PatchWall:
     if outward_volume(wall) >= 0.0:
         return wall
     return replace(
-        wall, triangles=wall.triangles[:, ::-1].copy(), uv=wall.uv[:, ::-1].copy(),
+        wall,
+        triangles=wall.triangles[:, ::-1].copy(),
+        uv=wall.uv[:, ::-1].copy(),
         patches=tuple(replace(patch, sign=-patch.sign) for patch in wall.patches),
     )
 
@@ -139,36 +177,63 @@ def from_substrate(
     INSIDE, OWN_SUBSTRATE."""
     ground = substrate.ground(wall.mesh.typical_edge)
     value = contact.levels(wall, ground)
-    if np.abs(value).max() < contact.TOUCH + getattr(wall, "smoothing", 0.0):  # a mesh's smooth surface is off it
+    if np.abs(value).max() < contact.TOUCH + getattr(
+        wall, "smoothing", 0.0
+    ):  # a mesh's smooth surface is off it
         raise InputError(
-            "OWN_SUBSTRATE", label, "all of the wall lies on the surface of {}, as if it were a part of it; give the part "
-            "that is there before the wall, or none where the wall starts on the platform or from edges", substrate.label,
+            "OWN_SUBSTRATE",
+            label,
+            "all of the wall lies on the surface of {}, as if it were a part of it; give the part "
+            "that is there before the wall, or none where the wall starts on the platform or from edges",
+            substrate.label,
         )
     outside = value >= 0.0
     if outside.all():
         at, gap = nearest(wall.vertices, ground, value)
         raise InputError(
-            "NO_CONTACT", label, "the wall does not touch {}: it comes nearest at {}, {:.4g} mm away; move it so that it "
-            "reaches in, at most {:g} mm may be missing", substrate.label, place(wall.vertices[at]), gap, contact.TOUCH,
+            "NO_CONTACT",
+            label,
+            "the wall does not touch {}: it comes nearest at {}, {:.4g} mm away; move it so that it "
+            "reaches in, at most {:g} mm may be missing",
+            substrate.label,
+            place(wall.vertices[at]),
+            gap,
+            contact.TOUCH,
         )
     if not outside.any():
         at, depth = nearest(wall.vertices, ground, value)
         raise InputError(
-            "INSIDE", label, "the wall lies wholly in {} (at {} it is {:.4g} mm deep, and nowhere less); let it end "
-            "outside of the substrate", substrate.label, place(wall.vertices[at]), depth,
+            "INSIDE",
+            label,
+            "the wall lies wholly in {} (at {} it is {:.4g} mm deep, and nowhere less); let it end "
+            "outside of the substrate",
+            substrate.label,
+            place(wall.vertices[at]),
+            depth,
         )
     dropped = _stays_in(wall, outside, substrate)
     value[dropped] = np.minimum(value[dropped], -1e-6)
     first, off = contact.first_curves(wall, ground, value, rims)
     if not first:
         raise InputError(
-            "NO_CONTACT", label, "the wall meets {} in no curve that a layer can start from (shorter than a few {:.2g} mm); "
-            "let it reach in all around, or choose the edges to start from", substrate.label, wall.mesh.typical_edge,
+            "NO_CONTACT",
+            label,
+            "the wall meets {} in no curve that a layer can start from (shorter than a few {:.2g} mm); "
+            "let it reach in all around, or choose the edges to start from",
+            substrate.label,
+            wall.mesh.typical_edge,
         )
     found = Text("the first layer lies on the wall and on {}", substrate.label)
     if ground.facets:
-        found += (Text("; between the edges of its triangles it runs smoothly, up to {} mm off them, about as far as they "
-                       "are off what they stand for", deviation(off)) if off > 0.0 else "")
+        found += (
+            Text(
+                "; between the edges of its triangles it runs smoothly, up to {} mm off them, about as far as they "
+                "are off what they stand for",
+                deviation(off),
+            )
+            if off > 0.0
+            else ""
+        )
     else:
         found += Text(" within {} mm", deviation(off))
     return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]

@@ -49,10 +49,18 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     refuse_bare(list(zip(names, faces)), owner, label)
     triangles = _turned(triangles, owner, names, label)
     places = Places(shape, patches, nodes, vertices, edge)
-    made = refined(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES) if about < 2 * MAX_TRIANGLES else None
-    if made is None and about < MAX_TRIANGLES:  # long needles, as on slanted tubes: turned edges reach from side to side
+    made = (
+        refined(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES)
+        if about < 2 * MAX_TRIANGLES
+        else None
+    )
+    if (
+        made is None and about < MAX_TRIANGLES
+    ):  # long needles, as on slanted tubes: turned edges reach from side to side
         places = Places(shape, patches, nodes, vertices, edge)
-        made = refined(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES, turned=False)
+        made = refined(
+            vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES, turned=False
+        )
     if made is None:
         raise _too_fine(edge, about, label)
     vertices, triangles, owner = made
@@ -69,21 +77,39 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     used, index = np.unique(triangles, return_inverse=True)
     vertices, triangles = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
     return PatchWall(
-        vertices, triangles, owner, uv, tuple(turned), (), np.zeros(len(vertices), dtype=bool), (), label, tuple(names)
+        vertices,
+        triangles,
+        owner,
+        uv,
+        tuple(turned),
+        (),
+        np.zeros(len(vertices), dtype=bool),
+        (),
+        label,
+        tuple(names),
     )
 
 
 def _too_fine(edge: float, about: float, label: str) -> InputError:
     if about >= MAX_TRIANGLES:
         return InputError(
-            "TOO_FINE", label, "with edges of {:.3g} mm, by layer height and smallest radius, the mesh of the wall has more "
+            "TOO_FINE",
+            label,
+            "with edges of {:.3g} mm, by layer height and smallest radius, the mesh of the wall has more "
             "than {} triangles, about {:.2g}; use a larger layer height, round sharp bends more, or deposit the wall in "
-            "parts", edge, MAX_TRIANGLES, about,
+            "parts",
+            edge,
+            MAX_TRIANGLES,
+            about,
         )
     return InputError(
-        "TOO_FINE", label, "halving the edges of the mesh of the wall down to {:.3g} mm, by layer height and smallest "
+        "TOO_FINE",
+        label,
+        "halving the edges of the mesh of the wall down to {:.3g} mm, by layer height and smallest "
         "radius, comes to no end, though about {:.2g} triangles would do, as where a face is twisted like that of a coil; "
-        "make it of shorter faces, or deposit the wall in parts or as a solid", edge, about,
+        "make it of shorter faces, or deposit the wall in parts or as a solid",
+        edge,
+        about,
     )
 
 
@@ -106,7 +132,12 @@ def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
     order = []
     for face in shape.Faces:
         middle, area = face.CenterOfMass, face.Area
-        order.append(min(range(len(faces)), key=lambda k: given[k][0].distanceToPoint(middle) + abs(given[k][1] - area)))
+        order.append(
+            min(
+                range(len(faces)),
+                key=lambda k: given[k][0].distanceToPoint(middle) + abs(given[k][1] - area),
+            )
+        )
     return shape, order if len(set(order)) == len(order) else list(range(len(faces)))
 
 
@@ -130,7 +161,9 @@ def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Ind
     forward = half[:, :, 0] < half[:, :, 1]
     two = np.flatnonzero(edges.count == 2)
     one, other = edges.faces[two].T
-    ways = [forward[face, np.argmax(edges.of[face] == two[:, None], axis=1)] for face in (one, other)]
+    ways = [
+        forward[face, np.argmax(edges.of[face] == two[:, None], axis=1)] for face in (one, other)
+    ]
     against = ways[0] == ways[1]
     count = len(names)
     links: dict[int, list[tuple[int, bool]]] = {k: [] for k in range(count)}
@@ -165,6 +198,9 @@ def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Ind
 def _twisted(label: str, one: str, other: str) -> InputError:
     named = one if one == other else f"{one} and {other}"
     return InputError(
-        "NOT_ORIENTABLE", label, "{} cannot be turned to one side (a twisted band has no outside); divide the band, or "
-        "leave one of its faces out", named,
+        "NOT_ORIENTABLE",
+        label,
+        "{} cannot be turned to one side (a twisted band has no outside); divide the band, or "
+        "leave one of its faces out",
+        named,
     )

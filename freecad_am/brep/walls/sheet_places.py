@@ -26,7 +26,9 @@ class Places:
     nodes: for each face the parameters (k, 2) of the first vertices (n, 3), in any order.
     """
 
-    def __init__(self, shape: Any, patches: list[Patch], nodes: list[Array], vertices: Array, edge: float) -> None:
+    def __init__(
+        self, shape: Any, patches: list[Patch], nodes: list[Array], vertices: Array, edge: float
+    ) -> None:
         self.patches, self.curves = patches, _Curves(shape, edge)
         self.uv: dict[int, Array] = {}
         for k, patch in enumerate(patches):
@@ -70,7 +72,9 @@ class Places:
         found[known] = patch.inverse(points[known], start[known])
         half = 0.5 * np.linalg.norm(patch.at(one)[0] - patch.at(other)[0], axis=1)
         lost = ~known
-        lost[known] = ~(np.linalg.norm(patch.at(found[known])[0] - points[known], axis=1) < ASTRAY * half[known])
+        lost[known] = ~(
+            np.linalg.norm(patch.at(found[known])[0] - points[known], axis=1) < ASTRAY * half[known]
+        )
         found[lost] = patch.inverse(points[lost])
         # an edge across a narrow tube: the nearest place to its middle may be an end, and no halving would end
         tips = [patch.at(side[lost])[0] for side in (one, other)]

@@ -24,7 +24,9 @@ def standing_edges(faces: Sequence[Any], lowest: float) -> list[Any]:
         for edge in face.Edges:
             if edge.Degenerated or edge.isSeam(face):
                 continue
-            points = np.array([tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, SAMPLES)])
+            points = np.array(
+                [tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, SAMPLES)]
+            )
             if points[:, 2].max() < lowest + TOUCH:
                 at = np.round([*points[SAMPLES // 2], edge.Length], DIGITS) + 0.0
                 found.setdefault(tuple(at.tolist()), []).append(edge)

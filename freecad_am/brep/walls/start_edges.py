@@ -28,14 +28,23 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
     for name in dict.fromkeys(names):
         number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0
         if not 1 <= number <= len(shape.Edges):
-            raise InputError("UNKNOWN_EDGE", label, "it has no {}; choose from Edge1 to Edge{}", name, len(shape.Edges))
+            raise InputError(
+                "UNKNOWN_EDGE",
+                label,
+                "it has no {}; choose from Edge1 to Edge{}",
+                name,
+                len(shape.Edges),
+            )
         edge = shape.Edges[number - 1]
         points = np.array([tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, 9)])
         off = np.linalg.norm(wall.project(points)[0] - points, axis=1)
         if off.max() > ON_WALL:
             raise InputError(
-                "NO_START", f"{label} {name}", "the edge is {:.4g} mm off the wall at {}; choose edges of the wall's own "
-                "faces", off.max(), place(points[np.argmax(off)]),
+                "NO_START",
+                f"{label} {name}",
+                "the edge is {:.4g} mm off the wall at {}; choose edges of the wall's own faces",
+                off.max(),
+                place(points[np.argmax(off)]),
             )
         edges.append(edge)
     return curves_along(edges, wall)
@@ -75,7 +84,13 @@ def sampled(edge: Any, step: float) -> tuple[Array, Array]:
         points, along = _nodes(edge, t)
         between = (t[:-1, None] + np.diff(t)[:, None] * THIRDS).ravel()
         inner = np.array([tuple(edge.valueAt(one)) for one in between.tolist()])
-        off = FirstCurve(points, along, along, False).curve().nearest(inner)[0].reshape(-1, len(THIRDS)).max(axis=1)
+        off = (
+            FirstCurve(points, along, along, False)
+            .curve()
+            .nearest(inner)[0]
+            .reshape(-1, len(THIRDS))
+            .max(axis=1)
+        )
         bad = np.flatnonzero(off > WITHIN)
         if not len(bad):
             break

@@ -59,17 +59,26 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
         solid, issues = mesh_solid(mesh.vertices, mesh.triangles, label, mend)
         return Substrate(label, None, solid, None, issues)
     if source is None or source.isNull() or not source.Solids:
-        raise InputError("NO_SOLID", label,
-                         "it is not a solid; choose a solid part or a closed mesh for the wall to grow on")
+        raise InputError(
+            "NO_SOLID",
+            label,
+            "it is not a solid; choose a solid part or a closed mesh for the wall to grow on",
+        )
     for solid in source.Solids:
         if solid.Volume <= 0.0:
             raise InputError(
-                "INSIDE_OUT", label, "the solid around {} is turned inside out (volume {:.4g} mm3); repair it (Part, Check "
-                "geometry), or turn it (Part, Reverse shapes)", place(solid.BoundBox.Center), solid.Volume,
+                "INSIDE_OUT",
+                label,
+                "the solid around {} is turned inside out (volume {:.4g} mm3); repair it (Part, Check "
+                "geometry), or turn it (Part, Reverse shapes)",
+                place(solid.BoundBox.Center),
+                solid.Volume,
             )
     source = _as_one(source)
     made = in_kernel_process(tessellated, source.copy(), CHORD)
-    refuse_bare([(f"Face{number + 1}", face) for number, face in enumerate(source.Faces)], made.owner, label)
+    refuse_bare(
+        [(f"Face{number + 1}", face) for number, face in enumerate(source.Faces)], made.owner, label
+    )
     return Substrate(label, source, SolidMesh(made.vertices, made.triangles), made.owner)
 
 
@@ -82,25 +91,34 @@ def _as_one(shape: Any) -> Any:
     return fused if fused.Solids else shape
 
 
-def mesh_solid(points: Any, triangles: Any, label: str, mend: float = 0.0) -> tuple[SolidMesh, tuple[Issue, ...]]:
+def mesh_solid(
+    points: Any, triangles: Any, label: str, mend: float = 0.0
+) -> tuple[SolidMesh, tuple[Issue, ...]]:
     """The solid of a mesh's points (n, 3) and triangles (m, 3), points closer than SAME made one, triangles that then lack a
     corner left out; where that bounds no solid, what `mesh_repair` makes of it, and what that was. InputError NO_SOLID,
     BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING."""
     if not len(triangles):
-        raise InputError("NO_SOLID", label, "the mesh has no triangles; choose a closed mesh or a solid part")
+        raise InputError(
+            "NO_SOLID", label, "the mesh has no triangles; choose a closed mesh or a solid part"
+        )
     if not np.isfinite(points).all():
-        raise InputError("BAD_FILE", label, "the mesh has points that are not numbers; export it again")
+        raise InputError(
+            "BAD_FILE", label, "the mesh has points that are not numbers; export it again"
+        )
     vertices, corners, _ = welded(
-        np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), np.zeros(len(triangles), dtype=np.intp)
+        np.asarray(points, dtype=np.float64),
+        np.asarray(triangles, dtype=np.intp),
+        np.zeros(len(triangles), dtype=np.intp),
     )
     solid = SolidMesh(vertices, corners)
     try:
         solid.refuse_unsound(label)
     except InputError:
-        found = repaired(np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), label, mend)
+        found = repaired(
+            np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), label, mend
+        )
         begin = np.cumsum([0, *(len(one.vertices) for one in found.solids)])
         corners = np.vstack([one.triangles + at for one, at in zip(found.solids, begin)])
         return SolidMesh(np.vstack([one.vertices for one in found.solids]), corners), found.issues
     solid.refuse_crossing(label, CROSSED)
     return solid, ()
-

@@ -28,12 +28,23 @@ def patch_of(face: Any, where: str) -> Patch:
     if kind == "Plane":
         return Patch(PLANE, (), _frame(surface.Position, surface.Axis))
     if kind == "Cylinder":
-        return Patch(CYLINDER, (float(surface.Radius),), _frame(surface.Center, surface.Axis), periods=(TURN, 0.0))
+        return Patch(
+            CYLINDER,
+            (float(surface.Radius),),
+            _frame(surface.Center, surface.Axis),
+            periods=(TURN, 0.0),
+        )
     if kind == "Cone":
         sizes = (float(surface.Radius), float(surface.SemiAngle))
-        return _checked(Patch(CONE, sizes, _frame(surface.Center, surface.Axis), periods=(TURN, 0.0)), face, where)
+        return _checked(
+            Patch(CONE, sizes, _frame(surface.Center, surface.Axis), periods=(TURN, 0.0)),
+            face,
+            where,
+        )
     if kind == "Sphere":
-        return Patch(SPHERE, (float(surface.Radius),), _frame(surface.Center, (0, 0, 1)), periods=(TURN, 0.0))
+        return Patch(
+            SPHERE, (float(surface.Radius),), _frame(surface.Center, (0, 0, 1)), periods=(TURN, 0.0)
+        )
     if kind == "Toroid" and surface.MajorRadius > surface.MinorRadius:
         sizes = (float(surface.MajorRadius), float(surface.MinorRadius))
         return Patch(TORUS, sizes, _frame(surface.Center, surface.Axis), periods=(TURN, TURN))
@@ -62,7 +73,9 @@ def _spline(face: Any, where: str) -> Patch:
                 surface = surface.toBSpline()
         except (RuntimeError, AttributeError, Part.OCCError):
             raise InputError(
-                "ROUGH_WALL", where, "its surface ({}) cannot be converted to a spline; rebuild the face, for instance "
+                "ROUGH_WALL",
+                where,
+                "its surface ({}) cannot be converted to a spline; rebuild the face, for instance "
                 "as a loft",
                 surface.TypeId.removeprefix("Part::Geom"),
             ) from None
@@ -76,23 +89,32 @@ def _spline(face: Any, where: str) -> Patch:
     poles = np.concatenate([points * weights[..., None], weights[..., None]], axis=-1)
     knots_u, knots_v = (
         np.repeat(np.array(knots), np.array(counts))
-        for knots, counts in ((surface.getUKnots(), surface.getUMultiplicities()),
-                              (surface.getVKnots(), surface.getVMultiplicities()))
+        for knots, counts in (
+            (surface.getUKnots(), surface.getUMultiplicities()),
+            (surface.getVKnots(), surface.getVMultiplicities()),
+        )
     )
     low_u, high_u, low_v, high_v = surface.bounds()
-    periods = (high_u - low_u if surface.isUClosed() else 0.0, high_v - low_v if surface.isVClosed() else 0.0)
+    periods = (
+        high_u - low_u if surface.isUClosed() else 0.0,
+        high_v - low_v if surface.isVClosed() else 0.0,
+    )
     return Patch(SPLINE, (), np.eye(4), 1.0, periods, knots_u, knots_v, poles)
 
 
 def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
     """InputError ROUGH_WALL where the spline has an edge along a line of knots."""
     ranges = np.reshape(face.ParameterRange, (2, 2))
-    for axis, (knots, count) in enumerate(((patch.knots_u, patch.poles.shape[0]), (patch.knots_v, patch.poles.shape[1]))):
+    for axis, (knots, count) in enumerate(
+        ((patch.knots_u, patch.poles.shape[0]), (patch.knots_v, patch.poles.shape[1]))
+    ):
         degree = len(knots) - count - 1
         found, times = np.unique(knots, return_counts=True)
         low, high = max(ranges[axis, 0], knots[degree]), min(ranges[axis, 1], knots[count])
         step = 1e-7 * (knots[count] - knots[degree])
-        for knot in found[(times >= degree) & (found > low + 9.0 * step) & (found < high - 9.0 * step)]:
+        for knot in found[
+            (times >= degree) & (found > low + 9.0 * step) & (found < high - 9.0 * step)
+        ]:
             uv = np.empty((9, 2))
             uv[:, axis], uv[:, 1 - axis] = knot, np.linspace(*ranges[1 - axis], 11)[1:-1]
             side = step * np.eye(2)[axis]
@@ -101,8 +123,12 @@ def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
             if turn.max() > KINK:
                 at = ", ".join(f"{number:.4g}" for number in points[np.argmax(turn)])
                 raise InputError(
-                    "ROUGH_WALL", where, "at ({}) the face has an edge within itself, of {:.3g} deg; round it, or divide "
-                    "the face there and deposit its parts one after the other", at, np.degrees(turn.max()),
+                    "ROUGH_WALL",
+                    where,
+                    "at ({}) the face has an edge within itself, of {:.3g} deg; round it, or divide "
+                    "the face there and deposit its parts one after the other",
+                    at,
+                    np.degrees(turn.max()),
                 )
 
 
@@ -110,13 +136,22 @@ def _checked(patch: Patch, face: Any, where: str) -> Patch:
     """The patch, if it is the face's surface. InputError ROUGH_WALL."""
     low_u, high_u, low_v, high_v = face.ParameterRange
     surface = face.Surface
-    places = [(u, v) for u in np.linspace(low_u, high_u, 9)[1:-1] for v in np.linspace(low_v, high_v, 9)[1:-1]]
+    places = [
+        (u, v)
+        for u in np.linspace(low_u, high_u, 9)[1:-1]
+        for v in np.linspace(low_v, high_v, 9)[1:-1]
+    ]
     points = np.array([tuple(surface.value(u, v)) for u, v in places])
     off = np.linalg.norm(patch.at(patch.inverse(points, np.array(places)))[0] - points, axis=1)
     if off.max() > ERROR:
         at = ", ".join(f"{number:.4g}" for number in points[np.argmax(off)])
         raise InputError(
-            "ROUGH_WALL", where, "at ({}) it is {:.3g} mm off the spline that stands for it, more than {:g} mm; rebuild the "
-            "face, for instance as a loft or a sweep", at, off.max(), ERROR,
+            "ROUGH_WALL",
+            where,
+            "at ({}) it is {:.3g} mm off the spline that stands for it, more than {:g} mm; rebuild the "
+            "face, for instance as a loft or a sweep",
+            at,
+            off.max(),
+            ERROR,
         )
     return patch

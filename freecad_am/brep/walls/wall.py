@@ -38,10 +38,14 @@ class Tube:
 
     def surface(self) -> Placed:
         """The surface in part coordinates."""
-        return Placed(own_surface(self.kind, self.sizes, self.u, self.v, self.table, self.period), self.frame)
+        return Placed(
+            own_surface(self.kind, self.sizes, self.u, self.v, self.table, self.period), self.frame
+        )
 
 
-def tubes(shape: Any, names: Sequence[str], label: str) -> tuple[list[tuple[str, Any]], tuple[Tube, Tube]]:
+def tubes(
+    shape: Any, names: Sequence[str], label: str
+) -> tuple[list[tuple[str, Any]], tuple[Tube, Tube]]:
     """The faces of the wall and its surface, told once from each end: (named faces, (from one end, from the other)).
 
     names: of the wall's faces; when left out the only face that is not flat. Raises InputError NO_WALL, UNKNOWN_FACE,
@@ -52,8 +56,11 @@ def tubes(shape: Any, names: Sequence[str], label: str) -> tuple[list[tuple[str,
     kind = _ANALYTIC.get(first.Surface.TypeId, TABLE)
     if kind == TABLE and len(named) > 1:
         raise InputError(
-            "NOT_ONE_SURFACE", label, "{} is not a torus, cylinder or cone: a wall of several faces must be of one of "
-            "these; choose one face", first_name,
+            "NOT_ONE_SURFACE",
+            label,
+            "{} is not a torus, cylinder or cone: a wall of several faces must be of one of "
+            "these; choose one face",
+            first_name,
         )
     for name, face in named[1:]:
         _refuse_other(first, face, f"{label} {name}", first_name)
@@ -69,11 +76,15 @@ def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any
     """The faces of a shape by their names, Face1 and on. InputError NO_WALL without any, UNKNOWN_FACE when one of `names`
     is none of them."""
     if shape is None or shape.isNull() or not shape.Faces:
-        raise InputError("NO_WALL", label, "it has no faces; choose a part with the faces of the wall")
+        raise InputError(
+            "NO_WALL", label, "it has no faces; choose a part with the faces of the wall"
+        )
     known = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
     for name in names:
         if name not in known:
-            raise InputError("UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(known))
+            raise InputError(
+                "UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(known)
+            )
     return known
 
 
@@ -81,9 +92,16 @@ def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any
     known = faces_by_name(shape, names, label)
     if names:
         return [(name, known[name]) for name in dict.fromkeys(names)]
-    curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"]
+    curved = [
+        (name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"
+    ]
     if len(curved) != 1:
-        raise InputError("NO_WALL", label, "it has {} faces that are not flat; name the wall's in part.faces", len(curved))
+        raise InputError(
+            "NO_WALL",
+            label,
+            "it has {} faces that are not flat; name the wall's in part.faces",
+            len(curved),
+        )
     return curved
 
 
@@ -91,12 +109,20 @@ def _refuse_other(first: Any, face: Any, where: str, first_name: str) -> None:
     """InputError unless both faces lie on one surface."""
     surface = first.Surface
     low_u, high_u, low_v, high_v = face.ParameterRange
-    points = [face.valueAt(a, b) for a in np.linspace(low_u, high_u, 4) for b in np.linspace(low_v, high_v, 4)]
+    points = [
+        face.valueAt(a, b)
+        for a in np.linspace(low_u, high_u, 4)
+        for b in np.linspace(low_v, high_v, 4)
+    ]
     off = max((surface.value(*surface.parameter(point)) - point).Length for point in points)
     if surface.TypeId != face.Surface.TypeId or off > AGREEMENT_MM:
         raise InputError(
-            "NOT_ONE_SURFACE", where, "it is not on the surface of {} ({:.3g} mm off); walls of several surfaces cannot be "
-            "deposited yet: choose faces of one torus, cylinder or cone", first_name, off,
+            "NOT_ONE_SURFACE",
+            where,
+            "it is not on the surface of {} ({:.3g} mm off); walls of several surfaces cannot be "
+            "deposited yet: choose faces of one torus, cylinder or cone",
+            first_name,
+            off,
         )
 
 
@@ -105,19 +131,31 @@ def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
     surface, rising, around = faces[0].Surface, [], []
     for face in faces:
         low_u, high_u, low_v, high_v = face.ParameterRange
-        along, turn = ((low_u, high_u), (low_v, high_v)) if kind == TORUS else ((low_v, high_v), (low_u, high_u))
+        along, turn = (
+            ((low_u, high_u), (low_v, high_v))
+            if kind == TORUS
+            else ((low_v, high_v), (low_u, high_u))
+        )
         middle = face.valueAt(0.5 * (low_u + high_u), 0.5 * (low_v + high_v))
         at = surface.parameter(middle)
-        rising.append(_about(at[0] if kind == TORUS else at[1], along, TURN if kind == TORUS else 0.0))
+        rising.append(
+            _about(at[0] if kind == TORUS else at[1], along, TURN if kind == TORUS else 0.0)
+        )
         around.append(_about(at[1] if kind == TORUS else at[0], turn, TURN))
     if not _covered(around):
         raise InputError(
-            "NOT_CLOSED", label, "the faces of the wall do not close around; walls that are open (half shells) cannot be "
+            "NOT_CLOSED",
+            label,
+            "the faces of the wall do not close around; walls that are open (half shells) cannot be "
             "deposited yet: choose a full tube",
         )
     low, high = min(low for low, _ in rising), max(high for _, high in rising)
     if kind == TORUS and high - low > TURN - 1e-6:
-        raise InputError("NO_WALL", label, "a whole ring has no end to start from; cut it where it stands on the substrate")
+        raise InputError(
+            "NO_WALL",
+            label,
+            "a whole ring has no end to start from; cut it where it stands on the substrate",
+        )
     return low, high
 
 
@@ -148,7 +186,13 @@ def _torus(surface: Any, start: float, end: float, faces: tuple[str, ...]) -> Tu
     frame = np.eye(4)
     frame[:3, :3] = np.column_stack([out, np.cross(up, out), up])
     frame[:3, 3] = centre + surface.MajorRadius * out
-    return Tube(TORUS, (float(surface.MajorRadius), float(surface.MinorRadius)), frame, abs(end - start), faces)
+    return Tube(
+        TORUS,
+        (float(surface.MajorRadius), float(surface.MinorRadius)),
+        frame,
+        abs(end - start),
+        faces,
+    )
 
 
 def _cone(surface: Any, start: float, end: float, faces: tuple[str, ...]) -> Tube:
@@ -157,7 +201,9 @@ def _cone(surface: Any, start: float, end: float, faces: tuple[str, ...]) -> Tub
     axis = axis if (high - low) @ axis > 0.0 else -axis
     heights = [(point - centre) @ axis for point in (low, high)]
     feet = [centre + height * axis for height in heights]
-    radius, upper = (float(np.linalg.norm(point - foot)) for point, foot in zip((low, high), feet, strict=True))
+    radius, upper = (
+        float(np.linalg.norm(point - foot)) for point, foot in zip((low, high), feet, strict=True)
+    )
     slope = float(np.arctan2(upper - radius, heights[1] - heights[0]))
     out = _unit((low - feet[0]) if radius > upper else (high - feet[1]))
     frame = np.eye(4)
@@ -173,8 +219,15 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
     closed_v = surface.isVClosed() and _spans(surface.bounds()[2:], low_v, high_v)
     if closed_u == closed_v:
         what = "closes on itself both ways" if closed_u else "has no closed direction"
-        raise InputError("NOT_CLOSED", f"{label} {faces[0]}", "it {}; choose a tube that is closed around", Word(what))
-    along, around = ((low_v, high_v), (low_u, high_u)) if closed_u else ((low_u, high_u), (low_v, high_v))
+        raise InputError(
+            "NOT_CLOSED",
+            f"{label} {faces[0]}",
+            "it {}; choose a tube that is closed around",
+            Word(what),
+        )
+    along, around = (
+        ((low_v, high_v), (low_u, high_u)) if closed_u else ((low_u, high_u), (low_v, high_v))
+    )
 
     def value(a: float, b: float) -> Any:
         return surface.value(b, a) if closed_u else surface.value(a, b)
@@ -188,16 +241,26 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
     while True:
         u, v = np.linspace(0.0, span, n + 1), period * np.arange(m) / m
         points = sampled(along[0] + u, around[0] + v)
-        rows, columns = (u[:-1] + 0.5 * u[1])[:: max(1, n // 16)], (v + 0.5 * v[1])[:: max(1, m // 16)]
+        rows, columns = (
+            (u[:-1] + 0.5 * u[1])[:: max(1, n // 16)],
+            (v + 0.5 * v[1])[:: max(1, m // 16)],
+        )
         made = own_surface(TABLE, (), u, v, points, period)
         found = made.point(*np.meshgrid(rows, columns, indexing="ij"))
-        error = float(np.linalg.norm(found - sampled(along[0] + rows, around[0] + columns), axis=-1).max())
+        error = float(
+            np.linalg.norm(found - sampled(along[0] + rows, around[0] + columns), axis=-1).max()
+        )
         if error <= TABLE_ERROR:
             break
         if n >= LARGEST_TABLE[0]:
             raise InputError(
-                "ROUGH_WALL", f"{label} {faces[0]}", "the wall bends too sharply: {:.3g} mm off between {} x {} samples; "
-                "smooth it, or cut it where it has an edge", error, n, m,
+                "ROUGH_WALL",
+                f"{label} {faces[0]}",
+                "the wall bends too sharply: {:.3g} mm off between {} x {} samples; "
+                "smooth it, or cut it where it has an edge",
+                error,
+                n,
+                m,
             )
         n, m = 2 * n, 2 * m
     turned = points[::-1, ::-1]  # both ways, so that the outside stays outside
@@ -212,15 +275,23 @@ def _spans(bounds: Any, low: float, high: float) -> bool:
 
 
 def _refuse_seam(
-    surface: Any, closed_u: bool, along: tuple[float, float], around: tuple[float, float], where: str
+    surface: Any,
+    closed_u: bool,
+    along: tuple[float, float],
+    around: tuple[float, float],
+    where: str,
 ) -> None:
     """InputError where a closed surface has an edge along its seam."""
     for a in np.linspace(*along, 5)[1:-1]:
         ends = [surface.tangent(b, a)[0] if closed_u else surface.tangent(a, b)[1] for b in around]
         one, other = (_unit(_array(end)) for end in ends)
         if np.linalg.norm(one - other) > SMOOTH:
-            raise InputError("ROUGH_WALL", where, "it has an edge along its seam, which cannot be deposited yet; make it "
-                             "smooth there")
+            raise InputError(
+                "ROUGH_WALL",
+                where,
+                "it has an edge along its seam, which cannot be deposited yet; make it "
+                "smooth there",
+            )
 
 
 def _array(vector: Any) -> Array:

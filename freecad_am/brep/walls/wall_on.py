@@ -25,12 +25,20 @@ FLAT = "Part::GeomPlane"
 MOST_NAMED = 8  # faces named in a message
 BELOW = 9  # places up the tube at which it is told whether it stays in the substrate's box
 # what is not a closed tube of one surface that starts in one loop may still be a wall
-OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"})
+OTHER_KIND = frozenset(
+    {"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"}
+)
 
 
 def wall_on(
-    shape: Any, faces: Sequence[str], substrate: Any, height: float, label: str = "part",
-    substrate_label: str = "substrate", start_edges: Sequence[str] = (), mend: float = 0.0,
+    shape: Any,
+    faces: Sequence[str],
+    substrate: Any,
+    height: float,
+    label: str = "part",
+    substrate_label: str = "substrate",
+    start_edges: Sequence[str] = (),
+    mend: float = 0.0,
     fronts: bool = False,
 ) -> SurfaceWall | PatchWall:
     """The wall of a Part.Shape, or of a mesh (Body), for layers of `height` mm, in its coordinates. mend: the largest hole
@@ -49,8 +57,14 @@ def wall_on(
 
 
 def _wall_on(
-    shape: Any, faces: Sequence[str], carrier: Substrate | None, height: float, label: str, start_edges: Sequence[str],
-    mend: float, fronts: bool,
+    shape: Any,
+    faces: Sequence[str],
+    carrier: Substrate | None,
+    height: float,
+    label: str,
+    start_edges: Sequence[str],
+    mend: float,
+    fronts: bool,
 ) -> SurfaceWall | PatchWall:
     if isinstance(shape, Body):
         return find_mesh_wall(shape, carrier, height, label, start_edges, mend)
@@ -82,7 +96,9 @@ def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
         return False
     if not any(issue.code == "SEVERAL_LOOPS" for issue in tube.issues):
         return True
-    below = surface.point(np.linspace(0.0, 1.0, BELOW)[:, None] * u, np.broadcast_to(v, (BELOW, len(v)))).reshape(-1, 3)
+    below = surface.point(
+        np.linspace(0.0, 1.0, BELOW)[:, None] * u, np.broadcast_to(v, (BELOW, len(v)))
+    ).reshape(-1, 3)
     box = solid.BoundBox
     low, high = np.array([box.XMin, box.YMin, box.ZMin]), np.array([box.XMax, box.YMax, box.ZMax])
     return bool(((below > low - 1e-3) & (below < high + 1e-3)).all())
@@ -101,17 +117,33 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         return list(known.items())
     curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != FLAT]
     if not curved or not _one_piece([face for _, face in curved]):
-        listed = ", ".join(name for name, _ in curved[:MOST_NAMED]) + (", ..." if len(curved) > MOST_NAMED else "") or "none"
-        raise InputError(
-            "NO_WALL", label, "it is a solid whose faces that are not flat ({}) are not one wall; name the faces of the "
-            "wall: part.faces of a job, or select them", listed
+        listed = (
+            ", ".join(name for name, _ in curved[:MOST_NAMED])
+            + (", ..." if len(curved) > MOST_NAMED else "")
+            or "none"
         )
-    flat = next((name for name, face in known.items() if face.Surface.TypeId == FLAT
-                 and any(_runs_on(face, other) for _, other in curved)), "")
+        raise InputError(
+            "NO_WALL",
+            label,
+            "it is a solid whose faces that are not flat ({}) are not one wall; name the faces of the "
+            "wall: part.faces of a job, or select them",
+            listed,
+        )
+    flat = next(
+        (
+            name
+            for name, face in known.items()
+            if face.Surface.TypeId == FLAT and any(_runs_on(face, other) for _, other in curved)
+        ),
+        "",
+    )
     if flat:
         raise InputError(
-            "NO_WALL", label, "its faces that are not flat run on smoothly into {}, which is; name the faces of the wall: "
-            "part.faces of a job, or select them", flat
+            "NO_WALL",
+            label,
+            "its faces that are not flat run on smoothly into {}, which is; name the faces of the wall: "
+            "part.faces of a job, or select them",
+            flat,
         )
     return curved
 
@@ -154,15 +186,31 @@ def _as_tube(
         return None
     search = substrate.solid.searched(wall.mesh.typical_edge)
     v = 2.0 * np.pi * np.arange(12) / 12
-    lowest = [search.signed(one.surface().point(0.0 * v, v * one.period / (2.0 * np.pi)))[0].mean() for one in both]
+    lowest = [
+        search.signed(one.surface().point(0.0 * v, v * one.period / (2.0 * np.pi)))[0].mean()
+        for one in both
+    ]
     tube = both[int(np.argmin(lowest))]
     surface = tube.surface()
     u, at = surface.inverse(ends[0].points)
     rate = np.linalg.norm(surface.derivatives(u, at)[1], axis=1)
-    if np.abs((u - tube.end) * rate).max() > 1e-3 or len([rim for rim in wall.rims if rim.closed]) != len(wall.rims) \
-            or len(wall.rims) > 2:
+    if (
+        np.abs((u - tube.end) * rate).max() > 1e-3
+        or len([rim for rim in wall.rims if rim.closed]) != len(wall.rims)
+        or len(wall.rims) > 2
+    ):
         return None
     return SurfaceWall(
-        tube.kind, tube.sizes, tube.frame, tube.end, wall.first[0].points, tube.u, tube.v, tube.table, tube.period, label,
-        tube.faces, wall.issues,
+        tube.kind,
+        tube.sizes,
+        tube.frame,
+        tube.end,
+        wall.first[0].points,
+        tube.u,
+        tube.v,
+        tube.table,
+        tube.period,
+        label,
+        tube.faces,
+        wall.issues,
     )

@@ -27,7 +27,9 @@ from .tolerances import ABOVE_FACES, CHORD
 # length of the pieces the deposit is looked at as, mm, near nozzles and near links
 GRAIN, LINK_GRAIN = 1.5, 5.0
 HALVINGS = 6  # of a nozzle's length: to a hundredth of it
-REMEMBERED = 25_000  # points of beads whose ends are known at most: of longer ones they take too much memory
+REMEMBERED = (
+    25_000  # points of beads whose ends are known at most: of longer ones they take too much memory
+)
 
 
 class Bead(Protocol):
@@ -65,9 +67,21 @@ class Beads(NamedTuple):
         first = np.zeros(len(points), dtype=bool)
         first[np.cumsum(counts) - counts] = True
         return cls(
-            points, np.concatenate([bead.build for bead in beads]), np.concatenate([bead.tool for bead in beads]),
-            np.concatenate([np.full(len(bead.points), width) if bead.width is None else bead.width for bead in beads]),
-            np.concatenate([np.full(len(bead.points), height) if bead.height is None else bead.height for bead in beads]),
+            points,
+            np.concatenate([bead.build for bead in beads]),
+            np.concatenate([bead.tool for bead in beads]),
+            np.concatenate(
+                [
+                    np.full(len(bead.points), width) if bead.width is None else bead.width
+                    for bead in beads
+                ]
+            ),
+            np.concatenate(
+                [
+                    np.full(len(bead.points), height) if bead.height is None else bead.height
+                    for bead in beads
+                ]
+            ),
             first,
         )
 
@@ -101,10 +115,15 @@ class BeadEnds:
         starts = np.flatnonzero(beads.first)
         ends = np.append(starts[1:], len(beads.points)) - 1
         rows, when = np.concatenate([ends, starts]), np.concatenate([ends + 1, starts])
-        heights = standing_heights(deposit, size, beads.points[rows], beads.tool[rows], beads.height[rows], when)
+        heights = standing_heights(
+            deposit, size, beads.points[rows], beads.tool[rows], beads.height[rows], when
+        )
         found = []
         for some in np.split(np.arange(len(rows)), 2):
-            point, height = np.full((len(beads.points) + 1, 3), np.nan), np.zeros(len(beads.points) + 1)
+            point, height = (
+                np.full((len(beads.points) + 1, 3), np.nan),
+                np.zeros(len(beads.points) + 1),
+            )
             point[when[some]], height[when[some]] = beads.points[rows[some]], heights[some]
             found.append(_Ends(point, height))
         self._ends = found
@@ -124,8 +143,13 @@ class BeadEnds:
         bodies, deposit = np.zeros(len(tip)), np.zeros(len(tip))
         for end in self._ends:
             away = np.linalg.norm(tip - end.point[deposited], axis=1)
-            bodies, deposit = np.fmax(bodies, about - away), np.fmax(deposit, end.height[deposited] - away)
-        return Nozzle(travelling(*self._size, bodies).bodies, travelling(*self._size, deposit).deposit)
+            bodies, deposit = (
+                np.fmax(bodies, about - away),
+                np.fmax(deposit, end.height[deposited] - away),
+            )
+        return Nozzle(
+            travelling(*self._size, bodies).bodies, travelling(*self._size, deposit).deposit
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +165,9 @@ def _made(asked: _Asked) -> BeadEnds:
     return BeadEnds(asked.beads, asked.size)
 
 
-def standing_heights(deposit: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index) -> Array:
+def standing_heights(
+    deposit: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index
+) -> Array:
     """(k,) mm over the tips (k, 3) on points of beads, below which nozzles along unit axes (k, 3) are not looked at there.
 
     The tip stands in the bead of the height (k,) mm whose end it is: up to that height deposit is about it rightly. Where
@@ -156,7 +182,9 @@ def standing_heights(deposit: Obstacles, size: Size, tip: Array, axis: Array, he
     low, high = found[rows], np.full(len(rows), size.length)
     for _ in range(HALVINGS if len(rows) else 0):
         middle = 0.5 * (low + high)
-        touched = deposit.touched(travelling(*size, middle).deposit, tip[rows], axis[rows], moment[rows])
+        touched = deposit.touched(
+            travelling(*size, middle).deposit, tip[rows], axis[rows], moment[rows]
+        )
         low, high = np.where(touched, middle, low), np.where(touched, high, middle)
     found[rows] = high
     standing: Array = np.minimum(found + CHORD, size.length)

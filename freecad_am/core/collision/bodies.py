@@ -71,8 +71,13 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float, piece: float 
     else:
         triangles = Obstacles(_cut_up(corners, low, high, piece))
     # only a body whose box reaches as far has room for a whole nozzle about one of the points
-    near = [body for body in bodies if len(body.vertices) and (body.vertices.min(axis=0) <= high).all()
-            and (body.vertices.max(axis=0) >= low).all()]
+    near = [
+        body
+        for body in bodies
+        if len(body.vertices)
+        and (body.vertices.min(axis=0) <= high).all()
+        and (body.vertices.max(axis=0) >= low).all()
+    ]
     return Bodies(triangles, tuple(solid for solid in map(inside_of, near) if solid is not None))
 
 
@@ -95,7 +100,9 @@ def _cut_up(corners: Array, low: Array, high: Array, piece: float) -> Array:
         long = longest > max(piece, 0.5 * float(longest.max(initial=0.0)))
         if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * whole):
             return corners
-        corners = np.concatenate([corners[~long], _halves(corners[long], edges[long].argmax(axis=1))])
+        corners = np.concatenate(
+            [corners[~long], _halves(corners[long], edges[long].argmax(axis=1))]
+        )
 
 
 def _in_box(corners: Array, low: Array, high: Array) -> Mask:
@@ -103,7 +110,9 @@ def _in_box(corners: Array, low: Array, high: Array) -> Mask:
     found = np.ones(len(corners), dtype=bool)
     for axis in range(3):
         a, b, c = (corners[:, k, axis] for k in range(3))
-        found &= (np.minimum(np.minimum(a, b), c) <= high[axis]) & (np.maximum(np.maximum(a, b), c) >= low[axis])
+        found &= (np.minimum(np.minimum(a, b), c) <= high[axis]) & (
+            np.maximum(np.maximum(a, b), c) >= low[axis]
+        )
     return found
 
 

@@ -18,7 +18,11 @@ class ByNumbers:
         return _numbers(self)
 
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and isinstance(other, ByNumbers) and self._numbers == other._numbers
+        return (
+            type(self) is type(other)
+            and isinstance(other, ByNumbers)
+            and self._numbers == other._numbers
+        )
 
     def __hash__(self) -> int:
         return hash(self._numbers)

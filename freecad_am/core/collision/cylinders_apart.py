@@ -49,7 +49,9 @@ class _Pairs:
 
     def farthest(self, direction: Array) -> Array:
         """The points (k, 3) that lie farthest along directions (k, 3)."""
-        found: Array = self.cylinders.start + self.cylinders.solid.farthest(direction, self.cylinders.axis)
+        found: Array = self.cylinders.start + self.cylinders.solid.farthest(
+            direction, self.cylinders.axis
+        )
         return found
 
 
@@ -60,14 +62,18 @@ def nearer(one: PlacedCylinders, other: PlacedCylinders, gap: float) -> Mask:
     left = np.flatnonzero(~found & (apart < gap + one.radius + other.radius))
     if len(left):
         first, second = one.of(left), other.of(left)
-        adjacent = _Pairs(PlacedCylinders(second.start - first.start, second.axis, second.length, second.radius))
+        adjacent = _Pairs(
+            PlacedCylinders(second.start - first.start, second.axis, second.length, second.radius)
+        )
         middle = adjacent.cylinders.start + 0.5 * second.length * second.axis
         start = first.solid.nearest(middle, first.axis) - middle
         # where that middle is in the cylinder the way is none, and they meet
         inside = dots(start, start) <= CONVERGED**2
         found[left[inside]] = True
         rows = np.flatnonzero(~inside)
-        low, _ = separation.bounds(first.solid, first.axis[rows], adjacent[rows], gap, gap, start[rows])
+        low, _ = separation.bounds(
+            first.solid, first.axis[rows], adjacent[rows], gap, gap, start[rows]
+        )
         found[left[rows]] = low < gap  # what is in doubt counts
     return found
 
@@ -79,7 +85,9 @@ def axes_apart(one: PlacedCylinders, other: PlacedCylinders) -> Array:
     square = 1.0 - lean * lean
     crossing = square > PARALLEL
     along = np.where(crossing, (lean * second - first) / np.where(crossing, square, 1.0), 0.0)
-    along = np.minimum(np.maximum(along, 0.0), one.length)  # np.clip takes many times that for a few
+    along = np.minimum(
+        np.maximum(along, 0.0), one.length
+    )  # np.clip takes many times that for a few
     there = np.minimum(np.maximum(lean * along + second, 0.0), other.length)
     along = np.minimum(np.maximum(lean * there - first, 0.0), one.length)
     away: Array = lengths(off + along[:, None] * one.axis - there[:, None] * other.axis)
@@ -89,7 +97,9 @@ def axes_apart(one: PlacedCylinders, other: PlacedCylinders) -> Array:
 def nearest(one: PlacedCylinders, other: PlacedCylinders) -> tuple[Array, Array]:
     """The places (k, 3) where the second cylinders are nearest to the first ones, and the ways (k, 3) from there to these;
     none where the two meet."""
-    adjacent = _Pairs(PlacedCylinders(other.start - one.start, other.axis, other.length, other.radius))
+    adjacent = _Pairs(
+        PlacedCylinders(other.start - one.start, other.axis, other.length, other.radius)
+    )
     middle = adjacent.cylinders.start + 0.5 * other.length * other.axis
     there, way = separation.ways(one.solid, one.axis, adjacent, middle)
     return one.start + there, way

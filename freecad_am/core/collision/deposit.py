@@ -18,13 +18,22 @@ from .frustum import Frustum
 from .obstacles import Obstacles
 
 BENT = 0.2  # rad that joined pieces turn at most: so they are as near to the bead as its own chords
-CORNER = np.cos(np.radians(10.0))  # of the turn from one segment to the next, beyond which the outer side is filled
+CORNER = np.cos(
+    np.radians(10.0)
+)  # of the turn from one segment to the next, beyond which the outer side is filled
 PART = 25_000  # points of the parts of a deposit that is made again whenever it is asked
 
 
 def of_beads(
-    points: Array, build: Array, width: Array | float, height: Array | float, starts: Mask | Index,
-    moments: Index | None = None, grain: float = 0.0, foot: float = 0.0, short: bool = False,
+    points: Array,
+    build: Array,
+    width: Array | float,
+    height: Array | float,
+    starts: Mask | Index,
+    moments: Index | None = None,
+    grain: float = 0.0,
+    foot: float = 0.0,
+    short: bool = False,
     like: Obstacles | None = None,
 ) -> Obstacles:
     """The deposit of points (n, 3) in the order of deposition, on which beads stand along unit vectors build (n, 3).
@@ -42,7 +51,9 @@ def of_beads(
     first[:1] = True
     kept = _joined(points, first, grain) if grain > 0.0 and n else np.arange(n)
     moment = np.arange(n) if moments is None else moments
-    wide, tall = (np.broadcast_to(np.asarray(each, dtype=float), n)[kept] for each in (width, height))
+    wide, tall = (
+        np.broadcast_to(np.asarray(each, dtype=float), n)[kept] for each in (width, height)
+    )
     points, build, moment, first = points[kept], build[kept], moment[kept], first[kept]
     end = np.flatnonzero(~first)
     along = points[end] - points[end - 1]
@@ -61,20 +72,31 @@ def of_beads(
     for at, side in zip((begin, end), sideways):
         middle = points[at] + (0.5 * tall)[:, None] * build[at]
         # the flat of the section: across a bead that is wider than high, else upright
-        flat = (0.5 * (wide - tall))[:, None] * side if (wide >= tall).all() else np.where(
-            (wide >= tall)[:, None], (0.5 * (wide - tall))[:, None] * side, (0.5 * (tall - wide))[:, None] * build[at]
+        flat = (
+            (0.5 * (wide - tall))[:, None] * side
+            if (wide >= tall).all()
+            else np.where(
+                (wide >= tall)[:, None],
+                (0.5 * (wide - tall))[:, None] * side,
+                (0.5 * (tall - wide))[:, None] * build[at],
+            )
         )
         corners += [middle - flat, middle + flat]
     hull = np.stack(corners, axis=1)
-    turned = np.flatnonzero((end[:-1] == begin[1:]) & (np.einsum("ij,ij->i", along[:-1], along[1:]) < CORNER))
+    turned = np.flatnonzero(
+        (end[:-1] == begin[1:]) & (np.einsum("ij,ij->i", along[:-1], along[1:]) < CORNER)
+    )
     wedge = np.concatenate([hull[turned][:, 2:], hull[turned + 1][:, :2]], axis=1)
     pieces = np.concatenate([hull, wedge])
     if like is not None:
         return like.moved(pieces)
     return Obstacles(
-        pieces, np.concatenate([since, since[turned + 1]]),
+        pieces,
+        np.concatenate([since, since[turned + 1]]),
         np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
-        np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), foot), short,
+        np.concatenate([line, line[turned + 1]]),
+        np.maximum(np.concatenate([wide, wide[turned]]), foot),
+        short,
     )
 
 
@@ -88,12 +110,16 @@ def _joined(points: Array, first: Mask, grain: float) -> Index:
     # what is turned at a point is the difference to the way on from it
     turn = np.where(first | last, 0.0, lengths(np.diff(way, axis=0, append=way[-1:])))
     return np.flatnonzero(
-        first | last | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0)
+        first
+        | last
+        | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0)
         | (np.diff(np.floor(np.cumsum(turn) / BENT), prepend=0.0) > 0.0)
     )
 
 
-def in_parts(points: Array, build: Array, width: Array, height: Array, starts: Index, **what: Any) -> InParts:
+def in_parts(
+    points: Array, build: Array, width: Array, height: Array, starts: Index, **what: Any
+) -> InParts:
     """The deposit that `of_beads` makes of the same, for few looks."""
     return InParts(points, build, width, height, starts, what)
 
@@ -111,7 +137,12 @@ class InParts:
     what: dict[str, Any]
 
     def touched(
-        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
+        self,
+        solid: Frustum,
+        tip: Array,
+        axis: Array,
+        moment: Index | None = None,
+        own: Index | None = None,
     ) -> Mask:
         """As `Obstacles.touched`."""
         found, count = np.zeros(len(tip), dtype=bool), len(self.points)
@@ -125,11 +156,20 @@ class InParts:
             if not len(rows):
                 continue
             deposited = of_beads(
-                self.points[part], self.build[part], self.width[part], self.height[part], begins[part],
-                np.arange(part.start, part.stop), short=True, **self.what,
+                self.points[part],
+                self.build[part],
+                self.width[part],
+                self.height[part],
+                begins[part],
+                np.arange(part.start, part.stop),
+                short=True,
+                **self.what,
             )
             found[rows] = deposited.touched(
-                solid.rows(rows), tip[rows], axis[rows], None if moment is None else moment[rows],
+                solid.rows(rows),
+                tip[rows],
+                axis[rows],
+                None if moment is None else moment[rows],
                 None if own is None else own[rows],
             )
         return found

@@ -30,7 +30,12 @@ EVENLY = 1.0 / 1.22074408460575947536 ** np.arange(1, 4)
 
 
 def measured(
-    part: Body, owner: Index, faces: Sequence[str], surface: Surface, slack: float, excluded: Body | None = None
+    part: Body,
+    owner: Index,
+    faces: Sequence[str],
+    surface: Surface,
+    slack: float,
+    excluded: Body | None = None,
 ) -> tuple[Array, Array, Array, float]:
     """Depths, thickness and depths of faces as `PartDepths` has them, and the share of the part that is not in `excluded`.
 
@@ -47,13 +52,17 @@ def measured(
     weight = _areas(part)[of] / np.bincount(of, minlength=len(part.triangles))[of]
     if ground is not None:
         weight = np.where(ground.holds(middles), 0.0, weight)
-    by_face = np.array([_median(deep[owner[of] == k], weight[owner[of] == k]) for k in range(len(faces))])
+    by_face = np.array(
+        [_median(deep[owner[of] == k], weight[owner[of] == k]) for k in range(len(faces))]
+    )
     if inside is None:
         return np.zeros(0), np.zeros(0), by_face, 1.0
     points = _places(inside)
     kept = points if ground is None else points[~ground.holds(points)]
     depths = _shares(_depths(kept, surface, inward, half, spacing)) if len(kept) else np.zeros(0)
-    free = np.ones(len(probes.points), dtype=bool) if ground is None else ~ground.holds(probes.points)
+    free = (
+        np.ones(len(probes.points), dtype=bool) if ground is None else ~ground.holds(probes.points)
+    )
     thickness = _thickness(probes.points[free], way * probes.normals[free], half, inside, slack)
     return depths, np.sort(thickness), by_face, len(kept) / max(len(points), 1)
 
@@ -73,7 +82,9 @@ def grain(corners: Array, least: float) -> float:
 def _probes(surface: Surface) -> Surface:
     """Places of a surface that stand for equal areas."""
     ends = np.cumsum(surface.areas)
-    of = np.minimum(np.searchsorted(ends, (np.arange(PROBES) + 0.5) / PROBES * ends[-1]), len(ends) - 1)
+    of = np.minimum(
+        np.searchsorted(ends, (np.arange(PROBES) + 0.5) / PROBES * ends[-1]), len(ends) - 1
+    )
     return Surface(surface.points[of], surface.normals[of], np.full(PROBES, ends[-1] / PROBES))
 
 
@@ -81,17 +92,24 @@ def _inward(probes: Surface, inside: Inside | None, slack: float) -> tuple[float
     """Which way, 1.0 or -1.0, normals of a surface lead into the part, and whether both ways do."""
     if inside is None:
         return 1.0, True
-    ahead, behind = (float(inside.holds(probes.points + way * slack * probes.normals).mean()) for way in (1.0, -1.0))
+    ahead, behind = (
+        float(inside.holds(probes.points + way * slack * probes.normals).mean())
+        for way in (1.0, -1.0)
+    )
     return (1.0 if ahead >= behind else -1.0), min(ahead, behind) > 0.5 * max(ahead, behind)
 
 
 def _depths(points: Array, surface: Surface, inward: Array, half: bool, spacing: float) -> Array:
     """How wide (k,) a bead on the nearest place of the surface must be to hold each point (k, 3), inf beside it."""
-    _, nearest = cKDTree(surface.points).query(points, eps=0.02)  # in the middle of a ball all are alike
+    _, nearest = cKDTree(surface.points).query(
+        points, eps=0.02
+    )  # in the middle of a ball all are alike
     away = points - surface.points[nearest]
     along = (away * inward[nearest]).sum(axis=1)
     across = np.linalg.norm(away - along[:, None] * inward[nearest], axis=1)
-    deep = 2.0 * np.abs(along) if half else np.where(along > -spacing, np.maximum(along, 0.0), np.inf)
+    deep = (
+        2.0 * np.abs(along) if half else np.where(along > -spacing, np.maximum(along, 0.0), np.inf)
+    )
     found: Array = np.where(across <= ASIDE * spacing + 0.1 * np.abs(along), deep, np.inf)
     return found
 
@@ -118,7 +136,9 @@ def _thickness(start: Array, way: Array, half: bool, inside: Inside, slack: floa
 def _reach(start: Array, way: Array, inside: Inside, slack: float) -> Array:
     """How far (m,) mm lines from points along unit vectors, (m, 3) each, stay inside of a body, once they are in it."""
     steps = np.geomspace(slack, REACH, STEPS)
-    held = inside.holds((start[:, None] + steps[None, :, None] * way[:, None]).reshape(-1, 3)).reshape(len(start), STEPS)
+    held = inside.holds(
+        (start[:, None] + steps[None, :, None] * way[:, None]).reshape(-1, 3)
+    ).reshape(len(start), STEPS)
     through, never = held.all(axis=1), ~held[:, 0]
     out = np.argmin(held, axis=1)
     low, high = steps[np.maximum(out - 1, 0)], steps[out]

@@ -21,7 +21,11 @@ from .tolerances import ALONG, ROUNDING
 def side_height(radius: float, slope: float) -> float:
     """Height (mm) over the tip plane at which the side of a nozzle is one diameter of its tip from the deposit point: below,
     it touches what it stands on and the bead being laid."""
-    return float(radius * (np.sqrt(slope * slope + 3.0 * (1.0 + slope * slope)) - slope) / (1.0 + slope * slope))
+    return float(
+        radius
+        * (np.sqrt(slope * slope + 3.0 * (1.0 + slope * slope)) - slope)
+        / (1.0 + slope * slope)
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +64,9 @@ class Frustum:
         across -= (self.slope * side) * axis
         far = _column_sums(np.abs(across, out=across) * half)
         # of the plane with the normal across / (side lean); next to the axis there is none
-        near &= side * (side - self.radius - self.slope * x) <= far + lean * side * (rounding + ROUNDING)
+        near &= side * (side - self.radius - self.slope * x) <= far + lean * side * (
+            rounding + ROUNDING
+        )
         return near
 
     def nearest(self, offset: Array, axis: Array) -> Array:
@@ -81,9 +87,15 @@ class Frustum:
             on_disc = np.minimum(side, size)
             there = np.square(x - disc) + np.square(side - on_disc)
             nearer = there < away
-            height, out, away = np.where(nearer, disc, height), np.where(nearer, on_disc, out), np.minimum(there, away)
+            height, out, away = (
+                np.where(nearer, disc, height),
+                np.where(nearer, on_disc, out),
+                np.minimum(there, away),
+            )
         height, out = np.where(inside, x, height), np.where(inside, side, out)
-        found: Array = height[:, None] * axis + (out / np.where(side > 0.0, side, 1.0))[:, None] * across
+        found: Array = (
+            height[:, None] * axis + (out / np.where(side > 0.0, side, 1.0))[:, None] * across
+        )
         return found
 
     def gap(self, offset: Array, axis: Array) -> Array:
@@ -97,13 +109,15 @@ class Frustum:
         across = direction - rise[:, None] * axis
         size = np.sqrt(dots(across, across))
         low = np.asarray(self.low, dtype=float)
-        up = rise * self.high + size * (self.radius + self.slope * self.high) > rise * low + size * (
-            self.radius + self.slope * low
-        )
+        up = rise * self.high + size * (
+            self.radius + self.slope * self.high
+        ) > rise * low + size * (self.radius + self.slope * low)
         height = np.where(up, self.high, low)
         # along the axis every point of a disc is as far: what is left across is rounding
         leaning = size > ALONG * np.abs(rise)
-        out = np.where(leaning, self.radius + self.slope * height, 0.0) / np.where(leaning, size, 1.0)
+        out = np.where(leaning, self.radius + self.slope * height, 0.0) / np.where(
+            leaning, size, 1.0
+        )
         found: Array = height[:, None] * axis + out[:, None] * across
         return found
 
@@ -112,7 +126,10 @@ class Frustum:
         rise = dots(normal, axis)
         lean = np.sqrt(np.maximum(1.0 - rise * rise, 0.0))
         low, high = self.low * rise, self.high * rise
-        small, large = (self.radius + self.slope * self.low) * lean, (self.radius + self.slope * self.high) * lean
+        small, large = (
+            (self.radius + self.slope * self.low) * lean,
+            (self.radius + self.slope * self.high) * lean,
+        )
         above = np.maximum(low + small, high + large)
         below = np.minimum(low - small, high - large)
         cut: Mask = (level < above) & (level > below)
@@ -123,7 +140,12 @@ class Frustum:
         x = dots(offset, axis)
         margin = self.radius + self.slope * x - ROUNDING
         square = dots(offset, offset) - x * x
-        inside: Mask = (x > self.low + ROUNDING) & (x < self.high - ROUNDING) & (margin > 0.0) & (square < margin * margin)
+        inside: Mask = (
+            (x > self.low + ROUNDING)
+            & (x < self.high - ROUNDING)
+            & (margin > 0.0)
+            & (square < margin * margin)
+        )
         return inside
 
     def meets_segments(self, start: Array, end: Array, axis: Array) -> Mask:
@@ -135,7 +157,9 @@ class Frustum:
         safe = np.where(steep, rise, 1.0)
         at_low, at_high = (self.low + ROUNDING - x) / safe, (self.high - ROUNDING - x) / safe
         within = (x > self.low + ROUNDING) & (x < self.high - ROUNDING)
-        first = np.where(steep, np.maximum(np.minimum(at_low, at_high), 0.0), np.where(within, 0.0, 2.0))
+        first = np.where(
+            steep, np.maximum(np.minimum(at_low, at_high), 0.0), np.where(within, 0.0, 2.0)
+        )
         last = np.where(steep, np.minimum(np.maximum(at_low, at_high), 1.0), 1.0)
         square, mixed = dots(along, along), dots(across, along)
         apart = dots(across, across)
@@ -146,9 +170,15 @@ class Frustum:
             off = np.maximum(apart - mixed * mixed / square, 0.0)
             least = nearest + pull * np.sqrt(off / (square * (square - pull * pull)))
         # where the cone opens faster than the segment leaves the axis, the deepest place is the end that is higher up
-        place = np.where(bent, np.clip(np.where(bent, least, 0.0), first, last), np.where(rise > 0.0, last, first))
+        place = np.where(
+            bent,
+            np.clip(np.where(bent, least, 0.0), first, last),
+            np.where(rise > 0.0, last, first),
+        )
         side = np.linalg.norm(across + place[:, None] * along, axis=1)
-        meets: Mask = (first <= last) & (side - self.radius - self.slope * (x + place * rise) < -ROUNDING)
+        meets: Mask = (first <= last) & (
+            side - self.radius - self.slope * (x + place * rise) < -ROUNDING
+        )
         return meets
 
     def meets_triangles(self, corners: Array, axis: Array) -> Mask:
@@ -168,7 +198,11 @@ class Frustum:
         Where the plane misses the axis between the end discs, it cuts a diameter of one of them: the one that goes
         farthest towards the plane.
         """
-        base, one, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        base, one, other = (
+            corners[:, 0],
+            corners[:, 1] - corners[:, 0],
+            corners[:, 2] - corners[:, 0],
+        )
         normal = np.cross(one, other)
         square = dots(normal, normal)
         level = dots(normal, base)
@@ -189,7 +223,12 @@ class Frustum:
             u = dots(np.cross(point, other), normal)
             v = dots(np.cross(one, point), normal)
             inside |= (
-                crossing & (place > 1e-12) & (place < 1.0 - 1e-12) & (u >= 0.0) & (v >= 0.0) & (u + v <= square)
+                crossing
+                & (place > 1e-12)
+                & (place < 1.0 - 1e-12)
+                & (u >= 0.0)
+                & (v >= 0.0)
+                & (u + v <= square)
             )
         inside &= square > 0.0
         return inside

@@ -39,7 +39,10 @@ class Inside:
     def _boxes(self, size: int) -> tuple[Array, Array]:
         """Lowest and highest places (3, k), as seen along the ray, of so many triangles each."""
         starts = np.arange(0, len(self._seen), size)
-        low, high = np.minimum.reduceat(self._seen.min(axis=1), starts), np.maximum.reduceat(self._seen.max(axis=1), starts)
+        low, high = (
+            np.minimum.reduceat(self._seen.min(axis=1), starts),
+            np.maximum.reduceat(self._seen.max(axis=1), starts),
+        )
         return np.ascontiguousarray(low.T), np.ascontiguousarray(high.T)
 
     def holds(self, points: Array) -> Mask:
@@ -64,15 +67,21 @@ class Inside:
         for depth in range(len(self._levels) - 1, -1, -1):
             low, high = self._levels[depth]
             # one side of the boxes after the other: each leaves fewer to be looked at
-            for at, bounds, before in ((x, high[0], True), (x, low[0], False), (y, high[1], True), (y, low[1], False),
-                                       (z, high[2], True)):
+            for at, bounds, before in (
+                (x, high[0], True),
+                (x, low[0], False),
+                (y, high[1], True),
+                (y, low[1], False),
+                (z, high[2], True),
+            ):
                 near = at[query] <= bounds[node] if before else at[query] >= bounds[node]
                 query, node = query[near], node[near]
             if depth:
                 query, node = tree.below(query, node, self._levels[depth - 1][0].shape[1])
         corners = self._seen[node]
         a, b, c = (
-            (corners[:, k, 0] - x[query], corners[:, k, 1] - y[query], corners[:, k, 2] - z[query]) for k in range(3)
+            (corners[:, k, 0] - x[query], corners[:, k, 1] - y[query], corners[:, k, 2] - z[query])
+            for k in range(3)
         )
         # twice the areas of the ray's end with each edge: the shares of the corners opposite
         of_a, of_b, of_c = (u[0] * v[1] - u[1] * v[0] for u, v in ((b, c), (c, a), (a, b)))
@@ -92,7 +101,9 @@ def inside_of(body: Body) -> Inside | None:
     """The inside of a body; None where its triangles leave an opening, or are none."""
     if not len(body.triangles):
         return None
-    _, first = np.unique(np.round(body.vertices / MERGED).astype(np.int64), axis=0, return_inverse=True)
+    _, first = np.unique(
+        np.round(body.vertices / MERGED).astype(np.int64), axis=0, return_inverse=True
+    )
     corners = first.ravel()[body.triangles]
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     edges = edges[edges[:, 0] != edges[:, 1]]

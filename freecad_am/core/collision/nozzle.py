@@ -41,10 +41,16 @@ class Nozzle:
 
     def larger(self, by: float) -> Nozzle:
         """The nozzle with its side and its upper end `by` mm farther out."""
-        return Nozzle(*(
-            replace(solid, radius=solid.radius + by * np.hypot(1.0, solid.slope), high=solid.high + by)
-            for solid in (self.bodies, self.deposit)
-        ))
+        return Nozzle(
+            *(
+                replace(
+                    solid,
+                    radius=solid.radius + by * np.hypot(1.0, solid.slope),
+                    high=solid.high + by,
+                )
+                for solid in (self.bodies, self.deposit)
+            )
+        )
 
 
 def exempt_height(radius: float, slope: float, bead_height: float, lean: float = 0.0) -> float:
@@ -58,7 +64,9 @@ def exempt_height(radius: float, slope: float, bead_height: float, lean: float =
     return max(side_height(radius, slope), (bead_height + radius * float(np.sin(lean))) / upright)
 
 
-def depositing(radius: float, slope: float, length: float, bead_height: float, lean: float = 0.0) -> Nozzle:
+def depositing(
+    radius: float, slope: float, length: float, bead_height: float, lean: float = 0.0
+) -> Nozzle:
     """The nozzle while it deposits: radius of its tip and length mm, slope: tangent of its half angle, the height mm of
     the highest bead, and how far it leans by intention, rad. Bodies are left out only as far as the nozzle touches what it
     stands on."""

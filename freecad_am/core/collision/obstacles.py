@@ -40,8 +40,13 @@ class Obstacles:
     """
 
     def __init__(
-        self, corners: Array, since: Index | None = None, radius: Array | None = None, line: Array | None = None,
-        foot: Array | None = None, chained: bool = False,
+        self,
+        corners: Array,
+        since: Index | None = None,
+        radius: Array | None = None,
+        line: Array | None = None,
+        foot: Array | None = None,
+        chained: bool = False,
     ) -> None:
         middles = separation.middles(corners)
         self.order = order = tree.chained(middles) if chained else tree.packed(middles)
@@ -71,7 +76,10 @@ class Obstacles:
         self._boxes = [(0.5 * (low + high), 0.5 * (high - low))]
         for level in self._levels[:-1]:
             starts = np.arange(0, len(level.since), tree.BRANCH)
-            low, high = np.minimum.reduceat(low, starts, axis=1), np.maximum.reduceat(high, starts, axis=1)
+            low, high = (
+                np.minimum.reduceat(low, starts, axis=1),
+                np.maximum.reduceat(high, starts, axis=1),
+            )
             self._boxes.append((0.5 * (low + high), 0.5 * (high - low)))
         if corners.shape[1] == 3:
             normal = doubled_areas(self.corners)
@@ -80,20 +88,33 @@ class Obstacles:
 
     def _of_nodes(self) -> list[_Level]:
         """The levels of the tree, each from the one below it."""
-        rounding, since = np.zeros(len(self.since)) if self.radius is None else self.radius, self.since
-        lines = None if self.line is None or self.foot is None else own_layer.of_lines(self.line, self.foot)
+        rounding, since = (
+            np.zeros(len(self.since)) if self.radius is None else self.radius,
+            self.since,
+        )
+        lines = (
+            None
+            if self.line is None or self.foot is None
+            else own_layer.of_lines(self.line, self.foot)
+        )
         found = [_Level(rounding, since, lines)]
         for _ in self._sizes[1:]:
             starts = np.arange(0, len(since), tree.BRANCH)
             lines = None if lines is None else lines.joined(starts)
-            rounding, since = np.maximum.reduceat(rounding, starts), np.minimum.reduceat(since, starts)
+            rounding, since = (
+                np.maximum.reduceat(rounding, starts),
+                np.minimum.reduceat(since, starts),
+            )
             found.append(_Level(rounding, since, lines))
         return found
 
     @cached_property
     def _rows(self) -> list[tuple[Array, Array]]:
         """Centres and half sizes (n, 3) of the boxes of each level row by row, which distances are looked for by."""
-        return [(np.ascontiguousarray(centre.T), np.ascontiguousarray(half.T)) for centre, half in self._boxes]
+        return [
+            (np.ascontiguousarray(centre.T), np.ascontiguousarray(half.T))
+            for centre, half in self._boxes
+        ]
 
     @cached_property
     def _radii(self) -> list[Array]:
@@ -114,7 +135,12 @@ class Obstacles:
         return slabs.of_pieces(self.corners, self.radius, tree.BRANCH)
 
     def touched(
-        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
+        self,
+        solid: Frustum,
+        tip: Array,
+        axis: Array,
+        moment: Index | None = None,
+        own: Index | None = None,
     ) -> Mask:
         """(k,) whether solids with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,).
 
@@ -132,7 +158,9 @@ class Obstacles:
 
     def _touched(self, solid: Frustum, tip: Array, axis: Array, moment: Index, own: Index) -> Mask:
         found = np.zeros(len(tip), dtype=bool)
-        waiting = [(len(self._levels) - 1, *tree.each_with_each(len(tip), len(self._levels[-1].since)))]
+        waiting = [
+            (len(self._levels) - 1, *tree.each_with_each(len(tip), len(self._levels[-1].since)))
+        ]
         ready: list[tuple[Index, Index]] = []
         tips, axes = columns(tip), columns(axis)
         layered = bool((own < NEVER).any())
@@ -140,25 +168,37 @@ class Obstacles:
         while waiting:
             depth, query, node = waiting.pop()
             level = self._levels[depth]
-            left = np.flatnonzero((level.since.take(node) < moment.take(query)) & ~found.take(query))
+            left = np.flatnonzero(
+                (level.since.take(node) < moment.take(query)) & ~found.take(query)
+            )
             query, node = query.take(left), node.take(left)
             centre, half = (column.take(node, axis=1) for column in self._boxes[depth])
             centre -= tips.take(query, axis=1)
             round_ = level.rounding.take(node)
-            close = np.flatnonzero(solid.rows(query).near_box(centre, axes.take(query, axis=1), half, round_))
+            close = np.flatnonzero(
+                solid.rows(query).near_box(centre, axes.take(query, axis=1), half, round_)
+            )
             if not len(close):
                 continue
             query, node = query.take(close), node.take(close)
             if level.lines is not None and layered:
-                left = own_layer.matter(level.lines, level.since, solid, query, node, tips, axes, own)
+                left = own_layer.matter(
+                    level.lines, level.since, solid, query, node, tips, axes, own
+                )
                 query, node = query.take(left), node.take(left)
             if depth == 1:
                 # before all single ones are looked at: most that meet any hold the first corner of one
-                found[query[self._sampled(solid, query, node * tree.BRANCH, tip, axis, moment, own)]] = True
+                found[
+                    query[self._sampled(solid, query, node * tree.BRANCH, tip, axis, moment, own)]
+                ] = True
                 left = np.flatnonzero(~found.take(query))
                 if lying:
                     q, n = query.take(left), node.take(left)
-                    left = left[slabs.near(self._slabs, solid.rows(q), n, tip.take(q, axis=0), axis.take(q, axis=0))]
+                    left = left[
+                        slabs.near(
+                            self._slabs, solid.rows(q), n, tip.take(q, axis=0), axis.take(q, axis=0)
+                        )
+                    ]
                 query, node = query.take(left), node.take(left)
             if depth:
                 query, node = tree.below(query, node, len(self._levels[depth - 1].since))
@@ -172,7 +212,14 @@ class Obstacles:
         return found
 
     def _sampled(
-        self, solid: Frustum, query: Index, sample: Index, tip: Array, axis: Array, moment: Index, own: Index
+        self,
+        solid: Frustum,
+        query: Index,
+        sample: Index,
+        tip: Array,
+        axis: Array,
+        moment: Index,
+        own: Index,
     ) -> Mask:
         """(k,) whether the first corner of an obstacle is inside, which settles the matter without all the rest."""
         offset = self._sample.take(sample, axis=0) - tip.take(query, axis=0)
@@ -182,7 +229,13 @@ class Obstacles:
         return inside
 
     def _look(
-        self, solid: Frustum, tip: Array, axis: Array, own: Index, ready: list[tuple[Index, Index]], found: Mask
+        self,
+        solid: Frustum,
+        tip: Array,
+        axis: Array,
+        own: Index,
+        ready: list[tuple[Index, Index]],
+        found: Mask,
     ) -> None:
         """Mark the queries that meet one of their single obstacles."""
         if ready:
@@ -191,7 +244,9 @@ class Obstacles:
                 q, n = query.take(left), node.take(left)
                 found[q[self._meets(q, solid.rows(q), tip[q], axis[q], n, own[q])]] = True
 
-    def _meets(self, query: Index, solid: Frustum, tip: Array, axis: Array, node: Index, own: Index) -> Mask:
+    def _meets(
+        self, query: Index, solid: Frustum, tip: Array, axis: Array, node: Index, own: Index
+    ) -> Mask:
         """Whether obstacles (k,) reach into solids, those of queries (k,); of pieces of beads, whether any of a query do."""
         kind = self.corners.shape[1]
         offset = self.corners.take(node, axis=0) - tip[:, None]
@@ -218,28 +273,44 @@ class Obstacles:
         lines = rows[as_line]
         meets[lines] = solid.rows(lines).meets_segments(line[:, 0], line[:, 1], axis[lines])
         rows, node = np.delete(rows, as_line), np.delete(node, as_line)
-        meets[rows] = separation.any_within(query[rows], solid.rows(rows), axis[rows], offset[rows], self.radius[node])
+        meets[rows] = separation.any_within(
+            query[rows], solid.rows(rows), axis[rows], offset[rows], self.radius[node]
+        )
         return meets
 
     def distance(
-        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, reach: float = np.inf
+        self,
+        solid: Frustum,
+        tip: Array,
+        axis: Array,
+        moment: Index | None = None,
+        reach: float = np.inf,
     ) -> Array:
         """(k,) mm from solids to the nearest obstacle there before the moment (k,), 0 where they meet, at most `reach`; no
         more than the true distance, and less by no more than what tolerances.CONVERGED says."""
         return self.nearest(solid, tip, axis, moment, reach)[0]
 
     def nearest(
-        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, reach: float = np.inf
+        self,
+        solid: Frustum,
+        tip: Array,
+        axis: Array,
+        moment: Index | None = None,
+        reach: float = np.inf,
     ) -> tuple[Array, Index]:
         """(k,) the same, and (k,) which obstacle that is, of those in their own order; NONE where none is within reach."""
         found, which = np.full(len(tip), reach), np.full(len(tip), NONE, dtype=np.intp)
         for first in range(0, len(tip) if len(self.corners) else 0, QUERIES // 8):
             rows = np.arange(first, min(first + QUERIES // 8, len(tip)))
             when = np.zeros(len(rows), dtype=np.intp) if moment is None else moment[rows]
-            found[rows], which[rows] = self._nearest(solid.rows(rows), tip[rows], axis[rows], when, reach)
+            found[rows], which[rows] = self._nearest(
+                solid.rows(rows), tip[rows], axis[rows], when, reach
+            )
         return found, which
 
-    def _nearest(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> tuple[Array, Index]:
+    def _nearest(
+        self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float
+    ) -> tuple[Array, Index]:
         low, best = np.full((2, len(tip)), reach)  # bounds of the least distance yet
         which = np.full(len(tip), NONE, dtype=np.intp)
         top = len(self._levels[-1].since)
@@ -261,7 +332,13 @@ class Obstacles:
                 known = self.since[sample] < moment[q]
                 a, b = q[known], sample[known]
                 most = solid.rows(a).gap(self.corners[b, 0] - tip[a], axis[a])
-                _lower(best, which, a, b, most if self.radius is None else np.maximum(most - self.radius[b], 0.0))
+                _lower(
+                    best,
+                    which,
+                    a,
+                    b,
+                    most if self.radius is None else np.maximum(most - self.radius[b], 0.0),
+                )
                 kept.append((q, n, least))
             query, node = (np.concatenate([some[i] for some in kept]) for i in range(2))
             away = np.concatenate([some[2] for some in kept])
@@ -281,13 +358,23 @@ class Obstacles:
         return np.where(best <= CONVERGED, 0.0, np.minimum(low, best)), which
 
     def _bring_nearer(
-        self, solid: Frustum, tip: Array, axis: Array, query: Index, node: Index, low: Array, best: Array, which: Index
+        self,
+        solid: Frustum,
+        tip: Array,
+        axis: Array,
+        query: Index,
+        node: Index,
+        low: Array,
+        best: Array,
+        which: Index,
     ) -> None:
         """Lower the bounds of queries (n,) by their obstacles."""
         for q, n in tree.parts(query, node):
             round_ = np.zeros(len(n)) if self.radius is None else self.radius[n]
             points = self.corners[n] - tip[q, None]
-            bottom, top = separation.bounds(solid.rows(q), axis[q], points, round_, best[q] + round_)
+            bottom, top = separation.bounds(
+                solid.rows(q), axis[q], points, round_, best[q] + round_
+            )
             bottom, top = np.maximum(bottom - round_, 0.0), np.maximum(top - round_, 0.0)
             np.minimum.at(low, q, np.where(top > CONVERGED, bottom, 0.0))
             _lower(best, which, q, n, top)

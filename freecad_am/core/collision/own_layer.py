@@ -26,7 +26,10 @@ class Lines(NamedTuple):
 
     def joined(self, starts: Index) -> Lines:
         """Of the nodes from each start to the next."""
-        low, high = np.minimum.reduceat(self.low, starts, axis=1), np.maximum.reduceat(self.high, starts, axis=1)
+        low, high = (
+            np.minimum.reduceat(self.low, starts, axis=1),
+            np.maximum.reduceat(self.high, starts, axis=1),
+        )
         return Lines(low, high, np.minimum.reduceat(self.foot, starts))
 
 
@@ -37,7 +40,14 @@ def of_lines(line: Array, foot: Array) -> Lines:
 
 
 def matter(
-    lines: Lines, since: Index, solid: Frustum, query: Index, node: Index, tips: Array, axes: Array, own: Index
+    lines: Lines,
+    since: Index,
+    solid: Frustum,
+    query: Index,
+    node: Index,
+    tips: Array,
+    axes: Array,
+    own: Index,
 ) -> Index:
     """Which pairs (k,) of a query and a node are left without the nodes that hold nothing but lines below the solid's lower
     end. since: of each node the earliest moment. tips, axes: (3, queries); own: of each query the moment at which its layer
@@ -49,7 +59,9 @@ def matter(
     tip, axis = tips.take(q, axis=1), axes.take(q, axis=1)
     low, high = lines.low.take(n, axis=1) - tip, lines.high.take(n, axis=1) - tip
     top = np.maximum(low * axis, high * axis).sum(axis=0)
-    away = np.maximum(np.square(low), np.square(high)).sum(axis=0)  # squared, of the corner that is farthest from the tip
+    away = np.maximum(np.square(low), np.square(high)).sum(
+        axis=0
+    )  # squared, of the corner that is farthest from the tip
     left = np.ones(len(node), dtype=bool)
     left[here] = (top > solid.rows(q).low) | (away >= np.square(lines.foot.take(n)))
     return np.flatnonzero(left)

@@ -39,7 +39,12 @@ class Scene:
     deposit: Obstacles | InParts | None = None
 
     def touched(
-        self, solid: Nozzle | Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
+        self,
+        solid: Nozzle | Frustum,
+        tip: Array,
+        axis: Array,
+        moment: Index | None = None,
+        own: Index | None = None,
     ) -> Mask:
         """(k,) whether solids with the tip (k, 3) and the axis (k, 3), in part coordinates, meet a body, or deposit that
         is there before the moment (k,); without moments, any deposit.
@@ -53,11 +58,18 @@ class Scene:
             return found
         rows = np.flatnonzero(~found)
         when, layer = _all(moment, len(tip))[rows], None if own is None else own[rows]
-        found[rows] = self.deposit.touched(nozzle.deposit.rows(rows), tip[rows], axis[rows], when, layer)
+        found[rows] = self.deposit.touched(
+            nozzle.deposit.rows(rows), tip[rows], axis[rows], when, layer
+        )
         return found
 
     def distance(
-        self, solid: Nozzle | Frustum, tip: Array, axis: Array, moment: Index | None = None, reach: float = 100.0
+        self,
+        solid: Nozzle | Frustum,
+        tip: Array,
+        axis: Array,
+        moment: Index | None = None,
+        reach: float = 100.0,
     ) -> Array:
         """(k,) mm between solids and what is nearest to them, as `touched` sees them; 0 where they meet, at most `reach`.
         Never more than it is; less by no more than tolerances.CONVERGED, but where the two graze."""
@@ -66,15 +78,26 @@ class Scene:
         if self.deposit is None:
             return found
         assert not isinstance(self.deposit, InParts), "made for looks, not for distances"
-        return np.minimum(found, self.deposit.distance(nozzle.deposit, tip, axis, _all(moment, len(tip)), reach))
+        return np.minimum(
+            found, self.deposit.distance(nozzle.deposit, tip, axis, _all(moment, len(tip)), reach)
+        )
 
-    def nearest(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> tuple[Array, Array, Array]:
+    def nearest(
+        self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float
+    ) -> tuple[Array, Array, Array]:
         """Where solids are nearest to what is there before the moment (k,): by how many mm (k,), 0 where they meet, at most
         `reach`; unit vectors (k, 3) from there towards the solids, and the places (k, 3) of these; none where nothing is
         within reach or they meet. A solid within a body counts by the body's triangles."""
-        gap, normal, place = np.full(len(tip), reach), np.zeros((len(tip), 3)), np.zeros((len(tip), 3))
+        gap, normal, place = (
+            np.full(len(tip), reach),
+            np.zeros((len(tip), 3)),
+            np.zeros((len(tip), 3)),
+        )
         assert not isinstance(self.deposit, InParts), "made for looks, not for distances"
-        for obstacles in (self.bodies.triangles, *(() if self.deposit is None else (self.deposit,))):
+        for obstacles in (
+            self.bodies.triangles,
+            *(() if self.deposit is None else (self.deposit,)),
+        ):
             away, which = obstacles.nearest(solid, tip, axis, moment, reach)
             rows = np.flatnonzero(away < gap)
             gap[rows] = away[rows]

@@ -25,13 +25,20 @@ _FIRST, _SECOND = np.array([0, 0, 1]), np.array([1, 2, 2])
 _ONE, _OTHER = np.concatenate([_EACH, _FIRST]), np.concatenate([_EACH, _SECOND])
 # of cross products of the two other edges: the components (of 9) that are multiplied, first those that are added
 _NEXT, _AFTER = np.array([[1], [2], [0]]), np.array([[2], [0], [1]])
-_CROSS = np.array([3 * one + part.ravel() for one, part in (
-    (_NEXT, _NEXT), (_AFTER, _AFTER), (_NEXT, _AFTER), (_AFTER, _NEXT))])
+_CROSS = np.array(
+    [
+        3 * one + part.ravel()
+        for one, part in ((_NEXT, _NEXT), (_AFTER, _AFTER), (_NEXT, _AFTER), (_AFTER, _NEXT))
+    ]
+)
 # of four points, by which of them have a share (the sum of their codes), three: those that have first, and then one of them
 _CODE = np.array([1, 2, 4, 8])
-_KEPT = np.array([(*having, *having[:1] * 3, 0, 0, 0)[:3] for having in (
-    tuple(k for k in range(4) if code >> k & 1) for code in range(16)
-)])
+_KEPT = np.array(
+    [
+        (*having, *having[:1] * 3, 0, 0, 0)[:3]
+        for having in (tuple(k for k in range(4) if code >> k & 1) for code in range(16))
+    ]
+)
 BATCH = 500  # pairs that are done as soon together as in two parts
 MAX_STEPS = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
 
@@ -45,7 +52,11 @@ class Hull(Protocol):
 
 
 def bounds(
-    solid: Frustum, axis: Array, points: Array | Hull, nearer: Array | float = 0.0, farther: Array | float = np.inf,
+    solid: Frustum,
+    axis: Array,
+    points: Array | Hull,
+    nearer: Array | float = 0.0,
+    farther: Array | float = np.inf,
     start: Array | None = None,
 ) -> tuple[Array, Array]:
     """Lower and upper bounds (k,) mm of the distance between solids about unit axes (k, 3) and the hulls of points
@@ -103,7 +114,9 @@ def ways(solid: Frustum, axis: Array, points: Array | Hull, middle: Array) -> tu
         going = np.flatnonzero(dots(way, newest[:, :3]) < size * (size - CONVERGED))
         rows, newest, place, size = rows[going], newest[going], place[going], size[going]
         solid, axis, points = solid.rows(going), axis[going], points[going]
-        place, simplex = _of_two(place, newest) if simplex is None else _nearest(simplex[going], newest)
+        place, simplex = (
+            _of_two(place, newest) if simplex is None else _nearest(simplex[going], newest)
+        )
         now = np.sqrt(dots(place[:, :3], place[:, :3]))
         nearer = now < size
         found[rows[nearer]] = place[nearer]
@@ -123,7 +136,9 @@ def _farthest(points: Array | Hull, direction: Array) -> Array:
     return found
 
 
-def within(solid: Frustum, axis: Array, points: Array, radius: Array, start: Array | None = None) -> Mask:
+def within(
+    solid: Frustum, axis: Array, points: Array, radius: Array, start: Array | None = None
+) -> Mask:
     """(k,) whether hulls of points (k, c, 3) with a rounding of the radius (k,) mm about them reach into solids. start: as
     for `bounds`."""
     deep = np.maximum(radius - CONVERGED, 0.0)
@@ -213,9 +228,14 @@ def _of_two(one: Array, newest: Array) -> tuple[Array, Array]:
     square, pull, own = dots(along, along), -dots(at, along), dots(at, at)
     part = np.clip(pull / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
     share = np.where(own - 2.0 * part * pull + part * part * square < own, part, 0.0)[:, None]
-    return newest + share * edge, np.stack([
-        np.where(share > 0.0, one, newest), np.where(share < 1.0, newest, one), np.where(share > 0.0, one, newest)
-    ], axis=1)
+    return newest + share * edge, np.stack(
+        [
+            np.where(share > 0.0, one, newest),
+            np.where(share < 1.0, newest, one),
+            np.where(share > 0.0, one, newest),
+        ],
+        axis=1,
+    )
 
 
 def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
@@ -227,14 +247,23 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     # handful of simplices
     edge = np.ascontiguousarray(edges[:, :, :3].transpose(1, 2, 0))
     squares = _summed(edge.take(_ONE, axis=0) * edge.take(_OTHER, axis=0))
-    square, b, pull, own = squares[:3], squares[3:], -_summed(edge * at), _summed((at * at)[None])[0]
+    square, b, pull, own = (
+        squares[:3],
+        squares[3:],
+        -_summed(edge * at),
+        _summed((at * at)[None])[0],
+    )
     shares, value = np.zeros((7, 3, len(newest))), np.empty((7, len(newest)))
     value[0] = own
     with np.errstate(divide="ignore", invalid="ignore"):
-        part = np.minimum(np.maximum(np.where(square > 0.0, pull / square, 0.0), 0.0), 1.0)  # np.clip takes many times that
+        part = np.minimum(
+            np.maximum(np.where(square > 0.0, pull / square, 0.0), 0.0), 1.0
+        )  # np.clip takes many times that
         shares[_SIDE, _EACH] = part
         value[1:4] = own - 2.0 * part * pull + part * part * square
-        a, c, pull_a, pull_c = (each.take(some, axis=0) for each in (square, pull) for some in (_FIRST, _SECOND))
+        a, c, pull_a, pull_c = (
+            each.take(some, axis=0) for each in (square, pull) for some in (_FIRST, _SECOND)
+        )
         wide = a * c - b * b
         one, two = (pull_a * c - pull_c * b) / wide, (pull_c * a - pull_a * b) / wide
         holds = (wide > 1e-12 * a * c) & (one > 0.0) & (two > 0.0) & (one + two < 1.0)

@@ -30,7 +30,9 @@ def of_pieces(corners: Array, radius: Array, size: int) -> Slabs:
     """The boxes about so many pieces each: hulls of four points (m, 4, 3), start before end, and a rounding (m,) mm."""
     starts = np.arange(0, len(corners), size)
     ends = np.minimum(starts + size, len(corners)) - 1
-    along = _directions(corners[ends, 2:].sum(axis=1) - corners[starts, :2].sum(axis=1), np.array([1.0, 0.0, 0.0]))
+    along = _directions(
+        corners[ends, 2:].sum(axis=1) - corners[starts, :2].sum(axis=1), np.array([1.0, 0.0, 0.0])
+    )
     flat = corners[starts, 1] - corners[starts, 0]
     flat -= dots(flat, along)[:, None] * along
     spare = np.zeros_like(flat)  # square to the way along, for what is not flat
@@ -44,7 +46,9 @@ def of_pieces(corners: Array, radius: Array, size: int) -> Slabs:
     low = np.minimum.reduceat(np.minimum.reduce(each), starts)
     high = np.maximum.reduceat(np.maximum.reduce(each), starts)
     centre = np.einsum("nij,ni->nj", frames, 0.5 * (low + high))
-    return Slabs(centre, (0.5 * (high - low))[:, :, None] * frames, np.maximum.reduceat(radius, starts))
+    return Slabs(
+        centre, (0.5 * (high - low))[:, :, None] * frames, np.maximum.reduceat(radius, starts)
+    )
 
 
 def near(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Array) -> Index:
@@ -54,7 +58,9 @@ def near(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Array) -> 
     way = solid.nearest(centre, axis) - centre
     gap = lengths(way)
     first, second, third = np.abs(np.einsum("kij,kj->ik", slabs.sides.take(node, axis=0), way))
-    return np.flatnonzero(gap * (gap - slabs.rounding.take(node) - ROUNDING) <= first + second + third)
+    return np.flatnonzero(
+        gap * (gap - slabs.rounding.take(node) - ROUNDING) <= first + second + third
+    )
 
 
 def _directions(ways: Array, otherwise: Array) -> Array:

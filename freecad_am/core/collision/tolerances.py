@@ -9,8 +9,14 @@ overlooked (links).
 ROUNDING = 1e-9  # of depth in closed forms, which is rounding
 CONVERGED = 1e-6  # to which distances found by iteration are known
 FACES = 0.1  # that triangles of bodies are off their true faces: what a nozzle may be deep in them on rapids
-ABOVE_FACES = 2.0 * FACES  # left out of a nozzle over the bodies it deposits on, whose faces may be off on both sides of it
-ABOUT_FACES = 2.0 * FACES  # added about links: they and the bodies both are triangles, and beads are cut into long pieces
+ABOVE_FACES = (
+    2.0 * FACES
+)  # left out of a nozzle over the bodies it deposits on, whose faces may be off on both sides of it
+ABOUT_FACES = (
+    2.0 * FACES
+)  # added about links: they and the bodies both are triangles, and beads are cut into long pieces
 CHORD = 0.05  # to which beads follow their curves: what a nozzle may be deep in them on rapids
-HALFWAY = 0.1  # of depth let pass halfway between points of a bead, where directions are interpolated
+HALFWAY = (
+    0.1  # of depth let pass halfway between points of a bead, where directions are interpolated
+)
 ALONG = 1e-9  # rad off a nozzle's axis, below which a direction is along it

@@ -38,7 +38,9 @@ def packed(points: Array) -> Index:
         order[low:high] = mine[some[longest].argpartition(cut)]
         waiting += [(low, low + cut, ball), (low + cut, high, ball)]
     some, starts = by_axis.take(order, axis=1), np.arange(0, len(points), last)
-    longest = (np.maximum.reduceat(some, starts, axis=1) - np.minimum.reduceat(some, starts, axis=1)).argmax(axis=0)
+    longest = (
+        np.maximum.reduceat(some, starts, axis=1) - np.minimum.reduceat(some, starts, axis=1)
+    ).argmax(axis=0)
     node = np.arange(len(points)) // last
     found: Index = order[np.lexsort((some[longest[node], np.arange(len(points))], node))]
     return found
@@ -48,7 +50,11 @@ def chained(points: Array) -> Index:
     """The same of points (n, 3) of which those that follow each other are near each other: BRANCH of them in a row stay one
     node, which takes a fraction of the time."""
     whole = len(points) // BRANCH
-    middle = np.add.reduceat(points[: whole * BRANCH], np.arange(whole) * BRANCH) if whole else points[:0]
+    middle = (
+        np.add.reduceat(points[: whole * BRANCH], np.arange(whole) * BRANCH)
+        if whole
+        else points[:0]
+    )
     node = packed(middle)
     rest = np.arange(whole * BRANCH, len(points))
     return np.concatenate([(node[:, None] * BRANCH + np.arange(BRANCH)).ravel(), rest])

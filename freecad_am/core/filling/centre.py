@@ -43,7 +43,9 @@ def centre_beads(
             if not closed:
                 points = _lengthened(points, beads, inner)
             found.append(PlaneCurve(points, closed, kind, ring))
-            rest += region.without(along([(points, closed)], 0.5 * beads.spacing, beads.chord_error), beads.gap)
+            rest += region.without(
+                along([(points, closed)], 0.5 * beads.spacing, beads.chord_error), beads.gap
+            )
         gaps = rest
         if not gaps:
             break
@@ -54,11 +56,17 @@ def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Bead
     """What curves leave open, wider than the gap allowed, of what beads can reach with their middles in `inner`."""
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
     lines = [(simplified(curve.points, error, curve.closed), curve.closed) for curve in curves]
-    return wider(without(grown(inner, half, error), along(lines, half, error), beads.gap), beads.gap, error)
+    return wider(
+        without(grown(inner, half, error), along(lines, half, error), beads.gap), beads.gap, error
+    )
 
 
 def closing(
-    inner: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads, ring: int, ends: Sequence[Region] = ()
+    inner: Sequence[Region],
+    curves: Sequence[PlaneCurve],
+    beads: Beads,
+    ring: int,
+    ends: Sequence[Region] = (),
 ) -> list[PlaneCurve]:
     """Beads in what other beads leave open of what beads can reach with their middles in `inner`, and of that without the
     ends, `lines.Frame`, that lines fill."""
@@ -75,8 +83,13 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
     for region in thin:
         if beads.thin == "refuse":
             raise InfeasibleError(
-                "THIN_REGION", "filling", "the region at {} is {:.3g} mm wide, less than a bead ({:.3g} mm); choose thin = "
-                "single, a narrower bead or a margin", beads.where(region.inside()), region.width, 2.0 * beads.inset,
+                "THIN_REGION",
+                "filling",
+                "the region at {} is {:.3g} mm wide, less than a bead ({:.3g} mm); choose thin = "
+                "single, a narrower bead or a margin",
+                beads.where(region.inside()),
+                region.width,
+                2.0 * beads.inset,
             )
         before = len(found)
         rest: Sequence[Region] = (region,)
@@ -84,10 +97,16 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
             parts, rest = rest, []
             for part in parts:
                 sliver = part.width < SLIVER * beads.chord_error
-                points, closed = _along_border(part) if sliver else _spine(part, beads, 0.15 * part.width)
-                if len(points) > 1 and (len(found) == before or length(points, closed) >= beads.shortest):
+                points, closed = (
+                    _along_border(part) if sliver else _spine(part, beads, 0.15 * part.width)
+                )
+                if len(points) > 1 and (
+                    len(found) == before or length(points, closed) >= beads.shortest
+                ):
                     found.append(PlaneCurve(points, closed, "centre", 0))
-                    rest += part.without(along([(points, closed)], beads.inset, beads.chord_error), beads.gap)
+                    rest += part.without(
+                        along([(points, closed)], beads.inset, beads.chord_error), beads.gap
+                    )
             rest = wider(rest, beads.gap, beads.chord_error)
     return found
 
@@ -104,7 +123,9 @@ def outermost(
     if not inner:
         return (), single_beads((region,), beads)
     reached = grown(inner, beads.inset, beads.chord_error)
-    return inner, single_beads([neck for neck in region.without(reached) if _is_neck(neck, reached, beads)], beads)
+    return inner, single_beads(
+        [neck for neck in region.without(reached) if _is_neck(neck, reached, beads)], beads
+    )
 
 
 def _is_neck(part: Region, reached: Sequence[Region], beads: Beads) -> bool:
@@ -126,7 +147,10 @@ def _along_border(region: Region) -> tuple[Array, bool]:
     end = 0
     for _ in range(2):
         start, end = end, int(np.argmax(np.hypot(*(border - border[end]).T)))
-    ways = [np.roll(border, -a, axis=0)[: (b - a) % len(border) + 1] for a, b in ((start, end), (end, start))]
+    ways = [
+        np.roll(border, -a, axis=0)[: (b - a) % len(border) + 1]
+        for a, b in ((start, end), (end, start))
+    ]
     return min(ways, key=lambda way: length(way, False)), False
 
 
@@ -168,7 +192,10 @@ def _lengthened(points: Array, beads: Beads, inner: Sequence[Region]) -> Array:
         if lack <= 0.0:
             break
         share = np.linspace(0.0, 0.6 * lack, 5)[1:, None]
-        ways = [out / max(float(np.hypot(*out)), 1e-300) for out in (points[0] - points[1], points[-1] - points[-2])]
+        ways = [
+            out / max(float(np.hypot(*out)), 1e-300)
+            for out in (points[0] - points[1], points[-1] - points[-2])
+        ]
         ends = [moved(end + share * way, inner) for end, way in zip((points[0], points[-1]), ways)]
         longer = simplified(np.vstack([ends[0][::-1], points, ends[1]]), 0.2 * beads.chord_error)
         if length(longer, False) <= length(points, False):

@@ -23,8 +23,14 @@ from .rings import AdjacentRings, Ring, crossed, side_by_side
 REACH = 1.7  # spacings; contours farther apart are not joined
 TRIES = 64  # places at which two contours may be joined
 THINNEST = 0.3  # of the width; no bead is narrower
-LOOP = (0.05, 0.25)  # of the spacing: half of what a loop about a bead in the middle encloses, at least and at most
-OPEN, SHARE = 0.8, 0.2  # of the width at which the gap allowed stays open beside links; of the length of a contour
+LOOP = (
+    0.05,
+    0.25,
+)  # of the spacing: half of what a loop about a bead in the middle encloses, at least and at most
+OPEN, SHARE = (
+    0.8,
+    0.2,
+)  # of the width at which the gap allowed stays open beside links; of the length of a contour
 INSIDE = 1e-4  # of a link, cut off at its ends when it is looked at
 
 
@@ -43,8 +49,13 @@ class Slant(NamedTuple):
 
 
 SLANTS = (  # the best first
-    Slant(0.94, 0.985, 1.0), Slant(0.8, 0.95, 1.0), Slant(0.7, 0.9, 0.4), Slant(0.5, 0.8, 0.0),
-    Slant(0.2, 0.6, 0.0, 0.8, 0.1), Slant(0.0, 0.4, 0.0, 1.2, 0.02, 0.5, 0.1), Slant(0.0, 0.3, 0.0, 1.6, 0.0, 0.25, 0.05),
+    Slant(0.94, 0.985, 1.0),
+    Slant(0.8, 0.95, 1.0),
+    Slant(0.7, 0.9, 0.4),
+    Slant(0.5, 0.8, 0.0),
+    Slant(0.2, 0.6, 0.0, 0.8, 0.1),
+    Slant(0.0, 0.4, 0.0, 1.2, 0.02, 0.5, 0.1),
+    Slant(0.0, 0.3, 0.0, 1.6, 0.0, 0.25, 0.05),
 )
 
 
@@ -88,7 +99,9 @@ def connected(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[P
         made = [replace(curves[0], kind="connected")]
     else:
         loops = len(rings) - len(loose)
-        shares = [1.0] * loops + [_share(rings, loops + k, half, beads) for k, half in enumerate(wide)]
+        shares = [1.0] * loops + [
+            _share(rings, loops + k, half, beads) for k, half in enumerate(wide)
+        ]
         made = [_walked(rings, links, shares)]
     return made + [curve for number, curve in enumerate(alone) if number not in joined]
 
@@ -124,7 +137,11 @@ def _joined(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int
             done = []
             for number in waiting:
                 pairs = [pair for pair in near.get(number, ()) if pair.one in joined]
-                found = [made for pair in pairs if (made := _place(rings, pair, beads, slant, entered[pair.one], placed))]
+                found = [
+                    made
+                    for pair in pairs
+                    if (made := _place(rings, pair, beads, slant, entered[pair.one], placed))
+                ]
                 if not found:
                     continue
                 one, link = min(found, key=lambda item: item.rank)[1:]
@@ -141,15 +158,26 @@ def _joined(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int
 
 
 def _place(
-    rings: list[Ring], pair: AdjacentRings, beads: Beads, slant: Slant, sense: int, placed: list[Array]
+    rings: list[Ring],
+    pair: AdjacentRings,
+    beads: Beads,
+    slant: Slant,
+    sense: int,
+    placed: list[Array],
 ) -> _Found | None:
     """Where the first ring of a pair, run with `sense`, is joined to the second: the nearest to the spacing and the first on
     its way; None where there is no place. laid: the links there are, (2, 2) each."""
     one, other = rings[pair.one], rings[pair.other]
     spacing, gap = beads.spacing, slant.clearance * beads.spacing
-    wide = min(
-        OPEN * 2.0 * math.sqrt(spacing * beads.gap), math.sqrt(2.0) * spacing, SHARE * one.length, SHARE * other.length,
-    ) * slant.opening
+    wide = (
+        min(
+            OPEN * 2.0 * math.sqrt(spacing * beads.gap),
+            math.sqrt(2.0) * spacing,
+            SHARE * one.length,
+            SHARE * other.length,
+        )
+        * slant.opening
+    )
     arcs = pair.arcs[np.unique(np.linspace(0, len(pair.arcs) - 1, TRIES).astype(int))]
     first, second = one.at(arcs), one.at(arcs + sense * wide)
     feet, away = other.foot(first)
@@ -165,20 +193,33 @@ def _place(
     good = (np.abs(lean) >= slant.least) & (away > 0.15 * spacing)
     good &= (span < (1.0 + 2.0 * slant.uneven) * wide) & (span > 0.3 * wide)
     good &= np.abs(away - away_ahead) < slant.uneven * spacing
-    good &= np.hypot(*(second - first).T) > slant.straight * wide  # an opening round a corner would leave it bare
+    good &= (
+        np.hypot(*(second - first).T) > slant.straight * wide
+    )  # an opening round a corner would leave it bare
     good &= np.hypot(*(other.at(parts) - other.at(enters)).T) > slant.straight * span
     for k in np.lexsort((arcs, np.round(np.abs(away - spacing) / spacing, 1))):
         if not good[k]:
             continue
         low = min(arcs[k], arcs[k] + sense * wide)
         start = enters[k] if turn[k] > 0 else enters[k] - float(span[k])
-        if not one.is_free(low - gap, low + wide + gap) or not other.is_free(start - gap, start + float(span[k]) + gap):
+        if not one.is_free(low - gap, low + wide + gap) or not other.is_free(
+            start - gap, start + float(span[k]) + gap
+        ):
             continue
         link = Link(
-            float(arcs[k]), float(arcs[k] + sense * wide), pair.other, float(enters[k]), float(parts[k]), -int(turn[k]),
+            float(arcs[k]),
+            float(arcs[k] + sense * wide),
+            pair.other,
+            float(enters[k]),
+            float(parts[k]),
+            -int(turn[k]),
         )
         if _is_clear(rings, pair, link, sense, placed, slant.near * spacing):
-            return _Found((float(np.round(abs(away[k] - spacing) / spacing, 1)), float(arcs[k])), pair.one, link)
+            return _Found(
+                (float(np.round(abs(away[k] - spacing) / spacing, 1)), float(arcs[k])),
+                pair.one,
+                link,
+            )
     return None
 
 
@@ -189,7 +230,9 @@ def _lines(one: Ring, other: Ring, link: Link) -> list[Array]:
     return [np.stack([own[0], ends[0]]), np.stack([ends[1], own[1]])]
 
 
-def _is_clear(rings: list[Ring], pair: AdjacentRings, link: Link, sense: int, placed: list[Array], near: float) -> bool:
+def _is_clear(
+    rings: list[Ring], pair: AdjacentRings, link: Link, sense: int, placed: list[Array], near: float
+) -> bool:
     """Whether nothing comes between the lines of a link: no other ring, no other link, and neither of the rings it joins
     but where they are opened."""
     one, other = rings[pair.one], rings[pair.other]
@@ -197,10 +240,16 @@ def _is_clear(rings: list[Ring], pair: AdjacentRings, link: Link, sense: int, pl
     share = np.linspace(0.0, 1.0, 7)[:, None]
     places = np.vstack([line[0] + share * (line[1] - line[0]) for line in lines])
     low, high = places.min(axis=0) - near, places.max(axis=0) + near
-    rests = [one.piece(link.returns, link.leaves, sense), other.piece(link.enters, link.parts, link.sense), *placed]
+    rests = [
+        one.piece(link.returns, link.leaves, sense),
+        other.piece(link.enters, link.parts, link.sense),
+        *placed,
+    ]
     for line in lines:
         inner = line + INSIDE * np.array([[1.0], [-1.0]]) * (line[1] - line[0])
-        if any(crossed(inner, rest) for rest in rests) or crossed(inner, lines[0] if line is lines[1] else lines[1]):
+        if any(crossed(inner, rest) for rest in rests) or crossed(
+            inner, lines[0] if line is lines[1] else lines[1]
+        ):
             return False
     for number, ring in enumerate(rings):
         if number in (pair.one, pair.other):
@@ -225,10 +274,13 @@ def _share(rings: list[Ring], number: int, half: float, beads: Beads) -> float:
     places = ring.at(np.linspace(0.0, ring.length, TRIES, endpoint=False))
     low, high = places.min(axis=0) - beads.spacing, places.max(axis=0) + beads.spacing
     near = [
-        other.foot(places)[1] for k, other in enumerate(rings)
+        other.foot(places)[1]
+        for k, other in enumerate(rings)
         if k != number and ((other.points > low) & (other.points < high)).all(axis=1).any()
     ]
-    away = np.minimum(np.min(near, axis=0), beads.spacing) if near else np.full(TRIES, beads.spacing)
+    away = (
+        np.minimum(np.min(near, axis=0), beads.spacing) if near else np.full(TRIES, beads.spacing)
+    )
     if half == 0.0:  # a closed bead with neighbours on both sides
         return float(np.clip((2.0 * away / beads.spacing - 1.0).mean(), THINNEST, 1.0))
     return float(np.clip(((away + half) / beads.spacing - 0.5).mean(), THINNEST, 1.0))
@@ -246,7 +298,9 @@ def _walked(rings: list[Ring], links: list[list[Link]], shares: list[float]) -> 
     def walk(number: int, start: float, way: float, sense: int) -> None:
         """Along a ring for `way` mm from an arc length, and through all that is joined to it."""
         ring, at = rings[number], start
-        for link in sorted(links[number], key=lambda link: (sense * (link.leaves - start)) % ring.length):
+        for link in sorted(
+            links[number], key=lambda link: (sense * (link.leaves - start)) % ring.length
+        ):
             lay(number, at, link.leaves, sense)
             other = rings[link.other]
             opened = (link.sense * (link.enters - link.parts)) % other.length
@@ -259,4 +313,6 @@ def _walked(rings: list[Ring], links: list[list[Link]], shares: list[float]) -> 
     apart: Mask = np.r_[True, np.abs(np.diff(whole, axis=0)).max(axis=1) > 1e-9]
     if np.abs(whole[0] - whole[-1]).max() < 1e-9:
         apart[-1] = False
-    return PlaneCurve(whole[apart], True, "connected", 0, share=None if wide.min() == 1.0 else wide[apart])
+    return PlaneCurve(
+        whole[apart], True, "connected", 0, share=None if wide.min() == 1.0 else wide[apart]
+    )

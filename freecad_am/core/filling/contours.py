@@ -45,12 +45,16 @@ def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[Pl
 
 def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:
     """The contours, from outside in."""
-    return [curve for k, regions in enumerate(found.regions) for curve in contours_of(regions, beads, k)]
+    return [
+        curve for k, regions in enumerate(found.regions) for curve in contours_of(regions, beads, k)
+    ]
 
 
 def centres(found: Levels, beads: Beads) -> list[PlaneCurve]:
     """The beads in what contours leave open, and in thin places."""
     curves = list(found.thin)
     for k, gaps in enumerate(found.gaps):
-        curves += [begun(curve, beads) for curve in centre_beads(gaps, beads, k + 1, found.regions[0])]
+        curves += [
+            begun(curve, beads) for curve in centre_beads(gaps, beads, k + 1, found.regions[0])
+        ]
     return curves

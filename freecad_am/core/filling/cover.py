@@ -46,21 +46,35 @@ def total(covers: Sequence[Cover]) -> Cover:
     return Cover(*map(math.fsum, zip(*covers))) if covers else Cover()
 
 
-def covered(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads, density: float = 1.0) -> Cover:
+def covered(
+    region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads, density: float = 1.0
+) -> Cover:
     """How well beads cover a region; what they leave open on purpose, at a density below 1, does not count."""
-    if isinstance(region, Strip):  # window by window; beads of regions round a hub are as wide as usual
+    if isinstance(
+        region, Strip
+    ):  # window by window; beads of regions round a hub are as wide as usual
         beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
-        cover = total([
-            _of_regions(region.flat(window), [_lines(adjacent, beads.chord_error)], beads, region.pane(window))
-            for window, adjacent in near_windows(region, curves, 2.0 * beads.inset)
-        ])
+        cover = total(
+            [
+                _of_regions(
+                    region.flat(window),
+                    [_lines(adjacent, beads.chord_error)],
+                    beads,
+                    region.pane(window),
+                )
+                for window, adjacent in near_windows(region, curves, 2.0 * beads.inset)
+            ]
+        )
     else:
         cover = _of_regions((region,), [_widths(curve) for curve in curves], beads, ())
     return cover if density == 1.0 else cover._replace(left=0.0)
 
 
 def _of_regions(
-    regions: Sequence[Region], widths: Sequence[tuple[list[Line], list[float]]], beads: Beads, pane: Sequence[Region]
+    regions: Sequence[Region],
+    widths: Sequence[tuple[list[Line], list[float]]],
+    beads: Beads,
+    pane: Sequence[Region],
 ) -> Cover:
     """Of regions of the plane, with what lies in a pane of it alone where there is one. widths: lines of beads, and the
     share of the usual width of each."""
@@ -76,7 +90,9 @@ def _of_regions(
 
 def _lines(curves: Sequence[PlaneCurve], chord_error: float) -> tuple[list[Line], list[float]]:
     """Beads as wide as usual in lines, and the share of the usual width of each."""
-    lines = [(simplified(curve.points, chord_error, curve.closed), curve.closed) for curve in curves]
+    lines = [
+        (simplified(curve.points, chord_error, curve.closed), curve.closed) for curve in curves
+    ]
     return lines, [1.0] * len(lines)
 
 

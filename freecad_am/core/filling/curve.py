@@ -13,7 +13,10 @@ from ..geometry.regions.region import Region
 from ..geometry.regions.strip import Period, Strip
 from ..types import Array
 
-NEXT, OVER = 0.7548776662, 0.5698402910  # of a length: starts of the next contour, of the next layer (the sequence R2)
+NEXT, OVER = (
+    0.7548776662,
+    0.5698402910,
+)  # of a length: starts of the next contour, of the next layer (the sequence R2)
 LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out
 
 
@@ -50,7 +53,9 @@ class PlaneCurve:
         start = self.points[:1]
         if self.turns and period is not None:
             start = period.moved(start, self.turns)
-        return np.vstack([self.points, start]), None if self.share is None else np.r_[self.share, self.share[:1]]
+        return np.vstack([self.points, start]), None if self.share is None else np.r_[
+            self.share, self.share[:1]
+        ]
 
 
 def on_plane(point: Array) -> str:
@@ -88,8 +93,15 @@ class Beads:
         return 0.5 * (self.width or self.spacing)
 
     def __post_init__(self) -> None:
-        if not self.spacing > 0.0 or not self.gap > 0.0 or self.shortest < 0.0 or self.thin not in ("single", "refuse"):
-            raise ValueError("spacing and gap must be positive, shortest not negative, thin 'single' or 'refuse'")
+        if (
+            not self.spacing > 0.0
+            or not self.gap > 0.0
+            or self.shortest < 0.0
+            or self.thin not in ("single", "refuse")
+        ):
+            raise ValueError(
+                "spacing and gap must be positive, shortest not negative, thin 'single' or 'refuse'"
+            )
         if self.chord_error <= 0.0:
             object.__setattr__(self, "chord_error", 0.005 * self.spacing)
 
@@ -117,14 +129,19 @@ class Beads:
 def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
     """The curves without those below a length, mm; those round the hub, which may have a single point, are long enough."""
     return [
-        curve for curve in curves
+        curve
+        for curve in curves
         if curve.turns or (length(curve.points, curve.closed) >= shortest and len(curve.points) > 1)
     ]
 
 
 def begun(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
     """A closed curve with the sense and start asked for; an open one as it is."""
-    return replace(curve, points=beads.ring(curve.points, curve.ring)) if curve.closed and not curve.turns else curve
+    return (
+        replace(curve, points=beads.ring(curve.points, curve.ring))
+        if curve.closed and not curve.turns
+        else curve
+    )
 
 
 def contours_of(parts: Sequence[Strip | Region], beads: Beads, ring: int) -> list[PlaneCurve]:
@@ -132,11 +149,20 @@ def contours_of(parts: Sequence[Strip | Region], beads: Beads, ring: int) -> lis
     curves = []
     for part in parts:
         if isinstance(part, Region):
-            curves += [PlaneCurve(border, True, "contour", ring, sheet=part.sheet) for border in part.borders()]
+            curves += [
+                PlaneCurve(border, True, "contour", ring, sheet=part.sheet)
+                for border in part.borders()
+            ]
             continue
         for border, turns in part.borders():
             against = turns != 0 and (turns < 0) != beads.clockwise
             curves.append(
-                PlaneCurve(border[::-1] if against else border, True, "contour", ring, -turns if against else turns)
+                PlaneCurve(
+                    border[::-1] if against else border,
+                    True,
+                    "contour",
+                    ring,
+                    -turns if against else turns,
+                )
             )
     return [begun(curve, beads) for curve in curves]

@@ -22,16 +22,35 @@ from .strip_closing import open_windows
 from .strip_lines import lines_along, lines_round
 from .strips import strip_contours
 
-PATTERNS = ("contours", "connected", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
-CURVED = ("contours", "connected", "spiral")  # without walls: the border's parallel curves are all they have
+PATTERNS = (
+    "contours",
+    "connected",
+    "lines",
+    "spiral",
+    "zigzag",
+    "grid",
+    "triangles",
+    "honeycomb",
+    "gyroid",
+)
+CURVED = (
+    "contours",
+    "connected",
+    "spiral",
+)  # without walls: the border's parallel curves are all they have
 WHOLE = Infill()
 LINK = 3.0  # of the spacing
 Gaps = list[tuple[Array, float]]  # a place (2,) in each, and how wide it is, mm
 
 
 def fill(
-    region: Region | Strip, beads: Beads, pattern: str = "contours", angle: float = 0.0, walls: float = 0,
-    longest_link: float = 0.0, infill: Infill = WHOLE,
+    region: Region | Strip,
+    beads: Beads,
+    pattern: str = "contours",
+    angle: float = 0.0,
+    walls: float = 0,
+    longest_link: float = 0.0,
+    infill: Infill = WHOLE,
 ) -> tuple[PlaneCurve, ...]:
     """The beads that fill a region in one of PATTERNS, from outside in.
 
@@ -42,7 +61,13 @@ def fill(
     InputError MISSING_LIBRARY.
     """
     if pattern not in PATTERNS:
-        raise InputError("PATTERN", "filling", "there is no pattern {!r}; use one of {}", pattern, ", ".join(PATTERNS))
+        raise InputError(
+            "PATTERN",
+            "filling",
+            "there is no pattern {!r}; use one of {}",
+            pattern,
+            ", ".join(PATTERNS),
+        )
     if pattern not in CURVED and math.isinf(walls):
         pattern, infill = "contours", WHOLE
     if isinstance(region, Strip):
@@ -51,11 +76,15 @@ def fill(
             curves = strip_contours(region, inner, beads)
         else:
             upright = abs(math.sin(angle)) > abs(math.cos(angle))
-            curves = (lines_along if upright else lines_round)(region, inner, beads, int(walls), infill.density)
+            curves = (lines_along if upright else lines_round)(
+                region, inner, beads, int(walls), infill.density
+            )
         return tuple(long_enough(curves, beads.shortest))
     inner = region.grown(-beads.inset, beads.chord_error)
     if pattern in CURVED and infill.density == 1.0:
-        curves = {"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, inner, beads)
+        curves = {"contours": contours, "connected": connected, "spiral": spiral}[pattern](
+            region, inner, beads
+        )
     else:
         link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None
         rounds = 0 if math.isinf(walls) else int(walls)
@@ -75,7 +104,8 @@ def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Bea
     if isinstance(region, Strip):
         return [
             (region.moved_back(window, gap.inside()[None])[0][0], gap.width)
-            for window, gaps, _ in open_windows(region, curves, beads) for gap in gaps
+            for window, gaps, _ in open_windows(region, curves, beads)
+            for gap in gaps
         ]
     inner = region.grown(-beads.inset, beads.chord_error)
     return [(gap.inside(), gap.width) for gap in left_open(curves, inner, beads)] if inner else []

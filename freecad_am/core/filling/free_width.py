@@ -23,8 +23,16 @@ PLACES = 0.25  # of the spacing, mm between places at which widths are looked at
 CENTRES = ("centre", "closing")  # kinds of beads that lie in what others leave
 STEP = 0.2  # of the spacing, mm between places at which rooms are looked at
 ROUND = 1.6  # arc over chord; a bead comes beside itself where it returns farther round than half a circle
-SHARE_TOLERANCE = 0.04  # of the usual width; shares that a straight line tells as well need no point of their own
-FIRST = {"contour": 0, "connected": 0, "spiral": 0, "line": 1, "zigzag": 1}  # who keeps its room; all others come last
+SHARE_TOLERANCE = (
+    0.04  # of the usual width; shares that a straight line tells as well need no point of their own
+)
+FIRST = {
+    "contour": 0,
+    "connected": 0,
+    "spiral": 0,
+    "line": 1,
+    "zigzag": 1,
+}  # who keeps its room; all others come last
 LAST = 2
 ALONG = 0.02  # sine of the angle to the lines of a zigzag; what is turned more is a link
 
@@ -49,16 +57,26 @@ def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Bea
     if thickness > width:
         count = int((thickness - width) / beads.spacing)  # more than one bead
         share = min(
-            (thickness / (width + number * beads.spacing) for number in range(max(count - 1, 0), count + 3)),
+            (
+                thickness / (width + number * beads.spacing)
+                for number in range(max(count - 1, 0), count + 3)
+            ),
             key=lambda one: abs(math.log(one)),
         )
     if not least <= share <= most * MORE * (1.0 + WIDTH):
         share = 1.0
-    return replace(beads, spacing=share * beads.spacing, width=share * width, gap=share * beads.gap), share
+    return replace(
+        beads, spacing=share * beads.spacing, width=share * width, gap=share * beads.gap
+    ), share
 
 
 def shared(
-    region: Region, curves: Sequence[PlaneCurve], beads: Beads, share: float, least: float, most: float
+    region: Region,
+    curves: Sequence[PlaneCurve],
+    beads: Beads,
+    share: float,
+    least: float,
+    most: float,
 ) -> Iterator[PlaneCurve]:
     """The curves with the share of the usual width that each of their points has: that of the fitted beads, of those in the
     middle what room their neighbours leave them. Between least and most."""
@@ -69,11 +87,24 @@ def shared(
         elif curve.kind in CENTRES:
             points = _places(curve, PLACES * beads.spacing)
             distances = nearest_among(others, points)[1]
-            yield replace(curve, points=points, share=np.clip(share * np.minimum(
-                region.nearest(points)[1] / beads.inset, 2.0 * distances / beads.spacing - 1.0
-            ), least, most))
+            yield replace(
+                curve,
+                points=points,
+                share=np.clip(
+                    share
+                    * np.minimum(
+                        region.nearest(points)[1] / beads.inset,
+                        2.0 * distances / beads.spacing - 1.0,
+                    ),
+                    least,
+                    most,
+                ),
+            )
         else:
-            yield replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
+            yield replace(
+                curve,
+                share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share),
+            )
 
 
 def _places(curve: PlaneCurve, step: float) -> Array:
@@ -85,13 +116,21 @@ def _places(curve: PlaneCurve, step: float) -> Array:
     return points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
 
 
-def narrowed(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> tuple[PlaneCurve, ...]:
+def narrowed(
+    curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float
+) -> tuple[PlaneCurve, ...]:
     """The curves with the share of their usual width that they have room for: halfway to others of their kind, and as far as
     those that come first reach, contours before lines before beads in the middle. Links of zigzags lay what their lines,
     which end before the contour, do not. angle: of the lines, rad. least: share that no bead is laid below."""
-    lines, corners = zip(*(divided_by_step(curve.whole()[0], STEP * beads.spacing) for curve in curves))
+    lines, corners = zip(
+        *(divided_by_step(curve.whole()[0], STEP * beads.spacing) for curve in curves)
+    )
     edges = _edges(lines, [curve.closed for curve in curves])
-    widths = _free_widths(edges, np.array([FIRST.get(curve.kind, LAST) for curve in curves], dtype=np.intp), beads.spacing)
+    widths = _free_widths(
+        edges,
+        np.array([FIRST.get(curve.kind, LAST) for curve in curves], dtype=np.intp),
+        beads.spacing,
+    )
     share = widths.sum(axis=1) / beads.spacing
     zigzags = np.array([curve.kind == "zigzag" for curve in curves])[edges.bead]
     turned = np.abs(edges.ways[:, 0] * np.sin(angle) - edges.ways[:, 1] * np.cos(angle)) > ALONG
@@ -121,7 +160,9 @@ def _free_widths(edges: _Edges, rank: Index, spacing: float) -> Array:
     gap = edges.middles[other] - edges.middles[one]
     aside = edges.ways[one, 0] * gap[:, 1] - edges.ways[one, 1] * gap[:, 0]
     side = (aside < 0.0).astype(np.intp)
-    radius = (gap**2).sum(axis=1) / np.maximum(2.0 * np.abs(aside), 1e-9 * spacing)  # of the circle that touches both
+    radius = (gap**2).sum(axis=1) / np.maximum(
+        2.0 * np.abs(aside), 1e-9 * spacing
+    )  # of the circle that touches both
     lot = rank[edges.bead]
     for level in range(LAST + 1):
         mine = lot[one] == level
@@ -129,7 +170,9 @@ def _free_widths(edges: _Edges, rank: Index, spacing: float) -> Array:
         np.minimum.at(free, (one[equal], side[equal]), radius[equal])
         before = np.flatnonzero(mine & (lot[other] < level))
         taken = free[other[before]].mean(axis=1)
-        np.minimum.at(free, (one[before], side[before]), np.maximum(2.0 * radius[before] - taken, 0.0))
+        np.minimum.at(
+            free, (one[before], side[before]), np.maximum(2.0 * radius[before] - taken, 0.0)
+        )
     return free
 
 
@@ -149,7 +192,9 @@ def _with(curve: PlaneCurve, line: Array, corners: Mask, share: Array) -> PlaneC
     and what tells the shares."""
     if share.min() > 1.0 - SHARE_TOLERANCE:
         return replace(curve, share=None)
-    ends = np.r_[share[-1:], share, share[:1]] if curve.closed else np.r_[share[:1], share, share[-1:]]
+    ends = (
+        np.r_[share[-1:], share, share[:1]] if curve.closed else np.r_[share[:1], share, share[-1:]]
+    )
     wide = 0.5 * (ends[1:] + ends[:-1])
     kept = corners | telling(arcs(line), wide, SHARE_TOLERANCE)
     if curve.closed:

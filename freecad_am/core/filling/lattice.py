@@ -20,7 +20,9 @@ GYROID_LENGTH = 15.449443  # of all sections of a unit gyroid (2 pi wide) in the
 SHARPEST = 6.0  # chords of a period of the gyroid: the root of so many periods by the chord error, before needless ones go
 
 
-def families(region: Region, pattern: str, spacing: float, density: float, angle: float) -> Iterator[list[list[Array]]]:
+def families(
+    region: Region, pattern: str, spacing: float, density: float, angle: float
+) -> Iterator[list[list[Array]]]:
     """Family by family of the straight patterns, row by row the pieces (2, 2) of lines in a region, at an angle, rad."""
     count = FAMILIES[pattern]
     for number in range(count):
@@ -61,7 +63,9 @@ def honeycomb(region: Region, spacing: float, density: float, angle: float) -> l
     (left, low), (right, high) = _box(region, angle)
     cells = np.arange(math.floor(left / period) - 1, math.ceil(right / period) + 1)
     corners = np.array([[0.0, 0.0], [side, 0.0], [1.5 * side, slant], [2.5 * side, slant]])
-    line = (corners + period * np.stack([cells, 0.0 * cells], axis=1)[:, None]).reshape(-1, 2) - np.array([0.0, 0.5 * slant])
+    line = (corners + period * np.stack([cells, 0.0 * cells], axis=1)[:, None]).reshape(
+        -1, 2
+    ) - np.array([0.0, 0.5 * slant])
     found = []
     for k in range(math.floor(low / apart) - 1, math.ceil(high / apart) + 2):
         mirrored = line * np.array([1.0, -1.0 if k % 2 else 1.0]) + np.array([0.0, k * apart])
@@ -74,7 +78,9 @@ def gyroid_period(spacing: float, density: float) -> float:
     return GYROID_LENGTH * spacing / (2.0 * math.pi * density)
 
 
-def gyroid(region: Region, spacing: float, density: float, angle: float, height: float, chord_error: float) -> list[Array]:
+def gyroid(
+    region: Region, spacing: float, density: float, angle: float, height: float, chord_error: float
+) -> list[Array]:
     """The section at a height (mm) of sin x cos y + sin y cos z + sin z cos x = 0 as lines (n, 2) about a region.
 
     For a given z each line is a function of x, or of y, whichever its normal is nearer to: A cos y + B sin y = C is solved
@@ -85,7 +91,11 @@ def gyroid(region: Region, spacing: float, density: float, angle: float, height:
     low, high = (edge / unit for edge in _box(region, angle))
     of_x = math.cos(z) ** 2 >= 0.5
     along, across = (0, 1) if of_x else (1, 0)
-    step = 2.0 * math.pi / (4 * math.ceil(0.25 * math.sqrt(SHARPEST * 2.0 * math.pi * unit / chord_error)))
+    step = (
+        2.0
+        * math.pi
+        / (4 * math.ceil(0.25 * math.sqrt(SHARPEST * 2.0 * math.pi * unit / chord_error)))
+    )
     t = step * np.arange(math.floor(low[along] / step) - 1, math.ceil(high[along] / step) + 2)
     if of_x:
         a, b, c = np.sin(t), np.full(len(t), math.cos(z)), -math.sin(z) * np.cos(t)

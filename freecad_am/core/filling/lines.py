@@ -18,7 +18,10 @@ from .lattice import crossings
 from .zigzag import in_rows
 
 INSIDE = 0.4  # of the spacing; a link on the edge of a contour's bead lies half on it, one at 0.5 leaves its corners open
-TOGETHER, APART = 0.01, 0.002  # of the spacing; lines are moved no more than that so that they come out even
+TOGETHER, APART = (
+    0.01,
+    0.002,
+)  # of the spacing; lines are moved no more than that so that they come out even
 
 
 class Frame(NamedTuple):
@@ -48,7 +51,9 @@ def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -
     return Frame(curves, grown(inner, -2.0 * half, error), grown(inner, -half, error), thin)
 
 
-def lines(framed: Frame, beads: Beads, angle: float, walls: int, longest_link: float | None) -> list[PlaneCurve]:
+def lines(
+    framed: Frame, beads: Beads, angle: float, walls: int, longest_link: float | None
+) -> list[PlaneCurve]:
     """Lines at an angle (rad) within a frame of so many contours, every other one the other way round.
 
     First and last line are half a bead inside the border (with walls: a spacing inside of the last), and the rest
@@ -65,10 +70,14 @@ def lines(framed: Frame, beads: Beads, angle: float, walls: int, longest_link: f
 
 def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
     """Level by level the pieces (2, 2) of lines, all in the direction of the angle (rad)."""
-    if not framed.regions or not framed.ends:  # too narrow for lines; what they would fill gets beads along its middle
+    if (
+        not framed.regions or not framed.ends
+    ):  # too narrow for lines; what they would fill gets beads along its middle
         return []
     borders = [turned(border, -angle) for region in framed.ends for border in region.borders()]
-    height = np.concatenate([turned(region.borders()[0], -angle)[:, 1] for region in framed.regions])
+    height = np.concatenate(
+        [turned(region.borders()[0], -angle)[:, 1] for region in framed.regions]
+    )
     found = []
     for level in levels_between(float(height.min()), float(height.max()), beads):
         x = crossings(borders, level)
@@ -80,7 +89,9 @@ def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
 def levels_between(low: float, high: float, beads: Beads) -> Array:
     """Heights of lines from `low` to `high`, see `lines`."""
     spacing, breadth = beads.spacing, high - low
-    hair = 1e-7 * spacing + 1e-12 * max(abs(low), abs(high))  # lines along the border cross it for sure
+    hair = 1e-7 * spacing + 1e-12 * max(
+        abs(low), abs(high)
+    )  # lines along the border cross it for sure
     if breadth <= 4.0 * hair:
         return np.array([0.5 * (low + high)])
     count = max(math.ceil(breadth / ((1.0 + APART) * spacing)), 1)
@@ -90,6 +101,8 @@ def levels_between(low: float, high: float, beads: Beads) -> Array:
         whole = math.floor(breadth / spacing)
         below, above = (whole + 2) // 2, (whole + 1) // 2
         first, last = low + spacing * np.arange(below), high - spacing * np.arange(above)[::-1]
-        levels = np.r_[first, 0.5 * (first[-1] + last[0]), last] if len(last) else np.array([low, high])
+        levels = (
+            np.r_[first, 0.5 * (first[-1] + last[0]), last] if len(last) else np.array([low, high])
+        )
     found: Array = np.clip(levels, low + hair, high - hair)
     return found

@@ -55,8 +55,12 @@ class Ring:
         span = (end - start) % self.length
         inner = np.remainder(self.arc[:-1] - start, self.length)
         order = np.argsort(inner, kind="stable")
-        between = order[(inner[order] > 1e-9 * self.length) & (inner[order] < span - 1e-9 * self.length)]
-        return np.vstack([self.at(np.array([start])), self.points[between], self.at(np.array([end]))])
+        between = order[
+            (inner[order] > 1e-9 * self.length) & (inner[order] < span - 1e-9 * self.length)
+        ]
+        return np.vstack(
+            [self.at(np.array([start])), self.points[between], self.at(np.array([end]))]
+        )
 
     def is_free(self, start: float, end: float) -> bool:
         """Whether nothing of the arc from start to end is taken."""
@@ -78,10 +82,16 @@ def side_by_side(rings: Sequence[Ring], reach: float) -> list[AdjacentRings]:
     pairs = cKDTree(places).query_pairs(reach, output_type="ndarray")
     pairs = pairs[number[pairs[:, 0]] != number[pairs[:, 1]]]
     pairs = np.vstack([pairs, pairs[:, ::-1]])
-    key = np.unique(np.stack([number[pairs[:, 0]], number[pairs[:, 1]], pairs[:, 0]], axis=1), axis=0)
+    key = np.unique(
+        np.stack([number[pairs[:, 0]], number[pairs[:, 1]], pairs[:, 0]], axis=1), axis=0
+    )
     whole = np.concatenate(marks)
     cuts = np.flatnonzero((np.diff(key[:, :2], axis=0) != 0).any(axis=1)) + 1
-    return [AdjacentRings(int(lot[0, 0]), int(lot[0, 1]), whole[lot[:, 2]]) for lot in np.split(key, cuts) if len(lot)]
+    return [
+        AdjacentRings(int(lot[0, 0]), int(lot[0, 1]), whole[lot[:, 2]])
+        for lot in np.split(key, cuts)
+        if len(lot)
+    ]
 
 
 def crossed(line: Array, other: Array) -> bool:

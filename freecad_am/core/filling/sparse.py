@@ -34,12 +34,22 @@ class Infill:
 
 
 def sparse(
-    framed: Frame, inner: Sequence[Region], beads: Beads, pattern: str, angle: float, walls: int, longest_link: float | None,
+    framed: Frame,
+    inner: Sequence[Region],
+    beads: Beads,
+    pattern: str,
+    angle: float,
+    walls: int,
+    longest_link: float | None,
     infill: Infill,
 ) -> list[PlaneCurve]:
     """What is inside of walls, see `Infill`, and beads that close gaps between these. inner: where the middles of beads may
     lie. angle (rad): of lines and zigzags, and of the lines where the whole is filled. longest_link: as of `lines`."""
-    curves = closing(inner, framed.thin + framed.curves, beads, walls, framed.ends) if framed.curves else []
+    curves = (
+        closing(inner, framed.thin + framed.curves, beads, walls, framed.ends)
+        if framed.curves
+        else []
+    )
     loose, whole = _divided(framed.ends, infill.buried, beads)
     for part in whole:
         curves += _whole(part, beads, angle, walls, longest_link)
@@ -62,35 +72,59 @@ def _divided(
     return loose, without(ends, loose)
 
 
-def _whole(region: Region, beads: Beads, angle: float, ring: int, longest_link: float | None) -> list[PlaneCurve]:
+def _whole(
+    region: Region, beads: Beads, angle: float, ring: int, longest_link: float | None
+) -> list[PlaneCurve]:
     """Lines, or zigzags, over all of a region that lines end on the border of, and beads in what they leave open."""
     inner = region.grown(-0.5 * beads.spacing, beads.chord_error)
-    curves = in_rows(rows(Frame([], inner, (region,), []), beads, angle), (region,), beads, ring, longest_link)
+    curves = in_rows(
+        rows(Frame([], inner, (region,), []), beads, angle), (region,), beads, ring, longest_link
+    )
     return curves + (closing(inner, curves, beads, ring) if inner and curves else [])
 
 
 def _pattern(
-    region: Region, beads: Beads, pattern: str, angle: float, ring: int, longest_link: float | None, infill: Infill
+    region: Region,
+    beads: Beads,
+    pattern: str,
+    angle: float,
+    ring: int,
+    longest_link: float | None,
+    infill: Infill,
 ) -> list[PlaneCurve]:
     """The beads of a pattern in a region that they end on the border of."""
     spacing, density = beads.spacing, infill.density
     if pattern == "contours":
         apart = spacing / density
-        return _rounds(region, beads, ring, apart - 0.5 * spacing if ring else 0.5 * apart - beads.inset, apart)
+        return _rounds(
+            region, beads, ring, apart - 0.5 * spacing if ring else 0.5 * apart - beads.inset, apart
+        )
     if pattern in ("honeycomb", "gyroid"):
-        across = honeycomb(region, spacing, density, infill.angle) if pattern == "honeycomb" else gyroid(
-            region, spacing, density, infill.angle, infill.height, beads.chord_error,
+        across = (
+            honeycomb(region, spacing, density, infill.angle)
+            if pattern == "honeycomb"
+            else gyroid(
+                region,
+                spacing,
+                density,
+                infill.angle,
+                infill.height,
+                beads.chord_error,
+            )
         )
         return in_rows([region.pieces(line) for line in across], (region,), beads, ring, None)
     turn = angle if pattern in ("lines", "zigzag") else infill.angle
     longest = None if longest_link is None else longest_link / density
     return [
-        curve for lines in families(region, pattern, spacing, density, turn)
+        curve
+        for lines in families(region, pattern, spacing, density, turn)
         for curve in in_rows(lines, (region,), beads, ring, longest)
     ]
 
 
-def _rounds(region: Region, beads: Beads, ring: int, first: float, apart: float) -> list[PlaneCurve]:
+def _rounds(
+    region: Region, beads: Beads, ring: int, first: float, apart: float
+) -> list[PlaneCurve]:
     """Contours so far apart, the first so far inside of a region, mm."""
     curves, k = [], 0
     while inner := region.grown(-first - k * apart, beads.chord_error):

@@ -16,7 +16,9 @@ from .contours import centres, levels
 from .curve import Beads, PlaneCurve, long_enough
 
 PROBES = 64  # places of a ring that tell which ring it follows
-PARALLEL_GAP = 0.02  # relative to the spacing; a ring follows another that it is that close to parallel to
+PARALLEL_GAP = (
+    0.02  # relative to the spacing; a ring follows another that it is that close to parallel to
+)
 LEAST_LENGTH = 4.0  # spacings; contours shorter than that are not linked
 LINK = 3.0  # spacings; longest link
 
@@ -25,8 +27,12 @@ def spiral(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[Plan
     """One curve from each outer contour and from each hole as far as contours follow one another singly; where they split or
     join, new ones begin. A contour of its own stays closed. What contours leave open is filled as theirs is."""
     found = levels(region, inner, beads)
-    rings = [[border for region in regions for border in region.borders()] for regions in found.regions]
-    follower = [_followers(here, there, beads.spacing) for here, there in zip(rings, rings[1:])] + [{}]
+    rings = [
+        [border for region in regions for border in region.borders()] for regions in found.regions
+    ]
+    follower = [_followers(here, there, beads.spacing) for here, there in zip(rings, rings[1:])] + [
+        {}
+    ]
     led: set[tuple[int, int]] = set()
     curves = []
     for k, level in enumerate(rings):
@@ -48,7 +54,9 @@ def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) ->
     adjacent = np.zeros((len(here), len(there)), dtype=bool)
     for j, ring in enumerate(there):
         probes = ring[np.unique(np.linspace(0, len(ring) - 1, PROBES).astype(int))]
-        probes = np.vstack([probes, 0.5 * (probes + np.roll(ring, -1, axis=0)[nearest(ring, probes, True).edge])])
+        probes = np.vstack(
+            [probes, 0.5 * (probes + np.roll(ring, -1, axis=0)[nearest(ring, probes, True).edge])]
+        )
         away = np.stack([nearest(outer, probes, True).distance for outer in here])
         close = np.abs(away - spacing) < PARALLEL_GAP * spacing
         adjacent[:, j] = close.mean(axis=1) > 0.05
@@ -56,7 +64,9 @@ def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) ->
     return {int(i): int(j) for i, j in zip(*np.nonzero(single))}
 
 
-def _linked(chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: Beads) -> list[Array]:
+def _linked(
+    chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: Beads
+) -> list[Array]:
     """The rings as far as links lead, each begun where the link arrives and ended where the next leaves: the first where it
     began, the others a spacing before, so that links lie side by side. A ring that no link leads from is whole."""
     ring = beads.ring(chain[0])
@@ -67,7 +77,9 @@ def _linked(chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: 
             break
         whole = np.vstack([ring, ring[:1]])
         cut = up_to(whole, way - beads.spacing) if pieces else whole
-        turned = following[::-1] if (doubled_area(following) < 0.0) != beads.clockwise else following
+        turned = (
+            following[::-1] if (doubled_area(following) < 0.0) != beads.clockwise else following
+        )
         ahead = ring[:1] if pieces else up_to(whole, beads.spacing)[-1:]
         arrives = nearest(turned, ahead, True).points[0]
         link = cut[-1] + np.linspace(0.0, 1.0, 17)[1:-1, None] * (arrives - cut[-1])

@@ -15,7 +15,9 @@ from .curve import Beads, PlaneCurve
 REACH = 3.0  # spacings beside a window that tell what is open in it
 
 
-def strip_closing(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring: int, kind: str) -> list[PlaneCurve]:
+def strip_closing(
+    strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring: int, kind: str
+) -> list[PlaneCurve]:
     """Beads in what curves leave open, wider than the gap allowed; cut where windows meet."""
     return [
         replace(curve, points=points, sheet=sheet)
@@ -33,15 +35,28 @@ def open_windows(
     for window, adjacent in near_windows(strip, curves, REACH * beads.spacing):
         inner = grown(strip.flat(window, with_margin=True), -beads.inset, beads.chord_error)
         if inner:
-            found.append((window, list(common(left_open(adjacent, inner, beads), strip.pane(window))), inner))
+            found.append(
+                (window, list(common(left_open(adjacent, inner, beads), strip.pane(window))), inner)
+            )
     return found
 
 
-def near_windows(strip: Strip, curves: Sequence[PlaneCurve], reach: float) -> Iterator[tuple[Window, list[PlaneCurve]]]:
+def near_windows(
+    strip: Strip, curves: Sequence[PlaneCurve], reach: float
+) -> Iterator[tuple[Window, list[PlaneCurve]]]:
     """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle."""
-    curves = [replace(curve, points=strip.period.followed(curve.points, curve.sheet, curve.turns)) for curve in curves]
+    curves = [
+        replace(curve, points=strip.period.followed(curve.points, curve.sheet, curve.turns))
+        for curve in curves
+    ]
     for window in strip.windows(reach):
-        yield window, [
-            PlaneCurve(points, closed, curve.kind, curve.ring) for curve in curves
-            for points, closed in strip.near(window, curve.points, curve.closed and not curve.turns)
-        ]
+        yield (
+            window,
+            [
+                PlaneCurve(points, closed, curve.kind, curve.ring)
+                for curve in curves
+                for points, closed in strip.near(
+                    window, curve.points, curve.closed and not curve.turns
+                )
+            ],
+        )

@@ -18,7 +18,10 @@ from .curve import Beads, PlaneCurve, contours_of, long_enough
 from .lines import levels_between
 from .strip_closing import strip_closing
 
-PROBE, HALVES = 0.1, 10  # of the spacing, between places that tell where lines are inside; and how often that is halved
+PROBE, HALVES = (
+    0.1,
+    10,
+)  # of the spacing, between places that tell where lines are inside; and how often that is halved
 
 
 class _Frame(NamedTuple):
@@ -59,9 +62,13 @@ def lines_round(
             back = (row % 2 == 1) if not whole else beads.clockwise
             sense = 0 if not whole else (-1 if back else 1)
             sheet = float(uv[:, 0].mean())
-            curves.append(PlaneCurve(points[::-1] if back else points, whole, "line", walls, sense, sheet))
+            curves.append(
+                PlaneCurve(points[::-1] if back else points, whole, "line", walls, sense, sheet)
+            )
     curves = long_enough(curves, beads.shortest)
-    return curves + (strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else [])
+    return curves + (
+        strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else []
+    )
 
 
 def lines_along(
@@ -76,8 +83,12 @@ def lines_along(
     low, high = strip.levels
     v: Array = np.linspace(low, high, max(2, math.ceil((high - low) / (PROBE * beads.spacing))))
     u: Array = np.asarray(-0.5 * turn + turn / count * (np.arange(count) + 0.5), dtype=np.float64)
-    inside = interior.contains(np.stack(np.broadcast_arrays(u[:, None], v), axis=-1).reshape(-1, 2)).reshape(count, -1)
-    runs = [(number, a, b) for number in range(count) for a, b in _runs(inside[number], closed=False)]
+    inside = interior.contains(
+        np.stack(np.broadcast_arrays(u[:, None], v), axis=-1).reshape(-1, 2)
+    ).reshape(count, -1)
+    runs = [
+        (number, a, b) for number in range(count) for a, b in _runs(inside[number], closed=False)
+    ]
     line, first, past = np.array(runs, dtype=np.intp).reshape(-1, 3).T
     bottom, top = (
         interior.border(u[line], v[within], v[np.clip(beyond, 0, len(v) - 1)])
@@ -88,7 +99,9 @@ def lines_along(
         ends = strip.period.unroll(np.stack([np.full(2, u[number]), levels], axis=1))
         curves.append(PlaneCurve(ends[::-1] if number % 2 else ends, False, "line", walls))
     curves = long_enough(curves, beads.shortest)
-    return curves + (strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else [])
+    return curves + (
+        strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else []
+    )
 
 
 def _levels(low: float, high: float, beads: Beads, density: float) -> Array:
@@ -105,9 +118,17 @@ class _Inside:
     def __init__(self, strip: Strip, parts: Sequence[Strip | Region]) -> None:
         turn = strip.period.around
         reach = 0.75 * turn
-        self.unrolled = [piece for part in parts if isinstance(part, Strip) for piece in part.between(-reach, reach)]
+        self.unrolled = [
+            piece
+            for part in parts
+            if isinstance(part, Strip)
+            for piece in part.between(-reach, reach)
+        ]
         for part in (part for part in parts if isinstance(part, Region)):
-            borders = [strip.period.followed(dense(border, 0.001 * turn), part.sheet) for border in part.borders()]
+            borders = [
+                strip.period.followed(dense(border, 0.001 * turn), part.sheet)
+                for border in part.borders()
+            ]
             for hole in borders[1:] if math.isfinite(strip.period.whole) else ():
                 away = 0.5 * (borders[0][:, 0].min() + borders[0][:, 0].max()) - hole[0, 0]
                 hole[:, 0] += strip.period.whole * np.round(away / strip.period.whole)
@@ -136,7 +157,9 @@ def _runs(inside: Mask, closed: bool = True) -> list[tuple[int, int]]:
     if inside.all():
         return [(0, count)]
     change = np.diff(np.r_[False, inside, False].astype(int))
-    runs = [(int(a), int(b)) for a, b in zip(np.flatnonzero(change > 0), np.flatnonzero(change < 0))]
+    runs = [
+        (int(a), int(b)) for a, b in zip(np.flatnonzero(change > 0), np.flatnonzero(change < 0))
+    ]
     if closed and len(runs) > 1 and runs[0][0] == 0 and runs[-1][1] == count:
         runs = [*runs[1:-1], (runs[-1][0], count + runs[0][1])]
     return [run for run in runs if run[1] - run[0] > 1]
@@ -144,4 +167,8 @@ def _runs(inside: Mask, closed: bool = True) -> list[tuple[int, int]]:
 
 def _stretch(strip: Strip) -> float:
     """How much longer a turn is where it is longest than at the reference."""
-    return 1.0 if math.isinf(strip.period.apex) else (strip.period.apex - strip.levels[0]) / abs(strip.period.apex)
+    return (
+        1.0
+        if math.isinf(strip.period.apex)
+        else (strip.period.apex - strip.levels[0]) / abs(strip.period.apex)
+    )

@@ -18,13 +18,18 @@ from .strip_closing import strip_closing
 AFRESH = 4  # contours made from the same borders; farther in, windows would get too narrow and errors are small yet
 
 
-def strip_contours(strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads) -> list[PlaneCurve]:
+def strip_contours(
+    strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads
+) -> list[PlaneCurve]:
     """As `contours`: from both borders and from the holes inwards, then what they leave open; one bead in the middle of a
     strip narrower than a bead. InfeasibleError THIN_REGION where none is wanted."""
     if not inner and beads.thin == "refuse":
         raise InfeasibleError(
-            "THIN_REGION", "filling", "a region round the hub is nowhere as wide as a bead ({:.3g} mm); choose thin = "
-            "single, a narrower bead or a margin", 2.0 * beads.inset,
+            "THIN_REGION",
+            "filling",
+            "a region round the hub is nowhere as wide as a bead ({:.3g} mm); choose thin = "
+            "single, a narrower bead or a margin",
+            2.0 * beads.inset,
         )
     if not inner:
         return _centre(strip, beads, 0)
@@ -37,17 +42,32 @@ def strip_contours(strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads
         if k - first == AFRESH:
             start, first = grown(inner, -half, error), k + 1
         k += 1
-        before, inner = inner, grown(start, -(half if first else beads.inset) - 2 * (k - first) * half, error)
+        before, inner = (
+            inner,
+            grown(start, -(half if first else beads.inset) - 2 * (k - first) * half, error),
+        )
     for region in grown(before, -half, error):
         if isinstance(region, Strip) and region.grown(-0.5 * beads.gap, error):
             curves += _centre(region, beads, k)
     curves = long_enough(curves, beads.shortest)
-    return curves + [begun(curve, beads) for curve in strip_closing(strip, curves, beads, k, "centre")]
+    return curves + [
+        begun(curve, beads) for curve in strip_closing(strip, curves, beads, k, "centre")
+    ]
 
 
 def _centre(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     """A bead round the hub in the middle of a thin strip."""
-    points = spine_round(strip, 0.25 * beads.gap, FINE * beads.spacing, beads.chord_error, beads.spacing)
+    points = spine_round(
+        strip, 0.25 * beads.gap, FINE * beads.spacing, beads.chord_error, beads.spacing
+    )
     if points is None:  # somewhere too narrow for a bead
         return centre_beads(halves(strip), beads, ring, ())
-    return [PlaneCurve(points[:: -1 if beads.clockwise else 1], True, "centre", ring, -1 if beads.clockwise else 1)]
+    return [
+        PlaneCurve(
+            points[:: -1 if beads.clockwise else 1],
+            True,
+            "centre",
+            ring,
+            -1 if beads.clockwise else 1,
+        )
+    ]

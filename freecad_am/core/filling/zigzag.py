@@ -18,7 +18,11 @@ FLOOR = 4.0  # chord errors; no edge is shorter
 
 
 def in_rows(
-    rows: Sequence[Sequence[Array]], ends: Sequence[Region], beads: Beads, ring: int, longest_link: float | None,
+    rows: Sequence[Sequence[Array]],
+    ends: Sequence[Region],
+    beads: Beads,
+    ring: int,
+    longest_link: float | None,
     inside: float = 0.0,
 ) -> list[PlaneCurve]:
     """Beads of lines (2, 2), row by row, that end on the borders of regions: zigzags with links no longer than that, mm;
@@ -27,7 +31,9 @@ def in_rows(
     if longest_link is None:
         return [
             PlaneCurve(line[::-1] if row % 2 else line, False, "line", ring)
-            for row, lines in enumerate(rows) for line in lines if length(line, False) >= beads.shortest
+            for row, lines in enumerate(rows)
+            for line in lines
+            if length(line, False) >= beads.shortest
         ]
     borders = [border for region in ends for border in region.borders()]
     least = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
@@ -43,8 +49,13 @@ def in_rows(
 
 
 def _chain(
-    levels: Sequence[Sequence[Array]], open_: list[list[int]], row: int, borders: Sequence[Array], limit: float,
-    least: float, inside: float,
+    levels: Sequence[Sequence[Array]],
+    open_: list[list[int]],
+    row: int,
+    borders: Sequence[Array],
+    limit: float,
+    least: float,
+    inside: float,
 ) -> Array:
     """A zigzag from the first line open in a row up, without edges shorter than `least` mm; takes its lines off the list."""
     piece = levels[row][open_[row].pop(0)]
@@ -52,7 +63,8 @@ def _chain(
     while row + 1 < len(levels):
         row += 1
         links = [
-            (length(way, False), number, way) for number in open_[row]
+            (length(way, False), number, way)
+            for number in open_[row]
             if (way := _link(parts[-1][-1], levels[row][number][far], borders, limit)) is not None
         ]
         if not links:
@@ -66,7 +78,9 @@ def _chain(
     return np.vstack(parts)
 
 
-def _moved_inside(line: Array, way: Array, following: Array, inside: float) -> tuple[Array, Array, Array]:
+def _moved_inside(
+    line: Array, way: Array, following: Array, inside: float
+) -> tuple[Array, Array, Array]:
     """A line (2, 2), the link (n, 2) after it and the line after that, moved back along the lines by `inside` mm where the
     border is square to them, and less the more it is slanted, for what is left open beside its ends grows."""
     back = line[0] - line[1]
@@ -75,10 +89,17 @@ def _moved_inside(line: Array, way: Array, following: Array, inside: float) -> t
     chord = way[-1] - way[0]
     straight = max(float(np.hypot(*chord)), 1e-300)
     by = inside * max(1.0 - abs(float(chord @ back)) / straight, 0.0)
-    if length(way, False) > BOWED * straight or min(long, length(following, False)) < 2.0 * by + inside:
+    if (
+        length(way, False) > BOWED * straight
+        or min(long, length(following, False)) < 2.0 * by + inside
+    ):
         return line, way, following
     shift = by * back
-    return np.vstack([line[:1], line[1:] + shift]), way + shift, np.vstack([following[:1] + shift, following[1:]])
+    return (
+        np.vstack([line[:1], line[1:] + shift]),
+        way + shift,
+        np.vstack([following[:1] + shift, following[1:]]),
+    )
 
 
 def _clean(way: Array, least: float) -> Array:
@@ -108,7 +129,15 @@ def _link(start: Array, end: Array, borders: Sequence[Array], limit: float) -> A
     return way if length(way, False) <= limit else None
 
 
-def _way(border: Array, start: Array, end: Array, leaves: int, arrives: int, share: float, share_at: float) -> Array:
+def _way(
+    border: Array,
+    start: Array,
+    end: Array,
+    leaves: int,
+    arrives: int,
+    share: float,
+    share_at: float,
+) -> Array:
     """From a place on edge `leaves` on along a ring to one on edge `arrives`."""
     count = (arrives - leaves) % len(border)
     if count == 0 and share_at < share:

@@ -37,7 +37,9 @@ def volume_beyond(surface: Developable, vertices: Array, triangles: Integers) ->
         corner, area, top = corner[~small], area[~small], top[~small]
         a, b, c = (corner[np.arange(len(top)), (top + k) % 3] for k in range(3))
         middle = 0.5 * (a + b)
-        corner = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        corner = np.concatenate(
+            [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
+        )
         area = np.concatenate([area, area]) / 2.0
     return max(volume, 0.0)
 
@@ -48,18 +50,26 @@ def solids_beyond(solids: SolidsOnHub) -> float | None:
     for group in solids.groups:
         surface = group.base.surface
         if isinstance(surface, Developable):  # those that overlap are refused
-            found += sum(volume_beyond(surface, group.base.inside(body.vertices), body.triangles) for body in group.bodies)
+            found += sum(
+                volume_beyond(surface, group.base.inside(body.vertices), body.triangles)
+                for body in group.bodies
+            )
         elif any(_may_meet(*pair) for pair in combinations(group.bodies, 2)):
             return None
         else:
-            found += sum(abs(SolidMesh(body.vertices, body.triangles).volume) for body in group.bodies)
+            found += sum(
+                abs(SolidMesh(body.vertices, body.triangles).volume) for body in group.bodies
+            )
     return found
 
 
 def _may_meet(one: Body, other: Body) -> bool:
-    return bool((
-        (one.vertices.min(axis=0) < other.vertices.max(axis=0)) & (other.vertices.min(axis=0) < one.vertices.max(axis=0))
-    ).all())
+    return bool(
+        (
+            (one.vertices.min(axis=0) < other.vertices.max(axis=0))
+            & (other.vertices.min(axis=0) < one.vertices.max(axis=0))
+        ).all()
+    )
 
 
 def _field(surface: Developable, points: Array) -> Array:
@@ -68,5 +78,7 @@ def _field(surface: Developable, points: Array) -> Array:
     away = np.maximum(surface.distance(points), 0.0)
     rho = np.maximum(np.hypot(points[:, 0], points[:, 1]), 1e-300)
     foot = rho - away * cos
-    found: Array = ((rho * rho - foot * foot) / (2.0 * rho * cos))[:, None] * surface.normals(points)
+    found: Array = ((rho * rho - foot * foot) / (2.0 * rho * cos))[:, None] * surface.normals(
+        points
+    )
     return found

@@ -36,7 +36,9 @@ class Cylinder:
         along = offset @ axis
         away = lengths(offset - along[:, None] * axis)
         held: Mask = (
-            (along >= -_ROUNDING) & (along <= self.length + _ROUNDING) & (away <= self.radius + _ROUNDING)
+            (along >= -_ROUNDING)
+            & (along <= self.length + _ROUNDING)
+            & (away <= self.radius + _ROUNDING)
         )
         return held
 
@@ -55,7 +57,9 @@ def about(points: Array) -> Cylinder:
         centre = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
         radius = float(lengths(flat - centre).max())
         foot = middle + centre @ across
-        found.append(((high - low) * radius**2, Cylinder(foot + low * axis, foot + high * axis, radius)))
+        found.append(
+            ((high - low) * radius**2, Cylinder(foot + low * axis, foot + high * axis, radius))
+        )
     return min(found, key=lambda one: one[0])[1]
 
 
@@ -92,7 +96,9 @@ def row(points: Array, triangles: Integers) -> list[Cylinder]:
 
 def needed(cylinders: Sequence[Cylinder], points: Sequence[Array]) -> list[Cylinder]:
     """The cylinders about points (each (n, 3)) but those whose points are all in another cylinder that stays."""
-    order = sorted(range(len(cylinders)), key=lambda k: cylinders[k].length * cylinders[k].radius**2)
+    order = sorted(
+        range(len(cylinders)), key=lambda k: cylinders[k].length * cylinders[k].radius ** 2
+    )
     left = set(order)
     for k in order:
         if any(cylinders[j].holds(points[k]).all() for j in left - {k}):

@@ -69,7 +69,10 @@ class Developable:
         a = self.taper
         rho = np.hypot(points[..., 0], points[..., 1])
         level = math.cos(a) / np.maximum(rho, 1e-300)
-        return np.stack([points[..., 0] * level, points[..., 1] * level, np.full_like(rho, math.sin(a))], axis=-1)
+        return np.stack(
+            [points[..., 0] * level, points[..., 1] * level, np.full_like(rho, math.sin(a))],
+            axis=-1,
+        )
 
     def along(self, at: Array, way: Array) -> tuple[Array, Array]:
         """`distance` (n,) of points, and how it grows (n,) along vectors, both given by components (3, n)."""
@@ -107,7 +110,9 @@ class Developable:
             return np.stack([self.radius * theta, z], axis=-1)
         a = self.taper
         s, phi = (self.height - z) / math.cos(a), theta * math.sin(a)
-        return np.stack([s * np.sin(phi), z / math.cos(a) + 2.0 * s * np.sin(0.5 * phi) ** 2], axis=-1)
+        return np.stack(
+            [s * np.sin(phi), z / math.cos(a) + 2.0 * s * np.sin(0.5 * phi) ** 2], axis=-1
+        )
 
     def unrolled(self, flat: Array) -> tuple[Array, Array]:
         """Azimuth past `middle` and height z, (...,), of points laid flat (..., 2)."""
@@ -117,7 +122,9 @@ class Developable:
         a = self.taper
         rest = self.slant - y
         s = np.hypot(x, rest)
-        lower = ((2.0 * self.slant - y) * y - x * x) / (self.slant + s)  # s0 - s without cancellation
+        lower = ((2.0 * self.slant - y) * y - x * x) / (
+            self.slant + s
+        )  # s0 - s without cancellation
         return np.arctan2(x, rest) / math.sin(a), lower * math.cos(a)
 
     def wrap(self, flat: Array, middle: float = 0.0) -> Array:

@@ -35,11 +35,17 @@ def _pieces(path: str | Path, largest: int, code: str, where: str) -> Iterator[b
     with open(descriptor, "rb") as stream:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
-            raise InputError(code, where, "this is not a file but a device, a pipe or a folder; name a file")
+            raise InputError(
+                code, where, "this is not a file but a device, a pipe or a folder; name a file"
+            )
         size = status.st_size  # of files of the kernel 0, whatever is in them
         while size <= largest * MB and (piece := stream.read(MB)):
             yield piece
             size = max(size, stream.tell())
     if size > largest * MB:
-        raise InputError(code, where, "the file is larger than {} MB, the most that is read; check that it is the right one",
-                         largest)
+        raise InputError(
+            code,
+            where,
+            "the file is larger than {} MB, the most that is read; check that it is the right one",
+            largest,
+        )

@@ -20,10 +20,16 @@ _asked: set[str] | None = None
 
 def located(path: str | os.PathLike[str]) -> Path:
     """The place where the file of this name is on this machine, whether or not it is there."""
-    name = os.path.abspath(os.path.expanduser(os.fspath(path))) if _copies or _asked is not None else ""
+    name = (
+        os.path.abspath(os.path.expanduser(os.fspath(path)))
+        if _copies or _asked is not None
+        else ""
+    )
     if _asked is not None:
         _asked.add(name)
-    if not _copies or any(name == folder or name.startswith(folder + os.sep) for folder in (*_own, _copies)):
+    if not _copies or any(
+        name == folder or name.startswith(folder + os.sep) for folder in (*_own, _copies)
+    ):
         return Path(path)
     return Path(_copies + name)
 
@@ -35,7 +41,11 @@ def is_there(path: str | os.PathLike[str]) -> bool:
 
 def expanded(name: str) -> str:
     """A name with the home folder of the user whose job it is instead of `~`."""
-    return _home + name[1:] if _home and (name == "~" or name.startswith("~/")) else os.path.expanduser(name)
+    return (
+        _home + name[1:]
+        if _home and (name == "~" or name.startswith("~/"))
+        else os.path.expanduser(name)
+    )
 
 
 def travelled(copies: str, own: tuple[str, ...], home: str) -> None:

@@ -36,9 +36,15 @@ class Body:
 
 def box(size: tuple[float, float, float], pose: Array, name: str) -> Body:
     """A box of `size` mm about the origin of a pose (4, 4), its edges along the pose's axes."""
-    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
-    faces = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
-    return Body(name, corners, np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])).moved(pose)
+    corners = (
+        np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
+    )
+    faces = np.array(
+        [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    )
+    return Body(name, corners, np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])).moved(
+        pose
+    )
 
 
 def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
@@ -48,14 +54,20 @@ def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
     flat = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(DISC_SIDES)], axis=1)
     vertices = np.vstack([np.zeros((1, 3)), flat]) @ frame[:3, :3].T + frame[:3, 3]
     rim = np.arange(1, DISC_SIDES + 1)
-    return Body(name, vertices, np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1).astype(np.int64))
+    return Body(
+        name,
+        vertices,
+        np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1).astype(np.int64),
+    )
 
 
 def enclosed(around: Sequence[Body]) -> tuple[float, Array]:
     """The volume of all closed bodies, mm3, and where its middle (3,) is."""
     volume, weighted = 0.0, np.zeros(3)
     for body in around:
-        edges = np.concatenate([body.triangles[:, [0, 1]], body.triangles[:, [1, 2]], body.triangles[:, [2, 0]]])
+        edges = np.concatenate(
+            [body.triangles[:, [0, 1]], body.triangles[:, [1, 2]], body.triangles[:, [2, 0]]]
+        )
         count = len(body.vertices)
         if not np.array_equal(np.sort(edges @ (count, 1)), np.sort(edges @ (1, count))):
             continue

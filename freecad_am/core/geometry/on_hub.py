@@ -64,7 +64,13 @@ class Stretch(NamedTuple):
         if all_round or self.span >= TURN:
             return np.asarray(along)
         angular = margin / np.maximum(np.hypot(x, y), margin)
-        return np.asarray(along & (np.remainder(np.arctan2(y, x) - self.start + angular, TURN) < self.span + 2.0 * angular))
+        return np.asarray(
+            along
+            & (
+                np.remainder(np.arctan2(y, x) - self.start + angular, TURN)
+                < self.span + 2.0 * angular
+            )
+        )
 
 
 class Seat(NamedTuple):

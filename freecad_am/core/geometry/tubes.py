@@ -13,13 +13,24 @@ import numpy as np
 from ..types import Array, Index, Mask, NDArray
 from .frames import unit
 
-TURN = np.radians(20.0)  # a section is kept wherever the course has turned by this since the last one
+TURN = np.radians(
+    20.0
+)  # a section is kept wherever the course has turned by this since the last one
 _SHARPEST = 0.5  # of the cosine of half a turn: mitres grow no longer than twice the width
 # corners of half the section, by the number of sides; the first is beside
 SECTIONS = {
     4: ((1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)),
     6: ((1.0, 0.0), (0.62, 1.0), (-0.62, 1.0), (-1.0, 0.0), (-0.62, -1.0), (0.62, -1.0)),
-    8: ((1.0, -0.45), (1.0, 0.45), (0.66, 1.0), (-0.66, 1.0), (-1.0, 0.45), (-1.0, -0.45), (-0.66, -1.0), (0.66, -1.0)),
+    8: (
+        (1.0, -0.45),
+        (1.0, 0.45),
+        (0.66, 1.0),
+        (-0.66, 1.0),
+        (-1.0, 0.45),
+        (-1.0, -0.45),
+        (-0.66, -1.0),
+        (0.66, -1.0),
+    ),
 }
 
 
@@ -56,7 +67,9 @@ def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
     after[last[round_]], before[first[round_]] = after[first[round_]], before[last[round_]]
     along = before + after
     cosine = np.linalg.norm(along, axis=1)
-    along = np.where(cosine[:, None] > 1e-6, along, before)  # the course goes back where it came from
+    along = np.where(
+        cosine[:, None] > 1e-6, along, before
+    )  # the course goes back where it came from
     side = unit(np.cross(build, along))
     up = unit(np.cross(along, side))
     turn = np.arccos(np.clip(np.einsum("ij,ij->i", before, after), -1.0, 1.0))
@@ -72,7 +85,9 @@ def kept(turn: Array, starts: Index, stride: int) -> Mask:
     return keep
 
 
-def mesh(points: Array, across: Frames, width: Array, height: Array, ends: Mask, sides: int) -> Mesh:
+def mesh(
+    points: Array, across: Frames, width: Array, height: Array, ends: Mask, sides: int
+) -> Mesh:
     """Tubes through points (k, 3), which are in the middle of their foot.
 
     across: of these points. width, height: (k,) mm. ends: (k,) True at the last point of a tube. sides: a key of SECTIONS.
@@ -82,8 +97,13 @@ def mesh(points: Array, across: Frames, width: Array, height: Array, ends: Mask,
     sideways = section[None, :, :1] * across.side[:, None]
     above = section[None, :, 1:] * across.up[:, None]
     centre = points + half_height[:, None] * across.up
-    corners = centre[:, None] + sideways * half_width[:, None, None] + above * half_height[:, None, None]
-    normals = sideways / np.maximum(half_width, 1e-9)[:, None, None] + above / np.maximum(half_height, 1e-9)[:, None, None]
+    corners = (
+        centre[:, None] + sideways * half_width[:, None, None] + above * half_height[:, None, None]
+    )
+    normals = (
+        sideways / np.maximum(half_width, 1e-9)[:, None, None]
+        + above / np.maximum(half_height, 1e-9)[:, None, None]
+    )
     return Mesh(corners.reshape(-1, 3), unit(normals).reshape(-1, 3), _triangles(ends, sides))
 
 
@@ -92,7 +112,9 @@ def _triangles(ends: Mask, sides: int) -> NDArray[np.int32]:
     number, turn = np.arange(sides), np.roll(np.arange(sides), -1)
     rows = np.flatnonzero(~ends[:-1])[:, None] * sides
     low, next_low = rows + number, rows + turn
-    skin = np.stack([low, next_low, next_low + sides, low, next_low + sides, low + sides], axis=-1).reshape(-1, 3)
+    skin = np.stack(
+        [low, next_low, next_low + sides, low, next_low + sides, low + sides], axis=-1
+    ).reshape(-1, 3)
     last = np.flatnonzero(ends)
     first = np.concatenate([[0], last[:-1] + 1])
     fan = np.stack([np.zeros(sides - 2, dtype=np.intp), number[1:-1], number[2:]], axis=-1)

@@ -15,7 +15,12 @@ STEPS = 3  # tolerances at which bands end
 NICE = (1.0, 2.0, 5.0, 10.0)  # tolerances, times powers of ten
 IN_BANDS = 0.95  # of the deviations lie within the outermost limit, where no tolerance is given
 _COLOURS = (
-    (0.19, 0.21, 0.58), (0.10, 0.45, 0.82), (0.35, 0.75, 0.93), (0.25, 0.68, 0.30), (0.98, 0.83, 0.22), (0.96, 0.53, 0.12),
+    (0.19, 0.21, 0.58),
+    (0.10, 0.45, 0.82),
+    (0.35, 0.75, 0.93),
+    (0.25, 0.68, 0.30),
+    (0.98, 0.83, 0.22),
+    (0.96, 0.53, 0.12),
     (0.80, 0.09, 0.13),
 )
 PAST_EDGES = (0.55, 0.55, 0.57)
@@ -32,7 +37,10 @@ class Band:
 def bands(tolerance: float) -> tuple[Band, ...]:
     """The bands from the most inside to the most outside."""
     limits = [f"{step * tolerance:g}" for step in range(1, STEPS + 1)]
-    inside = [f"< -{limits[-1]}", *(f"-{limits[k]} … -{limits[k - 1]}" for k in range(STEPS - 1, 0, -1))]
+    inside = [
+        f"< -{limits[-1]}",
+        *(f"-{limits[k]} … -{limits[k - 1]}" for k in range(STEPS - 1, 0, -1)),
+    ]
     outside = [*(f"{limits[k - 1]} … {limits[k]}" for k in range(1, STEPS)), f"> {limits[-1]}"]
     texts = [*inside, f"within ±{limits[0]}", *outside]
     return tuple(Band(text, colour) for text, colour in zip(texts, _COLOURS, strict=True))

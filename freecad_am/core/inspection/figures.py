@@ -80,14 +80,23 @@ class Thickness:
 def spread(deviation: Array, tolerance: float) -> Spread:
     """The figures of deviations (n,), n >= 1."""
     low, high = float(deviation.min()), float(deviation.max())
-    step = _nice(max(high - low, 1e-9, 1e-12 * max(-low, high)) / BARS)  # so that its multiples are apart
+    step = _nice(
+        max(high - low, 1e-9, 1e-12 * max(-low, high)) / BARS
+    )  # so that its multiples are apart
     first, last = np.floor(low / step), max(np.floor(low / step) + 1, np.ceil(high / step))
     edges = step * np.arange(first, last + 1)
     edges[0], edges[-1] = min(edges[0], low), max(edges[-1], high)
     amount = np.abs(deviation)
     return Spread(
-        len(deviation), float(deviation.mean()), float(deviation.std()), float(np.sqrt((deviation**2).mean())), low, high,
-        float(np.quantile(amount, 0.95)), float((amount <= tolerance).mean()), edges,
+        len(deviation),
+        float(deviation.mean()),
+        float(deviation.std()),
+        float(np.sqrt((deviation**2).mean())),
+        low,
+        high,
+        float(np.quantile(amount, 0.95)),
+        float((amount <= tolerance).mean()),
+        edges,
         np.histogram(deviation, edges)[0].astype(np.int64),
     )
 
@@ -103,7 +112,9 @@ def ball(points: Array, feet: Array, where: str) -> Ball | None:
         return None
 
 
-def circle(planned: Planned, points: Array, normal: Array, height: float, band: float, where: str) -> Circle:
+def circle(
+    planned: Planned, points: Array, normal: Array, height: float, band: float, where: str
+) -> Circle:
     """Circularity of those of the points (n, 3), with the planned normals (n, 3), that are within a band of a height, mm.
 
     They are slid to the height by what the planned radius differs there, along the meridian of a part of revolution, else
@@ -117,13 +128,22 @@ def circle(planned: Planned, points: Array, normal: Array, height: float, band: 
         grown = _grown(planned.wall.meridian, own[:, 2], radius, height)
     else:
         outward = (own[:, :2] * side[:, :2]).sum(axis=1) / np.maximum(radius, 1e-9)
-        slope = np.where(np.abs(outward) > FLAT, -side[:, 2] / np.where(np.abs(outward) > FLAT, outward, 1.0), 0.0)
+        slope = np.where(
+            np.abs(outward) > FLAT,
+            -side[:, 2] / np.where(np.abs(outward) > FLAT, outward, 1.0),
+            0.0,
+        )
         grown = slope * (height - own[:, 2])
     slid = own[:, :2] * (1.0 + grown / np.maximum(radius, 1e-9))[:, None]
     if len(slid) < 4:
         raise InputError(
-            "FEW_POINTS", where, "{} points lie within {:g} mm of the height {:g} mm; measure more there, choose other "
-            "heights, or a wider band", len(slid), band, height
+            "FEW_POINTS",
+            where,
+            "{} points lie within {:g} mm of the height {:g} mm; measure more there, choose other "
+            "heights, or a wider band",
+            len(slid),
+            band,
+            height,
         )
     angle = np.sort(np.arctan2(slid[:, 1], slid[:, 0]))
     gap = float(np.diff(angle, append=angle[0] + 2.0 * np.pi).max())
@@ -160,7 +180,13 @@ def thickness(
     if not met.any():
         return None
     found = planned + deviation[one[met]] + deviation[other[at[met]]]
-    return Thickness(int(met.sum()), float(found.mean()), float(found.std()), float(found.min()), float(found.max()))
+    return Thickness(
+        int(met.sum()),
+        float(found.mean()),
+        float(found.std()),
+        float(found.min()),
+        float(found.max()),
+    )
 
 
 def zone_of(points: Array, where: str) -> Round:
@@ -194,13 +220,19 @@ def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
 def warnings_of(circles: Sequence[Circle]) -> list[str]:
     """What to know about circles that were not measured all round."""
     return [
-        Text("the circle at {:g} mm was not measured all round: {:.0f} deg between neighbours", one.height,
-            np.degrees(one.gap))
-        for one in circles if one.gap > 2.0 * np.pi * ALL_ROUND
+        Text(
+            "the circle at {:g} mm was not measured all round: {:.0f} deg between neighbours",
+            one.height,
+            np.degrees(one.gap),
+        )
+        for one in circles
+        if one.gap > 2.0 * np.pi * ALL_ROUND
     ]
 
 
 def _nice(step: float) -> float:
     """The next of 1, 2, 5 times a power of ten."""
     power = 10.0 ** np.floor(np.log10(step))
-    return float(next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= step * (1.0 - 1e-9)))
+    return float(
+        next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= step * (1.0 - 1e-9))
+    )

@@ -46,24 +46,35 @@ def refuse_family(toolpath: Toolpath, where: str) -> None:
     """InputError NOT_YET for families whose layers are not fitted to scans."""
     if toolpath.family not in FAMILIES:
         raise InputError(
-            "NOT_YET", where, "layers of the family {} are not fitted to a scan yet; solids in plane layers and walls on a "
-            "substrate are: leave the scan out", toolpath.family
+            "NOT_YET",
+            where,
+            "layers of the family {} are not fitted to a scan yet; solids in plane layers and walls on a "
+            "substrate are: leave the scan out",
+            toolpath.family,
         )
 
 
-def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out: int, motion: Array) -> Toolpath:
+def fitted(
+    toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out: int, motion: Array
+) -> Toolpath:
     """The toolpath with its layers fitted to a scan. left_out: points of its file that are not in it; motion: (4, 4) from
     where it was measured to the part. InputError NO_LAYER, SCAN_MISSES, SCAN_OFF, and those of `refuse_family`."""
     refuse_family(toolpath, scan.label)
     first = parameters.first
     if first >= len(toolpath.layers):
         raise InputError(
-            "NO_LAYER", "substrate.after_layer", "there is no layer above {}: the last one of {} is {}; give a lower one",
-            first - 1, len(toolpath.layers), len(toolpath.layers) - 1
+            "NO_LAYER",
+            "substrate.after_layer",
+            "there is no layer above {}: the last one of {} is {}; give a lower one",
+            first - 1,
+            len(toolpath.layers),
+            len(toolpath.layers) - 1,
         )
     ways = ways_of(toolpath)
     beads = toolpath.layers[first].beads
-    planned = along_beads(beads, ways, _refusing(scan, first, toolpath.layer_height), 1.0, toolpath.chord_error)
+    planned = along_beads(
+        beads, ways, _refusing(scan, first, toolpath.layer_height), 1.0, toolpath.chord_error
+    )
     off = np.concatenate([one.off for one in planned])
     most = float(np.abs(off).max())
     count = max(1, math.ceil(most / (parameters.scan_band * toolpath.layer_height) - 1e-9))
@@ -75,16 +86,28 @@ def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out:
         if share == 0.0:
             layers.append(layer)
             continue
-        found = planned if number == first else along_beads(layer.beads, ways, above, share, toolpath.chord_error)
+        found = (
+            planned
+            if number == first
+            else along_beads(layer.beads, ways, above, share, toolpath.chord_error)
+        )
         thinner = share - course.share(number + 1) if number >= first else 0.0
-        made = [moved(one, share, thinner / toolpath.layer_height, toolpath.layer_height) for one in found]
+        made = [
+            moved(one, share, thinner / toolpath.layer_height, toolpath.layer_height)
+            for one in found
+        ]
         layers.append(replace(layer, beads=tuple(made)))
         if thinner:
             heights = toolpath.layer_height - thinner * np.concatenate([one.off for one in found])
             uneven.append((number, heights.min(), heights.max()))
-    record = _record(planned, layers[first], ways, scan, course, most, len(toolpath.layers), left_out, motion)
+    record = _record(
+        planned, layers[first], ways, scan, course, most, len(toolpath.layers), left_out, motion
+    )
     return replace(
-        toolpath, layers=tuple(layers), uneven=np.array(uneven) if uneven else toolpath.uneven, fitted=record,
+        toolpath,
+        layers=tuple(layers),
+        uneven=np.array(uneven) if uneven else toolpath.uneven,
+        fitted=record,
         issues=(*_issues(record, toolpath.layer_height), *toolpath.issues),
     )
 
@@ -92,10 +115,15 @@ def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out:
 def moved_most(record: Fitted, layers: Index) -> Array:
     """(n,) mm that points of the layers (n,) were moved at most to fit them to a scan."""
     most = float(np.abs(record.off).max(initial=0.0))
-    left = 1.0 - (record.remains / most if most else 0.0)  # of the way back, what the last layer has gone
+    left = 1.0 - (
+        record.remains / most if most else 0.0
+    )  # of the way back, what the last layer has gone
     count = (record.layers - 1) / left if record.remains and record.layers > 1 else record.layers
     course = _Course(record.layer, max(1, round(count)))
-    return most * np.array([course.share(layer) for layer in range(int(layers.max(initial=0)) + 1)])[layers]
+    return (
+        most
+        * np.array([course.share(layer) for layer in range(int(layers.max(initial=0)) + 1)])[layers]
+    )
 
 
 def ways_of(toolpath: Toolpath) -> Ways:
@@ -115,17 +143,29 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
         if len(bare):
             size = float(np.linalg.norm(np.ptp(scan.points, axis=0))) if len(scan.points) else 0.0
             raise InputError(
-                "SCAN_MISSES", scan.label, "at {} of {} places of layer {} there are no points of the scan around, the "
+                "SCAN_MISSES",
+                scan.label,
+                "at {} of {} places of layer {} there are no points of the scan around, the "
                 "first at {}; it reaches over {:.4g} mm, the layer over {:.4g} mm: scan all that the layer lies on, or "
-                "check its unit and fit", len(bare), len(points), layer, place(points[bare[0]]), size,
-                float(np.linalg.norm(np.ptp(points, axis=0)))
+                "check its unit and fit",
+                len(bare),
+                len(points),
+                layer,
+                place(points[bare[0]]),
+                size,
+                float(np.linalg.norm(np.ptp(points, axis=0))),
             )
         far = int(np.abs(found.off).argmax())
         if abs(found.off[far]) > scan.within:
             raise InputError(
-                "SCAN_OFF", scan.label, "the scan lies {:.4g} mm from layer {} at {}, more than substrate.scan_within = "
-                "{:g} mm; check that it is of this part, its unit and its fit", found.off[far], layer, place(points[far]),
-                scan.within
+                "SCAN_OFF",
+                scan.label,
+                "the scan lies {:.4g} mm from layer {} at {}, more than substrate.scan_within = "
+                "{:g} mm; check that it is of this part, its unit and its fit",
+                found.off[far],
+                layer,
+                place(points[far]),
+                scan.within,
             )
         return found.off
 
@@ -135,7 +175,9 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
 class _Above:
     """How far the scan is from what lies above or below its layer, at the places of that layer below or above them."""
 
-    def __init__(self, toolpath: Toolpath, planned: Sequence[Scanned], ways: Ways, scan: Scan) -> None:
+    def __init__(
+        self, toolpath: Toolpath, planned: Sequence[Scanned], ways: Ways, scan: Scan
+    ) -> None:
         self.first = planned
         self.solid, self.scan = toolpath.family == "solid", scan
         points, off = zip(*(one.samples() for one in planned), strict=True)
@@ -147,25 +189,48 @@ class _Above:
             return np.asarray(self.off[self.tree.query(points)[1]])
         feet = points - ((points - self.plane) * ways).sum(axis=1)[:, None] * ways
         found = self.scan.heights(feet, ways)
-        sure = found.covered & (np.abs(np.where(found.covered, found.off, np.inf)) <= np.abs(self.off).max() + 1e-9)
+        sure = found.covered & (
+            np.abs(np.where(found.covered, found.off, np.inf)) <= np.abs(self.off).max() + 1e-9
+        )
         # beyond the first layer it leads on as at its edge
         return np.where(sure, found.off, self.off[self.tree.query(feet)[1]])
 
 
 def _record(
-    planned: Sequence[Scanned], layer: Layer, ways: Ways, scan: Scan, course: _Course, most: float, layers: int,
-    left_out: int, motion: Array,
+    planned: Sequence[Scanned],
+    layer: Layer,
+    ways: Ways,
+    scan: Scan,
+    course: _Course,
+    most: float,
+    layers: int,
+    left_out: int,
+    motion: Array,
 ) -> Fitted:
-    beads: list[Bead] = [bead.halved(np.arange(len(bead) - 1)) for bead in layer.beads]  # between points, too
+    beads: list[Bead] = [
+        bead.halved(np.arange(len(bead) - 1)) for bead in layer.beads
+    ]  # between points, too
     deposited = np.concatenate([bead.points for bead in beads])
     found = scan.heights(deposited, np.concatenate([ways(bead) for bead in beads]))
     looked = np.unique(np.linspace(0, len(deposited) - 1, LOOKED).astype(np.intp))
-    places, off = np.concatenate([one.bead.points for one in planned]), np.concatenate([one.off for one in planned])
+    places, off = (
+        np.concatenate([one.bead.points for one in planned]),
+        np.concatenate([one.off for one in planned]),
+    )
     some = np.unique(np.linspace(0, len(places) - 1, LOOKED).astype(np.intp))
     return Fitted(
-        scan.label, len(scan.points), left_out, course.first, min(course.layers, layers - course.first), places[some],
-        off[some], deposited[looked], np.where(found.covered, found.off, 0.0)[looked], _slope(planned),
-        most * course.share(layers - 1), motion,
+        scan.label,
+        len(scan.points),
+        left_out,
+        course.first,
+        min(course.layers, layers - course.first),
+        places[some],
+        off[some],
+        deposited[looked],
+        np.where(found.covered, found.off, 0.0)[looked],
+        _slope(planned),
+        most * course.share(layers - 1),
+        motion,
     )
 
 
@@ -173,7 +238,9 @@ def _moved(motion: Array) -> str:
     """In words, how a scan was laid onto what was planned."""
     if np.array_equal(motion, np.eye(4)):
         return "; it was taken as it was measured, in the part's coordinates"
-    angle = math.degrees(math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(motion[:3, :3])) - 1.0)))))
+    angle = math.degrees(
+        math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(motion[:3, :3])) - 1.0))))
+    )
     return f"; it was turned by {angle:.3f} deg and its origin moved by {np.linalg.norm(motion[:3, 3]):.3f} mm onto the plan"
 
 
@@ -188,16 +255,37 @@ def _slope(planned: Sequence[Scanned]) -> float:
 
 
 def _issues(record: Fitted, height: float) -> list[Issue]:
-    issues = [Issue(
-        NOTE, "SCAN_FITTED", Text("{}: layer {} lies on what was scanned, {:.3f} to {:.3f} mm from the plan, now within "
-            "{:.3f} mm; {} layers lead back to the plan. {} points were used, {} that face another way left out; along "
-            "the beads it rises by up to {:.1f} deg against the plan{}", record.file, record.layer, record.off.min(),
-            record.off.max(), np.abs(record.left).max(), record.layers, record.points, record.left_out,
-            math.degrees(math.atan(record.slope)), _moved(record.motion)),
-    )]
+    issues = [
+        Issue(
+            NOTE,
+            "SCAN_FITTED",
+            Text(
+                "{}: layer {} lies on what was scanned, {:.3f} to {:.3f} mm from the plan, now within "
+                "{:.3f} mm; {} layers lead back to the plan. {} points were used, {} that face another way left out; along "
+                "the beads it rises by up to {:.1f} deg against the plan{}",
+                record.file,
+                record.layer,
+                record.off.min(),
+                record.off.max(),
+                np.abs(record.left).max(),
+                record.layers,
+                record.points,
+                record.left_out,
+                math.degrees(math.atan(record.slope)),
+                _moved(record.motion),
+            ),
+        )
+    ]
     if record.remains > 0.05 * height:
-        issues.append(Issue(
-            WARNING, REMAINS, Text("the part has too few layers to lead back to the plan: the last one is up to {:.3f} mm "
-                "off it; a larger substrate.scan_band leads back in fewer layers", record.remains)
-        ))
+        issues.append(
+            Issue(
+                WARNING,
+                REMAINS,
+                Text(
+                    "the part has too few layers to lead back to the plan: the last one is up to {:.3f} mm "
+                    "off it; a larger substrate.scan_band leads back in fewer layers",
+                    record.remains,
+                ),
+            )
+        )
     return issues

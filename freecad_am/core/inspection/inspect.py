@@ -65,7 +65,9 @@ class Inspected:
     laid: Array | None = None
 
 
-def inspect(measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report) -> Inspected:
+def inspect(
+    measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report
+) -> Inspected:
     """Lay measured points onto the planned surface and judge them. InputError; InfeasibleError NOT_SETTLED."""
     refuse_too_few(measured.points, measured.label)
     report(0.05, "laying the points onto the part")
@@ -80,24 +82,40 @@ def inspect(measured: Measured, planned: Planned, parameters: InspectionParamete
     kept, where = points[within], measured.label
     ball = figures.ball(kept, kept - deviation[within, None] * normal[within], where)
     issues = [
-        *measured.issues, *_unlike(measured.points, planned), *_issues(found, planned, within, fitted, ball is not None),
+        *measured.issues,
+        *_unlike(measured.points, planned),
+        *_issues(found, planned, within, fitted, ball is not None),
     ]
     # without a wall nothing says that it is round
-    levels = parameters.levels() or (() if planned.wall is None else figures.default_heights(planned, kept))
+    levels = parameters.levels() or (
+        () if planned.wall is None else figures.default_heights(planned, kept)
+    )
     circles = []
     for height in levels:
         try:
-            circles.append(figures.circle(planned, kept, normal[within], height, parameters.band, where))
+            circles.append(
+                figures.circle(planned, kept, normal[within], height, parameters.band, where)
+            )
         except InputError as error:
             if parameters.heights:
                 issues.append(Issue(WARNING, error.code, error.message))
     issues += [Issue(WARNING, "NOT_ALL_ROUND", text) for text in figures.warnings_of(circles)]
     report(0.8, "figures")
     return Inspected(
-        points, deviation, within, fitted, found.motion, found.free, parameters.tolerance, where, planned.name,
+        points,
+        deviation,
+        within,
+        fitted,
+        found.motion,
+        found.free,
+        parameters.tolerance,
+        where,
+        planned.name,
         figures.spread(deviation[within], parameters.tolerance),
-        ball, tuple(circles),
-        _thickness(aligned, deviation, within, planned, parameters), tuple(issues),
+        ball,
+        tuple(circles),
+        _thickness(aligned, deviation, within, planned, parameters),
+        tuple(issues),
     )
 
 
@@ -118,20 +136,40 @@ def _aligned(
         on_part = few[planned.within_edges(few @ start[:3, :3].T + start[:3, 3])]
         if len(on_part) < LEAST_POINTS:
             raise InputError(
-                "NOT_ON_PART", where, "{} of its points lie on {}; choose the object that was measured, its unit, or pairs "
-                "of points to begin with", len(on_part), planned.name
+                "NOT_ON_PART",
+                where,
+                "{} of its points lie on {}; choose the object that was measured, its unit, or pairs "
+                "of points to begin with",
+                len(on_part),
+                planned.name,
             )
         if parameters.fit == NONE:
             distance, _ = exact(on_part)
-            found = Registration(start, on_part, distance - radius, np.ones(len(on_part), dtype=np.bool_), ())
+            found = Registration(
+                start, on_part, distance - radius, np.ones(len(on_part), dtype=np.bool_), ()
+            )
         else:
-            found = register(on_part, exact, start[None], where, trim, radius, _allowed(planned, parameters), planned.free)
+            found = register(
+                on_part,
+                exact,
+                start[None],
+                where,
+                trim,
+                radius,
+                _allowed(planned, parameters),
+                planned.free,
+            )
             start = found.motion
     return found, planned.within_edges(points @ start[:3, :3].T + start[:3, 3]), exact
 
 
 def _begun(
-    points: Array, nearest: Surface, exact: Surface, planned: Planned, parameters: InspectionParameters, where: str
+    points: Array,
+    nearest: Surface,
+    exact: Surface,
+    planned: Planned,
+    parameters: InspectionParameters,
+    where: str,
 ) -> Array:
     """The motion (4, 4) to begin with: from pairs of points where they are given. Else, where that does about as well as the
     best of many attitudes, from as it was measured by shifts first, so that what deviations do not feel is not turned."""
@@ -154,7 +192,11 @@ def _by_pairs(parameters: InspectionParameters, where: str) -> Array:
     pairs = parameters.start_pairs()
     if not pairs:
         return np.eye(4)
-    return np.asarray(by_pairs(np.array([one for one, _ in pairs]), np.array([other for _, other in pairs]), where)[0])
+    return np.asarray(
+        by_pairs(
+            np.array([one for one, _ in pairs]), np.array([other for _, other in pairs]), where
+        )[0]
+    )
 
 
 def _allowed(planned: Planned, parameters: InspectionParameters) -> Array | None:
@@ -169,38 +211,79 @@ def _allowed(planned: Planned, parameters: InspectionParameters) -> Array | None
 
 
 def _thickness(
-    aligned: Array, deviation: Array, within: Mask, planned: Planned, parameters: InspectionParameters
+    aligned: Array,
+    deviation: Array,
+    within: Mask,
+    planned: Planned,
+    parameters: InspectionParameters,
 ) -> Thickness | None:
     if parameters.side != BOTH:
         return None
     raw, normal = planned.exact(aligned[within])
     feet = aligned[within] - raw[:, None] * normal
-    return figures.thickness(feet, deviation[within], raw >= 0.0, parameters.thickness, max(parameters.band, 0.5))
+    return figures.thickness(
+        feet, deviation[within], raw >= 0.0, parameters.thickness, max(parameters.band, 0.5)
+    )
 
 
 def _unlike(points: Array, planned: Planned) -> list[Issue]:
     """That the points (n, 3) are of another size than the part, as they are in another unit: a few of them fit anywhere."""
-    measured, part = (float(np.linalg.norm(np.ptp(one, axis=0))) for one in (points, planned.spread))
+    measured, part = (
+        float(np.linalg.norm(np.ptp(one, axis=0))) for one in (points, planned.spread)
+    )
     if measured * UNLIKE > part:
         return []
-    return [Issue(WARNING, "SMALL", Text("the points reach over {:.3g} mm, {} over {:.3g} mm; check the unit of the file",
-                                         measured, planned.name, part))]
+    return [
+        Issue(
+            WARNING,
+            "SMALL",
+            Text(
+                "the points reach over {:.3g} mm, {} over {:.3g} mm; check the unit of the file",
+                measured,
+                planned.name,
+                part,
+            ),
+        )
+    ]
 
 
 def _issues(
     found: Registration, planned: Planned, within: Mask, fitted: Mask, is_ball: bool
 ) -> list[Issue]:
-    free = ("turning it about the centre of the sphere",) if is_ball and len(found.free) == 3 else found.free
-    issues = [Issue(NOTE, "FREE_MOTION", Text("{} changes no deviation: the points do not determine "
-        "it", text)) for text in free]
+    free = (
+        ("turning it about the centre of the sphere",)
+        if is_ball and len(found.free) == 3
+        else found.free
+    )
+    issues = [
+        Issue(
+            NOTE,
+            "FREE_MOTION",
+            Text("{} changes no deviation: the points do not determine it", text),
+        )
+        for text in free
+    ]
     past = int((~within).sum())
     if past:
-        issues.append(Issue(NOTE, "PAST_EDGES", Text("{} points lie past the edges of {} and count nowhere", past,
-                                                     planned.name)))
+        issues.append(
+            Issue(
+                NOTE,
+                "PAST_EDGES",
+                Text("{} points lie past the edges of {} and count nowhere", past, planned.name),
+            )
+        )
     out = int((within & ~fitted).sum())
     if out:
-        text = Text("{} points were left out of the fit, the farthest off; the figures have them", out)
+        text = Text(
+            "{} points were left out of the fit, the farthest off; the figures have them", out
+        )
         issues.append(Issue(NOTE, "LEFT_OUT", text))
     if planned.chord > 0.0 and planned.exact is planned.nearest:
-        issues.append(Issue(NOTE, "CHORD", Text("{} is known to {:g} mm, by triangles", planned.name, planned.chord)))
+        issues.append(
+            Issue(
+                NOTE,
+                "CHORD",
+                Text("{} is known to {:g} mm, by triangles", planned.name, planned.chord),
+            )
+        )
     return issues

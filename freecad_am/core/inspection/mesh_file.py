@@ -11,9 +11,21 @@ from ..issues import InputError
 from ..types import Array, Mask
 
 _PLY_TYPES = {
-    "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
+    "char": "i1",
+    "int8": "i1",
+    "uchar": "u1",
+    "uint8": "u1",
+    "short": "i2",
+    "int16": "i2",
+    "ushort": "u2",
     "uint16": "u2",
-    "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4", "double": "f8",
+    "int": "i4",
+    "int32": "i4",
+    "uint": "u4",
+    "uint32": "u4",
+    "float": "f4",
+    "float32": "f4",
+    "double": "f8",
     "float64": "f8",
 }
 _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
@@ -27,7 +39,9 @@ def stl(data: bytes, where: str) -> Array:
     else:
         corners = _numbers(re.findall(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", data), where)
     points = corners.astype(np.float64)
-    points = points[np.lexsort(points.T[::-1])]  # as np.unique of rows has them, which holds up other threads meanwhile
+    points = points[
+        np.lexsort(points.T[::-1])
+    ]  # as np.unique of rows has them, which holds up other threads meanwhile
     other: Mask = np.ones(len(points), dtype=bool)
     other[1:] = (points[1:] != points[:-1]).any(axis=1)
     kept: Array = points[other]
@@ -48,25 +62,39 @@ def ply(data: bytes, where: str) -> Array:
     at = [number for number, line in enumerate(lines) if line[:1] == ["element"]]
     first = lines[at[0]] if at else []
     if not mark or first[1:2] != ["vertex"] or not first[2:3] or not first[2].isdecimal():
-        raise InputError("BAD_FILE", where, "it is no PLY file that begins with its vertices; export it again")
+        raise InputError(
+            "BAD_FILE", where, "it is no PLY file that begins with its vertices; export it again"
+        )
     end = at[1] if len(at) > 1 else len(lines)
     fields = [line for line in lines[at[0] + 1 : end] if line[:1] == ["property"]]
     names = [line[-1] for line in fields]
     if not {"x", "y", "z"} <= set(names) or any(line[1] not in _PLY_TYPES for line in fields):
-        raise InputError("BAD_FILE", where, "its vertices have no plain x, y and z; export it again")
+        raise InputError(
+            "BAD_FILE", where, "its vertices have no plain x, y and z; export it again"
+        )
     count = int(first[2])
     if kind == "ascii":
         rows = [line.split() for line in body.splitlines()[:count]]
         columns = [names.index(axis) for axis in "xyz"]
-        found = _numbers([[row[k] for k in columns] for row in rows if len(row) >= len(names)], where)
+        found = _numbers(
+            [[row[k] for k in columns] for row in rows if len(row) >= len(names)], where
+        )
     else:
         order = ">" if kind == "binary_big_endian" else "<"
-        row = np.dtype([(name, order + _PLY_TYPES[line[1]]) for name, line in zip(names, fields, strict=True)])
+        row = np.dtype(
+            [(name, order + _PLY_TYPES[line[1]]) for name, line in zip(names, fields, strict=True)]
+        )
         held = min(count, len(body) // row.itemsize)
         table = np.frombuffer(body, dtype=row, count=held)
         found = np.column_stack([table[axis].astype(np.float64) for axis in "xyz"])
     if len(found) < count:
-        raise InputError("BAD_FILE", where, "it is cut short after {} of {} vertices; export it again", len(found), count)
+        raise InputError(
+            "BAD_FILE",
+            where,
+            "it is cut short after {} of {} vertices; export it again",
+            len(found),
+            count,
+        )
     return found
 
 
@@ -74,4 +102,6 @@ def _numbers(texts: list[list[bytes]], where: str) -> Array:
     try:
         return np.array(texts, dtype=np.float64).reshape(-1, 3)
     except ValueError:
-        raise InputError("BAD_FILE", where, "a coordinate of its vertices is not a number; export it again") from None
+        raise InputError(
+            "BAD_FILE", where, "a coordinate of its vertices is not a number; export it again"
+        ) from None

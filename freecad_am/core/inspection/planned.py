@@ -52,6 +52,7 @@ class Planned:
 def sided(surface: Surface, side: str, thickness: float) -> Surface:
     """The surface of a wall's outer side, inner side, or the nearer of both, half a thickness, mm, off its planned one."""
     if side == BOTH:
+
         def both(points: Array) -> tuple[Array, Array]:
             distance, normal = surface(points)
             sense = np.where(distance < 0.0, -1.0, 1.0)
@@ -68,8 +69,13 @@ def sided(surface: Surface, side: str, thickness: float) -> Surface:
 
 
 def of_triangles(
-    name: str, vertices: Array, triangles: Index, frame: Array | None = None, exact: Surface | None = None,
-    chord: float = 0.0, most: int = 20_000,
+    name: str,
+    vertices: Array,
+    triangles: Index,
+    frame: Array | None = None,
+    exact: Surface | None = None,
+    chord: float = 0.0,
+    most: int = 20_000,
 ) -> Planned:
     """A surface of triangles, those of a solid counter-clockwise seen from outside; or what they stand for, by `exact`."""
     mesh = SolidMesh(vertices, triangles)
@@ -94,7 +100,9 @@ def of_triangles(
     chosen = np.searchsorted(np.cumsum(area), place).clip(max=len(area) - 1)
     own, middles = np.eye(4) if frame is None else frame, corners[chosen].mean(axis=1)
     free = 1e-5 if exact is not None else FACETED
-    return Planned(name, nearest, exact or nearest, past, middles, own, chord=chord, most=most, free=free)
+    return Planned(
+        name, nearest, exact or nearest, past, middles, own, chord=chord, most=most, free=free
+    )
 
 
 def of_beads(name: str, samples: Array, normals: Array, frame: Array, step: float) -> Planned:
@@ -146,10 +154,21 @@ def of_revolution(wall: RevolvedWall) -> Planned:
 
     s = np.linspace(0.0, wall.meridian.length, 60)
     radius, height, _ = wall.meridian.at(s)
-    spread = np.concatenate([
-        wall.points(np.full(count, r), np.full(count, z), np.linspace(wall.start, wall.end, count, endpoint=not wall.full))
-        for count, r, z in zip(np.ceil(60.0 * radius / radius.max()).astype(int).clip(1), radius, height, strict=True)
-    ])
+    spread = np.concatenate(
+        [
+            wall.points(
+                np.full(count, r),
+                np.full(count, z),
+                np.linspace(wall.start, wall.end, count, endpoint=not wall.full),
+            )
+            for count, r, z in zip(
+                np.ceil(60.0 * radius / radius.max()).astype(int).clip(1),
+                radius,
+                height,
+                strict=True,
+            )
+        ]
+    )
     return Planned(wall.label, nearest, exact, past, spread, wall.frame, wall)
 
 
@@ -158,7 +177,9 @@ class _Meridian:
 
     def __init__(self, wall: RevolvedWall) -> None:
         self.wall, self.curve = wall, wall.meridian
-        self.s = np.unique(np.concatenate([self.curve.s, np.linspace(0.0, self.curve.length, 2001)]))
+        self.s = np.unique(
+            np.concatenate([self.curve.s, np.linspace(0.0, self.curve.length, 2001)])
+        )
         self.step = float(np.diff(self.s).max())
         radius, height, _ = self.curve.at(self.s)
         self.tree = cKDTree(np.column_stack([radius, height]))
@@ -182,17 +203,26 @@ class _Meridian:
         """Arc lengths (n,) of the nearest places of the meridian."""
         at = self.tree.query(np.column_stack([radius, height]))[1]
         start = self.s[at]
-        low, high = np.maximum(start - self.step, 0.0), np.minimum(start + self.step, self.curve.length)
+        low, high = (
+            np.maximum(start - self.step, 0.0),
+            np.minimum(start + self.step, self.curve.length),
+        )
         f_low, f_high = self._slope(low, radius, height), self._slope(high, radius, height)
         s = start
-        for _ in range(3):  # false position; what the distance falls by is nearly linear so close by
+        for _ in range(
+            3
+        ):  # false position; what the distance falls by is nearly linear so close by
             straddled = (f_low > 0.0) & (f_high < 0.0)
-            s = np.where(straddled, low + (high - low) * f_low / np.where(straddled, f_low - f_high, 1.0), s)
+            s = np.where(
+                straddled, low + (high - low) * f_low / np.where(straddled, f_low - f_high, 1.0), s
+            )
             s = np.where(f_low <= 0.0, low, np.where(f_high >= 0.0, high, s))
             f = self._slope(s, radius, height)
             low, f_low = np.where(f > 0.0, s, low), np.where(f > 0.0, f, f_low)
             high, f_high = np.where(f > 0.0, high, s), np.where(f > 0.0, f_high, f)
-        return np.asarray(np.where(self._off(s, radius, height) <= self._off(start, radius, height), s, start))
+        return np.asarray(
+            np.where(self._off(s, radius, height) <= self._off(start, radius, height), s, start)
+        )
 
     def _slope(self, s: Array, radius: Array, height: Array) -> Array:
         r, z, tangent = self.curve.at(s)
@@ -211,21 +241,32 @@ class _Meridian:
         normal = np.column_stack([tangent[:, 1], np.zeros(len(s)), -tangent[:, 0]])
         distance = (radius - r) * normal[:, 0] + (height - z) * normal[:, 2]
         over = np.abs((radius - r) * tangent[:, 0] + (height - z) * tangent[:, 1])
-        at_end = ((s <= 0.0) & (self.curve.points[0, 0] > 0.0)) | ((s >= self.curve.length) & (not self.curve.closed_top))
+        at_end = ((s <= 0.0) & (self.curve.points[0, 0] > 0.0)) | (
+            (s >= self.curve.length) & (not self.curve.closed_top)
+        )
         past = np.hypot(np.where(at_end, over, 0.0), off_plane)
         # a corner is nearest to all within its two normals: what leads to it is one of them
         inside = ~at_end & (over > 1e-6) & (over > 1e-3 * np.abs(distance))
         off = np.hypot(radius - r, height - z)
         side = np.where(distance < 0.0, -1.0, 1.0)
         distance = np.where(inside, side * off, distance)
-        way = np.column_stack([radius - r, np.zeros(len(s)), height - z]) * (side / np.maximum(off, 1e-300))[:, None]
+        way = (
+            np.column_stack([radius - r, np.zeros(len(s)), height - z])
+            * (side / np.maximum(off, 1e-300))[:, None]
+        )
         normal = np.where(inside[:, None], way, normal)
-        return distance, self.wall.directions(normal, azimuth), past, self.wall.points(r, z, azimuth)
+        return (
+            distance,
+            self.wall.directions(normal, azimuth),
+            past,
+            self.wall.points(r, z, azimuth),
+        )
 
 
 def _away(points: Array, foot: Array, distance: Array, normal: Array) -> Array:
     """Unit vectors (n, 3) along which signed distances from feet grow."""
     off = np.abs(distance)[:, None]
     sense = np.where(distance < 0.0, -1.0, 1.0)[:, None]
-    return np.asarray(np.where(off > TOUCHING, sense * (points - foot) / np.maximum(off, TOUCHING), normal))
-
+    return np.asarray(
+        np.where(off > TOUCHING, sense * (points - foot) / np.maximum(off, TOUCHING), normal)
+    )

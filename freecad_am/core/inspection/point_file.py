@@ -15,14 +15,19 @@ from ..parameters.inspection import AUTO, UNITS
 from ..types import Array
 from . import mesh_file
 
-TABLES, MESHES = (".csv", ".txt", ".xyz", ".asc"), {".stl": mesh_file.stl, ".obj": mesh_file.obj, ".ply": mesh_file.ply}
+TABLES, MESHES = (
+    (".csv", ".txt", ".xyz", ".asc"),
+    {".stl": mesh_file.stl, ".obj": mesh_file.obj, ".ply": mesh_file.ply},
+)
 MAX_POINTS = 200_000  # points that are kept of a larger scan, evenly
 LARGEST = 1000  # MB
 LOOK = 200  # rows by which a table's signs are told
 _MARKS = ("#", "//", "%", "!", "'", '"#')
 _SIGNS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
 _NAMES = {None: "blanks", ";": "semicolons", "\t": "tabs", ",": "commas"}
-_UNIT = re.compile(r"(?<![a-z])(mm|cm|m|um|µm|μm|inch|inches|in|millimet(?:er|re)s?|met(?:er|re)s?)(?![a-z])")
+_UNIT = re.compile(
+    r"(?<![a-z])(mm|cm|m|um|µm|μm|inch|inches|in|millimet(?:er|re)s?|met(?:er|re)s?)(?![a-z])"
+)
 _UNIT_NAMES = {"in": "inch", "inches": "inch", "µm": "um", "μm": "um"}
 
 
@@ -45,12 +50,20 @@ def read(path: str | Path, unit: str = AUTO) -> Measured:
     suffix = file.suffix.lower()
     if suffix not in (*TABLES, *MESHES):
         known = ", ".join((*TABLES, *MESHES))
-        raise InputError("UNSUPPORTED_FILE", file.name, "{} is not read as points; use {}", suffix or "no ending", known)
+        raise InputError(
+            "UNSUPPORTED_FILE",
+            file.name,
+            "{} is not read as points; use {}",
+            suffix or "no ending",
+            known,
+        )
     try:
         data = content(file, LARGEST, "BAD_FILE", file.name)
     except (OSError, ValueError) as error:
         why = (getattr(error, "strerror", None) or str(error)).lower()
-        raise InputError("NO_FILE", str(path), "the measured points cannot be read ({}); check the path", why) from None
+        raise InputError(
+            "NO_FILE", str(path), "the measured points cannot be read ({}); check the path", why
+        ) from None
     return parse(data, file.name, unit)
 
 
@@ -60,24 +73,38 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
         raise InputError("EMPTY_FILE", label, "it is empty; export the points again")
     suffix = Path(label).suffix.lower()
     if suffix in MESHES:
-        found, messages, named = MESHES[suffix](data, label), ["the vertices of a mesh are taken as points"], ""
+        found, messages, named = (
+            MESHES[suffix](data, label),
+            ["the vertices of a mesh are taken as points"],
+            "",
+        )
     else:
         found, messages, named = _table(_text(data), label)
     level = NOTE
     finite = np.isfinite(found).all(axis=1)
     if not finite.all():
-        messages.append(Text("{} points without finite coordinates are left out", int((~finite).sum())))
+        messages.append(
+            Text("{} points without finite coordinates are left out", int((~finite).sum()))
+        )
         found, level = found[finite], WARNING
     if not len(found):
         raise InputError("NO_POINTS", label, "there are no points in it; give rows of x y z")
     chosen = unit if unit != AUTO else named or "mm"
-    messages.append(Text("coordinates in {}{}", chosen,
-                         Word("" if unit != AUTO or named else ", as the file names no unit")))
+    messages.append(
+        Text(
+            "coordinates in {}{}",
+            chosen,
+            Word("" if unit != AUTO or named else ", as the file names no unit"),
+        )
+    )
     if len(found) > MAX_POINTS:
         messages.append(Text("of {} points {} are kept, evenly", len(found), MAX_POINTS))
         found = found[np.linspace(0, len(found) - 1, MAX_POINTS).astype(np.intp)]
-    return Measured(found * UNITS[chosen], label, (Issue(level, "POINTS_READ",
-                                                         Text("{}: {}", label, Text.joined("; ", messages))),))
+    return Measured(
+        found * UNITS[chosen],
+        label,
+        (Issue(level, "POINTS_READ", Text("{}: {}", label, Text.joined("; ", messages))),),
+    )
 
 
 def _text(data: bytes) -> str:
@@ -93,7 +120,11 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
     """Points (n, 3) of a table in its unit, how it was understood, and the unit that it names, '' for none."""
     lines = [line.strip() for line in text.splitlines()]
     remarks = [line for line in lines if line.startswith(_MARKS)]
-    rows = [(number, line) for number, line in enumerate(lines, 1) if line and not line.startswith(_MARKS)]
+    rows = [
+        (number, line)
+        for number, line in enumerate(lines, 1)
+        if line and not line.startswith(_MARKS)
+    ]
     delimiter, comma = _signs([line for _, line in rows], label)
     cells = [(number, _cells(line, delimiter)) for number, line in rows]
     is_row = [sum(_is_number(cell, comma) for cell in row) >= 3 for _, row in cells]
@@ -101,28 +132,40 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
     heads = [row for _, row in cells[:first]]
     width = len(cells[first][1])
     columns, named, messages = _columns(heads, cells[first:][:LOOK], width, comma)
-    messages.insert(0, f"columns between {_NAMES[delimiter]}" + (", decimal commas" if comma == "," else ""))
+    messages.insert(
+        0, f"columns between {_NAMES[delimiter]}" + (", decimal commas" if comma == "," else "")
+    )
     found, bad = [], []
     for number, row in cells[first:]:
         picked = [row[k] for k in columns if k < len(row)]
         if len(picked) == 3 and all(_is_number(cell, comma) for cell in picked):
-            found.append([float(cell.replace(",", ".")) if comma == "," else float(cell) for cell in picked])
+            found.append(
+                [float(cell.replace(",", ".")) if comma == "," else float(cell) for cell in picked]
+            )
         else:
             bad.append(number)
     if len(bad) > len(found):
-        raise InputError("BAD_FILE", f"{label} line {bad[0]}",
-                         "this and most other lines are not points; give rows of x y z")
+        raise InputError(
+            "BAD_FILE",
+            f"{label} line {bad[0]}",
+            "this and most other lines are not points; give rows of x y z",
+        )
     if bad:
-        messages.append(f"{len(bad)} lines that are not points are left out, the first is line {bad[0]}")
-    texts = [*named, *(" ".join(head) for head in heads if "unit" in " ".join(head).lower()),
-             *(remark for remark in remarks if "unit" in remark.lower())]
+        messages.append(
+            f"{len(bad)} lines that are not points are left out, the first is line {bad[0]}"
+        )
+    texts = [
+        *named,
+        *(" ".join(head) for head in heads if "unit" in " ".join(head).lower()),
+        *(remark for remark in remarks if "unit" in remark.lower()),
+    ]
     unit = next((one for one in map(_unit_in, texts) if one), "")
     return np.array(found).reshape(-1, 3), messages, unit
 
 
 def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
     """What stands between columns, None for blanks, and before decimals: that by which most lines are rows of numbers."""
-    tail = lines[max(0, len(lines) - LOOK):]
+    tail = lines[max(0, len(lines) - LOOK) :]
     scores = []
     for delimiter, comma in _SIGNS:
         rows = [_cells(line, delimiter) for line in tail]
@@ -137,7 +180,9 @@ def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
         whole = all(re.fullmatch(r"[-+]?\d+", cell) for row in rows for cell in row)
         if whole and all(len(row) >= 6 and len(row) % 2 == 0 for row in rows):
             raise InputError(
-                "AMBIGUOUS", label, "commas stand between columns and before decimals alike; export it with points as "
+                "AMBIGUOUS",
+                label,
+                "commas stand between columns and before decimals alike; export it with points as "
                 "decimal signs, or semicolons between columns",
             )
     return delimiter, comma
@@ -168,7 +213,9 @@ def _columns(
         if len(head) == width and {"x", "y", "z"} <= set(plain):
             columns = [plain.index(axis) for axis in "xyz"]
             more = width - 3
-            messages = ["x, y and z by their headings"] + ([f"{more} more columns not used"] if more else [])
+            messages = ["x, y and z by their headings"] + (
+                [f"{more} more columns not used"] if more else []
+            )
             return columns, [head[k] for k in columns], messages
     whole = [row for _, row in rows if len(row) == width]
     columns = [k for k in range(width) if all(_is_number(row[k], comma) for row in whole)]
@@ -176,7 +223,9 @@ def _columns(
     if len(columns) > 3 and _running([row[columns[0]] for row in whole]):
         columns, messages = columns[1:], ["the first column is a running number"]
     if len(columns) > 3:
-        messages.append(f"x, y and z are the first three columns{' of the others' if messages else ''}")
+        messages.append(
+            f"x, y and z are the first three columns{' of the others' if messages else ''}"
+        )
     return columns[:3], [], messages
 
 

@@ -57,13 +57,24 @@ def refuse_too_few(points: Array, where: str) -> None:
     """InputError TOO_FEW_POINTS, naming `where`, when points (n, 3) are fewer than hold a part in its place."""
     if len(points) < LEAST_POINTS:
         raise InputError(
-            "TOO_FEW_POINTS", where, "{} points do not hold a part; measure {} or more all over", len(points), LEAST_POINTS,
+            "TOO_FEW_POINTS",
+            where,
+            "{} points do not hold a part; measure {} or more all over",
+            len(points),
+            LEAST_POINTS,
         )
 
 
 def register(
-    points: Array, surface: Surface, starts: Iterable[Array], where: str, trim: float = 0.0, radius: float = 0.0,
-    allowed: Array | None = None, free: float = FREE, still: float = STILL,
+    points: Array,
+    surface: Surface,
+    starts: Iterable[Array],
+    where: str,
+    trim: float = 0.0,
+    radius: float = 0.0,
+    allowed: Array | None = None,
+    free: float = FREE,
+    still: float = STILL,
 ) -> Registration:
     """The best fit of points (n, 3) from any of the starts (4, 4): each is tried with a few points, the best with all.
 
@@ -77,39 +88,58 @@ def register(
     """
     refuse_too_few(points, where)
     if not 0.0 <= trim < 0.5:
-        raise InputError("OUT_OF_RANGE", where, "{:g} of the points cannot be left out; give 0 or more and less than 0.5",
-                         trim)
+        raise InputError(
+            "OUT_OF_RANGE",
+            where,
+            "{:g} of the points cannot be left out; give 0 or more and less than 0.5",
+            trim,
+        )
     best = roughly(points, surface, starts, trim, radius, allowed, free)
     motion, _, moved = _converged(points, surface, best, trim, radius, ROUNDS, allowed, free)
     if moved > still:
         raise InfeasibleError(
-            "NOT_SETTLED", where, "the measured points do not settle on the part; give pairs of points to begin with",
+            "NOT_SETTLED",
+            where,
+            "the measured points do not settle on the part; give pairs of points to begin with",
         )
     aligned = _moved(points, motion)
     distance, normal = surface(aligned)
     distance = distance - radius
     used = _counting(distance, trim)
-    return Registration(motion, aligned, distance, used, _free(aligned[used], normal[used], allowed, free))
+    return Registration(
+        motion, aligned, distance, used, _free(aligned[used], normal[used], allowed, free)
+    )
 
 
 def roughly(
-    points: Array, surface: Surface, starts: Iterable[Array], trim: float = 0.0, radius: float = 0.0,
-    allowed: Array | None = None, free: float = FREE,
+    points: Array,
+    surface: Surface,
+    starts: Iterable[Array],
+    trim: float = 0.0,
+    radius: float = 0.0,
+    allowed: Array | None = None,
+    free: float = FREE,
 ) -> Array:
     """The motion (4, 4) that a few of the points tell: from the first of the starts that comes to about the least distances,
     so that what distances do not feel stays as it was measured."""
     few = points[np.unique(np.linspace(0, len(points) - 1, TRIAL_POINTS).astype(np.intp))]
-    begun = [_converged(few, surface, start, trim, radius, FIRST_ROUNDS, allowed, free) for start in starts]
+    begun = [
+        _converged(few, surface, start, trim, radius, FIRST_ROUNDS, allowed, free)
+        for start in starts
+    ]
     hopeful = HOPE * min(square for _, square, _ in begun) + 1e-18
     tried = [
         _converged(few, surface, motion, trim, radius, TRIAL_ROUNDS, allowed, free)
-        for motion, square, _ in begun if square <= hopeful
+        for motion, square, _ in begun
+        if square <= hopeful
     ]
     least = min(square for _, square, _ in tried)
     return next(motion for motion, square, _ in tried if square <= EQUAL_RATIO * least + 1e-18)
 
 
-def mean_square(points: Array, surface: Surface, motion: Array, trim: float = 0.0, radius: float = 0.0) -> float:
+def mean_square(
+    points: Array, surface: Surface, motion: Array, trim: float = 0.0, radius: float = 0.0
+) -> float:
     """Mean square distance, mm2, of what counts of points (n, 3) moved by a motion (4, 4)."""
     return _square(surface(_moved(points, motion))[0] - radius, trim)
 
@@ -140,19 +170,32 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
     """The start (1, 4, 4) that lays three or more measured points (k, 3) onto the points of the part that they are (k, 3),
     with the least squares (Kabsch 1976)."""
     if measured.shape != planned.shape or len(measured) < 3:
-        raise InputError("TOO_FEW_PAIRS", where, "{} pairs of points; give three or more", min(len(measured), len(planned)))
+        raise InputError(
+            "TOO_FEW_PAIRS",
+            where,
+            "{} pairs of points; give three or more",
+            min(len(measured), len(planned)),
+        )
     here, there = measured.mean(axis=0), planned.mean(axis=0)
     left, stretch, right = np.linalg.svd((planned - there).T @ (measured - here))
     if stretch[1] <= 1e-9 * max(stretch[0], 1e-300):
         raise InputError(
-            "PAIRS_IN_LINE", where, "the pairs of points lie in one line, about which the part can turn; choose others",
+            "PAIRS_IN_LINE",
+            where,
+            "the pairs of points lie in one line, about which the part can turn; choose others",
         )
     turn = left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right
     return np.asarray(pose(turn, there - turn @ here))[None]
 
 
 def _converged(
-    points: Array, surface: Surface, start: Array, trim: float, radius: float, rounds: int, allowed: Array | None,
+    points: Array,
+    surface: Surface,
+    start: Array,
+    trim: float,
+    radius: float,
+    rounds: int,
+    allowed: Array | None,
     free: float,
 ) -> tuple[Array, float, float]:
     """Motion, mean square distance of what counts, and how far the last round moved a point, mm."""
@@ -174,7 +217,13 @@ def _converged(
                 break
             continue
         moved = float(np.linalg.norm(moving - aligned, axis=1).max())
-        motion, aligned, distance, normal, square = tried, moving, next_distance, next_normal, next_square
+        motion, aligned, distance, normal, square = (
+            tried,
+            moving,
+            next_distance,
+            next_normal,
+            next_square,
+        )
         damping *= 0.1 if damping > 1e-9 else 0.0
         if moved < CONVERGED:
             break
@@ -182,7 +231,12 @@ def _converged(
 
 
 def _step(
-    points: Array, normal: Array, distance: Array, damping: float, allowed: Array | None, free: float
+    points: Array,
+    normal: Array,
+    distance: Array,
+    damping: float,
+    allowed: Array | None,
+    free: float,
 ) -> Array:
     """The small motion (4, 4) that lessens the distances of points most; the least of those that do."""
     system, middle, size = _felt(points, normal)

@@ -50,7 +50,9 @@ def least(points: Array, where: str) -> Round:
         away = points - unknown[:-1]
         return np.column_stack([-_along(away), np.full(len(points), -1.0)])
 
-    found = least_squares(residuals, start, slopes, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=scale).x
+    found = least_squares(
+        residuals, start, slopes, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=scale
+    ).x
     return _round(points, found[:-1], float(found[-1]))
 
 
@@ -89,7 +91,9 @@ def narrowest(points: Array, where: str) -> Round:
 
 def _along(away: Array) -> Array:
     """Unit vectors; nothing of a point at the centre itself, which may go anywhere."""
-    return np.asarray(away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny))
+    return np.asarray(
+        away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny)
+    )
 
 
 def _round(points: Array, centre: Array, radius: float) -> Round:
@@ -103,7 +107,11 @@ def _algebraic(points: Array, where: str) -> tuple[Array, float]:
     name = "circle" if dimension == 2 else "sphere"
     if len(points) < dimension + 1:
         raise InputError(
-            "TOO_FEW_POINTS", where, "{} points do not make a {}; measure {} or more", len(points), Word(name),
+            "TOO_FEW_POINTS",
+            where,
+            "{} points do not make a {}; measure {} or more",
+            len(points),
+            Word(name),
             dimension + 1,
         )
     middle = points.mean(axis=0)
@@ -111,8 +119,13 @@ def _algebraic(points: Array, where: str) -> tuple[Array, float]:
     spread = np.linalg.svd(local, compute_uv=False)
     if spread[-1] <= FLAT * spread[0]:
         shape = "line" if dimension == 2 else "plane"
-        raise InputError("FLAT_POINTS", where, "all points lie in one {}, which no {} fits; measure further round",
-                         Word(shape), Word(name))
+        raise InputError(
+            "FLAT_POINTS",
+            where,
+            "all points lie in one {}, which no {} fits; measure further round",
+            Word(shape),
+            Word(name),
+        )
     system = np.column_stack([2.0 * local, np.ones(len(points))])
     solved = np.linalg.lstsq(system, (local**2).sum(axis=1), rcond=None)[0]
     centre, rest = solved[:-1], solved[-1]

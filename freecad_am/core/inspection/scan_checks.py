@@ -14,7 +14,9 @@ from .inspect import UNLIKE
 
 LOOKED = 10_000  # points
 LEAST_ON_PART = 0.8  # share of the points of a scan that have to lie on what was scanned
-SCALE_RATIO = 1.5  # times that a scan may be larger or smaller than a part for its unit to be guessed
+SCALE_RATIO = (
+    1.5  # times that a scan may be larger or smaller than a part for its unit to be guessed
+)
 
 
 def near(points: Array, body: Body, within: float) -> float:
@@ -28,13 +30,25 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
     if asked <= size * UNLIKE and size <= UNLIKE * asked:
         return
     ratio = asked / max(size, 1e-12)
-    units = (name for name, scale in UNITS.items() if name != "mm" and 1.0 / SCALE_RATIO < ratio / scale < SCALE_RATIO)
+    units = (
+        name
+        for name, scale in UNITS.items()
+        if name != "mm" and 1.0 / SCALE_RATIO < ratio / scale < SCALE_RATIO
+    )
     unit = next(units, "")
-    remedy = Text("in {} it would be about as large, give that as substrate.scan_unit", unit) if unit else (
-        "check its unit, substrate.scan_unit, and what was scanned"
+    remedy = (
+        Text("in {} it would be about as large, give that as substrate.scan_unit", unit)
+        if unit
+        else ("check its unit, substrate.scan_unit, and what was scanned")
     )
     raise InputError(
-        "SCAN_UNIT", label, "the scan reaches over {:.4g} mm, {} over {:.4g} mm; {}", size, body.name, asked, Word(remedy)
+        "SCAN_UNIT",
+        label,
+        "the scan reaches over {:.4g} mm, {} over {:.4g} mm; {}",
+        size,
+        body.name,
+        asked,
+        Word(remedy),
     )
 
 
@@ -45,10 +59,20 @@ def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
     if share >= LEAST_ON_PART:
         return
     raise InputError(
-        "SCAN_OTHER", label, "{:.0%} of its {} points lie within {:g} mm of {}, at least {:.0%} have to; half of them are "
+        "SCAN_OTHER",
+        label,
+        "{:.0%} of its {} points lie within {:g} mm of {}, at least {:.0%} have to; half of them are "
         "farther off than {:.3g} mm. It reaches over {:.4g} mm, {} over {:.4g} mm: scan this part, crop the scan to it, "
-        "check its unit, or raise substrate.scan_within", share, len(points), within, body.name, LEAST_ON_PART,
-        np.median(off), extent(points), body.name, extent(body.vertices)
+        "check its unit, or raise substrate.scan_within",
+        share,
+        len(points),
+        within,
+        body.name,
+        LEAST_ON_PART,
+        np.median(off),
+        extent(points),
+        body.name,
+        extent(body.vertices),
     )
 
 
@@ -61,6 +85,9 @@ def _off(points: Array, body: Body) -> Array:
 
 def extent(points: Array) -> float:
     """How far points (n, 3) reach from corner to corner, mm, but for the outermost percent on each side."""
-    low, high = np.quantile(points, (0.01, 0.99), axis=0) if len(points) > 500 else (points.min(axis=0), points.max(axis=0))
+    low, high = (
+        np.quantile(points, (0.01, 0.99), axis=0)
+        if len(points) > 500
+        else (points.min(axis=0), points.max(axis=0))
+    )
     return float(np.linalg.norm(high - low))
-

@@ -17,7 +17,9 @@ from ..types import Array, Mask
 
 AROUND = 64  # points that tell a patch
 LEAST = 12  # of them that have to count
-BIWEIGHT = 4.685  # times the spread of points about their patch beyond which they do not count (Tukey)
+BIWEIGHT = (
+    4.685  # times the spread of points about their patch beyond which they do not count (Tukey)
+)
 SPREAD = 1.4826  # of the standard deviation to the median of amounts
 ROUNDS = 4
 OFF_CENTRE = 0.5  # of a patch's radius that the middle of its points may be off the place: more, and it lies past an edge
@@ -60,7 +62,9 @@ class Scan:
     def _radius(self) -> float:
         """mm, of the patches of this scan as a rule."""
         some = self.points[np.unique(np.linspace(0, len(self.points) - 1, 400).astype(np.intp))]
-        return float(np.median(np.asarray(self._tree.query(some, k=min(AROUND, len(self.points)))[0])[:, -1]))
+        return float(
+            np.median(np.asarray(self._tree.query(some, k=min(AROUND, len(self.points)))[0])[:, -1])
+        )
 
     def heights(self, places: Array, ways: Array) -> Heights:
         """Heights above places (m, 3), m >= 1, along unit vectors (m, 3)."""
@@ -74,8 +78,13 @@ class Scan:
             # again from where the surface is: what is nearest to that lies around it
             start = np.where(first.covered, first.off, 0.0)
             then = self._patches(places[piece] + start[:, None] * ways[piece], ways[piece])
-            found.append(Heights(start + then.off, then.slope, first.covered & then.covered & ~then.wide))
-        off, slope, covered = (np.concatenate([getattr(one, name) for one in found]) for name in ("off", "slope", "covered"))
+            found.append(
+                Heights(start + then.off, then.slope, first.covered & then.covered & ~then.wide)
+            )
+        off, slope, covered = (
+            np.concatenate([getattr(one, name) for one in found])
+            for name in ("off", "slope", "covered")
+        )
         return Heights(np.where(covered, off, np.nan), slope, covered)
 
     def _patches(self, places: Array, ways: Array, rough: bool = False) -> _Patches:
@@ -86,7 +95,9 @@ class Scan:
         u, v, high = (np.einsum("mkc,mc->mk", arm, axis) for axis in (along, across, ways))
         radius = np.maximum(np.hypot(u, v).max(axis=1), TINY_MM)[:, None]
         u, v = u / radius, v / radius
-        close = np.maximum(1.0 - np.hypot(u, v) ** 3, 0.0) ** 3 * (np.abs(high) <= 2.0 * self.within)
+        close = np.maximum(1.0 - np.hypot(u, v) ** 3, 0.0) ** 3 * (
+            np.abs(high) <= 2.0 * self.within
+        )
         flat = np.stack([np.ones_like(u), u, v], axis=2)
         bent = np.concatenate([flat, np.stack([u * u, u * v, v * v], axis=2)], axis=2)
         weight = close
@@ -98,7 +109,9 @@ class Scan:
                 weight = close * np.maximum(1.0 - (rest / limit) ** 2, 0.0) ** 2
         total = np.maximum(weight.sum(axis=1), TINY_MM)
         off_centre = np.hypot((weight * u).sum(axis=1), (weight * v).sum(axis=1)) / total
-        covered = ((weight > 0.0).sum(axis=1) >= min(LEAST, near.shape[1])) & (off_centre <= OFF_CENTRE)
+        covered = ((weight > 0.0).sum(axis=1) >= min(LEAST, near.shape[1])) & (
+            off_centre <= OFF_CENTRE
+        )
         slope = np.hypot(solved[:, 1], solved[:, 2]) / radius[:, 0]
         wide = radius[:, 0] > max(WIDE * self._radius, TINY_MM)
         return _Patches(np.where(covered, solved[:, 0], 0.0), slope, covered, wide)
@@ -116,8 +129,12 @@ def _solved(columns: Array, high: Array, weight: Array) -> Array:
     """Coefficients (m, c) of the weighted least squares of heights (m, k) in columns (m, k, c)."""
     weighted = columns * weight[:, :, None]
     system = np.einsum("mkc,mkd->mcd", weighted, columns)
-    system += 1e-9 * np.maximum(weight.sum(axis=1), 1e-300)[:, None, None] * np.eye(columns.shape[2])
-    return np.asarray(np.linalg.solve(system, np.einsum("mkc,mk->mc", weighted, high)[:, :, None])[:, :, 0])
+    system += (
+        1e-9 * np.maximum(weight.sum(axis=1), 1e-300)[:, None, None] * np.eye(columns.shape[2])
+    )
+    return np.asarray(
+        np.linalg.solve(system, np.einsum("mkc,mk->mc", weighted, high)[:, :, None])[:, :, 0]
+    )
 
 
 def _median(values: Array, valid: Mask) -> Array:
@@ -126,4 +143,3 @@ def _median(values: Array, valid: Mask) -> Array:
     count = valid.sum(axis=1)
     middle = ordered[np.arange(len(values)), np.maximum(count - 1, 0) // 2]
     return np.where(count > 0, middle, 0.0)
-

@@ -13,15 +13,24 @@ from .planned import of_triangles
 from .registration import Surface, by_extents, mean_square, register, roughly
 
 NEIGHBOURS = 8
-ALONE = 3.0  # times farther from its neighbours than points are as a rule: it is none of the surface
+ALONE = (
+    3.0  # times farther from its neighbours than points are as a rule: it is none of the surface
+)
 FITTED = 3000  # points
-TRIAL_POINTS, HOPEFUL = 300, 12  # points by which attitudes are told apart, and attitudes that are tried
+TRIAL_POINTS, HOPEFUL = (
+    300,
+    12,
+)  # points by which attitudes are told apart, and attitudes that are tried
 OUTLYING = 5.0  # standard deviations, by the median, that a point may be off once it is laid
 EQUAL_RATIO = 1.1  # times the least mean square: attitudes that points do not tell apart
 LOOSE = 0.1  # of the most: motions that distances feel by less are those along a flat face, which its rims hardly tell
-STILL = 0.01  # mm: of a bent body's flat faces the least distances are hardly less than those around
+STILL = (
+    0.01  # mm: of a bent body's flat faces the least distances are hardly less than those around
+)
 OTHER = np.radians(10.0)  # between attitudes that are not the same
-PLAIN = np.radians(45.0)  # from as it was measured: an attitude that is taken though others are alike
+PLAIN = np.radians(
+    45.0
+)  # from as it was measured: an attitude that is taken though others are alike
 
 
 def aligned(points: Array, body: Body, label: str) -> Array:
@@ -38,7 +47,9 @@ def aligned(points: Array, body: Body, label: str) -> Array:
             off = np.abs(found.distance)
             few = few[off <= max(OUTLYING * 1.4826 * float(np.median(off)), 1e-6)]
     except AmError as error:
-        raise InputError("SCAN_OTHER", label, "it cannot be laid onto {}: {}", body.name, error.message) from None
+        raise InputError(
+            "SCAN_OTHER", label, "it cannot be laid onto {}: {}", body.name, error.message
+        ) from None
     return start
 
 
@@ -49,16 +60,23 @@ def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Arr
     order = np.argsort([mean_square(few, surface, start) for start in starts], kind="stable")
     tried = [roughly(few, surface, start[None], free=LOOSE) for start in starts[order[:HOPEFUL]]]
     squares = np.array([mean_square(few, surface, motion) for motion in tried])
-    alike = [motion for motion, square in zip(tried, squares, strict=True) if square <= EQUAL_RATIO * squares.min() + 1e-12]
+    alike = [
+        motion
+        for motion, square in zip(tried, squares, strict=True)
+        if square <= EQUAL_RATIO * squares.min() + 1e-12
+    ]
     turns = np.array([_turn(motion[:3, :3]) for motion in alike])
     best = alike[int(turns.argmin())]
     others = [motion for motion in alike if _turn(motion[:3, :3] @ best[:3, :3].T) > OTHER]
     if others and turns.min() > PLAIN:
         angle = np.degrees(_turn(others[0][:3, :3] @ best[:3, :3].T))
         raise InputError(
-            "SCAN_AMBIGUOUS", label, "it lies as well on the part turned by {:.0f} deg: the scan does not show which; give "
+            "SCAN_AMBIGUOUS",
+            label,
+            "it lies as well on the part turned by {:.0f} deg: the scan does not show which; give "
             "three points of it and where they are on the part as substrate.scan_pairs, or measure it in the part's "
-            "coordinates", angle
+            "coordinates",
+            angle,
         )
     return best
 

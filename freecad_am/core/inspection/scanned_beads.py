@@ -37,11 +37,16 @@ class Scanned:
         return points, np.interp(at, way, self.off)
 
 
-def along_beads(beads: Sequence[Bead], ways: Ways, off: Off, share: float, tolerance: float) -> list[Scanned]:
+def along_beads(
+    beads: Sequence[Bead], ways: Ways, off: Off, share: float, tolerance: float
+) -> list[Scanned]:
     """The beads with as many points as it takes for `share` of what a scan is off them to run straight from one to the
     next, within `tolerance` mm."""
     close = max(tolerance, CLOSE)
-    points, directions = np.concatenate([bead.points for bead in beads]), np.concatenate([ways(bead) for bead in beads])
+    points, directions = (
+        np.concatenate([bead.points for bead in beads]),
+        np.concatenate([ways(bead) for bead in beads]),
+    )
     found = np.split(off(points, directions), np.cumsum([len(bead) for bead in beads])[:-1])
     known, open_ = list(beads), [np.ones(len(bead) - 1, dtype=np.bool_) for bead in beads]
     for _ in range(ROUNDS):
@@ -49,10 +54,13 @@ def along_beads(beads: Sequence[Bead], ways: Ways, off: Off, share: float, toler
         if not asked:
             break
         segments = [np.flatnonzero(open_[k]) for k in asked]
-        middles = [known[k].outline.at(some, 0.5)[0] for k, some in zip(asked, segments, strict=True)]
+        middles = [
+            known[k].outline.at(some, 0.5)[0] for k, some in zip(asked, segments, strict=True)
+        ]
         between = [_between(ways(known[k]), some) for k, some in zip(asked, segments, strict=True)]
         heights = np.split(
-            off(np.concatenate(middles), np.concatenate(between)), np.cumsum([len(some) for some in segments])[:-1]
+            off(np.concatenate(middles), np.concatenate(between)),
+            np.cumsum([len(some) for some in segments])[:-1],
         )
         for k, some, high in zip(asked, segments, heights, strict=True):
             known[k], found[k], open_[k] = _halved(known[k], found[k], some, high, share, close)
@@ -89,9 +97,14 @@ def moved(of: Scanned, share: float, thinner: float, height: float) -> Bead:
         shift[-1] = shift[0]
     high = 1.0 - thinner * of.off
     rise = np.r_[high[:1], 0.5 * (high[1:] + high[:-1])]
-    changed = {} if not thinner else {
-        "speed": bead.speed / rise, "height": high * (height if bead.height is None else bead.height),
-    }
+    changed = (
+        {}
+        if not thinner
+        else {
+            "speed": bead.speed / rise,
+            "height": high * (height if bead.height is None else bead.height),
+        }
+    )
     return replace(bead, points=bead.points + shift, tangents=_tangents(bead, shift), **changed)
 
 
@@ -105,5 +118,7 @@ def _tangents(bead: Bead, shift: Array) -> Array | None:
     before, after = np.vstack([ends[0], rise]), np.vstack([rise, ends[1]])
     smooth = ((bead.tangents[:, 0] * bead.tangents[:, 1]).sum(axis=1) > 1.0 - CORNER)[:, None]
     mean = 0.5 * (before + after)
-    turned = bead.tangents + np.stack([np.where(smooth, mean, before), np.where(smooth, mean, after)], axis=1)
+    turned = bead.tangents + np.stack(
+        [np.where(smooth, mean, before), np.where(smooth, mean, after)], axis=1
+    )
     return np.asarray(turned / np.linalg.norm(turned, axis=2, keepdims=True))

@@ -31,7 +31,9 @@ def scanned(body: Body, scan: Scan, ways: Array) -> Body:
     was not scanned stays."""
     longest = max(float(np.ptp(body.vertices, axis=0).max()) / PARTS, FINEST)
     owner = np.zeros(len(body.triangles), dtype=np.intp)
-    found = refined(body.vertices, body.triangles, owner, longest, lambda middle, *_: middle, MAX_TRIANGLES)
+    found = refined(
+        body.vertices, body.triangles, owner, longest, lambda middle, *_: middle, MAX_TRIANGLES
+    )
     vertices, triangles = (body.vertices, body.triangles) if found is None else found[:2]
     units = SolidMesh(vertices, triangles).units
     some = ways[np.unique(np.linspace(0, len(ways) - 1, 50).astype(np.intp))]

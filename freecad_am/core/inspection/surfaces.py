@@ -17,7 +17,10 @@ from ..toolpath import Bead, Toolpath
 from ..types import Array
 from .planned import Planned, of_beads, of_revolution, of_triangles
 
-ROWS, COLUMNS = 80, 240  # of the triangles by which points find their place on a wall of one surface
+ROWS, COLUMNS = (
+    80,
+    240,
+)  # of the triangles by which points find their place on a wall of one surface
 PLAIN = 0.2  # of normals away from the middle of a loop: with less, which side is outside is told by its neighbour
 FINE = 0.25  # mm between samples of beads
 
@@ -33,13 +36,19 @@ def planned(of: object, name: str) -> Planned:
     if isinstance(of, SolidsOnHub):
         bodies = [body for group in of.groups for body in group.bodies]
         counts = np.cumsum([0, *(len(body.vertices) for body in bodies)])
-        triangles = np.concatenate([body.triangles + start for body, start in zip(bodies, counts[:-1], strict=True)])
+        triangles = np.concatenate(
+            [body.triangles + start for body, start in zip(bodies, counts[:-1], strict=True)]
+        )
         vertices = np.concatenate([body.vertices for body in bodies])
-        return of_triangles(of.label, vertices, triangles, of.groups[0].base.frame, chord=of.chord_error)
+        return of_triangles(
+            of.label, vertices, triangles, of.groups[0].base.frame, chord=of.chord_error
+        )
     if isinstance(of, Toolpath):
         return _of_toolpath(of, name)
     raise InputError(
-        "NOT_FOR_FAMILY", name, "curves and cladding plan no surface; compare the points with the part"
+        "NOT_FOR_FAMILY",
+        name,
+        "curves and cladding plan no surface; compare the points with the part",
     )
 
 
@@ -49,7 +58,9 @@ def _of_patches(wall: PatchWall) -> Planned:
         return dot(points - foot, normal), normal
 
     longest = np.linalg.norm(np.ptp(wall.vertices[wall.triangles], axis=1), axis=1).mean()
-    return of_triangles(wall.label, wall.vertices, wall.triangles, exact=exact, chord=0.02 * float(longest))
+    return of_triangles(
+        wall.label, wall.vertices, wall.triangles, exact=exact, chord=0.02 * float(longest)
+    )
 
 
 def _of_surface(wall: SurfaceWall) -> Planned:
@@ -64,7 +75,9 @@ def _of_surface(wall: SurfaceWall) -> Planned:
     grid = surface.point(up, np.broadcast_to(around, up.shape))
     row, column = np.meshgrid(np.arange(ROWS - 1), np.arange(COLUMNS), indexing="ij")
     a, b = row * COLUMNS + column, row * COLUMNS + (column + 1) % COLUMNS
-    triangles = np.concatenate([np.stack([a, b, b + COLUMNS], -1), np.stack([a, b + COLUMNS, a + COLUMNS], -1)])
+    triangles = np.concatenate(
+        [np.stack([a, b, b + COLUMNS], -1), np.stack([a, b + COLUMNS, a + COLUMNS], -1)]
+    )
     middle = ROWS // 2
     sense = _outward(grid[middle], _normals(surface.derivatives(up[middle], around)))
     triangles = triangles.reshape(-1, 3)
@@ -98,7 +111,9 @@ def _of_toolpath(toolpath: Toolpath, name: str) -> Planned:
     """The wall that beads one beside the other make, in the plane of each bead and its build direction."""
     if toolpath.filled:
         raise InputError(
-            "NOT_FOR_FAMILY", name, "its beads fill solids, most are inside; compare the points with the feature"
+            "NOT_FOR_FAMILY",
+            name,
+            "its beads fill solids, most are inside; compare the points with the feature",
         )
     samples: list[Array] = []
     normals: list[Array] = []
@@ -127,7 +142,9 @@ def _turning(points: Array, frame: Array) -> float:
 def _around(loop: Array, normals: Array) -> bool:
     """Whether normals (n, 3) lead out of a loop of points (n, 3), or into it, rather than along its axis."""
     away = loop - loop.mean(axis=0)
-    return bool(abs(float(dot(away, normals).sum())) > PLAIN * float(np.linalg.norm(away, axis=1).sum()))
+    return bool(
+        abs(float(dot(away, normals).sum())) > PLAIN * float(np.linalg.norm(away, axis=1).sum())
+    )
 
 
 def _sampled(bead: Bead) -> tuple[Array, Array]:

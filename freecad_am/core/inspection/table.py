@@ -35,7 +35,8 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
     """All figures. Defects are widths of the narrowest zone (ISO 1101), with those about the least-squares centre beside."""
     spread = inspected.spread
     found = [
-        Row("Points", spread.count, "", "Points"), Row("Mean deviation", spread.mean, "mm", "Mean"),
+        Row("Points", spread.count, "", "Points"),
+        Row("Mean deviation", spread.mean, "mm", "Mean"),
         Row("Standard deviation", spread.deviation, "mm", "Std. deviation"),
         Row("Root mean square", spread.rms, "mm", "RMS"),
         Row("Largest deviation outside", spread.most, "mm", "Most"),
@@ -53,17 +54,36 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
     for one in inspected.circles:
         at, height = Text("at {:g} mm", one.height), f"{one.height:g} mm"
         found += [
-            Row(Text("Circularity defect {}", Word(at)), one.zone.zone, "mm", "Circularity", f"At height {height}"),
+            Row(
+                Text("Circularity defect {}", Word(at)),
+                one.zone.zone,
+                "mm",
+                "Circularity",
+                f"At height {height}",
+            ),
             Row(Text("Circularity defect {}, least squares", Word(at)), one.fitted.zone, "mm"),
-            Row(Text("Diameter {}", Word(at)), 2.0 * one.fitted.radius, "mm", "Diameter", f"At height {height}"),
-            Row(Text("Eccentricity {}", Word(at)), one.eccentricity, "mm", "Off axis", f"At height {height}"),
+            Row(
+                Text("Diameter {}", Word(at)),
+                2.0 * one.fitted.radius,
+                "mm",
+                "Diameter",
+                f"At height {height}",
+            ),
+            Row(
+                Text("Eccentricity {}", Word(at)),
+                one.eccentricity,
+                "mm",
+                "Off axis",
+                f"At height {height}",
+            ),
         ]
     if inspected.thickness is not None:
         wall = inspected.thickness
         found += [
             Row("Mean thickness", wall.mean, "mm", "Thickness"),
             Row("Standard deviation of the thickness", wall.deviation, "mm", "… std. dev."),
-            Row("Least thickness", wall.least, "mm", "… least"), Row("Largest thickness", wall.most, "mm", "… most"),
+            Row("Least thickness", wall.least, "mm", "… least"),
+            Row("Largest thickness", wall.most, "mm", "… most"),
         ]
     return tuple(found)
 
@@ -72,30 +92,52 @@ def as_data(inspected: Inspected) -> dict[str, Any]:
     """The figures by key, in mm, for a JSON file."""
     spread = inspected.spread
     found: dict[str, Any] = {
-        "measured": inspected.file, "planned": inspected.against, "tolerance_mm": inspected.tolerance,
-        "points": len(inspected.points), "counted": spread.count,
+        "measured": inspected.file,
+        "planned": inspected.against,
+        "tolerance_mm": inspected.tolerance,
+        "points": len(inspected.points),
+        "counted": spread.count,
         "deviation_mm": {
-            "mean": spread.mean, "sd": spread.deviation, "rms": spread.rms, "min": spread.least, "max": spread.most,
+            "mean": spread.mean,
+            "sd": spread.deviation,
+            "rms": spread.rms,
+            "min": spread.least,
+            "max": spread.most,
             "p95": spread.within_95,
         },
         "within_tolerance": spread.within,
         "histogram": {"edges_mm": spread.edges.tolist(), "counts": spread.counts.tolist()},
-        "motion": inspected.motion.tolist(), "free_motions": list(inspected.free),
-        "sphericity_mm": None, "thickness_mm": None,
+        "motion": inspected.motion.tolist(),
+        "free_motions": list(inspected.free),
+        "sphericity_mm": None,
+        "thickness_mm": None,
         "circles": [
-            {"height_mm": one.height, "points": one.count, **_round(one.fitted, one.zone), "eccentricity": one.eccentricity,
-             "diameter": 2.0 * one.fitted.radius}
+            {
+                "height_mm": one.height,
+                "points": one.count,
+                **_round(one.fitted, one.zone),
+                "eccentricity": one.eccentricity,
+                "diameter": 2.0 * one.fitted.radius,
+            }
             for one in inspected.circles
         ],
         "issues": [issue.as_dict() for issue in inspected.issues],
     }
     if inspected.ball is not None:
         ball = inspected.ball
-        found["sphericity_mm"] = {"points": ball.count, "planned_radius": ball.planned, **_round(ball.fitted, ball.zone)}
+        found["sphericity_mm"] = {
+            "points": ball.count,
+            "planned_radius": ball.planned,
+            **_round(ball.fitted, ball.zone),
+        }
     if inspected.thickness is not None:
         wall = inspected.thickness
         found["thickness_mm"] = {
-            "pairs": wall.count, "mean": wall.mean, "sd": wall.deviation, "min": wall.least, "max": wall.most,
+            "pairs": wall.count,
+            "mean": wall.mean,
+            "sd": wall.deviation,
+            "min": wall.least,
+            "max": wall.most,
         }
     return found
 
@@ -105,10 +147,15 @@ def deviations(inspected: Inspected) -> Iterable[str]:
     yield "x_mm,y_mm,z_mm,deviation_mm,counted,fitted\n"
     columns = (inspected.points, inspected.deviation, inspected.counted, inspected.fitted)
     for point, deviation, within, fitted in zip(*columns, strict=True):
-        yield "{:.6f},{:.6f},{:.6f},".format(*point) + f"{deviation:.6f},{int(within)},{int(fitted)}\n"
+        yield (
+            "{:.6f},{:.6f},{:.6f},".format(*point)
+            + f"{deviation:.6f},{int(within)},{int(fitted)}\n"
+        )
 
 
-def compared(each: list[Inspected]) -> list[tuple[str, str, list[float | None], float | None, float | None]]:
+def compared(
+    each: list[Inspected],
+) -> list[tuple[str, str, list[float | None], float | None, float | None]]:
     """A row per figure of several inspections: name, unit, its value in each (None without), mean and standard deviation
     (n - 1) over them, None for fewer than two: the paper has those of three spheres."""
     tables = [{row.name: row for row in rows(one)} for one in each]
@@ -119,15 +166,22 @@ def compared(each: list[Inspected]) -> list[tuple[str, str, list[float | None], 
         known = [value for value in values if value is not None]
         unit = next(one[name].unit for one in tables if name in one)
         several = len(known) > 1
-        found.append((
-            name, unit, values, float(np.mean(known)) if several else None,
-            float(np.std(known, ddof=1)) if several else None,
-        ))
+        found.append(
+            (
+                name,
+                unit,
+                values,
+                float(np.mean(known)) if several else None,
+                float(np.std(known, ddof=1)) if several else None,
+            )
+        )
     return found
 
 
 def _round(fitted: Round, zone: Round) -> dict[str, Any]:
     return {
-        "minimum_zone": zone.zone, "least_squares_zone": fitted.zone, "radius": fitted.radius,
+        "minimum_zone": zone.zone,
+        "least_squares_zone": fitted.zone,
+        "radius": fitted.radius,
         "centre": fitted.centre.tolist(),
     }

@@ -31,18 +31,38 @@ class Arrangement:
 
 
 _HOLDING_PART = Arrangement(
-    "part-on-robot", carries_part=True, free=1, holds_part=True, links_known=True, named_axes=False,
+    "part-on-robot",
+    carries_part=True,
+    free=1,
+    holds_part=True,
+    links_known=True,
+    named_axes=False,
 )
 _HOLDING_TOOL = Arrangement(
-    "tool-on-robot", carries_part=False, free=1, holds_part=False, links_known=True, named_axes=False,
+    "tool-on-robot",
+    carries_part=False,
+    free=1,
+    holds_part=False,
+    links_known=True,
+    named_axes=False,
 )
 _WITH_POSITIONER = Arrangement(
-    "tool-on-robot+positioner", carries_part=False, free=1, holds_part=False, links_known=True, named_axes=False,
+    "tool-on-robot+positioner",
+    carries_part=False,
+    free=1,
+    holds_part=False,
+    links_known=True,
+    named_axes=False,
     planned=False,
 )
 # its chain is seen from the torch, so that the part hangs on its flange wherever its axes are
 _FIVE_AXIS = Arrangement(
-    "rotary-table", carries_part=True, free=0, holds_part=False, links_known=False, named_axes=True,
+    "rotary-table",
+    carries_part=True,
+    free=0,
+    holds_part=False,
+    links_known=False,
+    named_axes=True,
 )
 OF_ROBOTS = (_HOLDING_PART, _HOLDING_TOOL, _WITH_POSITIONER)  # the usual one first
 OF_FIVE_AXES = (_FIVE_AXIS,)
@@ -59,5 +79,12 @@ def planned_of(setup: str) -> Arrangement:
     found = _ALL.get(setup)
     if found is None or not found.planned:
         *first, last = (one.setup for one in _ALL.values() if one.planned)
-        raise InputError("NOT_YET", "cell.setup", "{} cannot be planned yet; use {} or {}", setup, ", ".join(first), last)
+        raise InputError(
+            "NOT_YET",
+            "cell.setup",
+            "{} cannot be planned yet; use {} or {}",
+            setup,
+            ", ".join(first),
+            last,
+        )
     return found

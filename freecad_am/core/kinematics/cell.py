@@ -88,7 +88,9 @@ class Cell:
         if self.external is None or external is None:
             return self.machine.chain.links(joints)
         own = self.robot.chain
-        moved: Array = self.external.base(external)[..., None, :, :] @ own.links(joints[..., : own.axes])
+        moved: Array = self.external.base(external)[..., None, :, :] @ own.links(
+            joints[..., : own.axes]
+        )
         return moved
 
     def world(self, joints: Array) -> Array:
@@ -97,7 +99,9 @@ class Cell:
         if self.external is None:
             return np.broadcast_to(self.machine.base, (len(joints), 4, 4))
         values = np.array(joints[..., self.robot.chain.axes :])
-        if self.external.slides is not None:  # where its track is at zero the robot stands in the world as it does without
+        if (
+            self.external.slides is not None
+        ):  # where its track is at zero the robot stands in the world as it does without
             values[:, self.external.slides] = 0.0
         found: Array = self.external.base(values) @ self.robot.base
         return found
@@ -109,7 +113,9 @@ class Cell:
         if not self.external_links or self.external is None or values is None:
             return np.zeros((len(joints), 0, 4, 4))
         links = self.external.links(values)
-        in_world = np.stack([links[one.mechanism][:, one.link] for one in self.external_links], axis=1)
+        in_world = np.stack(
+            [links[one.mechanism][:, one.link] for one in self.external_links], axis=1
+        )
         return np.asarray(self.world(joints)[:, None] @ in_world)
 
     @property
@@ -120,7 +126,9 @@ class Cell:
     @property
     def part_moves(self) -> bool:
         """Whether the part moves in the world."""
-        return self.arrangement.carries_part or (self.external is not None and bool(self.external.turning))
+        return self.arrangement.carries_part or (
+            self.external is not None and bool(self.external.turning)
+        )
 
     @property
     def carriers(self) -> tuple[Machine, ...]:
@@ -137,7 +145,9 @@ class Cell:
         to_part = self.mount @ frames.inverse(self.station) @ world
         return tuple(body.moved(to_part) for body in self.obstacles)
 
-    def pose_frames(self, position: Array, tool: Array, external: Array | None = None) -> PoseFrames:
+    def pose_frames(
+        self, position: Array, tool: Array, external: Array | None = None
+    ) -> PoseFrames:
         """What is constant in the flange poses of n points, in base_link, while the rotation varies.
 
         position (n, 3) mm and tool (n, 3) unit vectors in part coordinates; external (n, k) values of the external axes
@@ -152,13 +162,17 @@ class Cell:
             return PoseFrames(self.station[None], 1.0, moved @ frames.inverse(self.carried))
         stands = self.station @ frames.pose(np.swapaxes(upright, 1, 2), points)
         if self.external is not None:
-            assert external is not None  # whoever asks for the poses of a cell with external axes knows where these are
+            assert (
+                external is not None
+            )  # whoever asks for the poses of a cell with external axes knows where these are
             stands = frames.inverse(self.external.base(external)) @ stands
         return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
 
     def on_carrier(self, position: Array) -> Array:
         """Points (n, 3) mm of the part as seen from the flange or the face that carries it; there are `carriers`."""
-        seen = (self.carried if self.arrangement.carries_part else self.station) @ frames.inverse(self.mount)
+        seen = (self.carried if self.arrangement.carries_part else self.station) @ frames.inverse(
+            self.mount
+        )
         return np.asarray(position @ seen[:3, :3].T + seen[:3, 3])
 
     def on_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
@@ -166,10 +180,14 @@ class Cell:
         seen = self.carried @ frames.inverse(self.mount)
         return position @ seen[:3, :3].T + seen[:3, 3], tool @ seen[:3, :3].T
 
-    def flange_poses(self, position: Array, tool: Array, phi: Array, joints: Array | None = None) -> Array:
+    def flange_poses(
+        self, position: Array, tool: Array, phi: Array, joints: Array | None = None
+    ) -> Array:
         """(n, 4, 4) poses of the flange in base_link for n points with the rotation phi (n,) about the tool axis; `joints`
         (n, axes) near there, whose external axes stay as they are."""
-        return self.pose_frames(position, tool, None if joints is None else self.external_of(joints)).at(phi)
+        return self.pose_frames(
+            position, tool, None if joints is None else self.external_of(joints)
+        ).at(phi)
 
     def tip_in_part(self, flange: Array) -> tuple[Array, Array]:
         """Where the nozzle is, seen from the part: its tip (n, 3) mm and tool axis (n, 3), part coordinates.
@@ -188,9 +206,15 @@ class Cell:
         """The same tip alone, (..., 3) mm in part coordinates, for joint values (..., axes): in a third of the time."""
         chain = self.machine.chain
         if self.torch_stands:
-            tip, into = chain.seen(joints, self.station[:3, 3]), self.mount @ frames.inverse(self.carried)
+            tip, into = (
+                chain.seen(joints, self.station[:3, 3]),
+                self.mount @ frames.inverse(self.carried),
+            )
         else:
-            tip, into = chain.placed(joints, self.carried[:3, 3]), self.mount @ frames.inverse(self.station)
+            tip, into = (
+                chain.placed(joints, self.carried[:3, 3]),
+                self.mount @ frames.inverse(self.station),
+            )
         in_part: Array = tip @ into[:3, :3].T + into[:3, 3]
         return in_part
 
@@ -240,12 +264,19 @@ class Cell:
 
 def mounted(parameters: CellParameters, feature_frame: Array, family: str) -> Array:
     """(4, 4) what sits on the platform, in part coordinates: the feature's own frame (4, 4), or that of the part file."""
-    mount = parameters.mount if parameters.mount != "auto" else ("feature" if family == "revolution" else "part")
+    mount = (
+        parameters.mount
+        if parameters.mount != "auto"
+        else ("feature" if family == "revolution" else "part")
+    )
     return np.array(feature_frame) if mount == "feature" else np.eye(4)
 
 
 def resolve(
-    parameters: CellParameters, feature_frame: Array, family: str = "revolution", folders: Sequence[str] = ()
+    parameters: CellParameters,
+    feature_frame: Array,
+    family: str = "revolution",
+    folders: Sequence[str] = (),
 ) -> Cell:
     """The cell of a job: machine file read, frames put together.
 
@@ -260,28 +291,36 @@ def resolve(
     mechanisms = externals(parameters.external)
     _refuse_otherwise(machine, arrangement, bool(mechanisms))
     platform = parameters.platform
-    platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
+    platform_pose = (
+        (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
+    )
     limits, external = machine.limits(parameters.limits), None
     # the torch of a machine that leaves nothing free is where its chain begins
     station = frames.bryant(parameters.deposition_point) if arrangement.free else np.eye(4)
     mount, offset = mounted(parameters, feature_frame, family), of_cell(parameters, arrangement)
     station = station if offset is None else offset.pose @ mount
     if mechanisms:
-        machine, limits, external = coupled(machine, limits, mechanisms, parameters.upward(), folders)
+        machine, limits, external = coupled(
+            machine, limits, mechanisms, parameters.upward(), folders
+        )
         station = station if not external.turning else frames.bryant(platform_pose)
     return Cell(
         machine=machine,
         limits=limits,
         setup=parameters.setup,
         station=machine.base @ station,
-        carried=frames.bryant(platform_pose if arrangement.carries_part else parameters.nozzle.tool),
+        carried=frames.bryant(
+            platform_pose if arrangement.carries_part else parameters.nozzle.tool
+        ),
         mount=mount,
         branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
         nozzle=parameters.nozzle,
         platform_diameter=parameters.platform_diameter,
         external=external,
-        arm_clearance=parameters.arm_clearance, up=upward(parameters.upward()),
-        offset=offset, external_links=external_links(external),
+        arm_clearance=parameters.arm_clearance,
+        up=upward(parameters.upward()),
+        offset=offset,
+        external_links=external_links(external),
     )
 
 
@@ -291,10 +330,21 @@ def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: 
     if arrangement not in machine.arrangements:
         kind = "is a robot" if machine.free else "has sliding axes"
         wanted = Text.joined(" or ", (one.setup for one in machine.arrangements if one.planned))
-        raise InputError("WRONG_SETUP", "cell.setup", "{} {}; use {}, or choose another machine", machine.title, Word(kind),
-                         wanted)
+        raise InputError(
+            "WRONG_SETUP",
+            "cell.setup",
+            "{} {}; use {}, or choose another machine",
+            machine.title,
+            Word(kind),
+            wanted,
+        )
     if machine.no_arm:
         raise InputError("NO_CLOSED_FORM", "cell.machine", "{}: {}", machine.title, machine.no_arm)
     if has_external and arrangement.carries_part:
-        raise InputError("WRONG_SETUP", "cell.external", "{}: external axes need the tool on the robot; use setup: "
-                         "tool-on-robot, or leave external out", arrangement.setup)
+        raise InputError(
+            "WRONG_SETUP",
+            "cell.external",
+            "{}: external axes need the tool on the robot; use setup: "
+            "tool-on-robot, or leave external out",
+            arrangement.setup,
+        )

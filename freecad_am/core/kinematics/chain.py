@@ -51,11 +51,20 @@ class Chain:
         if not len(self.order):
             object.__setattr__(self, "order", np.arange(len(self.directions)))
         # each joint is turned into one about its own Z, which leaves constant poses between the rotations
-        to_axis = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), self.directions), np.zeros(3))
+        to_axis = frames.pose(
+            frames.smallest_rotation((0.0, 0.0, 1.0), self.directions), np.zeros(3)
+        )
         before = np.concatenate((np.eye(4)[None], frames.inverse(to_axis)))
         after = np.concatenate((self.origins @ to_axis, self.flange[None]))
         object.__setattr__(self, "_links", before @ after)
-        for array in (self.origins, self.directions, self.flange, self.sliding, self.order, self._links):
+        for array in (
+            self.origins,
+            self.directions,
+            self.flange,
+            self.sliding,
+            self.order,
+            self._links,
+        ):
             array.flags.writeable = False
 
     @property
@@ -121,14 +130,21 @@ class Chain:
         result[..., 0, :, :] = np.eye(4)
         for joint in range(self.axes):
             direction, value = self.directions[joint], angles[..., self.order[joint]]
-            moved = (np.eye(3), value[..., None] * direction) if self.sliding[self.order[joint]] else (
-                frames.rotation_about(direction, value), np.zeros(3))
+            moved = (
+                (np.eye(3), value[..., None] * direction)
+                if self.sliding[self.order[joint]]
+                else (frames.rotation_about(direction, value), np.zeros(3))
+            )
             before = result[..., joint, :, :]
-            still = (before.reshape(-1, 4) @ self.origins[joint]).reshape(before.shape)  # one product, not one each
+            still = (before.reshape(-1, 4) @ self.origins[joint]).reshape(
+                before.shape
+            )  # one product, not one each
             result[..., joint + 1, :, :] = still @ frames.pose(*moved)
         return result
 
-    def _driven(self, q: ArrayLike, point: Array, order: range, links: Array, sense: float) -> Array:
+    def _driven(
+        self, q: ArrayLike, point: Array, order: range, links: Array, sense: float
+    ) -> Array:
         """A point taken through `links` (axes + 1, 4, 4) in turn, and through the joints in that order between them, in the
         sense in which they turn or against it. A point alone takes a third of the time that a frame does."""
         angles = np.asarray(q, float)
@@ -167,9 +183,13 @@ class Chain:
     def reversed(self) -> Chain:
         """The same joints seen from the flange: its flange is this one's base."""
         back = frames.inverse(np.concatenate((self.origins, self.flange[None])))[::-1]
-        return Chain(back[:-1], -self.directions[::-1], back[-1], self.sliding, self.order[::-1].copy())
+        return Chain(
+            back[:-1], -self.directions[::-1], back[-1], self.sliding, self.order[::-1].copy()
+        )
 
-    def _run_piece(self, angles: Array, axes: tuple[Array, Array] | None, flange: Array | None) -> None:
+    def _run_piece(
+        self, angles: Array, axes: tuple[Array, Array] | None, flange: Array | None
+    ) -> None:
         """Fill in directions and origins (axes, 3, n), and flange poses (n, 4, 4), those that are wanted, of angles
         (axes, n)."""
         sines, cosines = np.sin(angles), np.cos(angles)
@@ -182,7 +202,10 @@ class Chain:
             if joint:
                 columns, position = _advance(columns, position, self._links[joint])
             if axes is not None:
-                axes[0][joint], axes[1][joint] = columns[2].reshape(3, count), position.reshape(3, count)
+                axes[0][joint], axes[1][joint] = (
+                    columns[2].reshape(3, count),
+                    position.reshape(3, count),
+                )
             if self.sliding[self.order[joint]]:
                 position = position + (columns[2].reshape(3, count) * angles[joint]).ravel()
             else:
@@ -237,5 +260,9 @@ def joined(pieces: Sequence[Piece], end: Array) -> Chain:
     for piece in pieces:
         sliding[piece.values] = piece.chain.sliding
     return Chain(
-        np.stack(origins), np.concatenate([piece.chain.directions for piece in pieces]), before @ end, sliding, order,
+        np.stack(origins),
+        np.concatenate([piece.chain.directions for piece in pieces]),
+        before @ end,
+        sliding,
+        order,
     )

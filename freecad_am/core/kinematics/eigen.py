@@ -93,14 +93,23 @@ def _polynomial(diagonal: Array, squares: Array, x: Array) -> tuple[Array, Array
         np.subtract(diagonal[row], x, out=factor)
         square = squares[row - 1]
         # the new minor takes the place of the one before the last
-        for older, last, lower in ((curve_before, curve, slope), (slope_before, slope, value), (before, value, None)):
+        for older, last, lower in (
+            (curve_before, curve, slope),
+            (slope_before, slope, value),
+            (before, value, None),
+        ):
             older *= square
             np.multiply(factor, last, out=spare)
             np.subtract(spare, older, out=older)
             if lower is not None:
                 older -= lower
         value, before, slope, slope_before, curve, curve_before = (
-            before, value, slope_before, slope, curve_before, curve
+            before,
+            value,
+            slope_before,
+            slope,
+            curve_before,
+            curve,
         )
     curve *= 2.0
     return value, slope, curve

@@ -78,7 +78,11 @@ class ExternalAxes:
         for one in self.mechanisms:
             start = one.place
             if one.under is not None:
-                start = found[one.under][:, -1:] @ self.mechanisms[one.under].machine.chain.flange @ start
+                start = (
+                    found[one.under][:, -1:]
+                    @ self.mechanisms[one.under].machine.chain.flange
+                    @ start
+                )
             found.append(start @ one.machine.chain.links(values[:, one.values]))
         return found
 
@@ -91,7 +95,11 @@ class ExternalAxes:
 
 
 def coupled(
-    robot: Machine, limits: Limits, named: Sequence[External], up: Sequence[float], folders: Sequence[str] = ()
+    robot: Machine,
+    limits: Limits,
+    named: Sequence[External],
+    up: Sequence[float],
+    folders: Sequence[str] = (),
 ) -> tuple[Machine, Limits, ExternalAxes]:
     """The machine that a robot is together with its external axes, its limits, and these axes.
 
@@ -102,7 +110,10 @@ def coupled(
     _check_names(robot, found)
     _check(found)
     axes, ends = robot.chain.axes, np.cumsum([0, *(machine.chain.axes for _, machine in found)])
-    values, count = [np.arange(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)], int(ends[-1])
+    values, count = (
+        [np.arange(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)],
+        int(ends[-1]),
+    )
     carriers = [k for k, (one, _) in enumerate(found) if one.carries == PART]
     in_world = frames.inverse(robot.base)
     pieces, face, turned = [], np.eye(4), np.zeros(0, dtype=np.intp)
@@ -119,13 +130,30 @@ def coupled(
             # at zero the robot's base is that of the world
             in_world = frames.inverse(start @ machine.chain.forward(np.zeros(1))) @ in_world
             pieces.append(Piece(start, machine.chain, values[k]))
-            along, slides = start[:3, :3] @ machine.chain.frames(np.zeros(1)).directions[0], int(values[k][0])
+            along, slides = (
+                start[:3, :3] @ machine.chain.frames(np.zeros(1)).directions[0],
+                int(values[k][0]),
+            )
     to_robot = joined(pieces, in_world)
-    whole = joined([
-        Piece(np.eye(4), to_robot, axes + np.arange(count)), Piece(np.eye(4), robot.chain, np.arange(axes)),
-    ], np.eye(4))
-    external = ExternalAxes(robot, to_robot, upward(up), turning, turned, face[:3, :3], along, slides,
-                            tuple(found[k][1] for k in carriers), _mechanisms(found, values))
+    whole = joined(
+        [
+            Piece(np.eye(4), to_robot, axes + np.arange(count)),
+            Piece(np.eye(4), robot.chain, np.arange(axes)),
+        ],
+        np.eye(4),
+    )
+    external = ExternalAxes(
+        robot,
+        to_robot,
+        upward(up),
+        turning,
+        turned,
+        face[:3, :3],
+        along,
+        slides,
+        tuple(found[k][1] for k in carriers),
+        _mechanisms(found, values),
+    )
     others = [machine for _, machine in found]
     return _together(robot, others, whole), _limits(limits, others), external
 
@@ -135,39 +163,72 @@ def _check(found: Sequence[tuple[External, Machine]]) -> None:
     tracks = [machine for one, machine in found if one.carries == ROBOT]
     for machine in tracks:
         if machine.chain.axes != 1 or not machine.chain.sliding.all():
-            raise InputError("NOT_YET", WHERE, "{} carries the robot and is not a track, which is one axis that slides; "
-                             "choose a track", machine.title)
+            raise InputError(
+                "NOT_YET",
+                WHERE,
+                "{} carries the robot and is not a track, which is one axis that slides; "
+                "choose a track",
+                machine.title,
+            )
     if len(tracks) > 1:
-        raise InputError("NOT_YET", WHERE, "{} mechanisms carry the robot; give one track", len(tracks))
+        raise InputError(
+            "NOT_YET", WHERE, "{} mechanisms carry the robot; give one track", len(tracks)
+        )
     others = [machine for one, machine in found if one.carries == PART]
     for machine in others:
         if machine.chain.sliding.any():
-            raise InputError("NOT_YET", WHERE, "{} has an axis that slides and carries the part, which cannot be planned "
-                             "yet; use turning axes", machine.title)
+            raise InputError(
+                "NOT_YET",
+                WHERE,
+                "{} has an axis that slides and carries the part, which cannot be planned "
+                "yet; use turning axes",
+                machine.title,
+            )
     count = sum(machine.chain.axes for machine in others)
     if count > 2:
-        raise InputError("NOT_YET", WHERE, "{} axes carry the part; give one or two turning axes", count)
+        raise InputError(
+            "NOT_YET", WHERE, "{} axes carry the part; give one or two turning axes", count
+        )
 
 
 def _check_names(robot: Machine, found: Sequence[tuple[External, Machine]]) -> None:
     """Refuse mechanisms that are the robot itself, or each other."""
     for k, (one, machine) in enumerate(found):
         if machine.id == robot.id or (_alike(machine, robot) and one.carries == ROBOT):
-            raise InputError("BAD_VALUE", WHERE, "{} is the machine of the cell, which cannot carry itself; name what "
-                             "stands beside it", machine.title)
+            raise InputError(
+                "BAD_VALUE",
+                WHERE,
+                "{} is the machine of the cell, which cannot carry itself; name what "
+                "stands beside it",
+                machine.title,
+            )
         for other, before in found[:k]:
             if machine.id != before.id:
                 continue
             if not _alike(machine, before):
-                raise InputError("BAD_VALUE", WHERE, "{} and {} are two mechanisms of one name, {!r}; give one of the files "
-                                 "another id", one.machine, other.machine, machine.id)
+                raise InputError(
+                    "BAD_VALUE",
+                    WHERE,
+                    "{} and {} are two mechanisms of one name, {!r}; give one of the files "
+                    "another id",
+                    one.machine,
+                    other.machine,
+                    machine.id,
+                )
             if one.pose == other.pose or one.carries != other.carries:
-                raise InputError("BAD_VALUE", WHERE, "{!r} stands there twice; leave one of them out, or give a second one "
-                                 "of the same kind a pose of its own", machine.id)
+                raise InputError(
+                    "BAD_VALUE",
+                    WHERE,
+                    "{!r} stands there twice; leave one of them out, or give a second one "
+                    "of the same kind a pose of its own",
+                    machine.id,
+                )
 
 
 def _alike(one: Machine, other: Machine) -> bool:
-    return one.chain.axes == other.chain.axes and np.array_equal(one.chain.origins, other.chain.origins)
+    return one.chain.axes == other.chain.axes and np.array_equal(
+        one.chain.origins, other.chain.origins
+    )
 
 
 def load(name: str, folders: Sequence[str] = ()) -> Machine:
@@ -179,15 +240,22 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
     if meant is not None:
         found = urdf_machine.chain_of(meant)
         called = f"{found.name} {' - '.join(found.joints)}"  # a file may describe several
-        return dataclasses.replace(machines.of_description(name, found, None), id=called, title=called)
+        return dataclasses.replace(
+            machines.of_description(name, found, None), id=called, title=called
+        )
     try:
         return machines.load(name, (*folders, MECHANISMS))
     except InputError as error:
         if error.code != "UNKNOWN_MACHINE":
             raise
         known = ", ".join(sorted(path.stem for path in MECHANISMS.glob("*.json")))
-        raise InputError("UNKNOWN_MACHINE", WHERE, "{!r} is not known; built in are {}; or give the path of a machine file "
-                         "or a URDF", name, known) from None
+        raise InputError(
+            "UNKNOWN_MACHINE",
+            WHERE,
+            "{!r} is not known; built in are {}; or give the path of a machine file or a URDF",
+            name,
+            known,
+        ) from None
 
 
 def upward(up: Sequence[float]) -> Array:
@@ -203,12 +271,21 @@ def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
     before, first = np.eye(4), 0
     for one, machine in found:
         start = frames.bryant(one.pose) @ frames.inverse(machine.base)
-        pieces.append(Piece(frames.inverse(before) @ start, machine.chain, first + np.arange(machine.chain.axes)))
-        before, first = start @ machine.chain.forward(np.zeros(machine.chain.axes)), first + machine.chain.axes
+        pieces.append(
+            Piece(
+                frames.inverse(before) @ start, machine.chain, first + np.arange(machine.chain.axes)
+            )
+        )
+        before, first = (
+            start @ machine.chain.forward(np.zeros(machine.chain.axes)),
+            first + machine.chain.axes,
+        )
     return joined(pieces, np.eye(4)), before
 
 
-def _mechanisms(found: Sequence[tuple[External, Machine]], values: Sequence[Index]) -> tuple[Mechanism, ...]:
+def _mechanisms(
+    found: Sequence[tuple[External, Machine]], values: Sequence[Index]
+) -> tuple[Mechanism, ...]:
     """The mechanisms where they stand: those that carry the part on one another."""
     adjacent: list[Mechanism] = []
     under: int | None = None
@@ -242,10 +319,16 @@ def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machin
         for name in ("max_speed", "max_acceleration", "max_jerk")
     }
     return dataclasses.replace(
-        robot, title=" + ".join(one.title for one in (robot, *others)), chain=chain, base=np.eye(4), external=count,
-        axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))), controller_matrix=matrix,
+        robot,
+        title=" + ".join(one.title for one in (robot, *others)),
+        chain=chain,
+        base=np.eye(4),
+        external=count,
+        axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))),
+        controller_matrix=matrix,
         controller_offset=np.concatenate(offset),
-        pulses_per_degree=sum((one.pulses_per_degree for one in all_), ()) if known else (), **alike,
+        pulses_per_degree=sum((one.pulses_per_degree for one in all_), ()) if known else (),
+        **alike,
     )
 
 
@@ -265,8 +348,11 @@ def _limits(robot: Limits, others: Sequence[Machine]) -> Limits:
     }
     rest = [label for one in sets for label in one.labels[one.axes :]]
     return dataclasses.replace(
-        robot, coefficients=np.concatenate(coupled_), source="; ".join(one.source for one in (robot, *sets)),
-        labels=(*robot.labels[: robot.axes], *labels, *robot.labels[robot.axes :], *rest), **alike,
+        robot,
+        coefficients=np.concatenate(coupled_),
+        source="; ".join(one.source for one in (robot, *sets)),
+        labels=(*robot.labels[: robot.axes], *labels, *robot.labels[robot.axes :], *rest),
+        **alike,
     )
 
 

@@ -119,7 +119,9 @@ def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -
         size = np.abs(np.linalg.det(matrices))
         singular = size == 0.0
         matrices[singular] = np.eye(6)
-        relative: Array = np.einsum("nij,jin->n", np.linalg.inv(matrices), _rate(scaled, rates[:, piece]))
+        relative: Array = np.einsum(
+            "nij,jin->n", np.linalg.inv(matrices), _rate(scaled, rates[:, piece])
+        )
         relative[singular] = np.nan
         relative *= size
         return relative
@@ -128,7 +130,11 @@ def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -
 
 
 def _in_pieces(
-    function: Callable[..., Array], jacobians: ArrayLike, length: float, size: int = TOGETHER, with_slice: bool = False
+    function: Callable[..., Array],
+    jacobians: ArrayLike,
+    length: float,
+    size: int = TOGETHER,
+    with_slice: bool = False,
 ) -> Array:
     """`function` of scaled Jacobians (6, axes, m), in pieces of that size, so that they stay in the processor's cache."""
     matrices = np.moveaxis(np.asarray(jacobians, float), 0, -1)
@@ -156,7 +162,9 @@ def _rate(matrices: Array, rates: Array) -> Array:
     turning = np.cumsum(direction * rates, axis=1)
     carried = velocity * rates
     carried = carried.sum(axis=1, keepdims=True) - np.cumsum(carried, axis=1)
-    return np.concatenate((_cross(turning, velocity) + _cross(direction, carried), _cross(turning, direction)))
+    return np.concatenate(
+        (_cross(turning, velocity) + _cross(direction, carried), _cross(turning, direction))
+    )
 
 
 def _frobenius(matrices: Array) -> Array:
@@ -194,7 +202,9 @@ def _product(left: Array, right: Array) -> Array:
 def _inverse3(matrices: Array) -> Array:
     """Inverses of matrices (3, 3, n): the cross products of the rows are the columns of the adjugate."""
     first, second, third = matrices
-    adjugate = np.stack((_cross(second, third), _cross(third, first), _cross(first, second)), axis=1)
+    adjugate = np.stack(
+        (_cross(second, third), _cross(third, first), _cross(first, second)), axis=1
+    )
     adjugate *= 1.0 / np.einsum("in,in->n", first, adjugate[:, 0])
     return adjugate
 

@@ -38,7 +38,13 @@ class Limits:
     source: str = ""
 
     def __post_init__(self) -> None:
-        for array in (self.lower, self.upper, self.coefficients, self.coupled_lower, self.coupled_upper):
+        for array in (
+            self.lower,
+            self.upper,
+            self.coefficients,
+            self.coupled_lower,
+            self.coupled_upper,
+        ):
             array.flags.writeable = False
 
     @property
@@ -61,14 +67,20 @@ class Limits:
         result = np.empty(angles.shape[:-1] + (self.axes + len(self.coupled_lower),))
         np.minimum(angles - self.lower, self.upper - angles, out=result[..., : self.axes])
         coupled = angles @ self.coefficients.T
-        np.minimum(coupled - self.coupled_lower, self.coupled_upper - coupled, out=result[..., self.axes :])
+        np.minimum(
+            coupled - self.coupled_lower, self.coupled_upper - coupled, out=result[..., self.axes :]
+        )
         return result
 
     def shares(self, q: Array) -> Array:
         """`margins` (..., axes + m) of joint vectors `q` (..., axes), of each axis and then of each coupled limit."""
-        return np.concatenate([
-            margins(q, self.lower, self.upper), margins(q @ self.coefficients.T, self.coupled_lower, self.coupled_upper),
-        ], axis=-1)
+        return np.concatenate(
+            [
+                margins(q, self.lower, self.upper),
+                margins(q @ self.coefficients.T, self.coupled_lower, self.coupled_upper),
+            ],
+            axis=-1,
+        )
 
     def smallest_share(self, q: Array) -> Array:
         """(n,) the smallest of the `shares` of each joint vector (n, axes). Limit by limit, without an array as large as all
@@ -76,7 +88,9 @@ class Limits:
         least = np.full(len(q), np.inf)
         for axis, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
             np.minimum(least, _share(q[:, axis], low, high), out=least)
-        for row, low, high in zip(self.coefficients, self.coupled_lower, self.coupled_upper, strict=True):
+        for row, low, high in zip(
+            self.coefficients, self.coupled_lower, self.coupled_upper, strict=True
+        ):
             some = np.flatnonzero(row)
             coupled = sum((row[axis] * q[:, axis] for axis in some), np.zeros(len(q)))
             np.minimum(least, _share(coupled, low, high), out=least)
@@ -101,7 +115,9 @@ def margins(joints: Array, lower: Array, upper: Array) -> Array:
     there the share is 1.
     """
     share = np.empty_like(joints)
-    for axis, (low, high) in enumerate(zip(lower, upper, strict=True)):  # what is as large as the joints takes long to get
+    for axis, (low, high) in enumerate(
+        zip(lower, upper, strict=True)
+    ):  # what is as large as the joints takes long to get
         share[..., axis] = _share(joints[..., axis], low, high)
     return share
 

@@ -17,11 +17,15 @@ from .machines.machine import Machine
 from .urdf.machine import is_mechanism
 
 
-def positioners(robot: Machine, mass: float, radius: float, folders: Sequence[str] = ()) -> list[Machine]:
+def positioners(
+    robot: Machine, mass: float, radius: float, folders: Sequence[str] = ()
+) -> list[Machine]:
     """Those of one or two turning axes that carry a part of a mass, kg, as far as their files tell: first those whose table
     is as wide as the part, `radius` mm about its axis, of these those whose speeds are known, then those of the robot's
     maker, then those rated lowest."""
-    some = [one for one in _known(folders) if not one.chain.sliding.any() and one.payload.kg >= mass]
+    some = [
+        one for one in _known(folders) if not one.chain.sliding.any() and one.payload.kg >= mass
+    ]
     return sorted(some, key=lambda one: (_table(one) < radius, *_rank(robot, one)))
 
 
@@ -52,7 +56,9 @@ def _known(folders: Sequence[str]) -> list[Machine]:
 
 def _table(one: Machine) -> float:
     """mm from its last axis to where its last link ends; infinite where that is not known."""
-    pieces = [piece.points for piece in (one.bodies[-1] if one.bodies else ()) if isinstance(piece, Solid)]
+    pieces = [
+        piece.points for piece in (one.bodies[-1] if one.bodies else ()) if isinstance(piece, Solid)
+    ]
     if not pieces:
         return math.inf
     axis = one.chain.directions[-1]

@@ -45,7 +45,10 @@ ABOVE = np.linspace(-0.5, 0.7, 9)
 
 
 def cell_of(
-    machine: str, folders: Sequence[str] = (), setup: str = OF_ROBOTS[0].setup, tool: Pose | None = None
+    machine: str,
+    folders: Sequence[str] = (),
+    setup: str = OF_ROBOTS[0].setup,
+    tool: Pose | None = None,
 ) -> CellParameters:
     """The parameters of a cell with a machine, '' for the default one. A robot has the set-up that is asked for; tool: pose
     of the tip on its flange, where it is known. InputError for an unknown one."""
@@ -57,7 +60,9 @@ def cell_of(
     return proposed(replace(chosen, setup=setup, nozzle=nozzle), folders)
 
 
-def proposed(parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False) -> CellParameters:
+def proposed(
+    parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False
+) -> CellParameters:
     """The cell with the deposition point or the platform, on whole mm, and the branch that serve best, its own one with
     `own_branch`; as it is where none serves, and where the part is on a positioner. Errors as `cell.resolve`."""
     if parameters == CellParameters() and not own_branch:
@@ -65,18 +70,26 @@ def proposed(parameters: CellParameters, folders: Sequence[str] = (), own_branch
     return searched(parameters, folders, own_branch)
 
 
-def searched(parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False) -> CellParameters:
+def searched(
+    parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False
+) -> CellParameters:
     """What is `proposed`, looked for."""
     machine = machines.load(parameters.machine, tuple(folders))
     arrangement = of_setup(parameters.setup)
-    if externals(parameters.external) or machine.arm is None or not (arrangement.free and arrangement.planned):
+    if (
+        externals(parameters.external)
+        or machine.arm is None
+        or not (arrangement.free and arrangement.planned)
+    ):
         return parameters
     cell = resolve(parameters, np.eye(4), folders=folders)
     branches = range(len(opw.BRANCHES)) if cell.branch is None or not own_branch else [cell.branch]
     if arrangement.carries_part:
         leanings = [_directions(TILTS, 1)]
     else:
-        leanings = [_directions(LEANING[:steepest], ROUND) for steepest in range(len(LEANING), 0, -1)]
+        leanings = [
+            _directions(LEANING[:steepest], ROUND) for steepest in range(len(LEANING), 0, -1)
+        ]
     cylinders = link_cylinders.of_robot(cell.robot.chain)
     for touched in (cylinders, ()):
         for axes in leanings:
@@ -105,13 +118,17 @@ class _Place(NamedTuple):
     point: Pose
 
 
-def _best(cell: Cell, axes: Array, branches: Sequence[int], cylinders: Sequence[Sequence[Cylinder]]) -> _Place | None:
+def _best(
+    cell: Cell, axes: Array, branches: Sequence[int], cylinders: Sequence[Sequence[Cylinder]]
+) -> _Place | None:
     """Where deposit on a ball along the axes (n, 3) has most room, None where it has none anywhere. Without cylinders links
     may touch what they like."""
     places = sorted(_places(cell, axes, branches))
     best: _Place | None = None
     for place in places if cylinders else places[:1]:
-        if best is not None and best.lack <= place.lack:  # those that come now have no more room, whatever is touched
+        if (
+            best is not None and best.lack <= place.lack
+        ):  # those that come now have no more room, whatever is touched
             break
         lack = 1.0 - _clear_margin(_stood(cell, place.point), axes, place.branch, cylinders)
         if lack < (1.0 if best is None else best.lack):
@@ -132,7 +149,9 @@ def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place
         point = (float(x), 0.0, float(z), 0.0, 0.0, 0.0)
         there = _stood(cell, point)
         worst = _margin(cell, _joints(there, axes)).max(axis=1).min(axis=1)
-        yield from (_Place(1.0 - float(worst[k]), number, k, point) for k in branches if worst[k] > 0.0)
+        yield from (
+            _Place(1.0 - float(worst[k]), number, k, point) for k in branches if worst[k] > 0.0
+        )
 
 
 def _stood(cell: Cell, point: Pose) -> Cell:
@@ -144,20 +163,26 @@ def _joints(cell: Cell, axes: Array) -> Array:
     """(8, turns, n, 6) joint values for deposit on a ball along the axes (n, 3), by branch."""
     arm = cell.machine.arm
     assert arm is not None
-    phi = np.broadcast_to(np.linspace(-np.pi, np.pi, TURNS, endpoint=False)[:, None], (TURNS, len(axes)))
+    phi = np.broadcast_to(
+        np.linspace(-np.pi, np.pi, TURNS, endpoint=False)[:, None], (TURNS, len(axes))
+    )
     poses = cell.pose_frames(BALL * axes, axes).at(phi)
     joints: Array = arm.inverse(poses.reshape(-1, 4, 4)).reshape(-1, TURNS, len(axes), 6)[:8]
     return joints
 
 
-def _clear_margin(cell: Cell, axes: Array, branch: int, cylinders: Sequence[Sequence[Cylinder]]) -> float:
+def _clear_margin(
+    cell: Cell, axes: Array, branch: int, cylinders: Sequence[Sequence[Cylinder]]
+) -> float:
     """The room of the worst pose in a branch, of those turned so that no link touches anything; below 0 where there is
     none."""
     joints = _joints(cell, axes)[branch]
     margin = _margin(cell, joints)
     if cylinders:
         some = margin > 0.0
-        margin[some] = np.where(ArmContact(cell, cylinders).touches(joints[some]).any, -1.0, margin[some])
+        margin[some] = np.where(
+            ArmContact(cell, cylinders).touches(joints[some]).any, -1.0, margin[some]
+        )
     return float(margin.max(axis=0).min())
 
 

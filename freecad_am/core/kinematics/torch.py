@@ -24,7 +24,10 @@ CODE, WHERE = "TORCH", "cell.nozzle.shape"
 FARTHEST = 50.0  # mm from the tip to the torch, which a wire is not longer; a file that is farther off has another origin
 BEYOND = 0.5  # mm that it may reach beyond its tip: what stands there would be in the deposit
 WIDER = 0.05  # mm that it may stand out of the cone, which is what triangles of round sides are off them
-MAX_CYLINDERS, SAVED = 16, 0.02  # cylinders, and the share of their volume that one more has to save
+MAX_CYLINDERS, SAVED = (
+    16,
+    0.02,
+)  # cylinders, and the share of their volume that one more has to save
 # files have Z out of the nozzle, we have the tip's Z into it
 _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
@@ -41,19 +44,33 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
     """The torch of a file's body. Raises InputError TORCH where it is open, far from its tip, beyond it or wider than the
     nozzle."""
     if inside_of(body) is None:
-        raise InputError(CODE, WHERE, "it is open, so that nobody knows what is inside of it; give closed solids")
+        raise InputError(
+            CODE, WHERE, "it is open, so that nobody knows what is inside of it; give closed solids"
+        )
     found = body.moved(_TURNED)
     corners = found.corners()
     away = float(np.sqrt(_from_origin(corners).min()))
     if away > FARTHEST:
-        raise InputError(CODE, WHERE, "it is {:.4g} mm from its origin, which is where the deposit comes out; put the tip "
-                         "of the wire or nozzle at the origin of the file, Z out of the nozzle, in mm", away)
+        raise InputError(
+            CODE,
+            WHERE,
+            "it is {:.4g} mm from its origin, which is where the deposit comes out; put the tip "
+            "of the wire or nozzle at the origin of the file, Z out of the nozzle, in mm",
+            away,
+        )
     low = float(found.vertices[:, 2].min())
     if low < -BEYOND:
-        raise InputError(CODE, WHERE, "it reaches {:.4g} mm beyond its origin along Z, where the deposit is; let Z of the "
-                         "file point out of the nozzle, away from the torch, and put the origin at its tip", -low)
+        raise InputError(
+            CODE,
+            WHERE,
+            "it reaches {:.4g} mm beyond its origin along Z, where the deposit is; let Z of the "
+            "file point out of the nozzle, away from the torch, and put the origin at its tip",
+            -low,
+        )
     _refuse_wider(found, nozzle)
-    return Torch(found, tuple(_cylinders(cut(found.vertices, found.triangles, nozzle.length, above=True))))
+    return Torch(
+        found, tuple(_cylinders(cut(found.vertices, found.triangles, nozzle.length, above=True)))
+    )
 
 
 def _cylinders(whole: Piece) -> list[Cylinder]:
@@ -93,7 +110,9 @@ def _halves(piece: Piece) -> list[tuple[Piece, Piece]]:
     for axis in range(3):
         low, high = float(points[:, axis].min()), float(points[:, axis].max())
         for share in (0.25, 0.5, 0.75):
-            above, below = (cut(*piece, low + share * (high - low), side, axis) for side in (True, False))
+            above, below = (
+                cut(*piece, low + share * (high - low), side, axis) for side in (True, False)
+            )
             if len(above[1]) and len(below[1]):
                 found.append((above, below))
     return found
@@ -110,15 +129,19 @@ def cut(points: Array, triangles: Integers, height: float, above: bool, axis: in
         some = triangles[count == number]
         if not len(some):
             continue
-        lone = np.argmax(inside[count == number] if number == 1 else ~inside[count == number], axis=1)
+        lone = np.argmax(
+            inside[count == number] if number == 1 else ~inside[count == number], axis=1
+        )
         a, b, c = (some[np.arange(len(some)), (lone + k) % 3] for k in range(3))
         new = [_crossing(points, side, a, other) for other in (b, c)]
         ab, ac = start + np.arange(len(some)), start + len(some) + np.arange(len(some))
         start += 2 * len(some)
         more += new
-        kept += [np.stack([a, ab, ac], axis=1)] if number == 1 else [
-            np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)
-        ]
+        kept += (
+            [np.stack([a, ab, ac], axis=1)]
+            if number == 1
+            else [np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)]
+        )
     return np.concatenate(more), np.concatenate(kept)
 
 
@@ -140,13 +163,20 @@ def _refuse_wider(found: Body, nozzle: NozzleParameters) -> None:
         return
     high = np.maximum(seen[:, 2], 1e-3)
     least = float(np.degrees(np.arctan(np.maximum((away - tip) / high, 0.0).max())))
-    remedy = Text("cell.nozzle.half_angle of {:.4g} deg at least", np.ceil(least * 10.0 + 0.1) / 10.0) if least < 89.0 else (
-        "a larger cell.nozzle.diameter"
+    remedy = (
+        Text("cell.nozzle.half_angle of {:.4g} deg at least", np.ceil(least * 10.0 + 0.1) / 10.0)
+        if least < 89.0
+        else ("a larger cell.nozzle.diameter")
     )
     raise InputError(
-        CODE, WHERE, "{:.4g} mm over its tip it reaches {:.4g} mm from its axis, the nozzle as a cone {:.4g} mm, and it is "
-        "the cone that is kept clear of the deposit; give {}, or a smaller cell.nozzle.length", seen[worst, 2], away[worst],
-        allowed[worst], Word(remedy),
+        CODE,
+        WHERE,
+        "{:.4g} mm over its tip it reaches {:.4g} mm from its axis, the nozzle as a cone {:.4g} mm, and it is "
+        "the cone that is kept clear of the deposit; give {}, or a smaller cell.nozzle.length",
+        seen[worst, 2],
+        away[worst],
+        allowed[worst],
+        Word(remedy),
     )
 
 
@@ -155,8 +185,13 @@ def _from_origin(corners: Array) -> Array:
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     square = np.einsum("ij,ij->i", normal, normal)
-    foot = (np.einsum("ij,ij->i", a, normal) / np.where(square > 0.0, square, 1.0))[:, None] * normal
-    sides = [np.einsum("ij,ij->i", np.cross(q - p, foot - p), normal) for p, q in ((a, b), (b, c), (c, a))]
+    foot = (np.einsum("ij,ij->i", a, normal) / np.where(square > 0.0, square, 1.0))[
+        :, None
+    ] * normal
+    sides = [
+        np.einsum("ij,ij->i", np.cross(q - p, foot - p), normal)
+        for p, q in ((a, b), (b, c), (c, a))
+    ]
     over = (np.minimum.reduce(sides) >= 0.0) & (square > 0.0)
     edges = np.minimum.reduce([_of_edge(p, q) for p, q in ((a, b), (b, c), (c, a))])
     return np.where(over, np.einsum("ij,ij->i", foot, foot), edges)
@@ -165,6 +200,8 @@ def _from_origin(corners: Array) -> Array:
 def _of_edge(start: Array, end: Array) -> Array:
     along = end - start
     square = np.einsum("ij,ij->i", along, along)
-    share = np.clip(-np.einsum("ij,ij->i", start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    share = np.clip(
+        -np.einsum("ij,ij->i", start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0
+    )
     nearest = start + share[:, None] * along
     return np.asarray(np.einsum("ij,ij->i", nearest, nearest))

@@ -24,7 +24,14 @@ CODE = "TOUCHED"
 LEAST = 3
 LINE = 0.05  # of their spread that points are off a line at least
 SAME_SIZE = 0.01  # of the distances between points
-_UNITS = ((25.4, "inches"), (1000.0, "m"), (10.0, "cm"), (1.0 / 25.4, "inches"), (1e-3, "m"), (0.1, "cm"))
+_UNITS = (
+    (25.4, "inches"),
+    (1000.0, "m"),
+    (10.0, "cm"),
+    (1.0 / 25.4, "inches"),
+    (1e-3, "m"),
+    (0.1, "cm"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +54,12 @@ def of_cell(parameters: CellParameters, arrangement: Arrangement) -> WorkOffset 
         return None
     carried = any(one.carries == PART for one in externals(parameters.external))
     if arrangement.carries_part or carried:
-        raise InputError(CODE, WHERE, "points are touched of a part that stands still under a tool on the robot; leave them "
-                         "out, and measure cell.platform or the pose of what carries the part")
+        raise InputError(
+            CODE,
+            WHERE,
+            "points are touched of a part that stands still under a tool on the robot; leave them "
+            "out, and measure cell.platform or the pose of what carries the part",
+        )
     return work_offset(points, parameters.touched_tolerance)
 
 
@@ -56,16 +67,26 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
     """Where the part stands. Raises InputError TOUCHED for fewer than three points, points on a line, of another size, and
     where one is farther than `tolerance` mm from where it was touched."""
     if len(points) < LEAST:
-        raise InputError(CODE, WHERE, "{} point(s) do not determine where a part stands; touch {} or more, far from one "
-                         "another and not on a line", len(points), LEAST)
+        raise InputError(
+            CODE,
+            WHERE,
+            "{} point(s) do not determine where a part stands; touch {} or more, far from one "
+            "another and not on a line",
+            len(points),
+            LEAST,
+        )
     part, robot = (np.array([getattr(one, side) for one in points]) for side in ("part", "robot"))
     here, there = part - part.mean(axis=0), robot - robot.mean(axis=0)
     for side, seen in (("part", here), ("robot", there)):
         spread = np.linalg.svd(seen, compute_uv=False)
         if not spread[1] > LINE * spread[0]:
-            raise InputError(CODE, WHERE, "the points {} are on a line, or all in one place: they leave open how the "
-                             "part is turned about it; touch one off that line",
-                             Word("touched" if side == "robot" else "of the part"))
+            raise InputError(
+                CODE,
+                WHERE,
+                "the points {} are on a line, or all in one place: they leave open how the "
+                "part is turned about it; touch one off that line",
+                Word("touched" if side == "robot" else "of the part"),
+            )
     _refuse_other_size(float(np.linalg.norm(there) / np.linalg.norm(here)))
     left, _, right = np.linalg.svd(here.T @ there)
     turn = (left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right).T
@@ -75,9 +96,15 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
     if residual[worst] > tolerance:
         text = ", ".join(f"{value:.3g}" for value in residual)
         raise InputError(
-            CODE, WHERE, "point {} is {:.3g} mm from where it was touched (of all: {} mm), more than cell.touched_tolerance "
+            CODE,
+            WHERE,
+            "point {} is {:.3g} mm from where it was touched (of all: {} mm), more than cell.touched_tolerance "
             "of {:g} mm; touch it again, and see that the points stand in the same order, are of this part, and that the "
-            "tip is calibrated", worst + 1, residual[worst], text, tolerance
+            "tip is calibrated",
+            worst + 1,
+            residual[worst],
+            text,
+            tolerance,
         )
     return WorkOffset(pose, residual)
 
@@ -88,6 +115,13 @@ def _refuse_other_size(ratio: float) -> None:
         return
     unit = next((name for factor, name in _UNITS if abs(ratio * factor - 1.0) <= SAME_SIZE), "")
     raise InputError(
-        CODE, WHERE, "what was touched is {:.4g} times as large as what is planned; {}", ratio, Word(Text("one of them is "
-            "in {}, give both in mm", unit) if unit else "these are points of another part, or in another order")
+        CODE,
+        WHERE,
+        "what was touched is {:.4g} times as large as what is planned; {}",
+        ratio,
+        Word(
+            Text("one of them is in {}, give both in mm", unit)
+            if unit
+            else "these are points of another part, or in another order"
+        ),
     )

@@ -45,14 +45,18 @@ def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
         if strategy.layers in ("geodesic", "offset"):
             yield Stack(group.bodies[0].name, curved.slices(solids, group, strategy), number, 0)
             continue
-        for solid, bodies in enumerate([group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]):
+        for solid, bodies in enumerate(
+            [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
+        ):
             layers: Iterable[Slice]
             if isinstance(group.base.surface, Guide):
                 layers = along.slices(group.base, bodies, strategy)
             else:
                 layers = planes.slices(group.base, bodies, strategy)
             name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
-            yield Stack(name, with_buried(with_overhangs(layers, strategy), strategy.thick), number, solid)
+            yield Stack(
+                name, with_buried(with_overhangs(layers, strategy), strategy.thick), number, solid
+            )
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:
@@ -60,10 +64,20 @@ def footprints(group: Group, chord_error: float) -> list[list[Array]]:
     on planes cut a chord error above it. InputError OPEN_MESH, GUIDE_TIGHT."""
     base, surface = group.base, group.base.surface
     if isinstance(surface, Developable):
-        made = [Facets(surface, base.inside(body.vertices), body.triangles, body.name) for body in group.bodies]
-        return [[base.placed(loop.points) for loop in cut(facets, 0.0, chord_error)] for facets in made]
+        made = [
+            Facets(surface, base.inside(body.vertices), body.triangles, body.name)
+            for body in group.bodies
+        ]
+        return [
+            [base.placed(loop.points) for loop in cut(facets, 0.0, chord_error)] for facets in made
+        ]
     cuts = [
-        AlongCuts(base, body) if isinstance(surface, Guide) else PlaneCuts(base.inside(body.vertices), body.triangles)
+        AlongCuts(base, body)
+        if isinstance(surface, Guide)
+        else PlaneCuts(base.inside(body.vertices), body.triangles)
         for body in group.bodies
     ]
-    return [[base.placed(PlaneLayer(0.0).wrap(loop).points) for loop in next(one.loops([chord_error]))] for one in cuts]
+    return [
+        [base.placed(PlaneLayer(0.0).wrap(loop).points) for loop in next(one.loops([chord_error]))]
+        for one in cuts
+    ]

@@ -32,7 +32,9 @@ class Leaning(NamedTuple):
         return self.corners[first:], float(self.area[first:].sum())
 
 
-def leaning(bodies: Sequence[Body], base: Base, standing: float, slit: float | None = None) -> Leaning:
+def leaning(
+    bodies: Sequence[Body], base: Base, standing: float, slit: float | None = None
+) -> Leaning:
     """The facets of bodies that face against the way in which layers follow one another on a base, along a guide that there:
     0 is a wall, a right angle a ceiling. What lies no more than `standing` mm above the lowest place is carried by what the
     part stands on. slit: as of `stacking.facets`."""
@@ -44,6 +46,8 @@ def leaning(bodies: Sequence[Body], base: Base, standing: float, slit: float | N
         middles = base.surface.distance(inside.mean(axis=1))
         ways = base.turned(base.surface.at(middles)[1])
     lean = np.arcsin(np.clip(-(normals * ways).sum(axis=1), -1.0, 1.0))
-    out = np.flatnonzero((lean > LEAST) & (areas > 0.0) & (heights.max(axis=1) > heights.min() + standing))
+    out = np.flatnonzero(
+        (lean > LEAST) & (areas > 0.0) & (heights.max(axis=1) > heights.min() + standing)
+    )
     order = out[np.argsort(lean[out], kind="stable")]
     return Leaning(corners[order], lean[order], areas[order], float(areas.sum()))

@@ -13,7 +13,10 @@ from ..issues import Issue
 from ..parameters.filled import SolidParameters
 from ..types import Array
 
-BORDER, ARCS = 0.05, 0.2  # shares of the chord error: of borders without needless points, of fillings
+BORDER, ARCS = (
+    0.05,
+    0.2,
+)  # shares of the chord error: of borders without needless points, of fillings
 
 Loops = TypeVar("Loops")
 

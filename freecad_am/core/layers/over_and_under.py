@@ -29,20 +29,38 @@ def with_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iterat
     for layer in slices:
         issues = layer.issues
         if before is not None and strategy.max_overhang < NEVER:
-            over = _over(layer, before if before.number == layer.number - 1 else None, reach, strategy.chord_error, least)
+            over = _over(
+                layer,
+                before if before.number == layer.number - 1 else None,
+                reach,
+                strategy.chord_error,
+                least,
+            )
             if over:
                 largest = max(over, key=lambda part: part.area)
-                issues = (*issues, Issue(
-                    WARNING, CODE, Text("{:.4g} mm^2 lean out over the layer below by more than {:.4g} deg, the largest "
-                        "piece at {}; deposit what carries it first, choose another strategy.direction, or raise "
-                        "strategy.max_overhang", math.fsum(part.area for part in over), math.degrees(strategy.max_overhang),
-                        layer.where(largest.inside())), layer.number,
-                ))
+                issues = (
+                    *issues,
+                    Issue(
+                        WARNING,
+                        CODE,
+                        Text(
+                            "{:.4g} mm^2 lean out over the layer below by more than {:.4g} deg, the largest "
+                            "piece at {}; deposit what carries it first, choose another strategy.direction, or raise "
+                            "strategy.max_overhang",
+                            math.fsum(part.area for part in over),
+                            math.degrees(strategy.max_overhang),
+                            layer.where(largest.inside()),
+                        ),
+                        layer.number,
+                    ),
+                )
         before = layer
         yield layer._replace(issues=issues)
 
 
-def _over(layer: Slice, below: Slice | None, reach: float, chord_error: float, least: float) -> list[Region]:
+def _over(
+    layer: Slice, below: Slice | None, reach: float, chord_error: float, least: float
+) -> list[Region]:
     """The pieces of a layer farther than `reach` mm beside the one below it."""
     here, under = (
         [region for region in regions if isinstance(region, Region)]
@@ -80,7 +98,12 @@ def with_buried(slices: Iterator[Slice], thick: int) -> Iterator[Slice]:
 
 
 def _buried(layer: Slice, near: Sequence[Slice], thick: int) -> Slice:
-    there = {other.number: [region for region in other.regions if isinstance(region, Region)] for other in near}
-    return layer._replace(buried=under_and_over(
-        [there.get(layer.number + k, []) for step in range(1, thick + 1) for k in (-step, step)]
-    ))
+    there = {
+        other.number: [region for region in other.regions if isinstance(region, Region)]
+        for other in near
+    }
+    return layer._replace(
+        buried=under_and_over(
+            [there.get(layer.number + k, []) for step in range(1, thick + 1) for k in (-step, step)]
+        )
+    )

@@ -89,7 +89,12 @@ class Slice(NamedTuple):
                 continue
             for border, turns in region.borders():
                 if turns:
-                    found.append((np.vstack([region.period.moved(border, k) for k in (-turns, 0, turns)]), False))
+                    found.append(
+                        (
+                            np.vstack([region.period.moved(border, k) for k in (-turns, 0, turns)]),
+                            False,
+                        )
+                    )
                 else:
                     found += [(region.period.moved(border, k), True) for k in (-1, 0, 1)]
         return found

@@ -15,7 +15,14 @@ from . import field as f
 NONE = "none"
 WHERE = "process.classes"
 MORE = ";"  # between two of them
-FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = ("first_layer", "contour", "fill", "closing", "link", "wall")
+FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = (
+    "first_layer",
+    "contour",
+    "fill",
+    "closing",
+    "link",
+    "wall",
+)
 LARGEST_SCHEDULE = 65535  # 16 bits
 LARGEST_WEAVE = 255  # files of weaving conditions of a Yaskawa
 _FORM = "write such as: contour: travel_speed 8, schedule 3; fill: lead 5"
@@ -33,10 +40,18 @@ class PhaseParameters:
         None, f.SPEED, "Speed of the torch there.", low=0.0, open_low=True, optional=True
     )
     schedule: int | None = f.parameter(
-        None, f.COUNT, "Schedule that is sent there, without a stop.", low=1, high=LARGEST_SCHEDULE, optional=True,
+        None,
+        f.COUNT,
+        "Schedule that is sent there, without a stop.",
+        low=1,
+        high=LARGEST_SCHEDULE,
+        optional=True,
     )
     ramp: float = f.parameter(
-        0.0, f.LENGTH, "Length beside it along which the speed changes step by step to that of the bead.", low=0.0,
+        0.0,
+        f.LENGTH,
+        "Length beside it along which the speed changes step by step to that of the bead.",
+        low=0.0,
         advanced=True,
     )
 
@@ -48,7 +63,9 @@ class PhaseParameters:
     @property
     def there(self) -> bool:
         """Whether anything differs."""
-        return self.length + self.ramp > 0.0 and (self.travel_speed is not None or self.schedule is not None)
+        return self.length + self.ramp > 0.0 and (
+            self.travel_speed is not None or self.schedule is not None
+        )
 
 
 class BeadStart(PhaseParameters):
@@ -66,7 +83,9 @@ class BeadEnd(PhaseParameters):
 def _phase(name: str) -> Any:
     """The key of a class for one of a phase."""
     spec = next(f.spec_of(one) for one in dataclasses.fields(PhaseParameters) if one.name == name)
-    return dataclasses.field(default=None, metadata={"spec": dataclasses.replace(spec, optional=True, advanced=True)})
+    return dataclasses.field(
+        default=None, metadata={"spec": dataclasses.replace(spec, optional=True, advanced=True)}
+    )
 
 
 @dataclass(frozen=True)
@@ -74,27 +93,59 @@ class BeadClass:
     """What beads of a class have of their own; what is None is that of the process, or of the build direction."""
 
     travel_speed: float | None = f.parameter(
-        None, f.SPEED, "Speed of the torch along beads of the class.", low=0.0, open_low=True, optional=True
+        None,
+        f.SPEED,
+        "Speed of the torch along beads of the class.",
+        low=0.0,
+        open_low=True,
+        optional=True,
     )
     schedule: int | None = f.parameter(
-        None, f.COUNT, "Number that tells the welder or extruder how to lay beads of the class.", low=1,
-        high=LARGEST_SCHEDULE, optional=True,
+        None,
+        f.COUNT,
+        "Number that tells the welder or extruder how to lay beads of the class.",
+        low=1,
+        high=LARGEST_SCHEDULE,
+        optional=True,
     )
     lead: float | None = f.parameter(
-        None, f.ANGLE, "Tool axis turned forward, along the bead.", low=-0.5 * math.pi, high=0.5 * math.pi, optional=True
+        None,
+        f.ANGLE,
+        "Tool axis turned forward, along the bead.",
+        low=-0.5 * math.pi,
+        high=0.5 * math.pi,
+        optional=True,
     )
     tilt: float | None = f.parameter(
-        None, f.ANGLE, "Tool axis turned sideways.", low=-0.5 * math.pi, high=0.5 * math.pi, optional=True
+        None,
+        f.ANGLE,
+        "Tool axis turned sideways.",
+        low=-0.5 * math.pi,
+        high=0.5 * math.pi,
+        optional=True,
     )
     lead_on: float | None = f.parameter(
-        None, f.TIME, "Deposit switched on this long before a bead of the class starts.", low=0.0, optional=True
+        None,
+        f.TIME,
+        "Deposit switched on this long before a bead of the class starts.",
+        low=0.0,
+        optional=True,
     )
     lead_off: float | None = f.parameter(
-        None, f.TIME, "Deposit switched off this long after a bead of the class ends.", low=0.0, optional=True
+        None,
+        f.TIME,
+        "Deposit switched off this long after a bead of the class ends.",
+        low=0.0,
+        optional=True,
     )
     weave: int | None = f.parameter(
-        None, f.COUNT, "Number of the controller's own weave that beads of the class are laid with; 0: straight.", low=0,
-        high=LARGEST_WEAVE, optional=True, advanced=True,
+        None,
+        f.COUNT,
+        "Number of the controller's own weave that beads of the class are laid with; 0: straight.",
+        low=0,
+        high=LARGEST_WEAVE,
+        optional=True,
+        advanced=True,
     )
     start_length: float | None = _phase("length")
     start_travel_speed: float | None = _phase("travel_speed")
@@ -111,7 +162,10 @@ class BeadClass:
 
     def __str__(self) -> str:
         fields = {one.name: f.spec_of(one).kind for one in dataclasses.fields(self)}
-        outer = {name: _OUTER.get(fields[name], float)(value) for name, value in self.own_values().items()}
+        outer = {
+            name: _OUTER.get(fields[name], float)(value)
+            for name, value in self.own_values().items()
+        }
         return ", ".join(f"{name} {value:.12g}" for name, value in outer.items())
 
 
@@ -134,7 +188,11 @@ def made(name: str, values: dict[str, float | int | None], where: str = WHERE) -
 
 def text_of(classes: dict[str, BeadClass]) -> str:
     """The text of classes, those that have something of their own in the usual order; NONE where there are none."""
-    parts = [f"{name}: {classes[name]}" for name in CLASSES if name in classes and classes[name].own_values()]
+    parts = [
+        f"{name}: {classes[name]}"
+        for name in CLASSES
+        if name in classes and classes[name].own_values()
+    ]
     return f"{MORE} ".join(parts) or NONE
 
 
@@ -146,9 +204,13 @@ def _parsed(text: str) -> tuple[tuple[str, BeadClass], ...]:
     for part in filter(str.strip, text.split(MORE)):
         name, colon, rest = (piece.strip() for piece in part.partition(":"))
         if not colon:
-            raise InputError("BAD_VALUE", WHERE, "{!r} is not a class of beads; {}", part.strip(), _FORM)
+            raise InputError(
+                "BAD_VALUE", WHERE, "{!r} is not a class of beads; {}", part.strip(), _FORM
+            )
         if name in found:
-            raise InputError("BAD_VALUE", WHERE, "{} is there twice; write all of it in one place", name)
+            raise InputError(
+                "BAD_VALUE", WHERE, "{} is there twice; write all of it in one place", name
+            )
         found[name] = made(name, _values(name, rest))
     return tuple(found.items())
 
@@ -163,11 +225,15 @@ def _values(name: str, text: str) -> dict[str, float | int | None]:
     for entry in filter(str.strip, text.split(",")):
         key, _, number = entry.strip().partition(" ")
         if key not in SPECS:
-            raise InputError("BAD_VALUE", WHERE, "{} has no {!r}; use one of {}", name, key, ", ".join(SPECS))
+            raise InputError(
+                "BAD_VALUE", WHERE, "{} has no {!r}; use one of {}", name, key, ", ".join(SPECS)
+            )
         try:
             value = float(number)
         except ValueError:
-            raise InputError("BAD_VALUE", WHERE, "{}: {!r} has no number; {}", name, entry.strip(), _FORM) from None
+            raise InputError(
+                "BAD_VALUE", WHERE, "{}: {!r} has no number; {}", name, entry.strip(), _FORM
+            ) from None
         whole = SPECS[key].kind == f.COUNT and value.is_integer()
         values[key] = int(value) if whole else _INNER.get(SPECS[key].kind, float)(value)
     return values

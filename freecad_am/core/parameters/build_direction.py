@@ -9,45 +9,74 @@ from dataclasses import dataclass
 from ..issues import InputError
 from . import field as f
 
-TURN_ON_WALLS, TURN_ON_HUBS = math.radians(30.0), math.radians(3.0)  # rad/mm, what max_turn = auto stands for
+TURN_ON_WALLS, TURN_ON_HUBS = (
+    math.radians(30.0),
+    math.radians(3.0),
+)  # rad/mm, what max_turn = auto stands for
+
 
 @dataclass(frozen=True)
 class BuildDirectionParameters:
     """Which way the deposit grows and how the tool is held against it. rad."""
 
     mode: str = f.parameter(
-        "local", f.CHOICE,
+        "local",
+        f.CHOICE,
         "local: tangent to the wall at each point; layer: one direction per layer; fixed: the axis of the part.",
         choices=("local", "layer", "symmetry-plane", "fixed"),
     )
     lead: float = f.parameter(
-        0.0, f.ANGLE, "Tool axis turned forward along the bead, from the build direction.",
-        low=-math.pi / 2, high=math.pi / 2,
+        0.0,
+        f.ANGLE,
+        "Tool axis turned forward along the bead, from the build direction.",
+        low=-math.pi / 2,
+        high=math.pi / 2,
     )
     tilt: float = f.parameter(
-        0.0, f.ANGLE, "Tool axis turned sideways, towards the outside of the wall, from the build direction.",
-        low=-math.pi / 2, high=math.pi / 2,
+        0.0,
+        f.ANGLE,
+        "Tool axis turned sideways, towards the outside of the wall, from the build direction.",
+        low=-math.pi / 2,
+        high=math.pi / 2,
     )
     max_tilt: float = f.parameter(
-        math.pi / 2, f.ANGLE, "Largest angle between the tool axis and the vertical of the part.", low=0.0, high=math.pi
+        math.pi / 2,
+        f.ANGLE,
+        "Largest angle between the tool axis and the vertical of the part.",
+        low=0.0,
+        high=math.pi,
     )
     max_turn: float | str = f.parameter(
-        "auto", f.TURN_RATE, "Largest turn of build direction and tool axis along a bead, on walls on an existing part, "
+        "auto",
+        f.TURN_RATE,
+        "Largest turn of build direction and tool axis along a bead, on walls on an existing part, "
         "on hubs and in curved layers; where they would turn faster, at corners, they are spread out, and the deviation is "
         "reported.",
-        low=0.0, open_low=True, words=("auto", "inf"),
+        low=0.0,
+        open_low=True,
+        words=("auto", "inf"),
     )
     plane: str = f.parameter(
-        "auto", f.TEXT, "Normal of the plane of symmetry-plane, as x y z in the part's coordinates; auto: the plane of a "
-        "bend.", advanced=True,
+        "auto",
+        f.TEXT,
+        "Normal of the plane of symmetry-plane, as x y z in the part's coordinates; auto: the plane of a "
+        "bend.",
+        advanced=True,
     )
     clearance: str = f.parameter(
-        "nozzle", f.CHOICE, "nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.",
+        "nozzle",
+        f.CHOICE,
+        "nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.",
         choices=("none", "nozzle"),
     )
     max_from_vertical: float = f.parameter(
-        math.pi, f.ANGLE, "Robots with a positioner: largest angle between the tool axis and the vertical of the cell while "
-        "depositing; the positioner turns the part so far. 180 deg: it stands still.", low=0.0, high=math.pi, advanced=True,
+        math.pi,
+        f.ANGLE,
+        "Robots with a positioner: largest angle between the tool axis and the vertical of the cell while "
+        "depositing; the positioner turns the part so far. 180 deg: it stands still.",
+        low=0.0,
+        high=math.pi,
+        advanced=True,
     )
 
     def __post_init__(self) -> None:
@@ -70,7 +99,9 @@ class BuildDirectionParameters:
             x = y = z = math.nan
         if not 0.0 < math.hypot(x, y, z) < math.inf:
             raise InputError(
-                "BAD_VALUE", "build_direction.plane",
-                "{!r} is not a direction; give three numbers such as 0 1 0, or auto", self.plane,
+                "BAD_VALUE",
+                "build_direction.plane",
+                "{!r} is not a direction; give three numbers such as 0 1 0, or auto",
+                self.plane,
             )
         return x, y, z

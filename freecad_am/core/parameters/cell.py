@@ -26,17 +26,29 @@ class NozzleParameters:
     """The nozzle as a cone: a flat tip of `diameter`, opening by `half_angle` over `length`. mm and rad."""
 
     half_angle: float = f.parameter(
-        math.radians(20.0), f.ANGLE, "Angle between the nozzle's axis and its side.", low=0.0, high=math.radians(89.0)
+        math.radians(20.0),
+        f.ANGLE,
+        "Angle between the nozzle's axis and its side.",
+        low=0.0,
+        high=math.radians(89.0),
     )
-    diameter: float = f.parameter(1.0, f.LENGTH, "Diameter of the nozzle's flat tip.", low=0.0, high=1000.0)
-    length: float = f.parameter(60.0, f.LENGTH, "Length of the nozzle from its tip.", low=0.0, high=10_000.0, open_low=True)
+    diameter: float = f.parameter(
+        1.0, f.LENGTH, "Diameter of the nozzle's flat tip.", low=0.0, high=1000.0
+    )
+    length: float = f.parameter(
+        60.0, f.LENGTH, "Length of the nozzle from its tip.", low=0.0, high=10_000.0, open_low=True
+    )
     tool: Pose = f.parameter(
-        (0.0, 0.0, 200.0, 0.0, 0.0, 0.0), f.POSE,
+        (0.0, 0.0, 200.0, 0.0, 0.0, 0.0),
+        f.POSE,
         "Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.",
     )
     shape: str = f.parameter(
-        NO_SHAPE, f.TEXT, "Robots: file of the torch as closed solids, mm, its tip at the origin, Z out of the nozzle; what "
-        "lies beyond the length of the nozzle keeps the arm's clearance as links do.", advanced=True,
+        NO_SHAPE,
+        f.TEXT,
+        "Robots: file of the torch as closed solids, mm, its tip at the origin, Z out of the nozzle; what "
+        "lies beyond the length of the nozzle keeps the arm's clearance as links do.",
+        advanced=True,
     )
 
     def __post_init__(self) -> None:
@@ -47,62 +59,100 @@ class NozzleParameters:
 class CellParameters:
     """Machine, set-up and tooling. Angles of poses in rad: X Y Z RX RY RZ, Bryant (Chalvin 2020, eq. 9)."""
 
-    machine: str = f.parameter("fanuc-arcmate120ic", f.TEXT, "A machine of the list, or the path of a machine file.")
-    limits: str = f.parameter("maker", f.TEXT, "Which set of joint limits of the machine file holds.")
+    machine: str = f.parameter(
+        "fanuc-arcmate120ic", f.TEXT, "A machine of the list, or the path of a machine file."
+    )
+    limits: str = f.parameter(
+        "maker", f.TEXT, "Which set of joint limits of the machine file holds."
+    )
     setup: str = f.parameter(
-        "part-on-robot", f.CHOICE, "Which of part and tool the robot carries, or a machine with rotary axes.",
+        "part-on-robot",
+        f.CHOICE,
+        "Which of part and tool the robot carries, or a machine with rotary axes.",
         choices=("part-on-robot", "tool-on-robot", "rotary-table", "tool-on-robot+positioner"),
     )
     deposition_point: Pose = f.parameter(
-        (1045.747, -630.155, 653.167, 0.0, 0.0, 0.0), f.POSE,
+        (1045.747, -630.155, 653.167, 0.0, 0.0, 0.0),
+        f.POSE,
         "Robots: where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. "
         "In the maker's base frame.",
     )
     platform: float | Pose = f.parameter(
-        5.0, f.LENGTH, "From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it."
+        5.0,
+        f.LENGTH,
+        "From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it.",
     )
     platform_diameter: float = f.parameter(
         113.0, f.LENGTH, "Diameter of the platform; counts in clearance.", low=0.0, high=10_000.0
     )
     mount: str = f.parameter(
-        "auto", f.CHOICE, "Which frame sits on the platform: the feature's own, or that of the part file.",
+        "auto",
+        f.CHOICE,
+        "Which frame sits on the platform: the feature's own, or that of the part file.",
         choices=("auto", "feature", "part"),
     )
     branch: str | tuple[str, str, str] = f.parameter(
-        ("front", "up", "flip"), f.TEXT, "Robots: shoulder, elbow and wrist, or auto to search all eight."
+        ("front", "up", "flip"),
+        f.TEXT,
+        "Robots: shoulder, elbow and wrist, or auto to search all eight.",
     )
     nozzle: NozzleParameters = f.group(NozzleParameters, "The nozzle.")
     external: str = f.parameter(
-        NO_AXES, f.TEXT, "Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at "
+        NO_AXES,
+        f.TEXT,
+        "Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at "
         "1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot's base frame; "
-        "more than one with ; between.", advanced=True, poses=True,
+        "more than one with ; between.",
+        advanced=True,
+        poses=True,
     )
     world_up: str = f.parameter(
-        "0 0 1", f.TEXT, "Against gravity, as x y z in the world.", advanced=True,
+        "0 0 1",
+        f.TEXT,
+        "Against gravity, as x y z in the world.",
+        advanced=True,
     )
     arm_clearance: float | None = f.parameter(
-        None, f.LENGTH, "Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; "
-        "left out, planning does not look at them.", low=0.0, high=1000.0, optional=True,
+        None,
+        f.LENGTH,
+        "Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; "
+        "left out, planning does not look at them.",
+        low=0.0,
+        high=1000.0,
+        optional=True,
     )
     obstacles: str = f.parameter(
-        NO_OBSTACLES, f.TEXT, "Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: "
+        NO_OBSTACLES,
+        f.TEXT,
+        "Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: "
         "table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the "
-        "file's origin, or of the middle of the box, in the maker's base frame.", advanced=True,
+        "file's origin, or of the middle of the box, in the maker's base frame.",
+        advanced=True,
     )
 
     touched: str = f.parameter(
-        NOT_TOUCHED, f.TEXT, "Tool on robot only: points of the part and where the tip has touched them, three or more, "
+        NOT_TOUCHED,
+        f.TEXT,
+        "Tool on robot only: points of the part and where the tip has touched them, three or more, "
         "which take the place of the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 "
-        "= 901 82 -99.5. In the part file and in the maker's base frame, mm.", advanced=True,
+        "= 901 82 -99.5. In the part file and in the maker's base frame, mm.",
+        advanced=True,
     )
     touched_tolerance: float = f.parameter(
-        1.0, f.LENGTH, "How far a touched point may be from where the others say that it is.", low=0.0, high=100.0,
-        open_low=True, advanced=True,
+        1.0,
+        f.LENGTH,
+        "How far a touched point may be from where the others say that it is.",
+        low=0.0,
+        high=100.0,
+        open_low=True,
+        advanced=True,
     )
 
     def upward(self) -> tuple[float, float, float]:
         """`world_up` as three numbers, not of unit length. InputError BAD_VALUE for what is not a direction."""
-        return f.direction_of(self.world_up, "cell.world_up", "give three numbers such as [0, 0, 1]")
+        return f.direction_of(
+            self.world_up, "cell.world_up", "give three numbers such as [0, 0, 1]"
+        )
 
     def __post_init__(self) -> None:
         externals(self.external)
@@ -111,14 +161,25 @@ class CellParameters:
         self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:
-                raise InputError("BAD_VALUE", "cell.platform", "{!r} is neither a length nor six numbers; give one such as "
-                                 "300, or x y z RX RY RZ", self.platform)
+                raise InputError(
+                    "BAD_VALUE",
+                    "cell.platform",
+                    "{!r} is neither a length nor six numbers; give one such as "
+                    "300, or x y z RX RY RZ",
+                    self.platform,
+                )
             object.__setattr__(self, "platform", tuple(self.platform))
         if not isinstance(self.branch, str):
             object.__setattr__(self, "branch", checked_branch(self.branch))
         elif self.branch != "auto":
-            object.__setattr__(self, "branch", checked_branch(tuple(self.branch.replace(",", " ").split())))
-        skip = {name for name in ("platform", "branch") if not isinstance(getattr(self, name), (int, float))}
+            object.__setattr__(
+                self, "branch", checked_branch(tuple(self.branch.replace(",", " ").split()))
+            )
+        skip = {
+            name
+            for name in ("platform", "branch")
+            if not isinstance(getattr(self, name), (int, float))
+        }
         f.check(self, "cell", skip=frozenset(skip))
 
 
@@ -127,6 +188,9 @@ def checked_branch(words: tuple[str, ...]) -> tuple[str, str, str]:
     wanted = (SHOULDERS, ELBOWS, WRISTS)
     if len(words) != 3 or any(word not in known for word, known in zip(words, wanted)):
         raise InputError(
-            "BAD_VALUE", "cell.branch", "{!r} is not a branch; use [front|back, up|down, flip|noflip] or auto", list(words)
+            "BAD_VALUE",
+            "cell.branch",
+            "{!r} is not a branch; use [front|back, up|down, flip|noflip] or auto",
+            list(words),
         )
     return (words[0], words[1], words[2])

@@ -30,9 +30,18 @@ class External:
 
     def __post_init__(self) -> None:
         if self.carries not in (PART, ROBOT):
-            raise InputError("BAD_VALUE", WHERE, "{!r} cannot be carried; use {} or {}", self.carries, PART, ROBOT)
+            raise InputError(
+                "BAD_VALUE",
+                WHERE,
+                "{!r} cannot be carried; use {} or {}",
+                self.carries,
+                PART,
+                ROBOT,
+            )
         if len(self.pose) != 6 or not all(math.isfinite(number) for number in self.pose):
-            raise InputError("BAD_VALUE", WHERE, "{!r} is not a pose; give six numbers x y z RX RY RZ", self.pose)
+            raise InputError(
+                "BAD_VALUE", WHERE, "{!r} is not a pose; give six numbers x y z RX RY RZ", self.pose
+            )
 
     def where(self) -> str:
         """Where it stands, as its text says it."""
@@ -58,9 +67,18 @@ def _external(text: str) -> External:
     try:
         numbers = [float(word) for word in words]
     except ValueError:
-        raise InputError("BAD_VALUE", WHERE, "{!r} is not a pose; {}", found["pose"], _FORM) from None
+        raise InputError(
+            "BAD_VALUE", WHERE, "{!r} is not a pose; {}", found["pose"], _FORM
+        ) from None
     if len(numbers) != 6:
-        raise InputError("BAD_VALUE", WHERE, "{!r} has {} numbers, a pose has six; {}", found["pose"], len(numbers), _FORM)
+        raise InputError(
+            "BAD_VALUE",
+            WHERE,
+            "{!r} has {} numbers, a pose has six; {}",
+            found["pose"],
+            len(numbers),
+            _FORM,
+        )
     x, y, z, *angles = numbers
     a, b, c = (math.radians(angle) for angle in angles)
     return External(found["machine"], (x, y, z, a, b, c), found["carries"])

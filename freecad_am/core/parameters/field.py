@@ -15,17 +15,39 @@ from typing import Any
 from ..issues import InputError, Text, Word
 
 LENGTH, ANGLE, SPEED, TIME = "length", "angle", "speed", "time"
-RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = "ratio", "number", "count", "flag", "choice", "text", "pose"
+RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = (
+    "ratio",
+    "number",
+    "count",
+    "flag",
+    "choice",
+    "text",
+    "pose",
+)
 ANGLE_RANGE, RATIO_RANGE, TURN_RATE = "angle range", "ratio range", "turn rate"
 GROUP = "group"
 
 # the unit a bare number has outside, and how many of ours one of it makes
-OUTER_UNIT = {LENGTH: "mm", ANGLE: "deg", SPEED: "mm/s", TIME: "s", RATIO: "%", RATIO_RANGE: "%", TURN_RATE: "deg/mm"}
+OUTER_UNIT = {
+    LENGTH: "mm",
+    ANGLE: "deg",
+    SPEED: "mm/s",
+    TIME: "s",
+    RATIO: "%",
+    RATIO_RANGE: "%",
+    TURN_RATE: "deg/mm",
+}
 # mm, and mm/s: what is more is refused wherever it stands. Squares and cubes of it would be no numbers, and at such speeds
 # moves would be over before a controller has begun the next
 UPPER_BOUNDS = {LENGTH: 1e9, SPEED: 1e4}
 END_OF = {ANGLE_RANGE: ANGLE, RATIO_RANGE: RATIO}  # what either end of a range is
-TO_INNER = {ANGLE: math.pi / 180.0, ANGLE_RANGE: math.pi / 180.0, TURN_RATE: math.pi / 180.0, RATIO: 0.01, RATIO_RANGE: 0.01}
+TO_INNER = {
+    ANGLE: math.pi / 180.0,
+    ANGLE_RANGE: math.pi / 180.0,
+    TURN_RATE: math.pi / 180.0,
+    RATIO: 0.01,
+    RATIO_RANGE: 0.01,
+}
 
 
 @dataclass(frozen=True)
@@ -96,12 +118,18 @@ def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
 
 def unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError:
     """The error for a word that is not one of `choices`."""
-    return InputError("BAD_VALUE", key, "{!r} is not known; use one of {}", value, ", ".join(choices))
+    return InputError(
+        "BAD_VALUE", key, "{!r} is not known; use one of {}", value, ", ".join(choices)
+    )
 
 
 def check_value(spec: Spec, value: Any, key: str) -> None:
     """Check one value, in inner units, against its `Spec`. Raises InputError 'BAD_VALUE' naming `key`."""
-    if spec.kind == GROUP or (value is None and spec.optional) or (isinstance(value, str) and value in spec.words):
+    if (
+        spec.kind == GROUP
+        or (value is None and spec.optional)
+        or (isinstance(value, str) and value in spec.words)
+    ):
         return
     if spec.kind == CHOICE:
         if value not in spec.choices:
@@ -113,20 +141,41 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
         if not isinstance(value, str):
             raise InputError("BAD_VALUE", key, "{!r} is not a text; give one in quotes", value)
     elif spec.kind == POSE:
-        if isinstance(value, str) or len(value) != 6 or not all(math.isfinite(number) for number in value):
+        if (
+            isinstance(value, str)
+            or len(value) != 6
+            or not all(math.isfinite(number) for number in value)
+        ):
             also = Text.joined(" or ", ("", *spec.words))
-            raise InputError("BAD_VALUE", key, "{!r} is not a pose; give six numbers x y z RX RY RZ{}", value, also)
+            raise InputError(
+                "BAD_VALUE",
+                key,
+                "{!r} is not a pose; give six numbers x y z RX RY RZ{}",
+                value,
+                also,
+            )
     elif spec.kind == ANGLE_RANGE:
         if len(value) != 2 or not value[0] < value[1]:
-            raise InputError("BAD_VALUE", key, "{!r} is not a range; give two angles, the smaller first", value)
+            raise InputError(
+                "BAD_VALUE", key, "{!r} is not a range; give two angles, the smaller first", value
+            )
     elif spec.kind == RATIO_RANGE:
         if isinstance(value, (int, float, str)) or len(value) != 2:
-            raise InputError("BAD_VALUE", key, "{!r} is not a range; give two percentages, the smaller first", value)
+            raise InputError(
+                "BAD_VALUE",
+                key,
+                "{!r} is not a range; give two percentages, the smaller first",
+                value,
+            )
         for end in value:
             _check_number(dataclasses.replace(spec, kind=RATIO), end, key)
         if value[0] > value[1]:
-            ends = Text.joined(" to ", (outer_text(dataclasses.replace(spec, kind=RATIO), end) for end in value))
-            raise InputError("BAD_VALUE", key, "{} is not a range; give the smaller percentage first", ends)
+            ends = Text.joined(
+                " to ", (outer_text(dataclasses.replace(spec, kind=RATIO), end) for end in value)
+            )
+            raise InputError(
+                "BAD_VALUE", key, "{} is not a range; give the smaller percentage first", ends
+            )
     else:
         _check_number(spec, value, key)
 
@@ -134,7 +183,9 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
 def _check_number(spec: Spec, value: Any, key: str) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or math.isnan(value):
         also = Text(" or {}", ", ".join(spec.words)) if spec.words else ""
-        raise InputError("BAD_VALUE", key, "{!r} is not a number; give one such as 2{}", value, Word(also))
+        raise InputError(
+            "BAD_VALUE", key, "{!r} is not a number; give one such as 2{}", value, Word(also)
+        )
     if spec.kind == COUNT and (math.isinf(value) or value != int(value)):
         raise InputError("BAD_VALUE", key, "{!r} is not a whole number; give one such as 3", value)
     if spec.high is None and abs(value) > UPPER_BOUNDS.get(spec.kind, math.inf):
@@ -142,14 +193,22 @@ def _check_number(spec: Spec, value: Any, key: str) -> None:
         spec = dataclasses.replace(spec, high=most, low=-most if spec.low is None else spec.low)
     too_low = spec.low is not None and (value <= spec.low if spec.open_low else value < spec.low)
     if too_low or (spec.high is not None and value > spec.high):
-        raise InputError("BAD_VALUE", key, "{} is out of range; give {}", outer_text(spec, value), range_text(spec))
+        raise InputError(
+            "BAD_VALUE",
+            key,
+            "{} is out of range; give {}",
+            outer_text(spec, value),
+            range_text(spec),
+        )
 
 
 def range_text(spec: Spec) -> str:
     """The allowed range in outer units, '' where there is none."""
     parts = []
     if spec.low is not None:
-        parts.append(Text("more than {}" if spec.open_low else "at least {}", outer_text(spec, spec.low)))
+        parts.append(
+            Text("more than {}" if spec.open_low else "at least {}", outer_text(spec, spec.low))
+        )
     if spec.high is not None:
         parts.append(Text("at most {}", outer_text(spec, spec.high)))
     return Text.joined(" and ", parts)

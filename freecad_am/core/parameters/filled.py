@@ -20,15 +20,25 @@ class BaseParameters:
     """The cylinder or cone that solids grow on, where it is not found on a face. mm."""
 
     radius: float | str = f.parameter(
-        "auto", f.LENGTH, "Radius of the base circle; auto: the face chosen, or the one that the solids stand on.",
-        low=0.0, open_low=True, words=("auto",),
+        "auto",
+        f.LENGTH,
+        "Radius of the base circle; auto: the face chosen, or the one that the solids stand on.",
+        low=0.0,
+        open_low=True,
+        words=("auto",),
     )
     height: float | str = f.parameter(
-        "inf", f.LENGTH, "From the base circle to the apex of the cone, along the axis; inf: a cylinder.",
-        low=0.0, open_low=True, words=("inf",),
+        "inf",
+        f.LENGTH,
+        "From the base circle to the apex of the cone, along the axis; inf: a cylinder.",
+        low=0.0,
+        open_low=True,
+        words=("inf",),
     )
     axis: str = f.parameter(
-        "0 0 0 0 0 1", f.TEXT, "Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the "
+        "0 0 0 0 0 1",
+        f.TEXT,
+        "Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the "
         "part's coordinates.",
     )
 
@@ -39,7 +49,9 @@ class BaseParameters:
         self.line()
         if self.radius == "auto" and self.height != "inf":
             raise InputError(
-                "BAD_VALUE", "strategy.base.radius", "a height alone is not a cone; give the radius of its base circle too, "
+                "BAD_VALUE",
+                "strategy.base.radius",
+                "a height alone is not a cone; give the radius of its base circle too, "
                 "or base: auto",
             )
 
@@ -52,8 +64,10 @@ class BaseParameters:
         point, way = tuple(numbers[:3]), tuple(numbers[3:])
         if len(numbers) != 6 or not all(map(math.isfinite, numbers)) or not math.hypot(*way) > 0.0:
             raise InputError(
-                "BAD_VALUE", "strategy.base.axis",
-                "{!r} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]", self.axis,
+                "BAD_VALUE",
+                "strategy.base.axis",
+                "{!r} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]",
+                self.axis,
             )
         return point, way
 
@@ -66,80 +80,150 @@ class FilledParameters(LayerParameters):
         5.0, f.LENGTH, "Distance between neighbouring beads of a layer.", low=0.0, open_low=True
     )
     bead_overlap: float | None = f.parameter(
-        None, f.RATIO, "Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing.",
-        low=0.0, high=0.9, optional=True,
+        None,
+        f.RATIO,
+        "Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing.",
+        low=0.0,
+        high=0.9,
+        optional=True,
     )
     fill: str = f.parameter(
-        "contours", f.CHOICE, "Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % "
+        "contours",
+        f.CHOICE,
+        "Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % "
         "also grid, triangles, honeycomb, gyroid.",
-        choices=("contours", "connected", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid"),
+        choices=(
+            "contours",
+            "connected",
+            "lines",
+            "spiral",
+            "zigzag",
+            "grid",
+            "triangles",
+            "honeycomb",
+            "gyroid",
+        ),
     )
     spacing_range: tuple[float, float] = f.parameter(
-        (1.0, 1.0), f.RATIO_RANGE, "How narrow and how wide beads may be, of their usual width and spacing, so that "
-        "contours come out even over the thickness of a region, and beads in thin places are as wide as these.", low=0.3,
+        (1.0, 1.0),
+        f.RATIO_RANGE,
+        "How narrow and how wide beads may be, of their usual width and spacing, so that "
+        "contours come out even over the thickness of a region, and beads in thin places are as wide as these.",
+        low=0.3,
         high=2.0,
     )
     starts: str = f.parameter(
-        "aligned", f.CHOICE, "Where beads start: where the seam says (aligned), or apart from those of neighbouring "
-        "contours and layers, lines of every second layer at their other end (spread).", choices=("aligned", "spread"),
+        "aligned",
+        f.CHOICE,
+        "Where beads start: where the seam says (aligned), or apart from those of neighbouring "
+        "contours and layers, lines of every second layer at their other end (spread).",
+        choices=("aligned", "spread"),
     )
     fill_density: float = f.parameter(
-        1.0, f.RATIO, "Share of the area inside of the walls that beads fill: their length times their spacing.", low=0.01,
+        1.0,
+        f.RATIO,
+        "Share of the area inside of the walls that beads fill: their length times their spacing.",
+        low=0.01,
         high=1.0,
     )
     solid_layers: int = f.parameter(
-        0, f.COUNT, "So many layers under tops and over bottoms are filled at 100 %.", low=0, high=1000
+        0,
+        f.COUNT,
+        "So many layers under tops and over bottoms are filled at 100 %.",
+        low=0,
+        high=1000,
     )
     fill_angle: float = f.parameter(
         0.0, f.ANGLE, "Direction of lines and zigzags; 0 runs around the hub, 90 deg along it."
     )
     fill_angle_step: float = f.parameter(
-        math.pi / 2.0, f.ANGLE, "How far the direction of lines and zigzags turns from layer to layer."
+        math.pi / 2.0,
+        f.ANGLE,
+        "How far the direction of lines and zigzags turns from layer to layer.",
     )
     contour: bool = f.parameter(True, f.FLAG, "Contours are laid round lines and the like.")
     walls: int | str = f.parameter(
-        1, f.COUNT, "How many contours lie round lines and the like; inf: contours only.", low=0, words=("inf",)
+        1,
+        f.COUNT,
+        "How many contours lie round lines and the like; inf: contours only.",
+        low=0,
+        words=("inf",),
     )
     margin: float = f.parameter(
-        0.0, f.LENGTH, "How far the deposit stands out from the part, to be machined off; above it by the layers that "
-        "begin less than that above its last one.", low=0.0
+        0.0,
+        f.LENGTH,
+        "How far the deposit stands out from the part, to be machined off; above it by the layers that "
+        "begin less than that above its last one.",
+        low=0.0,
     )
     order: str = f.parameter(
-        "around-axis", f.CHOICE, "The same layer of all solids on a base in turn, around the axis, the same ring of each "
+        "around-axis",
+        f.CHOICE,
+        "The same layer of all solids on a base in turn, around the axis, the same ring of each "
         "and the inner ones first; or solid by solid (feature).",
         choices=("around-axis", "feature"),
     )
     wait: float = f.parameter(
-        0.0, f.TIME, "Least time between the end of a solid's layer and the start of its next.", low=0.0
+        0.0,
+        f.TIME,
+        "Least time between the end of a solid's layer and the start of its next.",
+        low=0.0,
     )
     min_layer_time: float = f.parameter(
-        0.0, f.TIME, f"{LAYER_TIME}, and islands come in the same order in every layer, so that each cools while the others "
-        "are laid.", low=0.0,
+        0.0,
+        f.TIME,
+        f"{LAYER_TIME}, and islands come in the same order in every layer, so that each cools while the others "
+        "are laid.",
+        low=0.0,
     )
     deflection: float = f.parameter(
-        0.0, f.ANGLE, "Torch turned outwards about the bead on outer contours.", low=-math.pi / 3.0, high=math.pi / 3.0
+        0.0,
+        f.ANGLE,
+        "Torch turned outwards about the bead on outer contours.",
+        low=-math.pi / 3.0,
+        high=math.pi / 3.0,
     )
     thin: str = f.parameter(
-        "single", f.CHOICE, "A region narrower than a bead gets a single bead, or the job is refused.",
+        "single",
+        f.CHOICE,
+        "A region narrower than a bead gets a single bead, or the job is refused.",
         choices=("single", "refuse"),
     )
     gap: float = f.parameter(
-        0.2, f.RATIO, "Widest gap that may stay open between beads, as a share of the bead spacing.",
-        low=0.01, high=1.0, advanced=True,
+        0.2,
+        f.RATIO,
+        "Widest gap that may stay open between beads, as a share of the bead spacing.",
+        low=0.01,
+        high=1.0,
+        advanced=True,
     )
     longest_link: float = f.parameter(
-        3.0, f.RATIO, "Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be "
+        3.0,
+        f.RATIO,
+        "Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be "
         "longer another zigzag begins.",
-        low=1.0, high=100.0, advanced=True,
+        low=1.0,
+        high=100.0,
+        advanced=True,
     )
     shortest: float | str = f.parameter(
-        "auto", f.LENGTH, "Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: "
-        "2 mm, or the bead spacing where that is less.", low=0.0, words=("auto",), advanced=True,
+        "auto",
+        f.LENGTH,
+        "Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: "
+        "2 mm, or the bead spacing where that is less.",
+        low=0.0,
+        words=("auto",),
+        advanced=True,
     )
     mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
     narrowest: float = f.parameter(
-        0.3, f.RATIO, "How narrow, of their usual width, beads in planes may be laid where others leave them less room; all "
-        "of it: none is, and layers get higher there.", low=0.1, high=1.0, advanced=True,
+        0.3,
+        f.RATIO,
+        "How narrow, of their usual width, beads in planes may be laid where others leave them less room; all "
+        "of it: none is, and layers get higher there.",
+        low=0.1,
+        high=1.0,
+        advanced=True,
     )
 
     def __post_init__(self) -> None:
@@ -149,11 +233,20 @@ class FilledParameters(LayerParameters):
         object.__setattr__(self, "spacing_range", tuple(self.spacing_range))
         if not self.spacing_range[0] <= 1.0 <= self.spacing_range[1]:
             ends = Text.joined(" to ", (f"{100.0 * end:g} %" for end in self.spacing_range))
-            raise InputError("BAD_VALUE", "strategy.spacing_range", "{} is without 100 %, the usual width; include it", ends)
+            raise InputError(
+                "BAD_VALUE",
+                "strategy.spacing_range",
+                "{} is without 100 %, the usual width; include it",
+                ends,
+            )
         if self.fill in ("connected", "spiral") and self.fill_density < 1.0:
             raise InputError(
-                "BAD_VALUE", "strategy.fill_density", "{} fills the whole, not {:g} %; use 100 %, or fill: contours, lines, "
-                "zigzag, grid, triangles, honeycomb or gyroid", self.fill, 100.0 * self.fill_density,
+                "BAD_VALUE",
+                "strategy.fill_density",
+                "{} fills the whole, not {:g} %; use 100 %, or fill: contours, lines, "
+                "zigzag, grid, triangles, honeycomb or gyroid",
+                self.fill,
+                100.0 * self.fill_density,
             )
 
     @property
@@ -164,7 +257,9 @@ class FilledParameters(LayerParameters):
     @property
     def least_bead(self) -> float:
         """Mm: beads are no shorter than this."""
-        return min(LEAST_BEAD, self.bead_spacing) if self.shortest == "auto" else float(self.shortest)
+        return (
+            min(LEAST_BEAD, self.bead_spacing) if self.shortest == "auto" else float(self.shortest)
+        )
 
     @property
     def rounds_alone(self) -> bool:
@@ -195,30 +290,46 @@ class SolidParameters(FilledParameters):
     """How any solid is cut by planes and filled. mm and rad."""
 
     layers: str = f.parameter(
-        PLANES, f.CHOICE, "What the layers are: parallel planes; at equal distances by the way through the part from "
+        PLANES,
+        f.CHOICE,
+        "What the layers are: parallel planes; at equal distances by the way through the part from "
         "where it stands, so that nothing needs support (geodesic); at equal distances straight from there (offset); or "
         "planes normal to a guide curve (along).",
         choices=(PLANES, GEODESIC, OFFSET, "along"),
     )
     direction: str = f.parameter(
-        "0 0 1", f.TEXT, "Stacking direction x y z in the part's coordinates, from the first layer to the last; auto: the "
+        "0 0 1",
+        f.TEXT,
+        "Stacking direction x y z in the part's coordinates, from the first layer to the last; auto: the "
         "one with the least area over nothing, of these the one with the least height.",
     )
     cut_at: str = f.parameter(
-        "middle", f.CHOICE, "Where in its height a layer takes its outline from the part.",
+        "middle",
+        f.CHOICE,
+        "Where in its height a layer takes its outline from the part.",
         choices=("middle", "bottom", "top"),
     )
     max_overhang: float = f.parameter(
-        math.radians(45.0), f.ANGLE, "Largest angle between the stacking direction and a wall that leans out, before there "
-        "is a warning; 90 deg: none.", low=0.0, high=math.pi / 2.0,
+        math.radians(45.0),
+        f.ANGLE,
+        "Largest angle between the stacking direction and a wall that leans out, before there "
+        "is a warning; 90 deg: none.",
+        low=0.0,
+        high=math.pi / 2.0,
     )
     band: float = f.parameter(
-        0.2, f.RATIO, "Share of the layer height by which layers along a guide may be higher or lower beside it.", low=0.0,
+        0.2,
+        f.RATIO,
+        "Share of the layer height by which layers along a guide may be higher or lower beside it.",
+        low=0.0,
         high=0.9,
     )
     fuse: str = f.parameter(
-        "auto", f.CHOICE, "Solids that touch or overlap are deposited as one (auto), or each by itself (none).",
-        choices=("auto", "none"), advanced=True,
+        "auto",
+        f.CHOICE,
+        "Solids that touch or overlap are deposited as one (auto), or each by itself (none).",
+        choices=("auto", "none"),
+        advanced=True,
     )
 
     def __post_init__(self) -> None:
@@ -229,7 +340,9 @@ class SolidParameters(FilledParameters):
         """`direction` as three numbers, of any length; None for auto. InputError BAD_VALUE for what is not a direction."""
         if self.direction == "auto":
             return None
-        return f.direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1], or auto")
+        return f.direction_of(
+            self.direction, "strategy.direction", "give three numbers such as [0, 0, 1], or auto"
+        )
 
     @property
     def share_of_cut(self) -> float:
@@ -242,20 +355,39 @@ class CladdingParameters(FilledParameters):
     """How faces are covered with layers of beads. mm and rad."""
 
     layers: int = f.parameter(
-        1, f.COUNT, "How many layers lie on the faces, one layer height over the other along their normals.", low=1,
+        1,
+        f.COUNT,
+        "How many layers lie on the faces, one layer height over the other along their normals.",
+        low=1,
         high=1000,
     )
     side: str = f.parameter(
-        "front", f.CHOICE, "The side of the faces that is covered: where their normals point, outwards of a solid (front), "
-        "or the other side of faces that are of no solid (back).", choices=("front", "back"),
+        "front",
+        f.CHOICE,
+        "The side of the faces that is covered: where their normals point, outwards of a solid (front), "
+        "or the other side of faces that are of no solid (back).",
+        choices=("front", "back"),
     )
     distortion: float = f.parameter(
-        0.1, f.RATIO, "Largest share by which beads may lie nearer together or farther apart than the bead spacing on faces "
-        "that are bent both ways; these are covered in pieces that keep to it.", low=0.01, high=0.3, advanced=True,
+        0.1,
+        f.RATIO,
+        "Largest share by which beads may lie nearer together or farther apart than the bead spacing on faces "
+        "that are bent both ways; these are covered in pieces that keep to it.",
+        low=0.01,
+        high=0.3,
+        advanced=True,
     )
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for key, given, instead in (("margin", self.margin, "0 mm"), ("solid_layers", self.solid_layers, "0")):
+        for key, given, instead in (
+            ("margin", self.margin, "0 mm"),
+            ("solid_layers", self.solid_layers, "0"),
+        ):
             if given:
-                raise InputError("NOT_FOR_FAMILY", f"strategy.{key}", "it is for solids, not for cladding; use {}", instead)
+                raise InputError(
+                    "NOT_FOR_FAMILY",
+                    f"strategy.{key}",
+                    "it is for solids, not for cladding; use {}",
+                    instead,
+                )

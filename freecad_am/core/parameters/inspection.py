@@ -20,48 +20,86 @@ class InspectionParameters:
     """How measured points are compared with the planned surface."""
 
     tolerance: float = f.parameter(
-        0.5, f.LENGTH, "Deviations up to this, outside or inside, are within tolerance.", low=0.0, open_low=True, high=1000.0
+        0.5,
+        f.LENGTH,
+        "Deviations up to this, outside or inside, are within tolerance.",
+        low=0.0,
+        open_low=True,
+        high=1000.0,
     )
     unit: str = f.parameter(
-        AUTO, f.CHOICE, "Unit of the measured coordinates; auto: the one that the file names, else mm.",
+        AUTO,
+        f.CHOICE,
+        "Unit of the measured coordinates; auto: the one that the file names, else mm.",
         choices=(AUTO, *UNITS),
     )
     probe_radius: float = f.parameter(
-        0.0, f.LENGTH, "Radius of the probe's ball where its centre was measured; 0 where the points lie on the surface.",
-        low=0.0, high=100.0,
+        0.0,
+        f.LENGTH,
+        "Radius of the probe's ball where its centre was measured; 0 where the points lie on the surface.",
+        low=0.0,
+        high=100.0,
     )
     fit: str = f.parameter(
-        BEST, f.CHOICE, "How the points may be moved onto the part: best fit, shifts only, a turn about and a shift along "
-        "the part's axis, or none but what pairs of points say.", choices=(BEST, SHIFT, AXIS, NONE),
+        BEST,
+        f.CHOICE,
+        "How the points may be moved onto the part: best fit, shifts only, a turn about and a shift along "
+        "the part's axis, or none but what pairs of points say.",
+        choices=(BEST, SHIFT, AXIS, NONE),
     )
     trim: float = f.parameter(
-        0.0, f.RATIO, "Share of the points, those farthest off, that the fit leaves out.", low=0.0, high=0.49
+        0.0,
+        f.RATIO,
+        "Share of the points, those farthest off, that the fit leaves out.",
+        low=0.0,
+        high=0.49,
     )
     pairs: str = f.parameter(
-        "", f.TEXT, "Where the fit begins: three or more pairs of a measured point and the same point of the part, each "
-        "x y z > x y z in mm, with a semicolon between; empty: it is searched for.", advanced=True,
+        "",
+        f.TEXT,
+        "Where the fit begins: three or more pairs of a measured point and the same point of the part, each "
+        "x y z > x y z in mm, with a semicolon between; empty: it is searched for.",
+        advanced=True,
     )
     side: str = f.parameter(
-        OUTER, f.CHOICE, "Which side of a wall was measured: that of its outer normals, the inner one, or both.",
+        OUTER,
+        f.CHOICE,
+        "Which side of a wall was measured: that of its outer normals, the inner one, or both.",
         choices=(OUTER, INNER, BOTH),
     )
     thickness: float = f.parameter(
-        0.0, f.LENGTH, "Planned thickness of the wall, half of it on each side of the planned surface; 0: the planned "
-        "surface itself is the measured one.", low=0.0, high=1000.0,
+        0.0,
+        f.LENGTH,
+        "Planned thickness of the wall, half of it on each side of the planned surface; 0: the planned "
+        "surface itself is the measured one.",
+        low=0.0,
+        high=1000.0,
     )
     heights: tuple[str, ...] = f.parameter(
-        (), f.TEXT, "Heights above the part's base, in mm, at which circularity is evaluated; none: a sixth, a half and "
-        "five sixths of what was measured.", unit="mm",
+        (),
+        f.TEXT,
+        "Heights above the part's base, in mm, at which circularity is evaluated; none: a sixth, a half and "
+        "five sixths of what was measured.",
+        unit="mm",
     )
     band: float = f.parameter(
-        0.5, f.LENGTH, "Points up to this far above or below such a height count there, slid along the planned surface.",
-        low=0.0, open_low=True, high=100.0, advanced=True,
+        0.5,
+        f.LENGTH,
+        "Points up to this far above or below such a height count there, slid along the planned surface.",
+        low=0.0,
+        open_low=True,
+        high=100.0,
+        advanced=True,
     )
 
     def __post_init__(self) -> None:
         f.check(self, PREFIX, frozenset({"heights"}))
         if self.side == BOTH and self.thickness == 0.0:
-            raise InputError("BAD_VALUE", f"{PREFIX}.thickness", "both sides of a wall have a thickness between; give it")
+            raise InputError(
+                "BAD_VALUE",
+                f"{PREFIX}.thickness",
+                "both sides of a wall have a thickness between; give it",
+            )
         self.levels()
         self.start_pairs()
 
@@ -72,8 +110,12 @@ class InspectionParameters:
             try:
                 found.append(float(text.removesuffix("mm")))
             except (ValueError, AttributeError):
-                raise InputError("BAD_VALUE", f"{PREFIX}.heights", "{!r} is not a height; give numbers in mm",
-                                 text) from None
+                raise InputError(
+                    "BAD_VALUE",
+                    f"{PREFIX}.heights",
+                    "{!r} is not a height; give numbers in mm",
+                    text,
+                ) from None
         return tuple(found)
 
     def start_pairs(self) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]:
@@ -87,7 +129,10 @@ class InspectionParameters:
                 one = other = ()
             if len(one) != 3 or len(other) != 3:
                 raise InputError(
-                    "BAD_VALUE", f"{PREFIX}.pairs", "{!r} is not a pair of points; give x y z > x y z in mm", text.strip()
+                    "BAD_VALUE",
+                    f"{PREFIX}.pairs",
+                    "{!r} is not a pair of points; give x y z > x y z in mm",
+                    text.strip(),
                 )
             found.append((one, other))
         return tuple(found)

@@ -10,14 +10,22 @@ from dataclasses import dataclass
 from ..issues import InputError
 from . import field as f
 
-BRANCHES = tuple("-".join(words) for words in itertools.product(("front", "back"), ("up", "down"), ("noflip", "flip")))
+BRANCHES = tuple(
+    "-".join(words)
+    for words in itertools.product(("front", "back"), ("up", "down"), ("noflip", "flip"))
+)
 OF_CELL = "cell"
 HIGHEST = 6  # degree of a polynomial
 EVERY = "*"
 LEVEL, OPTIMISED = "level", "optimised"
 METHODS = ("layer-by-layer", "point-by-point", "constant")
 OBJECTIVES = (
-    "displacement", "limits-liegeois", "limits-fournier", "limits-klein", "manipulability", "condition",
+    "displacement",
+    "limits-liegeois",
+    "limits-fournier",
+    "limits-klein",
+    "manipulability",
+    "condition",
 )
 
 
@@ -26,72 +34,117 @@ class JointParameters:
     """How the rotation about the tool axis is used (Chalvin 2020, section 4). rad, mm."""
 
     method: str = f.parameter(
-        "layer-by-layer", f.CHOICE, "One polynomial per layer, one value per point, or one value for the whole job.",
+        "layer-by-layer",
+        f.CHOICE,
+        "One polynomial per layer, one value per point, or one value for the whole job.",
         choices=METHODS,
     )
-    rz: float | str = f.parameter("auto", f.ANGLE, "Method constant: the one RZ, or auto to search it.", words=("auto",))
-    degree: int = f.parameter(1, f.COUNT, "Degree of the polynomial of a layer.", low=0, high=HIGHEST)
+    rz: float | str = f.parameter(
+        "auto", f.ANGLE, "Method constant: the one RZ, or auto to search it.", words=("auto",)
+    )
+    degree: int = f.parameter(
+        1, f.COUNT, "Degree of the polynomial of a layer.", low=0, high=HIGHEST
+    )
     given: tuple[str, ...] = f.parameter(
-        (), f.TEXT,
+        (),
+        f.TEXT,
         "Method layer-by-layer: polynomials that are given, not searched: layer/bead:constant:slope, or * for every other "
-        "bead, in deg and deg per turn.", advanced=True,
+        "bead, in deg and deg per turn.",
+        advanced=True,
     )
     parameter: str = f.parameter(
-        "rotation", f.CHOICE,
+        "rotation",
+        f.CHOICE,
         "What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.",
-        choices=("rotation", "rz"), advanced=True,
+        choices=("rotation", "rz"),
+        advanced=True,
     )
     rotation_range: tuple[float, float] = f.parameter(
-        (-math.pi, math.pi), f.ANGLE_RANGE,
+        (-math.pi, math.pi),
+        f.ANGLE_RANGE,
         "Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.",
     )
-    objective: str = f.parameter("displacement", f.CHOICE, "What a joint path is judged by.", choices=OBJECTIVES)
+    objective: str = f.parameter(
+        "displacement", f.CHOICE, "What a joint path is judged by.", choices=OBJECTIVES
+    )
     min_condition: float | str = f.parameter(
-        "auto", f.NUMBER,
+        "auto",
+        f.NUMBER,
         "Smallest condition allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.",
-        low=0.0, high=1.0, words=("auto",),
+        low=0.0,
+        high=1.0,
+        words=("auto",),
     )
     characteristic_length: float = f.parameter(
-        1000.0, f.LENGTH, "Divides the translation rows of the Jacobian.", low=0.0, open_low=True, advanced=True
+        1000.0,
+        f.LENGTH,
+        "Divides the translation rows of the Jacobian.",
+        low=0.0,
+        open_low=True,
+        advanced=True,
     )
     tolerance: float = f.parameter(
-        1e-8, f.NUMBER, "Change of the objective and of the coefficients at which the optimiser stops.",
-        low=0.0, open_low=True, high=1.0, advanced=True,
+        1e-8,
+        f.NUMBER,
+        "Change of the objective and of the coefficients at which the optimiser stops.",
+        low=0.0,
+        open_low=True,
+        high=1.0,
+        advanced=True,
     )
     max_iterations: int = f.parameter(
-        1000, f.COUNT, "Iterations after which the optimiser gives up on a layer.", low=1, high=1_000_000, advanced=True
+        1000,
+        f.COUNT,
+        "Iterations after which the optimiser gives up on a layer.",
+        low=1,
+        high=1_000_000,
+        advanced=True,
     )
     lock: str = f.parameter(
-        "none", f.CHOICE,
+        "none",
+        f.CHOICE,
         "Rotary table only: which of the two turning axes, counted from the torch, stands still (four axes).",
         choices=("none", "first", "second"),
     )
     lock_at: float | str = f.parameter(
-        "auto", f.ANGLE, "Where the locked axis stands; auto: where the largest angle left is least.", words=("auto",)
+        "auto",
+        f.ANGLE,
+        "Where the locked axis stands; auto: where the largest angle left is least.",
+        words=("auto",),
     )
     max_residual: float = f.parameter(
-        math.radians(45.0), f.ANGLE, "Four axes only: by how much the tool may miss the direction asked for.",
-        low=0.0, high=math.pi,
+        math.radians(45.0),
+        f.ANGLE,
+        "Four axes only: by how much the tool may miss the direction asked for.",
+        low=0.0,
+        high=math.pi,
     )
     own_branch: str = f.parameter(
-        OF_CELL, f.CHOICE, "Shoulder, elbow and wrist of this joint path; cell: as the cell says.",
-        choices=(OF_CELL, *BRANCHES), advanced=True,
+        OF_CELL,
+        f.CHOICE,
+        "Shoulder, elbow and wrist of this joint path; cell: as the cell says.",
+        choices=(OF_CELL, *BRANCHES),
+        advanced=True,
     )
     compare: tuple[str, ...] = f.parameter(
         (), f.TEXT, "Further methods planned for the comparison of the report.", advanced=True
     )
     certificate: bool = f.parameter(
-        False, f.FLAG,
+        False,
+        f.FLAG,
         "Compare the joint path with a lower bound over all rotations about the tool axis. Takes up to seconds per bead.",
         advanced=True,
     )
     close_gap: bool = f.parameter(
-        False, f.FLAG,
+        False,
+        f.FLAG,
         "Where it takes less motion than a polynomial, the rotation about the tool axis is free at every point of a bead: "
-        "the best course that is found, for the objective displacement. Takes up to seconds per bead.", advanced=True,
+        "the best course that is found, for the objective displacement. Takes up to seconds per bead.",
+        advanced=True,
     )
     external_axes: str = f.parameter(
-        LEVEL, f.CHOICE,
+        LEVEL,
+        f.CHOICE,
         "External axes. level: they turn no more than the angle from the vertical asks for; optimised: one "
         "polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.",
         choices=(LEVEL, OPTIMISED),
@@ -122,20 +175,34 @@ def given_polynomials(given: tuple[str, ...]) -> dict[tuple[int, int] | None, tu
             values = [float(number) for number in numbers]
         except ValueError:
             values = []
-        if not values or len(values) > HIGHEST + 1 or not all(map(math.isfinite, values)) or (key and min(key) < 0):
+        if (
+            not values
+            or len(values) > HIGHEST + 1
+            or not all(map(math.isfinite, values))
+            or (key and min(key) < 0)
+        ):
             raise InputError(
-                "BAD_VALUE", "joints.given", "{!r} is not understood; give layer/bead:constant:slope with up to {} "
-                "coefficients in deg and deg per turn, such as 12/0:-35:360; * stands for every other bead", entry,
+                "BAD_VALUE",
+                "joints.given",
+                "{!r} is not understood; give layer/bead:constant:slope with up to {} "
+                "coefficients in deg and deg per turn, such as 12/0:-35:360; * stands for every other bead",
+                entry,
                 HIGHEST + 1,
             )
         if key in found:
-            raise InputError("BAD_VALUE", "joints.given", "{} is there twice; give each bead one", place.strip())
-        found[key] = tuple(math.radians(value) / (2.0 * math.pi) ** power for power, value in enumerate(values))
+            raise InputError(
+                "BAD_VALUE", "joints.given", "{} is there twice; give each bead one", place.strip()
+            )
+        found[key] = tuple(
+            math.radians(value) / (2.0 * math.pi) ** power for power, value in enumerate(values)
+        )
     return found
 
 
 def given_text(place: tuple[int, int] | None, coefficients: tuple[float, ...]) -> str:
     """An entry of the parameter `given`, of coefficients as `given_polynomials` has them."""
     name = EVERY if place is None else f"{place[0]}/{place[1]}"
-    shown = [math.degrees(value) * (2.0 * math.pi) ** power for power, value in enumerate(coefficients)]
+    shown = [
+        math.degrees(value) * (2.0 * math.pi) ** power for power, value in enumerate(coefficients)
+    ]
     return ":".join([name, *(f"{round(value, 9) + 0.0:.12g}" for value in shown)])

@@ -19,7 +19,9 @@ MORE = ";"  # between two of them
 LARGEST = 1e5  # mm, of a box
 _BOX = re.compile(r"box\s+(?P<size>[-+\d.,eE\s]+)")
 _TEXT = re.compile(r"(?:(?P<name>[^=;]+?)\s+=\s+)?(?P<what>.+?)\s+at\s+(?P<pose>[^;]+)")
-_FORM = "write such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0"
+_FORM = (
+    "write such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0"
+)
 
 
 @dataclass(frozen=True)
@@ -35,19 +37,41 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         if len(self.pose) != 6 or not all(math.isfinite(number) for number in self.pose):
-            raise InputError("BAD_VALUE", WHERE, "{}: {!r} is not a pose; give six numbers x y z RX RY RZ", self.name,
-                             self.pose)
+            raise InputError(
+                "BAD_VALUE",
+                WHERE,
+                "{}: {!r} is not a pose; give six numbers x y z RX RY RZ",
+                self.name,
+                self.pose,
+            )
         if (self.size is None) == (not self.file):
-            raise InputError("BAD_VALUE", WHERE, "{} is neither a file nor a box, or both; give one of them", self.name)
+            raise InputError(
+                "BAD_VALUE",
+                WHERE,
+                "{} is neither a file nor a box, or both; give one of them",
+                self.name,
+            )
         if self.size is not None and not all(0.0 < edge <= LARGEST for edge in self.size):
             edges = " ".join(f"{edge:g}" for edge in self.size)
-            raise InputError("BAD_VALUE", WHERE, "{}: {} mm is not a box; give three lengths of more than 0 mm, at most "
-                             "{:g} mm", self.name, edges, LARGEST)
+            raise InputError(
+                "BAD_VALUE",
+                WHERE,
+                "{}: {} mm is not a box; give three lengths of more than 0 mm, at most {:g} mm",
+                self.name,
+                edges,
+                LARGEST,
+            )
         if any(sign in self.name for sign in "=;") or not self.name.strip():
-            raise InputError("BAD_VALUE", WHERE, "{!r} is not a name; use words without = and ;", self.name)
+            raise InputError(
+                "BAD_VALUE", WHERE, "{!r} is not a name; use words without = and ;", self.name
+            )
 
     def __str__(self) -> str:
-        what = self.file if self.size is None else "box " + " ".join(f"{edge:.12g}" for edge in self.size)
+        what = (
+            self.file
+            if self.size is None
+            else "box " + " ".join(f"{edge:.12g}" for edge in self.size)
+        )
         numbers = (*self.pose[:3], *(math.degrees(angle) for angle in self.pose[3:]))
         return f"{self.name} = {what} at {' '.join(f'{number:.12g}' for number in numbers)}"
 
@@ -56,12 +80,19 @@ def obstacles(text: str) -> tuple[Obstacle, ...]:
     """What a text says, in its order; nothing for none. Raises InputError BAD_VALUE."""
     if text.strip() == NONE:
         return ()
-    found = tuple(_obstacle(part.strip(), k) for k, part in enumerate(text.split(MORE), 1) if part.strip())
+    found = tuple(
+        _obstacle(part.strip(), k) for k, part in enumerate(text.split(MORE), 1) if part.strip()
+    )
     names = [one.name for one in found]
     for name in names:
         if names.count(name) > 1:
-            raise InputError("BAD_VALUE", WHERE, "{} of them are called {!r}; give each its own name", names.count(name),
-                             name)
+            raise InputError(
+                "BAD_VALUE",
+                WHERE,
+                "{} of them are called {!r}; give each its own name",
+                names.count(name),
+                name,
+            )
     return found
 
 
@@ -82,7 +113,9 @@ def _obstacle(text: str, number: int) -> Obstacle:
         file = found["what"].strip()
         return Obstacle(found["name"] or usual_name(file, number), (x, y, z, a, b, c), file)
     width, depth, height = _numbers(box["size"], 3)
-    return Obstacle(found["name"] or usual_name("", number), (x, y, z, a, b, c), size=(width, depth, height))
+    return Obstacle(
+        found["name"] or usual_name("", number), (x, y, z, a, b, c), size=(width, depth, height)
+    )
 
 
 def _numbers(text: str, count: int) -> list[float]:
@@ -91,5 +124,7 @@ def _numbers(text: str, count: int) -> list[float]:
     except ValueError:
         numbers = []
     if len(numbers) != count:
-        raise InputError("BAD_VALUE", WHERE, "{!r} are not {} numbers; {}", text.strip(), count, _FORM)
+        raise InputError(
+            "BAD_VALUE", WHERE, "{!r} are not {} numbers; {}", text.strip(), count, _FORM
+        )
     return numbers

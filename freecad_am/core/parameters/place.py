@@ -24,36 +24,78 @@ class PlaceParameters:
     """A box of poses about that which the cell has, and how they are judged. mm and rad."""
 
     moves: str = f.parameter(
-        AUTO, f.CHOICE, "What is moved: the deposition point (with the tool on the robot the fixed platform), the "
+        AUTO,
+        f.CHOICE,
+        "What is moved: the deposition point (with the tool on the robot the fixed platform), the "
         "platform on the flange or the table, or the base of the positioner; auto: the one that places the part.",
         choices=(AUTO, POINT, PLATFORM, POSITIONER),
     )
-    x: float = f.parameter(200.0, f.LENGTH, "How far its x is changed to either side.", low=0.0, high=20_000.0)
-    y: float = f.parameter(200.0, f.LENGTH, "How far its y is changed to either side.", low=0.0, high=20_000.0)
-    z: float = f.parameter(200.0, f.LENGTH, "How far its z is changed to either side.", low=0.0, high=20_000.0)
+    x: float = f.parameter(
+        200.0, f.LENGTH, "How far its x is changed to either side.", low=0.0, high=20_000.0
+    )
+    y: float = f.parameter(
+        200.0, f.LENGTH, "How far its y is changed to either side.", low=0.0, high=20_000.0
+    )
+    z: float = f.parameter(
+        200.0, f.LENGTH, "How far its z is changed to either side.", low=0.0, high=20_000.0
+    )
     rx: float = f.parameter(
-        0.0, f.ANGLE, "How far its RX is changed to either side.", low=0.0, high=math.pi, advanced=True
+        0.0,
+        f.ANGLE,
+        "How far its RX is changed to either side.",
+        low=0.0,
+        high=math.pi,
+        advanced=True,
     )
     ry: float = f.parameter(
-        0.0, f.ANGLE, "How far its RY is changed to either side.", low=0.0, high=math.pi, advanced=True
+        0.0,
+        f.ANGLE,
+        "How far its RY is changed to either side.",
+        low=0.0,
+        high=math.pi,
+        advanced=True,
     )
     rz: float = f.parameter(
-        0.0, f.ANGLE, "How far its RZ is changed to either side.", low=0.0, high=math.pi, advanced=True
+        0.0,
+        f.ANGLE,
+        "How far its RZ is changed to either side.",
+        low=0.0,
+        high=math.pi,
+        advanced=True,
     )
-    step: float = f.parameter(100.0, f.LENGTH, "Between two values of x, y or z.", low=0.0, open_low=True)
+    step: float = f.parameter(
+        100.0, f.LENGTH, "Between two values of x, y or z.", low=0.0, open_low=True
+    )
     angle_step: float = f.parameter(
-        math.radians(45.0), f.ANGLE, "Between two values of RX, RY or RZ.", low=0.0, high=math.pi, open_low=True,
+        math.radians(45.0),
+        f.ANGLE,
+        "Between two values of RX, RY or RZ.",
+        low=0.0,
+        high=math.pi,
+        open_low=True,
         advanced=True,
     )
     points: int = f.parameter(
-        300, f.COUNT, "Points of the toolpath that each pose is judged by, about.", low=20, high=100_000, advanced=True
+        300,
+        f.COUNT,
+        "Points of the toolpath that each pose is judged by, about.",
+        low=20,
+        high=100_000,
+        advanced=True,
     )
     best: str = f.parameter(
-        MARGIN, f.CHOICE, "What makes a feasible pose the best one: the largest least margin, the shortest time, or the "
-        "largest distance of the arm from everything.", choices=(MARGIN, TIME, CLEARANCE),
+        MARGIN,
+        f.CHOICE,
+        "What makes a feasible pose the best one: the largest least margin, the shortest time, or the "
+        "largest distance of the arm from everything.",
+        choices=(MARGIN, TIME, CLEARANCE),
     )
     proven: int = f.parameter(
-        5, f.COUNT, "So many of the best poses are planned with all points, until one is feasible.", low=1, high=100,
+        5,
+        f.COUNT,
+        "So many of the best poses are planned with all points, until one is feasible.",
+        low=1,
+        high=100,
         advanced=True,
     )
 
@@ -61,15 +103,22 @@ class PlaceParameters:
         f.check(self, "place")
         count = math.prod(len(values) for values in self._values())
         if count > MAX_POSES:
-            raise InputError("BAD_VALUE", "place.step", "these are {} poses, more than {}; give a larger step or a smaller "
-                             "box", count, MAX_POSES)
+            raise InputError(
+                "BAD_VALUE",
+                "place.step",
+                "these are {} poses, more than {}; give a larger step or a smaller box",
+                count,
+                MAX_POSES,
+            )
 
     def _values(self) -> list[Array]:
         """What is added to each of the six numbers of a pose."""
         found = []
         for number, name in enumerate(SIDES):
             step = self.step if number < 3 else self.angle_step
-            most = math.floor(min(getattr(self, name) / step, MAX_POSES) + 1e-9)  # of more the count alone is asked for
+            most = math.floor(
+                min(getattr(self, name) / step, MAX_POSES) + 1e-9
+            )  # of more the count alone is asked for
             found.append(step * np.arange(-most, most + 1))
         return found
 

@@ -27,27 +27,55 @@ class NcParameters:
     """How programs of five-axis machines are written; each controller takes what it knows."""
 
     feed: str = f.parameter(
-        "time", f.CHOICE, "Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move "
-        "(G94).", choices=("time", "path"),
+        "time",
+        f.CHOICE,
+        "Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move "
+        "(G94).",
+        choices=("time", "path"),
     )
-    compress: bool = f.parameter(True, f.FLAG, "SINUMERIK: block compressor (COMPCAD) in beads whose feed is a speed.")
-    smooth: bool = f.parameter(True, f.FLAG, "SINUMERIK: rounding (G642), jerk limit (SOFT) and feed forward (FFWON).")
+    compress: bool = f.parameter(
+        True, f.FLAG, "SINUMERIK: block compressor (COMPCAD) in beads whose feed is a speed."
+    )
+    smooth: bool = f.parameter(
+        True, f.FLAG, "SINUMERIK: rounding (G642), jerk limit (SOFT) and feed forward (FFWON)."
+    )
     tolerance: float = f.parameter(
-        0.05, f.LENGTH, "LinuxCNC: how far corners may be rounded (G64 P).", low=0.0, high=10.0, open_low=True
+        0.05,
+        f.LENGTH,
+        "LinuxCNC: how far corners may be rounded (G64 P).",
+        low=0.0,
+        high=10.0,
+        open_low=True,
     )
     deposit_on: str | None = f.parameter(
-        None, f.TEXT, "M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.",
+        None,
+        f.TEXT,
+        "M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.",
         optional=True,
     )
-    deposit_off: str | None = f.parameter(None, f.TEXT, "M or H word that switches the deposit off.", optional=True)
+    deposit_off: str | None = f.parameter(
+        None, f.TEXT, "M or H word that switches the deposit off.", optional=True
+    )
     wire_output: int = f.parameter(
-        1, f.COUNT, "Analogue output for the speed of the wire where it follows the travel speed.", low=1, high=64
+        1,
+        f.COUNT,
+        "Analogue output for the speed of the wire where it follows the travel speed.",
+        low=1,
+        high=64,
     )
     wire_gain: float = f.parameter(
-        1.0, f.NUMBER, "Value of that output at 1 m/min of wire.", low=0.0, open_low=True, high=1e6, unit="min/m",
+        1.0,
+        f.NUMBER,
+        "Value of that output at 1 m/min of wire.",
+        low=0.0,
+        open_low=True,
+        high=1e6,
+        unit="min/m",
     )
     switch_kinematics: bool = f.parameter(
-        True, f.FLAG, "LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only."
+        True,
+        f.FLAG,
+        "LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only.",
     )
 
     def __post_init__(self) -> None:
@@ -59,11 +87,19 @@ class AxesParameters:
     """What the controller calls the external axes."""
 
     unit: str | None = f.parameter(
-        None, f.TEXT, "Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), "
-        "MACHINE_DEF of KUKA (2), motion group of FANUC (2).", optional=True, advanced=True,
+        None,
+        f.TEXT,
+        "Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), "
+        "MACHINE_DEF of KUKA (2), motion group of FANUC (2).",
+        optional=True,
+        advanced=True,
     )
     first: int = f.parameter(
-        1, f.COUNT, "Which of the controller's external axes e1 is; the others follow: eax_a, E1 are 1.", low=1, high=6,
+        1,
+        f.COUNT,
+        "Which of the controller's external axes e1 is; the others follow: eax_a, E1 are 1.",
+        low=1,
+        high=6,
         advanced=True,
     )
 
@@ -76,15 +112,23 @@ class ScheduleParameters:
     """How the welder or extruder is told its schedule."""
 
     by: str = f.parameter(
-        "output", f.CHOICE, "The number of a schedule is set on a group output; named by the arc instructions, which then "
-        "switch the deposit; or is that of a program that is called.", choices=("output", "arc", "call"),
+        "output",
+        f.CHOICE,
+        "The number of a schedule is set on a group output; named by the arc instructions, which then "
+        "switch the deposit; or is that of a program that is called.",
+        choices=("output", "arc", "call"),
     )
     output: int = f.parameter(
-        2, f.COUNT, "Group output, H word, register or analogue output that carries it; for KUKA the first of eight "
-            "outputs.",
-        low=1, high=4096,
+        2,
+        f.COUNT,
+        "Group output, H word, register or analogue output that carries it; for KUKA the first of eight "
+        "outputs.",
+        low=1,
+        high=4096,
     )
-    call: str = f.parameter("SCHEDULE", f.TEXT, "Name of the programs that are called, without their number: SCHEDULE3.")
+    call: str = f.parameter(
+        "SCHEDULE", f.TEXT, "Name of the programs that are called, without their number: SCHEDULE3."
+    )
 
     def __post_init__(self) -> None:
         f.check(self, "program.schedule")
@@ -95,8 +139,14 @@ class TriggerParameters:
     """Switching on the move itself, ahead of a place."""
 
     lead: float | None = f.parameter(
-        None, f.TIME, "The deposit is switched on the move itself, this long before a bead's start or end is reached: the "
-        "time that its equipment takes. None: where the robot stands.", low=0.0, high=0.5, optional=True, advanced=True,
+        None,
+        f.TIME,
+        "The deposit is switched on the move itself, this long before a bead's start or end is reached: the "
+        "time that its equipment takes. None: where the robot stands.",
+        low=0.0,
+        high=0.5,
+        optional=True,
+        advanced=True,
     )
 
     def __post_init__(self) -> None:
@@ -111,24 +161,43 @@ class ProgramParameters:
     motion: str = f.parameter(
         "joint", f.CHOICE, "Points as joint values, or as positions of the tool.", choices=MOTIONS
     )
-    max_points: int = f.parameter(2000, f.COUNT, "Most points of one program file; longer ones are chained.", low=10)
+    max_points: int = f.parameter(
+        2000, f.COUNT, "Most points of one program file; longer ones are chained.", low=10
+    )
     origin: str | Pose = f.parameter(
-        "auto", f.POSE, "What the positions of Cartesian programs are relative to, in the part's coordinates: x y z mm, "
-        "RX RY RZ deg; auto: the frame that sits on the platform.", words=("auto",),
+        "auto",
+        f.POSE,
+        "What the positions of Cartesian programs are relative to, in the part's coordinates: x y z mm, "
+        "RX RY RZ deg; auto: the frame that sits on the platform.",
+        words=("auto",),
     )
     dry_run: bool = f.parameter(False, f.FLAG, "The same motion without deposit.")
     start_at: StartParameters = f.group(StartParameters, "Where a job resumes.")
     blend: int = f.parameter(
-        100, f.COUNT, "How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.",
-        low=0, high=100, advanced=True,
+        100,
+        f.COUNT,
+        "How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.",
+        low=0,
+        high=100,
+        advanced=True,
     )
     nc: NcParameters = f.group(NcParameters, "Programs of five-axis machines.")
-    user_frame: int = f.parameter(1, f.COUNT, "Number of the user frame named in the program.", low=0, high=61)
-    tool_frame: int = f.parameter(1, f.COUNT, "Number of the tool frame named in the program.", low=1, high=29)
-    deposit_output: int = f.parameter(1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096)
+    user_frame: int = f.parameter(
+        1, f.COUNT, "Number of the user frame named in the program.", low=0, high=61
+    )
+    tool_frame: int = f.parameter(
+        1, f.COUNT, "Number of the tool frame named in the program.", low=1, high=29
+    )
+    deposit_output: int = f.parameter(
+        1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096
+    )
     axes: AxesParameters = f.group(AxesParameters, "What the controller calls the external axes.")
-    schedule: ScheduleParameters = f.group(ScheduleParameters, "How the welder or extruder is told its schedule.")
-    trigger: TriggerParameters = f.group(TriggerParameters, "Switching on the move itself, ahead of a place.")
+    schedule: ScheduleParameters = f.group(
+        ScheduleParameters, "How the welder or extruder is told its schedule."
+    )
+    trigger: TriggerParameters = f.group(
+        TriggerParameters, "Switching on the move itself, ahead of a place."
+    )
 
     def __post_init__(self) -> None:
         if self.origin is None:  # an empty property of a document

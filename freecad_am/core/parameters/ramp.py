@@ -7,7 +7,10 @@ import numpy as np
 
 from ..types import Array
 
-SHARE, STEPS = 0.1, 20  # of the faster speed that a step changes at most, and how many steps there may be
+SHARE, STEPS = (
+    0.1,
+    20,
+)  # of the faster speed that a step changes at most, and how many steps there may be
 SHORTEST = 0.5  # mm of a step
 
 

@@ -15,16 +15,33 @@ class ScanParameters:
     """How far what was scanned may be from the plan, and how layers lead back to it."""
 
     scan_within: float = f.parameter(
-        5.0, f.LENGTH, "How far the scan may lie from what was planned; farther, and it is taken for a scan of something "
-        "else.", low=0.0, open_low=True, high=1000.0, advanced=True,
+        5.0,
+        f.LENGTH,
+        "How far the scan may lie from what was planned; farther, and it is taken for a scan of something "
+        "else.",
+        low=0.0,
+        open_low=True,
+        high=1000.0,
+        advanced=True,
     )
     scan_band: float = f.parameter(
-        0.2, f.RATIO, "How far the height of layers may differ from the layer height where they lead from what was scanned "
-        "back to the plan.", low=0.0, open_low=True, high=0.5, advanced=True,
+        0.2,
+        f.RATIO,
+        "How far the height of layers may differ from the layer height where they lead from what was scanned "
+        "back to the plan.",
+        low=0.0,
+        open_low=True,
+        high=0.5,
+        advanced=True,
     )
     after_layer: int | None = f.parameter(
-        None, f.COUNT, "The scan was made after this layer, counted from 0: the layers above are fitted to it; none: it is "
-        "of the bare substrate.", low=0, optional=True, advanced=True,
+        None,
+        f.COUNT,
+        "The scan was made after this layer, counted from 0: the layers above are fitted to it; none: it is "
+        "of the bare substrate.",
+        low=0,
+        optional=True,
+        advanced=True,
     )
 
     def __post_init__(self) -> None:

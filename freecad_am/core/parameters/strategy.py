@@ -13,10 +13,10 @@ ISO = "iso-parameter"
 SPACINGS = ("constant-distance", "smooth", ISO)
 FRONTS = "fronts"  # a method
 MEND = "Holes of meshes up to this size across are closed, with a note; larger ones are refused."
-LAYER_TIME = (
-    "Least time of a layer, from its first bead to the next layer's; the machine waits for what is missing"
+LAYER_TIME = "Least time of a layer, from its first bead to the next layer's; the machine waits for what is missing"
+MOST_LAYERS = (
+    20_000  # more is a mistake in the units: half a millimetre each on the widest platform, 10 m
 )
-MOST_LAYERS = 20_000  # more is a mistake in the units: half a millimetre each on the widest platform, 10 m
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,11 @@ class LayerParameters:
         1.0, f.LENGTH, "Distance between neighbouring layers.", low=0.0, open_low=True
     )
     chord_error: float = f.parameter(
-        0.01, f.LENGTH, "Largest distance between a bead and the straight segments that stand for it.",
-        low=1e-5, high=10.0,
+        0.01,
+        f.LENGTH,
+        "Largest distance between a bead and the straight segments that stand for it.",
+        low=1e-5,
+        high=10.0,
     )
 
 
@@ -37,19 +40,30 @@ class RevolutionParameters(LayerParameters):
     """How a part of revolution is cut into layers (Chalvin 2020, section 2.1). mm and rad."""
 
     spacing: str = f.parameter(
-        "arc-length", f.CHOICE,
+        "arc-length",
+        f.CHOICE,
         "Layers equally spaced along the wall (arc-length) or along the axis (iso-height).",
         choices=("arc-length", "iso-height"),
     )
     wall: str = f.parameter(
-        "outer", f.CHOICE, "Which wall of a solid is deposited; middle runs halfway between outer and inner.",
+        "outer",
+        f.CHOICE,
+        "Which wall of a solid is deposited; middle runs halfway between outer and inner.",
         choices=("outer", "inner", "middle"),
     )
     path: str = f.parameter(
-        "layers", f.CHOICE, "Closed beads layer by layer, or one continuous spiral.", choices=("layers", "spiral")
+        "layers",
+        f.CHOICE,
+        "Closed beads layer by layer, or one continuous spiral.",
+        choices=("layers", "spiral"),
     )
     min_points: int = f.parameter(
-        24, f.COUNT, "Fewest points of a full turn, however small its radius.", low=6, high=10000, advanced=True
+        24,
+        f.COUNT,
+        "Fewest points of a full turn, however small its radius.",
+        low=6,
+        high=10000,
+        advanced=True,
     )
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
 
@@ -62,33 +76,52 @@ class SurfaceParameters(LayerParameters):
     """How a wall on an existing part is cut into layers (Chalvin 2019, section II). mm."""
 
     spacing: str = f.parameter(
-        "constant-distance", f.CHOICE,
+        "constant-distance",
+        f.CHOICE,
         "Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it "
         "and without corners (smooth), or along the lines up the wall (iso-parameter).",
         choices=SPACINGS,
     )
     method: str = f.parameter(
-        "auto", f.CHOICE, "How layers are found: on a tube of one surface by its closed parameter and on all other walls as "
-        "fronts (auto), or as fronts on every wall (fronts).", choices=("auto", FRONTS), advanced=True,
+        "auto",
+        f.CHOICE,
+        "How layers are found: on a tube of one surface by its closed parameter and on all other walls as "
+        "fronts (auto), or as fronts on every wall (fronts).",
+        choices=("auto", FRONTS),
+        advanced=True,
     )
     band: float = f.parameter(
-        0.2, f.RATIO, "Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter "
+        0.2,
+        f.RATIO,
+        "Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter "
         "layers, before there is a warning.",
-        low=0.0, high=1.0,
+        low=0.0,
+        high=1.0,
     )
     bead_turn: float = f.parameter(
-        math.radians(6.0), f.TURN_RATE, "Turn of the bead within the wall that smooth layers stay below where the band "
-        "allows.", low=0.0, open_low=True,
+        math.radians(6.0),
+        f.TURN_RATE,
+        "Turn of the bead within the wall that smooth layers stay below where the band allows.",
+        low=0.0,
+        open_low=True,
     )
     tolerance: float = f.parameter(
-        1e-4, f.LENGTH, "Largest error of the local distance of constant-distance layers.", low=1e-6, high=1.0
+        1e-4,
+        f.LENGTH,
+        "Largest error of the local distance of constant-distance layers.",
+        low=1e-6,
+        high=1.0,
     )
     end: str = f.parameter(
-        "trim", f.CHOICE, "Last layers trimmed flush with the wall's upper edge, or whole layers only.",
+        "trim",
+        f.CHOICE,
+        "Last layers trimmed flush with the wall's upper edge, or whole layers only.",
         choices=("trim", "whole"),
     )
     compare: tuple[str, ...] = f.parameter(
-        (), f.TEXT, "Further spacings whose joint paths are planned for the comparison of the report."
+        (),
+        f.TEXT,
+        "Further spacings whose joint paths are planned for the comparison of the report.",
     )
     mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
@@ -100,8 +133,12 @@ class SurfaceParameters(LayerParameters):
             if spacing not in SPACINGS:
                 raise f.unknown_choice("strategy.compare", spacing, SPACINGS)
         if self.method == FRONTS and ISO in (self.spacing, *self.compare):
-            raise InputError("NO_PARAMETER", "strategy.method", "fronts follow no lines of a surface, as iso-parameter "
-                             "layers do; leave strategy.method out, or use constant-distance or smooth")
+            raise InputError(
+                "NO_PARAMETER",
+                "strategy.method",
+                "fronts follow no lines of a surface, as iso-parameter "
+                "layers do; leave strategy.method out, or use constant-distance or smooth",
+            )
 
 
 @dataclass(frozen=True)
@@ -109,11 +146,18 @@ class CurvesParameters(LayerParameters):
     """How curves are laid as beads. mm."""
 
     direction: str = f.parameter(
-        "0 0 1", f.TEXT, "Direction x y z from the deposit towards the tool, in the part's coordinates, where neither the "
+        "0 0 1",
+        f.TEXT,
+        "Direction x y z from the deposit towards the tool, in the part's coordinates, where neither the "
         "curves nor faces say one.",
     )
-    repeat: int = f.parameter(1, f.COUNT, "How many times the curves are laid, one layer height over the other.", low=1,
-                              high=MOST_LAYERS)
+    repeat: int = f.parameter(
+        1,
+        f.COUNT,
+        "How many times the curves are laid, one layer height over the other.",
+        low=1,
+        high=MOST_LAYERS,
+    )
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
 
     def __post_init__(self) -> None:
@@ -122,6 +166,8 @@ class CurvesParameters(LayerParameters):
 
     def way(self) -> tuple[float, float, float]:
         """`direction` as a unit vector. InputError BAD_VALUE for what is not a direction."""
-        x, y, z = f.direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1]")
+        x, y, z = f.direction_of(
+            self.direction, "strategy.direction", "give three numbers such as [0, 0, 1]"
+        )
         size = math.hypot(x, y, z)
         return x / size, y / size, z / size

@@ -25,7 +25,9 @@ class Touched:
     robot: Point
 
     def __str__(self) -> str:
-        return " = ".join(" ".join(f"{number:.12g}" for number in point) for point in (self.part, self.robot))
+        return " = ".join(
+            " ".join(f"{number:.12g}" for number in point) for point in (self.part, self.robot)
+        )
 
 
 def touched(text: str) -> tuple[Touched, ...]:
@@ -41,7 +43,9 @@ def _one(text: str) -> Touched:
         numbers = [[float(word) for word in end.replace(",", " ").split()] for end in ends]
     except ValueError:
         numbers = []
-    if len(numbers) != 2 or not all(len(one) == 3 and all(map(math.isfinite, one)) for one in numbers):
+    if len(numbers) != 2 or not all(
+        len(one) == 3 and all(map(math.isfinite, one)) for one in numbers
+    ):
         raise InputError("BAD_VALUE", WHERE, "{!r} is not a touched point; {}", text, _FORM)
     (x, y, z), (u, v, w) = numbers
     return Touched((x, y, z), (u, v, w))

@@ -88,26 +88,44 @@ class Judge:
         most = whole.point_count if self.most is None else self.most
         object.__setattr__(self, "_some", sampled(whole, most, TOGETHER))
         width = whole.bead_width or whole.layer_height
-        object.__setattr__(self, "_deposit", Beads.of([bead for _, _, bead in whole], width, whole.layer_height))
+        object.__setattr__(
+            self, "_deposit", Beads.of([bead for _, _, bead in whole], width, whole.layer_height)
+        )
 
     @property
     def points(self) -> int:
         """How many points are looked at."""
         return self._some.toolpath.point_count
 
-    def judged(self, settings: CellParameters, progress: Progress = lambda share, text: None) -> Judged:
+    def judged(
+        self, settings: CellParameters, progress: Progress = lambda share, text: None
+    ) -> Judged:
         """The job in a cell. progress may raise to cancel."""
         job, some = self.job, self._some.toolpath
         try:
             cell = job.cell(settings)
             share = self._share(cell) if cell.machine.free else 1.0
             if share is not None and share < 1.0 and not _several_alike(cell):
-                return Judged(share, UNREACHED, message="some points no rotation about the tool serves")
+                return Judged(
+                    share, UNREACHED, message="some points no rotation about the tool serves"
+                )
             cylinders = job.cylinders(cell)
-            path = plan_joints(some, cell, dataclasses.replace(job.joints, given=self._some.given(job.joints.given)),
-                               progress, () if cell.arm_clearance is None else cylinders)
-            motion, rapids = assemble(path, cell, job.process, some.surroundings, job.joints, some.layer_height,
-                                      () if cell.arm_clearance is None else cylinders)
+            path = plan_joints(
+                some,
+                cell,
+                dataclasses.replace(job.joints, given=self._some.given(job.joints.given)),
+                progress,
+                () if cell.arm_clearance is None else cylinders,
+            )
+            motion, rapids = assemble(
+                path,
+                cell,
+                job.process,
+                some.surroundings,
+                job.joints,
+                some.layer_height,
+                () if cell.arm_clearance is None else cylinders,
+            )
         except AmError as error:
             return Judged(0.0, error.code, message=error.message)
         return self._figures(cell, path, motion, [*path.issues, *rapids], cylinders)
@@ -129,11 +147,20 @@ class Judge:
         joints = path.joints
         left = cell.limits.smallest_share(joints)
         served = float(np.mean(np.nan_to_num(left, nan=-1.0) >= 0.0))
-        if wrong is not None and wrong.code in ("UNREACHABLE", "LIMIT") and not np.isfinite(joints).all():
+        if (
+            wrong is not None
+            and wrong.code in ("UNREACHABLE", "LIMIT")
+            and not np.isfinite(joints).all()
+        ):
             return Judged(served, wrong.code, branch=path.branch, message=wrong.message)
         return Judged(
-            served, "" if wrong is None else wrong.code, float(np.nanmin(left)), self._time(path, motion),
-            self._clearance(cell, path, cylinders), path.branch, "" if wrong is None else wrong.message,
+            served,
+            "" if wrong is None else wrong.code,
+            float(np.nanmin(left)),
+            self._time(path, motion),
+            self._clearance(cell, path, cylinders),
+            path.branch,
+            "" if wrong is None else wrong.message,
         )
 
     def _clearance(self, cell: Cell, path: JointPath, cylinders: Cylinders) -> float:
@@ -143,10 +170,17 @@ class Judge:
         whole = self.job.toolpath
         contact = ArmContact(cell, cylinders, whole.surroundings, self._deposit.solid(LINK_GRAIN))
         counts = np.cumsum([0, *(len(bead) for _, _, bead in whole)])
-        before = {(layer, index): int(n) for (layer, index, _), n in zip(whole, counts, strict=False)}
-        here = {(layer, index): place for (layer, index, _), place in
-                zip(self._some.toolpath, self._some.places, strict=True)}
-        moment = [before.get(here.get((one.layer, one.index), (one.layer, 0)), before[one.layer, 0]) for one in path.beads]
+        before = {
+            (layer, index): int(n) for (layer, index, _), n in zip(whole, counts, strict=False)
+        }
+        here = {
+            (layer, index): place
+            for (layer, index, _), place in zip(self._some.toolpath, self._some.places, strict=True)
+        }
+        moment = [
+            before.get(here.get((one.layer, one.index), (one.layer, 0)), before[one.layer, 0])
+            for one in path.beads
+        ]
         when = np.repeat(moment, [len(one.joints) for one in path.beads])
         return least_distance(contact, path.joints, when, REACH)
 
@@ -158,18 +192,31 @@ class Judge:
         run = sum(_lasts(one.bead) for one in path.beads)
         deposit = sum(_lasts(bead) for bead in whole) * run / max(asked, 1e-9)
         waits = len(whole) * (process.lead_on + process.lead_off)
-        waits += sum(max(layer.wait, process.between_layers.wait) for layer in self.job.toolpath.layers[1:])
+        waits += sum(
+            max(layer.wait, process.between_layers.wait) for layer in self.job.toolpath.layers[1:]
+        )
         return float(deposit + waits + self._rapids(motion, len(whole)))
 
     def _rapids(self, motion: Motion, beads: int) -> float:
         """s of all rapids between so many beads, and of the way onto the first and off the last."""
         steps, starts = np.nan_to_num(motion.duration), motion.deposit & (motion.point == 0)
-        number = np.cumsum(np.append(False, starts[:-1]))  # of the bead that a row leads to, or belongs to
-        of_bead = np.bincount(number[~motion.deposit], steps[~motion.deposit], int(starts.sum()) + 1)
-        first, last, between = of_bead[0], of_bead[int(starts.sum())], of_bead[1 : int(starts.sum())]
+        number = np.cumsum(
+            np.append(False, starts[:-1])
+        )  # of the bead that a row leads to, or belongs to
+        of_bead = np.bincount(
+            number[~motion.deposit], steps[~motion.deposit], int(starts.sum()) + 1
+        )
+        first, last, between = (
+            of_bead[0],
+            of_bead[int(starts.sum())],
+            of_bead[1 : int(starts.sum())],
+        )
         if not len(between):
             return float(first + last)
-        place = {place: k for k, place in enumerate((layer, index) for layer, index, _ in self.job.toolpath)}
+        place = {
+            place: k
+            for k, place in enumerate((layer, index) for layer, index, _ in self.job.toolpath)
+        }
         at = np.array([place[one] for one in self._some.places])
         follows = np.diff(at) == 1
         some = between[follows] if len(follows) == len(between) and follows.any() else between

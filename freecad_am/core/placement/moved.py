@@ -32,8 +32,14 @@ def chosen(settings: CellParameters, moves: str) -> str:
     if moves == AUTO and there:
         return there[0]
     if moves not in there:
-        raise InputError("NOT_FOR_SETUP", "place.moves", "a cell with {} has no {} that places the part; use {}",
-                         settings.setup, moves, Text.joined(" or ", there) or "another set-up")
+        raise InputError(
+            "NOT_FOR_SETUP",
+            "place.moves",
+            "a cell with {} has no {} that places the part; use {}",
+            settings.setup,
+            moves,
+            Text.joined(" or ", there) or "another set-up",
+        )
     return moves
 
 
@@ -44,7 +50,11 @@ def pose_of(settings: CellParameters, moves: str) -> Pose:
     if moves == POSITIONER:
         return next(one.pose for one in externals(settings.external) if one.carries == PART)
     platform = settings.platform
-    return (0.0, 0.0, float(platform), 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
+    return (
+        (0.0, 0.0, float(platform), 0.0, 0.0, 0.0)
+        if isinstance(platform, (int, float))
+        else platform
+    )
 
 
 def moved(settings: CellParameters, moves: str, pose: Sequence[float]) -> CellParameters:
@@ -65,4 +75,6 @@ def moved(settings: CellParameters, moves: str, pose: Sequence[float]) -> CellPa
 
 def outer(pose: Pose) -> list[float]:
     """A pose in mm and deg, digits that a sum of steps leaves behind rounded away."""
-    return [round(value, 7) + 0.0 for value in (*pose[:3], *(math.degrees(angle) for angle in pose[3:]))]
+    return [
+        round(value, 7) + 0.0 for value in (*pose[:3], *(math.degrees(angle) for angle in pose[3:]))
+    ]

@@ -60,10 +60,16 @@ class Placed:
         """What gives the cell a pose, by parameter, in the units of macros: mm and deg."""
         if self.moves == POSITIONER:
             return {"external": moved.moved(self.settings, self.moves, self.pose(number)).external}
-        return {"deposition_point" if self.moves == POINT else "platform": tuple(moved.outer(self.pose(number)))}
+        return {
+            "deposition_point" if self.moves == POINT else "platform": tuple(
+                moved.outer(self.pose(number))
+            )
+        }
 
 
-def placed(job: Job, settings: CellParameters, parameters: PlaceParameters, progress: Progress) -> Placed:
+def placed(
+    job: Job, settings: CellParameters, parameters: PlaceParameters, progress: Progress
+) -> Placed:
     """What the poses of a box come to, and which is best. progress may raise to cancel.
 
     Raises InputError NOT_FOR_SETUP for what the cell has not to be moved.
@@ -76,18 +82,26 @@ def placed(job: Job, settings: CellParameters, parameters: PlaceParameters, prog
     for number, pose in enumerate(poses):
         progress(JUDGING * number / len(poses), Text("pose {} of {}", number + 1, len(poses)))
         found.append(some.judged(moved.moved(settings, moves, np.round(pose, 9))))
-    result = Placed(settings, moves, about, poses, tuple(found), some.points, job.toolpath.point_count)
+    result = Placed(
+        settings, moves, about, poses, tuple(found), some.points, job.toolpath.point_count
+    )
     return dataclasses.replace(result, proven=_proven(job, settings, parameters, result, progress))
 
 
 def _proven(
-    job: Job, settings: CellParameters, parameters: PlaceParameters, found: Placed, progress: Progress
+    job: Job,
+    settings: CellParameters,
+    parameters: PlaceParameters,
+    found: Placed,
+    progress: Progress,
 ) -> dict[int, Judged]:
     """The best poses planned with all points, until one is feasible."""
     whole, done = Judge(job, None), dict[int, Judged]()
     for number in ranked(found, parameters.best)[: parameters.proven]:
         share = JUDGING + (1.0 - JUDGING) * len(done) / parameters.proven
-        progress(share, Text("planning the whole job at one of the best poses, the {}.", len(done) + 1))
+        progress(
+            share, Text("planning the whole job at one of the best poses, the {}.", len(done) + 1)
+        )
         done[number] = whole.judged(moved.moved(settings, found.moves, found.pose(number)))
         if done[number].feasible:
             break
@@ -98,14 +112,23 @@ def ranked(found: Placed, best: str) -> list[int]:
     """The feasible poses, the best first; of those alike the ones that are better by the other figures, then those nearest
     to where it stands. Where the arm touches something, which only `cell.arm_clearance` forbids, come last."""
     change = np.abs(found.poses - np.array(found.about))
-    away = np.linalg.norm(change[:, :3], axis=1) + 1000.0 * change[:, 3:].sum(axis=1)  # mm; a rad counts as a metre
+    away = np.linalg.norm(change[:, :3], axis=1) + 1000.0 * change[:, 3:].sum(
+        axis=1
+    )  # mm; a rad counts as a metre
 
     def order(number: int) -> tuple[float, ...]:
         one = found.judged[number]
         figures = {
-            MARGIN: -round(one.margin, 4), CLEARANCE: -round(float(np.nan_to_num(one.clearance)), 1),
+            MARGIN: -round(one.margin, 4),
+            CLEARANCE: -round(float(np.nan_to_num(one.clearance)), 1),
             TIME: round(one.time, 1),
         }
-        return (float(one.clearance == 0.0), figures.pop(best), *figures.values(), round(float(away[number]), 6), number)
+        return (
+            float(one.clearance == 0.0),
+            figures.pop(best),
+            *figures.values(),
+            round(float(away[number]), 6),
+            number,
+        )
 
     return sorted((number for number, one in enumerate(found.judged) if one.feasible), key=order)

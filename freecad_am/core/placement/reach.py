@@ -38,7 +38,9 @@ def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None
     if arm is None:
         return Reach(np.zeros((0, 3)), np.zeros(0), step)
     ahead, height = arm.shoulder
-    held = float(np.linalg.norm(cell.robot.chain.flange[:3, 3])) + float(np.linalg.norm(cell.carried[:3, 3]))
+    held = float(np.linalg.norm(cell.robot.chain.flange[:3, 3])) + float(
+        np.linalg.norm(cell.carried[:3, 3])
+    )
     size = ahead + arm.reach + held
     step = max(step, 2.0 * size / MOST_PLACES ** (1.0 / 3.0))
     count = int(np.ceil(size / step))
@@ -86,7 +88,9 @@ def _share(cell: Cell, rows: LimitRows, places: Array, hold: Array) -> Array:
         left = np.nonzero(~served.any(axis=2))
         joints = arm.inverse_branch(poses[left].reshape(-1, 4, 4), branch)
         joints = np.pad(joints, ((0, 0), (0, count - own)))  # external axes stand at zero
-        turns = np.where(np.isfinite(middle), np.round((np.nan_to_num(middle) - joints[:, :own]) / TURN), 0.0)
+        turns = np.where(
+            np.isfinite(middle), np.round((np.nan_to_num(middle) - joints[:, :own]) / TURN), 0.0
+        )
         joints[:, :own] += TURN * turns
         served[left] = (rows.margin(joints) >= 0.0).reshape(-1, TURNS)
     return np.asarray(served.any(axis=2).mean(axis=1))

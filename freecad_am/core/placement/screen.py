@@ -33,19 +33,29 @@ class Screened(NamedTuple):
 def alone(beads: Sequence[Bead], cell: Cell) -> Points:
     """The points of beads, each standing for itself."""
     position, tool, parameter = (
-        np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "tool", "parameter")
+        np.concatenate([getattr(bead, name) for bead in beads])
+        for name in ("points", "tool", "parameter")
     )
     external = None
     if cell.external is not None:
         external = np.concatenate([bead.external for bead in beads if bead.external is not None])
     each, sliding = np.arange(len(position)), cell.machine.chain.sliding
     return Points(
-        position, tool, parameter, each, each, np.zeros(len(each), dtype=bool), cell.pose_frames(position, tool, external),
-        external, sliding if sliding.any() else None,
+        position,
+        tool,
+        parameter,
+        each,
+        each,
+        np.zeros(len(each), dtype=bool),
+        cell.pose_frames(position, tool, external),
+        external,
+        sliding if sliding.any() else None,
     )
 
 
-def screened(cell: Cell, points: Points, parameters: JointParameters, wanted: int | None) -> Screened:
+def screened(
+    cell: Cell, points: Points, parameters: JointParameters, wanted: int | None
+) -> Screened:
     """How many of the points (each for itself) a robot serves, in a configuration or in the best of all."""
     found = [
         Screened(float(_served(Task(cell, branch, parameters), points).mean()), branch)
@@ -64,8 +74,13 @@ def _served(task: Task, points: Points) -> Mask:
     left = np.flatnonzero(~served & np.isfinite(margin).any(axis=0))
     if len(left):
         step = values[1] - values[0]
-        best = values[margin[:, left].argmax(axis=0)] + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)[:, None]
-        served[left] = _serves(task, points.each(left), best if whole else np.clip(best, low, high))[0]
+        best = (
+            values[margin[:, left].argmax(axis=0)]
+            + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)[:, None]
+        )
+        served[left] = _serves(
+            task, points.each(left), best if whole else np.clip(best, low, high)
+        )[0]
     return served
 
 

@@ -13,8 +13,22 @@ from ..parameters.place import PLATFORM, POINT
 from .moved import outer
 from .place import Placed
 
-HEAD = ("x_mm", "y_mm", "z_mm", "rx_deg", "ry_deg", "rz_deg", "feasible", "share", "margin", "time_s", "clearance_mm",
-        "configuration", "code", "all_points")
+HEAD = (
+    "x_mm",
+    "y_mm",
+    "z_mm",
+    "rx_deg",
+    "ry_deg",
+    "rz_deg",
+    "feasible",
+    "share",
+    "margin",
+    "time_s",
+    "clearance_mm",
+    "configuration",
+    "code",
+    "all_points",
+)
 
 
 def rows(found: Placed) -> Iterator[str]:
@@ -22,11 +36,23 @@ def rows(found: Placed) -> Iterator[str]:
     yield ",".join(HEAD) + "\n"
     for number in range(len(found.poses)):
         one, pose = found.of_pose(number), outer(found.pose(number))
-        yield ",".join([
-            *(f"{value:.6f}" for value in pose), "yes" if one.feasible else "no", f"{one.share:.6f}",
-            *(f"{value:.6f}" if np.isfinite(value) else "" for value in (one.margin, one.time, one.clearance)),
-            "-".join(one.branch), one.code, "yes" if number in found.proven else "no",
-        ]) + "\n"
+        yield (
+            ",".join(
+                [
+                    *(f"{value:.6f}" for value in pose),
+                    "yes" if one.feasible else "no",
+                    f"{one.share:.6f}",
+                    *(
+                        f"{value:.6f}" if np.isfinite(value) else ""
+                        for value in (one.margin, one.time, one.clearance)
+                    ),
+                    "-".join(one.branch),
+                    one.code,
+                    "yes" if number in found.proven else "no",
+                ]
+            )
+            + "\n"
+        )
 
 
 def key(found: Placed, number: int) -> str:
@@ -40,7 +66,9 @@ def key(found: Placed, number: int) -> str:
         turns = one.carries == PART and not done
         done |= turns
         pose = found.pose(number) if turns else one.pose
-        mechanisms.append(f"{{machine: {one.machine}, pose: {_list(pose)}, carries: {one.carries}}}")
+        mechanisms.append(
+            f"{{machine: {one.machine}, pose: {_list(pose)}, carries: {one.carries}}}"
+        )
     return f"external: [{', '.join(mechanisms)}]"
 
 

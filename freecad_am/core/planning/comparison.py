@@ -21,7 +21,9 @@ from .task import Task
 def of_path(path: JointPath, cell: Cell, parameters: JointParameters) -> dict[str, object]:
     """The figures of a planned joint path; of a machine with rotary axes those of its axes alone, which had no choice."""
     if not path.branch:
-        return _figures(cell, path.beads, {"condition_min": None, "objective_value": None, "criteria": {}})
+        return _figures(
+            cell, path.beads, {"condition_min": None, "objective_value": None, "criteria": {}}
+        )
     return figures(Task(cell, opw.branch_index(path.branch), parameters), path.beads)
 
 
@@ -33,18 +35,28 @@ def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
     place of degrees.
     """
     whole = all(path.reachable for path in paths)
-    return _figures(task.cell, paths, {
-        "condition_min": float(min(path.condition.min() for path in paths)),
-        "objective_value": float(sum(path.objective for path in paths)) if whole else None,
-        "criteria": criteria_values(task, paths),
-    })
+    return _figures(
+        task.cell,
+        paths,
+        {
+            "condition_min": float(min(path.condition.min() for path in paths)),
+            "objective_value": float(sum(path.objective for path in paths)) if whole else None,
+            "criteria": criteria_values(task, paths),
+        },
+    )
 
 
-def _figures(cell: Cell, paths: Sequence[BeadPath], criteria_of_path: dict[str, object]) -> dict[str, object]:
+def _figures(
+    cell: Cell, paths: Sequence[BeadPath], criteria_of_path: dict[str, object]
+) -> dict[str, object]:
     joints = np.concatenate([path.joints for path in paths])
     limits, units = cell.limits, cell.machine.unit_values
     ranges = np.array([np.ptp(path.joints, axis=0) for path in paths if path.reachable])
-    margin = np.nanmin(np.minimum(joints - limits.lower, limits.upper - joints), axis=0) if len(ranges) else None
+    margin = (
+        np.nanmin(np.minimum(joints - limits.lower, limits.upper - joints), axis=0)
+        if len(ranges)
+        else None
+    )
     rates = [_rates(path) for path in paths if path.reachable]
     largest = [np.max([rate[k] for rate in rates], axis=0) if rates else None for k in range(3)]
     speed = largest[0]
@@ -57,7 +69,9 @@ def _figures(cell: Cell, paths: Sequence[BeadPath], criteria_of_path: dict[str, 
         "speed_max_deg_s": _shown(speed, units),
         "acceleration_max_deg_s2": _shown(largest[1], units),
         "jerk_max_deg_s3": _shown(largest[2], units),
-        "speed_ratio_max": None if speed is None else [float(v) for v in speed / cell.machine.max_speed],
+        "speed_ratio_max": None
+        if speed is None
+        else [float(v) for v in speed / cell.machine.max_speed],
     }
 
 
@@ -71,7 +85,9 @@ def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | 
         return dict.fromkeys(OBJECTIVES)
     points = gather([path.bead for path in paths], task.cell, posed=not task.cell.torch_stands)
     joints = np.concatenate([path.joints for path in paths])
-    phi, condition = (np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "condition"))
+    phi, condition = (
+        np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "condition")
+    )
     manipulability = np.empty(len(points))
     for some, matrix in task.jacobians(points, phi, joints):
         manipulability[some] = jac.manipulability(matrix, task.parameters.characteristic_length)
@@ -80,7 +96,10 @@ def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | 
     values["manipulability"] = criteria.mean_inverse(points, manipulability)
     values["condition"] = criteria.mean_inverse(points, condition)
     whole = {name: float((value * share).sum()) for name, value in values.items()}
-    whole |= {"displacement": float(values["displacement"].sum()), "limits-klein": float(values["limits-klein"].max())}
+    whole |= {
+        "displacement": float(values["displacement"].sum()),
+        "limits-klein": float(values["limits-klein"].max()),
+    }
     return {name: whole[name] for name in OBJECTIVES}
 
 

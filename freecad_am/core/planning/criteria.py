@@ -52,14 +52,21 @@ def limits_klein(task: Task, points: Points, joints: Array) -> Array:
 
 def _liegeois_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
     slope = 2.0 * task.given_rows.offset(joints) / task.given_rows.half
-    return np.asarray(np.einsum("im,im->i", slope, rates @ task.given_rows.matrix.T) / _count(points))
+    return np.asarray(
+        np.einsum("im,im->i", slope, rates @ task.given_rows.matrix.T) / _count(points)
+    )
 
 
 def _klein_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
     offset = task.given_rows.offset(joints)
     row = np.abs(offset).argmax(axis=1)
     at = np.arange(len(points))
-    slope = 0.5 * np.sign(offset[at, row]) / task.given_rows.half[row] * (rates @ task.given_rows.matrix.T)[at, row]
+    slope = (
+        0.5
+        * np.sign(offset[at, row])
+        / task.given_rows.half[row]
+        * (rates @ task.given_rows.matrix.T)[at, row]
+    )
     return np.where(_is_worst(points, -np.abs(offset[at, row])), slope, 0.0)
 
 
@@ -95,7 +102,11 @@ def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array)
     length = task.parameters.characteristic_length
     if name == "manipulability":
         w = np.maximum(jac.manipulability(matrix, length), 1e-300)
-        return np.asarray(-jac.manipulability_rate(matrix, rates[:, : matrix.shape[2]], length) / w**2 / _count(points))
+        return np.asarray(
+            -jac.manipulability_rate(matrix, rates[:, : matrix.shape[2]], length)
+            / w**2
+            / _count(points)
+        )
     ratio = np.maximum(jac.condition(matrix, length), 1e-300)
     return np.asarray(-condition_rate(task, joints, rates, matrix) / ratio**2 / _count(points))
 
@@ -114,7 +125,9 @@ def joint_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array
 
 def condition_rate(task: Task, joints: Array, rates: Array, matrix: Array) -> Array:
     """(T,) derivative of sigma_min / sigma_max by the phi of each point."""
-    result: Array = jac.condition_rate(matrix, rates[:, : matrix.shape[2]], task.parameters.characteristic_length)
+    result: Array = jac.condition_rate(
+        matrix, rates[:, : matrix.shape[2]], task.parameters.characteristic_length
+    )
     return result
 
 

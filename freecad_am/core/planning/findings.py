@@ -23,27 +23,54 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
     place = {"layer": path.layer, "bead": path.index}
     lost = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
     if len(lost) and not task.cell.machine.free:
-        return [Issue(
-            ERROR, "UNREACHABLE", Text("{} of {} directions cannot be turned to the torch by this machine; tilt less, or "
-                "mount the part otherwise", len(lost), len(path.joints)), point=int(lost[0]), **place,
-        )]
+        return [
+            Issue(
+                ERROR,
+                "UNREACHABLE",
+                Text(
+                    "{} of {} directions cannot be turned to the torch by this machine; tilt less, or "
+                    "mount the part otherwise",
+                    len(lost),
+                    len(path.joints),
+                ),
+                point=int(lost[0]),
+                **place,
+            )
+        ]
     if len(lost):
-        count = Text("{} of {} points cannot be reached with this branch; ", len(lost), len(path.joints))
+        count = Text(
+            "{} of {} points cannot be reached with this branch; ", len(lost), len(path.joints)
+        )
         external = task.cell.external
-        return [Issue(
-            ERROR, "UNREACHABLE",
-            Text("{}move the positioner, choose another branch or tilt less",
-                Word(count)) if external and external.turning else
-            Text("{}move the deposition point, choose another branch or tilt less", Word(count)), point=int(lost[0]),
-            **place,
-        )]
-    return _limit_findings(task, path, place) + _condition_findings(path, place) + _range_findings(task, path, place)
+        return [
+            Issue(
+                ERROR,
+                "UNREACHABLE",
+                Text("{}move the positioner, choose another branch or tilt less", Word(count))
+                if external and external.turning
+                else Text(
+                    "{}move the deposition point, choose another branch or tilt less", Word(count)
+                ),
+                point=int(lost[0]),
+                **place,
+            )
+        ]
+    return (
+        _limit_findings(task, path, place)
+        + _condition_findings(path, place)
+        + _range_findings(task, path, place)
+    )
 
 
 def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
     """That the positioner stands too far from the robot, where no bead gets nearer than the arm with its tool reaches."""
     external, arm = cell.external, cell.robot.arm
-    if external is None or not external.turning or arm is None or any(path.reachable for path in paths):
+    if (
+        external is None
+        or not external.turning
+        or arm is None
+        or any(path.reachable for path in paths)
+    ):
         return []
     shoulder, height = arm.shoulder
     nearest = math.inf
@@ -51,18 +78,31 @@ def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
         values = path.bead.external
         if values is None:
             return []
-        seen = frames.inverse(external.base(values)) @ frames.pose(np.eye(3), cell.on_carrier(path.bead.points))
+        seen = frames.inverse(external.base(values)) @ frames.pose(
+            np.eye(3), cell.on_carrier(path.bead.points)
+        )
         ahead = np.hypot(seen[:, 0, 3], seen[:, 1, 3]) - shoulder
         nearest = min(nearest, float(np.hypot(ahead, seen[:, 2, 3] - height).min()))
-    lengths = (*cell.robot.chain.origins[4:, :3, 3], cell.robot.chain.flange[:3, 3], cell.carried[:3, 3])
+    lengths = (
+        *cell.robot.chain.origins[4:, :3, 3],
+        cell.robot.chain.flange[:3, 3],
+        cell.carried[:3, 3],
+    )
     most = arm.reach + sum(float(np.linalg.norm(length)) for length in lengths)
     if nearest <= most:
         return []
-    return [Issue(
-        ERROR, "UNREACHABLE", Text("the positioner is out of the robot's reach: the nearest point of the part is {:.0f} mm "
-            "from the shoulder, arm and tool stretch {:.0f} mm at most; put the positioner nearer (cell.external)", nearest,
-            most),
-    )]
+    return [
+        Issue(
+            ERROR,
+            "UNREACHABLE",
+            Text(
+                "the positioner is out of the robot's reach: the nearest point of the part is {:.0f} mm "
+                "from the shoulder, arm and tool stretch {:.0f} mm at most; put the positioner nearer (cell.external)",
+                nearest,
+                most,
+            ),
+        )
+    ]
 
 
 def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[Issue]:
@@ -74,12 +114,30 @@ def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
         point = int(over[:, row].argmax())
         value = values[point, row]
         limit = rows.lower[row] if value < rows.lower[row] else rows.upper[row]
-        unit, of = ("mm", 1.0) if (rows.matrix[row] @ task.cell.machine.chain.sliding).any() else ("deg", math.radians(1.0))
-        text = Text("{} would be at {:.2f} {}, its limit is {:g} {}", rows.labels[row], value / of, unit, limit / of, unit)
-        found.append(Issue(
-            ERROR, "LIMIT", text if task.cell.machine.free else Text("{}; move the part on the table", Word(text)),
-            point=point, **place,
-        ))
+        unit, of = (
+            ("mm", 1.0)
+            if (rows.matrix[row] @ task.cell.machine.chain.sliding).any()
+            else ("deg", math.radians(1.0))
+        )
+        text = Text(
+            "{} would be at {:.2f} {}, its limit is {:g} {}",
+            rows.labels[row],
+            value / of,
+            unit,
+            limit / of,
+            unit,
+        )
+        found.append(
+            Issue(
+                ERROR,
+                "LIMIT",
+                text
+                if task.cell.machine.free
+                else Text("{}; move the part on the table", Word(text)),
+                point=point,
+                **place,
+            )
+        )
     return found
 
 
@@ -88,12 +146,19 @@ def _condition_findings(path: BeadPath, place: dict[str, int]) -> list[Issue]:
     point = int(short.argmax())
     if not short[point] > ROUNDING:  # or nothing is free, and there is no condition
         return []
-    return [Issue(
-        ERROR, "SINGULAR",
-        Text("condition {:.4f} is below the {:.4f} asked for: too near a singularity", path.condition[point],
-            path.threshold[point]),
-        point=point, **place,
-    )]
+    return [
+        Issue(
+            ERROR,
+            "SINGULAR",
+            Text(
+                "condition {:.4f} is below the {:.4f} asked for: too near a singularity",
+                path.condition[point],
+                path.threshold[point],
+            ),
+            point=point,
+            **place,
+        )
+    ]
 
 
 def _range_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[Issue]:
@@ -104,9 +169,15 @@ def _range_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
     point = int(over.argmax())
     if over[point] <= ROUNDING:
         return []
-    return [Issue(
-        ERROR, "ROTATION_RANGE",
-        Text("the rotation about the tool axis would be {:.2f} deg, outside the range allowed",
-            math.degrees(path.phi[point])),
-        point=point, **place,
-    )]
+    return [
+        Issue(
+            ERROR,
+            "ROTATION_RANGE",
+            Text(
+                "the rotation about the tool axis would be {:.2f} deg, outside the range allowed",
+                math.degrees(path.phi[point]),
+            ),
+            point=point,
+            **place,
+        )
+    ]

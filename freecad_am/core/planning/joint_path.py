@@ -66,7 +66,9 @@ class JointPath:
     issues: tuple[Issue, ...]
     comparison: tuple[dict[str, object], ...] = ()
     optimality: dict[str, object] | None = None  # with a certificate: objective, bound and gap
-    of_level: dict[str, object] | None = None  # with external axes optimised: the figures of the rule they began with
+    of_level: dict[str, object] | None = (
+        None  # with external axes optimised: the figures of the rule they began with
+    )
 
     @property
     def feasible(self) -> bool:

@@ -46,7 +46,9 @@ class LimitRows:
 
     def margin(self, joints: Array) -> Array:
         """(...) the smallest margin of all rows, 1 in the middle and 0 at a limit; -inf where joints are NaN."""
-        worst: Array = reduce(np.maximum, map(np.abs, self._offsets(joints)))  # sooner than max(axis=-1)
+        worst: Array = reduce(
+            np.maximum, map(np.abs, self._offsets(joints))
+        )  # sooner than max(axis=-1)
         return np.where(np.isnan(worst), UNREACHABLE, 1.0 - worst)
 
     def _offsets(self, joints: Array) -> Iterator[Array]:
@@ -70,5 +72,9 @@ def limit_rows(limits: Limits, reserve: float = 0.0) -> LimitRows:
         matrix=np.vstack([np.eye(axes)[finite], limits.coefficients.reshape(-1, axes)]),
         lower=np.concatenate([limits.lower[finite], limits.coupled_lower]) + reserve,
         upper=np.concatenate([limits.upper[finite], limits.coupled_upper]) - reserve,
-        labels=tuple(np.array(limits.labels)[np.concatenate([finite, np.ones(len(limits.coupled_lower), bool)])]),
+        labels=tuple(
+            np.array(limits.labels)[
+                np.concatenate([finite, np.ones(len(limits.coupled_lower), bool)])
+            ]
+        ),
     )

@@ -50,8 +50,13 @@ class _Rows:
 
 
 def assemble(
-    joint_path: JointPath, cell: Cell, process: ProcessParameters, bodies: Sequence[Body] = (),
-    parameters: JointParameters | None = None, layer_height: float = 0.0, cylinders: Cylinders = (),
+    joint_path: JointPath,
+    cell: Cell,
+    process: ProcessParameters,
+    bodies: Sequence[Body] = (),
+    parameters: JointParameters | None = None,
+    layer_height: float = 0.0,
+    cylinders: Cylinders = (),
 ) -> tuple[Motion, tuple[Issue, ...]]:
     """The motion of a joint path with its rapids, and what is wrong with the rapids.
 
@@ -65,8 +70,16 @@ def assemble(
     mm, how high beads are that do not tell it. cylinders: of each link of the robot, kept clear as the nozzle is where
     `cell.arm_clearance` asks for it.
     """
-    ways = RapidWays(joint_path, cell, process.between_layers.lift, bodies, parameters or JointParameters(),
-                      process.bead_width, layer_height, cylinders)
+    ways = RapidWays(
+        joint_path,
+        cell,
+        process.between_layers.lift,
+        bodies,
+        parameters or JointParameters(),
+        process.bead_width,
+        layer_height,
+        cylinders,
+    )
     parts: list[_Rows] = []
     for number, path in enumerate(joint_path.beads):
         parts += [_rapid(path, ways.ways[number], ways.legs[2 * number], cell), _deposit(path)]
@@ -93,15 +106,32 @@ def _rapid(path: BeadPath, way: Way, onto: Leg | None, cell: Cell) -> _Rows:
     build = tool.copy()
     build[-1] = path.bead.build[0]
     none, zero = np.full(len(joints), np.nan), np.zeros(len(joints))
-    return _Rows(way.role, *_place(path), position, build, tool, none, none, joints, none, none, zero, zero)
+    return _Rows(
+        way.role, *_place(path), position, build, tool, none, none, joints, none, none, zero, zero
+    )
 
 
 def _retract(path: BeadPath, way: Way, away: Leg | None) -> _Rows:
     assert away is not None
     count = len(way.joints)
-    tool, build = (np.repeat(column[-1:], count, axis=0) for column in (path.bead.tool, path.bead.build))
+    tool, build = (
+        np.repeat(column[-1:], count, axis=0) for column in (path.bead.tool, path.bead.build)
+    )
     none, zero = np.full(count, np.nan), np.zeros(count)
-    return _Rows(way.role, *_place(path), away.position, build, tool, none, none, way.joints, none, none, zero, zero)
+    return _Rows(
+        way.role,
+        *_place(path),
+        away.position,
+        build,
+        tool,
+        none,
+        none,
+        way.joints,
+        none,
+        none,
+        zero,
+        zero,
+    )
 
 
 def _deposit(path: BeadPath) -> _Rows:
@@ -111,8 +141,17 @@ def _deposit(path: BeadPath) -> _Rows:
     width = np.full(len(bead), np.nan) if bead.width is None else bead.width
     wire = np.full(len(bead), np.nan) if bead.wire_share is None else bead.wire_share * bead.speed
     return _Rows(
-        np.full(len(bead), DEPOSIT), *_place(path), bead.points, bead.build, bead.tool, bead.speed, width,
-        path.joints, duration, wire, np.zeros(len(bead)) if bead.phase is None else bead.phase,
+        np.full(len(bead), DEPOSIT),
+        *_place(path),
+        bead.points,
+        bead.build,
+        bead.tool,
+        bead.speed,
+        width,
+        path.joints,
+        duration,
+        wire,
+        np.zeros(len(bead)) if bead.phase is None else bead.phase,
         turns_back(bead),
     )
 
@@ -121,7 +160,8 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
     counts = [len(part.joints) for part in parts]
     columns = {
         field.name: np.concatenate([getattr(part, field.name) for part in parts])
-        for field in fields(_Rows) if field.name not in OF_ALL
+        for field in fields(_Rows)
+        if field.name not in OF_ALL
     }
     joints, position, duration = columns["joints"], columns["position"], columns["duration"]
     speed = columns["speed"]
@@ -135,12 +175,22 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
     if len(rapid) and rapid[0] == 0:
         speed[0] = process.rapid_speed
     duration[0] = 0.0
-    number = {name: np.repeat([int(getattr(part, name)) for part in parts], counts) for name in OF_ALL}
+    number = {
+        name: np.repeat([int(getattr(part, name)) for part in parts], counts) for name in OF_ALL
+    }
     return Motion(
         deposit=columns["role"] == DEPOSIT,
         **number,
         point=np.concatenate([np.arange(count) for count in counts]),
-        position=position, build=columns["build"], tool=columns["tool"], speed=speed, width=columns["width"],
-        joints=joints, duration=duration, wire=columns["wire"], role=columns["role"],
-        phase=np.nan_to_num(columns["phase"]).astype(np.int64), halt=columns["halt"] > 0.0,
+        position=position,
+        build=columns["build"],
+        tool=columns["tool"],
+        speed=speed,
+        width=columns["width"],
+        joints=joints,
+        duration=duration,
+        wire=columns["wire"],
+        role=columns["role"],
+        phase=np.nan_to_num(columns["phase"]).astype(np.int64),
+        halt=columns["halt"] > 0.0,
     )

@@ -33,13 +33,26 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
     met_there, found = met(cell, motion.joints[rows - 1], motion.joints[rows]), []
     for number, (name, here) in enumerate(zip(in_the_way(cell), met_there, strict=True)):
         laying = rows[here]
-        remedy = "move it in cell.obstacles, or the part" if number < len(cell.obstacles) else (
-            "lift the part over it by cell.platform, or move it in cell.external")
+        remedy = (
+            "move it in cell.obstacles, or the part"
+            if number < len(cell.obstacles)
+            else ("lift the part over it by cell.platform, or move it in cell.external")
+        )
         if len(laying):
-            found.append(Issue(
-                ERROR, ON_BEADS, Text("the nozzle touches {} on {} move(s) while it deposits; {}", name, len(laying),
-                    Word(remedy)),
-                int(motion.layer[laying[0]]), int(motion.bead[laying[0]])))
+            found.append(
+                Issue(
+                    ERROR,
+                    ON_BEADS,
+                    Text(
+                        "the nozzle touches {} on {} move(s) while it deposits; {}",
+                        name,
+                        len(laying),
+                        Word(remedy),
+                    ),
+                    int(motion.layer[laying[0]]),
+                    int(motion.bead[laying[0]]),
+                )
+            )
     return found
 
 
@@ -59,7 +72,9 @@ def met(cell: Cell, start: Array, end: Array) -> Mask:
 def _met(cell: Cell, start: Array, end: Array) -> Mask:
     nozzle, turned, obstacles = cell.nozzle, end - start, len(cell.obstacles)
     found = np.zeros((obstacles + len(cell.external_links), len(start)), dtype=bool)
-    far = np.abs(turned / np.where(cell.machine.chain.sliding, SLIDE, STEP)).max(axis=1, initial=0.0)
+    far = np.abs(turned / np.where(cell.machine.chain.sliding, SLIDE, STEP)).max(
+        axis=1, initial=0.0
+    )
     (tip, axis), (last, leant) = (_in_world(cell, joints) for joints in (start, end))
     way = np.linalg.norm(last - tip, axis=1) + nozzle.length * np.linalg.norm(leant - axis, axis=1)
     move, share = evenly(1 + np.ceil(np.maximum(far, way / WAY)).astype(np.intp))
@@ -73,7 +88,9 @@ def _met(cell: Cell, start: Array, end: Array) -> Mask:
             found[number, move[some][hit]] = True
         to_world = frames.inverse(cell.world(joints))[:, None] @ cell.external_link_frames(joints)
         for number, one in enumerate(cell.external_links):
-            hit = one.solid.touched(cone.bodies, *_seen(frames.inverse(to_world[:, number]), tip, axis))
+            hit = one.solid.touched(
+                cone.bodies, *_seen(frames.inverse(to_world[:, number]), tip, axis)
+            )
             found[obstacles + number, move[some][hit]] = True
     return found
 

@@ -23,12 +23,19 @@ from .external.level import levelled
 from .plan import best_branches
 from .tried import Tried
 
-SHIFTS = ((0.0, -150.0), (0.0, 150.0), (-150.0, 0.0), (150.0, 0.0))  # of the deposition point, ahead of the robot and up, mm
+SHIFTS = (
+    (0.0, -150.0),
+    (0.0, 150.0),
+    (-150.0, 0.0),
+    (150.0, 0.0),
+)  # of the deposition point, ahead of the robot and up, mm
 
 
 def with_cell(job: Tried, remedy: str, **values: object) -> Tried:
     """The job in its cell with other values."""
-    return dataclasses.replace(job, settings=dataclasses.replace(job.settings, **values), remedy=remedy)  # type: ignore[arg-type]
+    return dataclasses.replace(
+        job, settings=dataclasses.replace(job.settings, **values), remedy=remedy
+    )  # type: ignore[arg-type]
 
 
 def branches(job: Tried) -> Iterator[Tried]:
@@ -36,7 +43,12 @@ def branches(job: Tried) -> Iterator[Tried]:
     if job.settings.branch == "auto" or job.joints.own_branch != OF_CELL:
         return
     toolpath = job.toolpath()
-    cell = cells.resolve(dataclasses.replace(job.settings, branch="auto"), toolpath.frame, toolpath.family, job.folders)
+    cell = cells.resolve(
+        dataclasses.replace(job.settings, branch="auto"),
+        toolpath.frame,
+        toolpath.family,
+        job.folders,
+    )
     beads = levelled(cell, toolpath)[0] if cell.external else [bead for _, _, bead in toolpath]
     for branch in best_branches(beads, cell, job.joints, toolpath.family != "revolution"):
         words = opw.branch_name(branch)
@@ -52,10 +64,23 @@ def points(job: Tried) -> Iterator[Tried]:
     best = proposed_cell.proposed(job.settings, job.folders)
     if best.deposition_point != job.settings.deposition_point:
         words = best.branch if isinstance(best.branch, str) else f"[{', '.join(best.branch)}]"
-        yield with_cell(job, Text("{} and `cell.branch: {}`", _shown(best.deposition_point), words),
-                         deposition_point=best.deposition_point, branch=best.branch)
-    for point in _before(job) if not of_setup(job.settings.setup).carries_part else _adjacent(job.settings.deposition_point):
-        yield with_cell(job, Text("{} and `cell.branch: auto`", _shown(point)), deposition_point=point, branch="auto")
+        yield with_cell(
+            job,
+            Text("{} and `cell.branch: {}`", _shown(best.deposition_point), words),
+            deposition_point=best.deposition_point,
+            branch=best.branch,
+        )
+    for point in (
+        _before(job)
+        if not of_setup(job.settings.setup).carries_part
+        else _adjacent(job.settings.deposition_point)
+    ):
+        yield with_cell(
+            job,
+            Text("{} and `cell.branch: auto`", _shown(point)),
+            deposition_point=point,
+            branch="auto",
+        )
 
 
 def external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
@@ -64,7 +89,9 @@ def external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
         yield dataclasses.replace(job, settings=settings, remedy=remedy)
     toolpath = job.toolpath()
     mass = external_remedies.weight(toolpath, job.process)
-    for remedy, settings in external_remedies.added(job.settings, job.folders, toolpath, codes, mass):
+    for remedy, settings in external_remedies.added(
+        job.settings, job.folders, toolpath, codes, mass
+    ):
         yield dataclasses.replace(job, settings=settings, remedy=remedy)
 
 
@@ -72,7 +99,14 @@ def _adjacent(point: Pose) -> list[Pose]:
     x, y, *rest = point
     ahead = math.hypot(x, y) or 1.0
     return [
-        (round(x + out * x / ahead, 3), round(y + out * y / ahead, 3), round(rest[0] + up, 3), rest[1], rest[2], rest[3])
+        (
+            round(x + out * x / ahead, 3),
+            round(y + out * y / ahead, 3),
+            round(rest[0] + up, 3),
+            rest[1],
+            rest[2],
+            rest[3],
+        )
         for out, up in SHIFTS
     ]
 
@@ -85,11 +119,21 @@ def _before(job: Tried) -> list[Pose]:
         return []
     shoulder, height = arm.shoulder
     return [
-        (float(round(shoulder + ahead * arm.reach)), 0.0, float(round(height + above * arm.reach)), 0.0, 0.0, 0.0)
+        (
+            float(round(shoulder + ahead * arm.reach)),
+            0.0,
+            float(round(height + above * arm.reach)),
+            0.0,
+            0.0,
+            0.0,
+        )
         for ahead, above in ((0.6, -0.3), (0.6, -0.5), (0.75, -0.3), (0.5, -0.2))
     ]
 
 
 def _shown(point: Pose) -> str:
     angles = [math.degrees(angle) for angle in point[3:]]
-    return Text("`cell.deposition_point: [{}]`", ", ".join(f"{value + 0.0:.10g}" for value in (*point[:3], *angles)))
+    return Text(
+        "`cell.deposition_point: [{}]`",
+        ", ".join(f"{value + 0.0:.10g}" for value in (*point[:3], *angles)),
+    )

@@ -39,12 +39,32 @@ from .turns.locked import as_held, lock_of
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
 
-METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_point.plan, "constant": constant.plan}
-ALL_METHODS = METHODS | {closed_form.METHOD: closed_form.plan}  # and the one where there is nothing to choose
+METHODS = {
+    "layer-by-layer": layer_by_layer.plan,
+    "point-by-point": point_by_point.plan,
+    "constant": constant.plan,
+}
+ALL_METHODS = METHODS | {
+    closed_form.METHOD: closed_form.plan
+}  # and the one where there is nothing to choose
 # what there is to choose where a robot is free to turn about the tool
 OF_ROBOTS = (
-    "method", "rz", "degree", "parameter", "rotation_range", "objective", "min_condition", "characteristic_length",
-    "tolerance", "max_iterations", "compare", "given", "own_branch", "certificate", "close_gap", "external_axes",
+    "method",
+    "rz",
+    "degree",
+    "parameter",
+    "rotation_range",
+    "objective",
+    "min_condition",
+    "characteristic_length",
+    "tolerance",
+    "max_iterations",
+    "compare",
+    "given",
+    "own_branch",
+    "certificate",
+    "close_gap",
+    "external_axes",
 )
 BRANCHES = 8
 # with the branch left open: beads looked at in each, and branches planned until one serves
@@ -57,7 +77,11 @@ def _silent(fraction: float, text: str) -> None:
 
 
 def plan_joints(
-    toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress = _silent, cylinders: Cylinders = ()
+    toolpath: Toolpath,
+    cell: Cell,
+    parameters: JointParameters,
+    progress: Progress = _silent,
+    cylinders: Cylinders = (),
 ) -> JointPath:
     """The joint path of a toolpath.
 
@@ -67,11 +91,24 @@ def plan_joints(
     """
     lock, (parameters, not_used) = lock_of(cell, parameters, toolpath), _used(cell, parameters)
     parts = toolpath.parts
-    joined, kept = all(part.family != REVOLUTION for part, _ in parts), of_job(toolpath, cell, cylinders)
+    joined, kept = (
+        all(part.family != REVOLUTION for part, _ in parts),
+        of_job(toolpath, cell, cylinders),
+    )
     wanted = _branch_wanted(cell, parameters)
     among = range(BRANCHES) if wanted is None else (wanted,)
-    asked = Task(cell, 0, parameters, joined, kept, lock, toolpath.chord_error, toolpath.overlap, toolpath.retreat,
-                 parts)
+    asked = Task(
+        cell,
+        0,
+        parameters,
+        joined,
+        kept,
+        lock,
+        toolpath.chord_error,
+        toolpath.overlap,
+        toolpath.retreat,
+        parts,
+    )
 
     def served(some: Sequence[Bead]) -> float:
         return -_ranked(some, places, asked, among)[0][0] / min(len(some), SCREENED)
@@ -79,14 +116,20 @@ def plan_joints(
     planned: JointPath | None = None
     for beads, places, tilted in ways(cell, toolpath):
         for moved in track.placed(beads, cell, served):
-            branches = [wanted] if wanted is not None else best_branches(moved, cell, parameters, joined, kept, places)
+            branches = (
+                [wanted]
+                if wanted is not None
+                else best_branches(moved, cell, parameters, joined, kept, places)
+            )
             found = _in_branches((moved, places), tilted, asked, branches, progress)
             if planned is None or found.feasible:
                 planned = found
             if planned.feasible:
                 return dataclasses.replace(planned, issues=(*planned.issues, *not_used))
     assert planned is not None  # there is one way at least
-    return dataclasses.replace(planned, issues=(*out_of_reach(cell, planned.beads), *planned.issues, *not_used))
+    return dataclasses.replace(
+        planned, issues=(*out_of_reach(cell, planned.beads), *planned.issues, *not_used)
+    )
 
 
 def _choices(task: Task) -> tuple[str, str, tuple[str, ...]]:
@@ -100,11 +143,19 @@ def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
     """The branch to plan in, None where all are to be searched. Where nothing is free it is chosen bead by bead."""
     if not cell.machine.free:
         return 0
-    return cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
+    return (
+        cell.branch
+        if parameters.own_branch == OF_CELL
+        else opw.branch_index(parameters.own_branch.split("-"))
+    )
 
 
 def _in_branches(
-    placed: tuple[list[Bead], list[Place]], tilted: list[Issue], asked: Task, branches: Sequence[int], progress: Progress
+    placed: tuple[list[Bead], list[Place]],
+    tilted: list[Issue],
+    asked: Task,
+    branches: Sequence[int],
+    progress: Progress,
 ) -> JointPath:
     """The joint path, external axes as the beads have them, in the first of the branches that serves."""
     (beads, places), cell, parameters = placed, asked.cell, asked.parameters
@@ -127,10 +178,15 @@ def _in_branches(
         (paths, issues), level = _bettered(task, beads, places, (paths, issues), progress)
     issues = [*tilted, *issues, *notes]
     if cell.robot.arm is not None and cell.robot.arm.followed:
-        issues = [*issues, Issue(
-            NOTE, "FOLLOWED", "several solutions of this arm bear the same configuration; along each bead the one it begins "
-            "with is followed",
-        )]
+        issues = [
+            *issues,
+            Issue(
+                NOTE,
+                "FOLLOWED",
+                "several solutions of this arm bear the same configuration; along each bead the one it begins "
+                "with is followed",
+            ),
+        ]
     comparisons = tuple(
         _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
     )
@@ -138,18 +194,34 @@ def _in_branches(
     if parameters.certificate and not has_errors(issues):
         from .certificate import bound  # few jobs ask for it
 
-        optimality, notes = bound.summed(task, paths, lambda share: progress(share, "bounding the objective"))
+        optimality, notes = bound.summed(
+            task, paths, lambda share: progress(share, "bounding the objective")
+        )
         issues = [*issues, *notes]
-    return JointPath(*_choices(task), cell.limits.name, tuple(paths), tuple(issues), comparisons, optimality, level)
+    return JointPath(
+        *_choices(task),
+        cell.limits.name,
+        tuple(paths),
+        tuple(issues),
+        comparisons,
+        optimality,
+        level,
+    )
 
 
-def _failed(paths: Sequence[BeadPath], issues: Sequence[Issue], places: Sequence[tuple[int, int]]) -> list[int]:
+def _failed(
+    paths: Sequence[BeadPath], issues: Sequence[Issue], places: Sequence[tuple[int, int]]
+) -> list[int]:
     """Which beads have errors, SCREENED of them at most; where some were divided, those of their layers."""
     wrong = {(issue.layer, issue.bead) for issue in issues if issue.level == ERROR}
     if len(paths) != len(set(places)):
         wrong = {place for place in places if place[0] in {layer for layer, _ in wrong}}
     found = [k for k, place in enumerate(places) if place in wrong]
-    return [found[k] for k in sorted({round(at) for at in np.linspace(0, len(found) - 1, SCREENED)})] if found else []
+    return (
+        [found[k] for k in sorted({round(at) for at in np.linspace(0, len(found) - 1, SCREENED)})]
+        if found
+        else []
+    )
 
 
 def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, list[Issue]]:
@@ -157,21 +229,36 @@ def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, lis
     if cell.machine.free:
         return parameters, []
     usual = JointParameters()
-    chosen = [f"joints.{name}" for name in OF_ROBOTS if getattr(parameters, name) != getattr(usual, name)]
-    parameters = dataclasses.replace(parameters, **{name: getattr(usual, name) for name in OF_ROBOTS})
+    chosen = [
+        f"joints.{name}" for name in OF_ROBOTS if getattr(parameters, name) != getattr(usual, name)
+    ]
+    parameters = dataclasses.replace(
+        parameters, **{name: getattr(usual, name) for name in OF_ROBOTS}
+    )
     chosen += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
     chosen += ["cell.obstacles"] if cell.obstacles else []
     chosen += ["cell.nozzle.shape"] if cell.nozzle.shape != NO_SHAPE else []
     if not chosen:
         return parameters, []
-    return parameters, [Issue(
-        NOTE, "NOT_USED", Text("{}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool "
-            "to choose; leave out what is meant for robots", ", ".join(chosen)),
-    )]
+    return parameters, [
+        Issue(
+            NOTE,
+            "NOT_USED",
+            Text(
+                "{}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool "
+                "to choose; leave out what is meant for robots",
+                ", ".join(chosen),
+            ),
+        )
+    ]
 
 
 def best_branches(
-    beads: Sequence[Bead], cell: Cell, parameters: JointParameters, joined: bool = False, kept: ArmKept | None = None,
+    beads: Sequence[Bead],
+    cell: Cell,
+    parameters: JointParameters,
+    joined: bool = False,
+    kept: ArmKept | None = None,
     places: Sequence[Place] = (),
 ) -> list[int]:
     """The branches worth planning, the best first: those that serve as many beads as any, by objective, then margin.
@@ -192,22 +279,36 @@ def _ranked(
     ranks = []
     for branch in among:
         task = dataclasses.replace(asked, branch=branch)
-        found = search.everywhere(task, points, task.thresholds(points), best_alone=task.kept is None)
+        found = search.everywhere(
+            task, points, task.thresholds(points), best_alone=task.kept is None
+        )
         within = 0
         if task.kept is not None:
             within = int((found.margin.max(axis=0) >= 0.0).sum())
-            found = arm_clear.without_touching(task, task.kept, points, [places[k] for k in some], found)
+            found = arm_clear.without_touching(
+                task, task.kept, points, [places[k] for k in some], found
+            )
         best, each = found.best(), np.arange(len(some))
         margin, objective = found.margin[best, each], found.objective[best, each]
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
         # rounded, so that of branches that are mirror images the same comes first everywhere
-        ranks.append((-int(feasible.sum()), -within, float(f"{worth:.8e}"), round(-float(margin.min()), 9), branch))
+        ranks.append(
+            (
+                -int(feasible.sum()),
+                -within,
+                float(f"{worth:.8e}"),
+                round(-float(margin.min()), 9),
+                branch,
+            )
+        )
     return sorted(ranks)
 
 
 def _compare_order(parameters: JointParameters) -> list[str]:
-    return [method for method in METHODS if method in parameters.compare and method != parameters.method]
+    return [
+        method for method in METHODS if method in parameters.compare and method != parameters.method
+    ]
 
 
 def _planned(
@@ -219,7 +320,10 @@ def _planned(
 
 
 def _bettered(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], level: tuple[list[BeadPath], list[Issue]],
+    task: Task,
+    beads: Sequence[Bead],
+    places: Sequence[Place],
+    level: tuple[list[BeadPath], list[Issue]],
     progress: Progress,
 ) -> tuple[tuple[list[BeadPath], list[Issue]], dict[str, object]]:
     """The same with the external axes optimised, and the figures of `level`."""
@@ -231,7 +335,11 @@ def _bettered(
         return done, before + found
 
     return external_rule.bettered(
-        task, level, planned, finish, lambda share: progress(share, "optimising the external axes"),
+        task,
+        level,
+        planned,
+        finish,
+        lambda share: progress(share, "optimising the external axes"),
     )
 
 
@@ -241,7 +349,10 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
     paths, missed = as_held(task.cell, paths, task.lock, task.parameters.max_residual)
     phased = [phases.phased(task.cell, path, task.condition_at) for path in paths]
-    paths, issues = [path for path, _ in phased], notes + [issue for _, found in (*phased, *straight) for issue in found]
+    paths, issues = (
+        [path for path, _ in phased],
+        notes + [issue for _, found in (*phased, *straight) for issue in found],
+    )
     for path in paths:
         issues += findings(task, path)
     issues += missed
@@ -255,13 +366,17 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
 
 def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[Issue]]]:
     """The paths longer where their beads go back or run on, with the points that straight motion asks for."""
-    if not task.cell.machine.free:  # whose beads are looked at as they are run: axes have room for all of it, or for none
+    if (
+        not task.cell.machine.free
+    ):  # whose beads are looked at as they are run: axes have room for all of it, or for none
         return [(path, []) for path in paths]
     longer = [run_on(task, go_back(task, path, task.retreat), task.overlap) for path in paths]
     return all_refined(task, longer, task.chord_error)
 
 
-def _slowed(cell: Cell, paths: Sequence[BeadPath], parts: Parts) -> tuple[list[BeadPath], list[Issue]]:
+def _slowed(
+    cell: Cell, paths: Sequence[BeadPath], parts: Parts
+) -> tuple[list[BeadPath], list[Issue]]:
     """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
     done, notes = list(paths), []
     for part, layers in parts:
@@ -281,10 +396,16 @@ def _slowed(cell: Cell, paths: Sequence[BeadPath], parts: Parts) -> tuple[list[B
 
 
 def _compared(
-    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], method: str, progress: Progress
+    task: Task,
+    beads: Sequence[Bead],
+    places: Sequence[tuple[int, int]],
+    method: str,
+    progress: Progress,
 ) -> dict[str, object]:
     started = time.perf_counter()
-    other = dataclasses.replace(task, parameters=dataclasses.replace(task.parameters, method=method))
+    other = dataclasses.replace(
+        task, parameters=dataclasses.replace(task.parameters, method=method)
+    )
     paths, issues = METHODS[method](other, beads, places, progress)
     for path in paths:
         issues += findings(other, path)

@@ -60,9 +60,15 @@ class Points:
         """Chosen points, each as a bead of its own."""
         alone = np.arange(len(index))
         return Points(
-            self.position[index], self.tool[index], self.parameter[index], alone, alone,
-            np.zeros(len(index), dtype=bool), self.frames.of(index),
-            None if self.external is None else self.external[index], self.sliding,
+            self.position[index],
+            self.tool[index],
+            self.parameter[index],
+            alone,
+            alone,
+            np.zeros(len(index), dtype=bool),
+            self.frames.of(index),
+            None if self.external is None else self.external[index],
+            self.sliding,
         )
 
     def only(self, bead: int) -> tuple[Points, slice]:
@@ -71,9 +77,15 @@ class Points:
         chosen = slice(int(ends[bead]), int(ends[bead + 1]))
         none = np.zeros(chosen.stop - chosen.start, dtype=np.int64)
         part = Points(
-            self.position[chosen], self.tool[chosen], self.parameter[chosen], none[:1], none,
-            self.closed[bead : bead + 1], self.frames.of(chosen),
-            None if self.external is None else self.external[chosen], self.sliding,
+            self.position[chosen],
+            self.tool[chosen],
+            self.parameter[chosen],
+            none[:1],
+            none,
+            self.closed[bead : bead + 1],
+            self.frames.of(chosen),
+            None if self.external is None else self.external[chosen],
+            self.sliding,
         )
         return part, chosen
 
@@ -103,7 +115,9 @@ class Points:
         return total
 
 
-def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bool = True) -> Points:
+def gather(
+    beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bool = True
+) -> Points:
     """The points of the beads, thinned to `most` per bead and turn about the axis, both ends kept; with frames of none where
     they are not posed."""
     chosen = [thinned(bead, most) for bead in beads]
@@ -112,7 +126,13 @@ def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bo
     tool = np.concatenate([bead.tool[index] for bead, index in zip(beads, chosen)])
     external = None
     if cell.external is not None:
-        external = np.concatenate([bead.external[index] for bead, index in zip(beads, chosen) if bead.external is not None])
+        external = np.concatenate(
+            [
+                bead.external[index]
+                for bead, index in zip(beads, chosen)
+                if bead.external is not None
+            ]
+        )
     return Points(
         position=position,
         tool=tool,
@@ -138,7 +158,9 @@ def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None)
         for some in in_pieces(len(position))
     ]
     if cell.arrangement.carries_part:
-        return PoseFrames(parts[0].left, parts[0].sign, np.concatenate([part.right for part in parts]))
+        return PoseFrames(
+            parts[0].left, parts[0].sign, np.concatenate([part.right for part in parts])
+        )
     return PoseFrames(np.concatenate([part.left for part in parts]), parts[0].sign, parts[0].right)
 
 
@@ -167,7 +189,9 @@ def steps(joints: Array, points: Points) -> Array:
     step = np.zeros_like(joints)
     np.subtract(joints[..., 1:, :], joints[..., :-1, :], out=step[..., 1:, :])
     step[..., points.first, :] = 0.0
-    if not max(step.max(initial=0.0), -step.min(initial=0.0)) <= 0.5 * TURN:  # else all are the short way
+    if (
+        not max(step.max(initial=0.0), -step.min(initial=0.0)) <= 0.5 * TURN
+    ):  # else all are the short way
         long = np.abs(step) > 0.5 * TURN
         if points.sliding is not None:
             long &= ~points.sliding
@@ -196,7 +220,10 @@ def unwrapped_by_turns(joints: Array, points: Points) -> Array:
     any, in a third of its time."""
     step = np.diff(joints, axis=-2)
     every = tuple(range(step.ndim - 1))
-    far = np.maximum(step.max(axis=every, initial=0.0), -step.min(axis=every, initial=0.0)) > 0.5 * TURN
+    far = (
+        np.maximum(step.max(axis=every, initial=0.0), -step.min(axis=every, initial=0.0))
+        > 0.5 * TURN
+    )
     if points.sliding is not None:
         far &= ~points.sliding
     result = joints.copy(order="K")

@@ -40,7 +40,9 @@ def most_points(toolpath: Toolpath, issues: Sequence[Issue]) -> int:
     return some + (WHOLE * toolpath.point_count if toolpath.point_count <= LONGEST else 0)
 
 
-def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Progress) -> list[Issue]:
+def remedies(
+    job: Tried, path: JointPath, issues: Sequence[Issue], progress: Progress
+) -> list[Issue]:
     """A note with the first change found that makes an infeasible job feasible, or with all that were tried; none of a
     feasible one. path: its joint path. progress may raise to cancel."""
     if not has_errors(list(issues)):
@@ -60,30 +62,61 @@ def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Pro
                 continue
             if toolpath.point_count > LONGEST:
                 count = len(some.layers)
-                return [Issue(NOTE, REMEDY, Text("with {} the {} of the layers in question that were planned again are "
-                                                 "feasible; the whole job was not tried", change.remedy, count))]
+                return [
+                    Issue(
+                        NOTE,
+                        REMEDY,
+                        Text(
+                            "with {} the {} of the layers in question that were planned again are "
+                            "feasible; the whole job was not tried",
+                            change.remedy,
+                            count,
+                        ),
+                    )
+                ]
             whole -= 1
             if not has_errors(change.issues(toolpath, True, progress)):
-                return [Issue(NOTE, REMEDY, Text("with {} this job is feasible; tried, not applied", change.remedy))]
+                return [
+                    Issue(
+                        NOTE,
+                        REMEDY,
+                        Text("with {} this job is feasible; tried, not applied", change.remedy),
+                    )
+                ]
             if not whole:
                 break
         except AmError:  # what cannot be asked for is not a remedy
             continue
     if not tried:
         return []
-    return [Issue(NOTE, NO_REMEDY, Text("none of these makes the job feasible, each was tried: {}",
-                                        Text.joined("; ", tried)))]
+    return [
+        Issue(
+            NOTE,
+            NO_REMEDY,
+            Text(
+                "none of these makes the job feasible, each was tried: {}", Text.joined("; ", tried)
+            ),
+        )
+    ]
 
 
 def _failed(issues: Sequence[Issue]) -> list[int]:
     """The layers that errors are in."""
-    return sorted({issue.layer for issue in issues if issue.level == ERROR and issue.layer is not None})
+    return sorted(
+        {issue.layer for issue in issues if issue.level == ERROR and issue.layer is not None}
+    )
 
 
 def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[Tried]:
-    codes, free = {issue.code for issue in issues if issue.level == ERROR}, of_setup(job.settings.setup).free > 0
+    codes, free = (
+        {issue.code for issue in issues if issue.level == ERROR},
+        of_setup(job.settings.setup).free > 0,
+    )
     usual = CellParameters()
-    left_out = job.settings.deposition_point == usual.deposition_point and job.settings.machine != usual.machine
+    left_out = (
+        job.settings.deposition_point == usual.deposition_point
+        and job.settings.machine != usual.machine
+    )
     if left_out and free:
         yield from other_cells.points(job)
     if "SPEED" in codes and job.process.bead_model == "none":
@@ -97,7 +130,9 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
         fixed = dataclasses.replace(job, toolpath=job.fixed.make, remedy=job.fixed.remedy)
         yield fixed
         if free and job.settings.branch != "auto":
-            yield other_cells.with_cell(fixed, Text("{} and `cell.branch: auto`", fixed.remedy), branch="auto")
+            yield other_cells.with_cell(
+                fixed, Text("{} and `cell.branch: auto`", fixed.remedy), branch="auto"
+            )
     if not left_out and free:
         yield from other_cells.points(job)
     yield from other_cells.external_axes(job, codes)
@@ -114,14 +149,23 @@ def _slower(job: Tried, path: JointPath) -> Iterator[Tried]:
     speed = math.floor(0.99 * speed / step) * step  # two digits
     share = speed / job.process.travel_speed
     layers = tuple(
-        layer if job.own_speed and job.own_speed[layer.feature] else
-        dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, speed=share * bead.speed) for bead in layer.beads))
+        layer
+        if job.own_speed and job.own_speed[layer.feature]
+        else dataclasses.replace(
+            layer,
+            beads=tuple(
+                dataclasses.replace(bead, speed=share * bead.speed) for bead in layer.beads
+            ),
+        )
         for layer in toolpath.layers
     )
     slower = dataclasses.replace(toolpath, layers=layers)
     process = dataclasses.replace(job.process, travel_speed=speed)
     yield dataclasses.replace(
-        job, toolpath=lambda: slower, process=process, remedy=f"`process.travel_speed: {speed:g} mm/s`"
+        job,
+        toolpath=lambda: slower,
+        process=process,
+        remedy=f"`process.travel_speed: {speed:g} mm/s`",
     )
 
 
@@ -130,7 +174,9 @@ def _retracts(job: Tried) -> Iterator[Tried]:
         between = dataclasses.replace(job.process.between_layers, lift=retract)
         if between != job.process.between_layers:
             process = dataclasses.replace(job.process, between_layers=between)
-            yield dataclasses.replace(job, process=process, remedy=f"`process.between_layers.lift: {retract:g} mm`")
+            yield dataclasses.replace(
+                job, process=process, remedy=f"`process.between_layers.lift: {retract:g} mm`"
+            )
 
 
 def _rotations(job: Tried) -> Iterator[Tried]:
@@ -138,7 +184,9 @@ def _rotations(job: Tried) -> Iterator[Tried]:
     low, high = job.joints.rotation_range
     if high - low < FULL_TURN[1] - FULL_TURN[0] - 1e-9:
         free = dataclasses.replace(job.joints, rotation_range=FULL_TURN)
-        yield dataclasses.replace(job, joints=free, remedy="`joints.rotation_range: [-180 deg, 180 deg]`")
+        yield dataclasses.replace(
+            job, joints=free, remedy="`joints.rotation_range: [-180 deg, 180 deg]`"
+        )
     if job.joints.method == "constant":
         layers = dataclasses.replace(job.joints, method="layer-by-layer")
         yield dataclasses.replace(job, joints=layers, remedy="`joints.method: layer-by-layer`")

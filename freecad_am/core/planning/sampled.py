@@ -62,15 +62,24 @@ def sampled(toolpath: Toolpath, most: int, together: int = 1) -> Sampled:
     points = _one_in([bead for _, _, bead in every], most, PER_TURN)
     wanted = math.ceil(sum(len(_kept(bead, points)) for _, _, bead in every) / most)
     beads = min(wanted, max(1, len(every) - 1))
-    chosen = [one for k, one in enumerate(every[:-1]) if k % (together * beads) < together] + every[-1:]
+    chosen = [one for k, one in enumerate(every[:-1]) if k % (together * beads) < together] + every[
+        -1:
+    ]
     if beads < wanted:  # there are no more beads to leave out
         points = max(points, _one_in([bead for _, _, bead in chosen], most, FEWEST_PER_TURN))
     layers = tuple(
-        replace(layer, beads=tuple(bead.thinned(_kept(bead, points)) for place, _, bead in chosen if place == number))
+        replace(
+            layer,
+            beads=tuple(
+                bead.thinned(_kept(bead, points)) for place, _, bead in chosen if place == number
+            ),
+        )
         for number, layer in enumerate(toolpath.layers)
     )
     return Sampled(
-        replace(toolpath, layers=layers, chord_error=toolpath.chord_error * points**2), beads, points,
+        replace(toolpath, layers=layers, chord_error=toolpath.chord_error * points**2),
+        beads,
+        points,
         tuple((layer, index) for layer, index, _ in chosen),
     )
 
@@ -88,4 +97,6 @@ def _kept(bead: Bead, points: int) -> Index:
     step = max(1, min(points, last // LEAST))
     share = np.abs(np.diff(bead.parameter)) * (FEWEST_PER_TURN / TURN)
     passed = np.floor(np.cumsum(np.maximum(1.0, step * share)) / step)
-    return np.asarray(np.unique(np.r_[0, np.flatnonzero(np.diff(passed, prepend=0.0) >= 1.0) + 1, last]))
+    return np.asarray(
+        np.unique(np.r_[0, np.flatnonzero(np.diff(passed, prepend=0.0) >= 1.0) + 1, last])
+    )

@@ -45,7 +45,9 @@ def suited(job: Tried, progress: Progress) -> CellParameters:
 def _changes(job: Tried, errors: set[str]) -> Iterator[Tried]:
     if NOT_LEVEL in errors:  # which no turn about the tool mends, and no place of what stands still
         return other_cells.external_axes(job, {NOT_LEVEL})
-    return itertools.chain(other_cells.branches(job), other_cells.points(job), other_cells.external_axes(job, errors))
+    return itertools.chain(
+        other_cells.branches(job), other_cells.points(job), other_cells.external_axes(job, errors)
+    )
 
 
 def _errors(job: Tried, toolpath: Toolpath, progress: Progress) -> set[str]:
@@ -54,7 +56,11 @@ def _errors(job: Tried, toolpath: Toolpath, progress: Progress) -> set[str]:
 
 def _layers(toolpath: Toolpath) -> Toolpath:
     """Some of its layers, that which leans most from the part's axis among them."""
-    upright = [min((float((bead.tool @ toolpath.frame[:3, 2]).min()) for bead in layer.beads), default=1.0)
-               for layer in toolpath.layers]
-    chosen = {round(at) for at in np.linspace(0, len(upright) - 1, LAYERS)} | {int(np.argmin(upright))}
+    upright = [
+        min((float((bead.tool @ toolpath.frame[:3, 2]).min()) for bead in layer.beads), default=1.0)
+        for layer in toolpath.layers
+    ]
+    chosen = {round(at) for at in np.linspace(0, len(upright) - 1, LAYERS)} | {
+        int(np.argmin(upright))
+    }
     return dataclasses.replace(toolpath, layers=tuple(toolpath.layers[k] for k in sorted(chosen)))

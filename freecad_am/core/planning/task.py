@@ -24,7 +24,9 @@ from .reserve import RESERVE
 from .turns import configurations as following
 from .turns.directed import Lock
 
-Parts = tuple[tuple[Toolpath, Index], ...]  # of a toolpath: that of each feature, and its layers in all of it
+Parts = tuple[
+    tuple[Toolpath, Index], ...
+]  # of a toolpath: that of each feature, and its layers in all of it
 
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
@@ -78,7 +80,9 @@ class Task:
 
     def rows_of_axis(self, axis: int) -> tuple[float, float]:
         """Lower and upper limit of one axis with the reserve taken off, rad."""
-        return float(self.cell.limits.lower[axis] + RESERVE), float(self.cell.limits.upper[axis] - RESERVE)
+        return float(self.cell.limits.lower[axis] + RESERVE), float(
+            self.cell.limits.upper[axis] - RESERVE
+        )
 
     @cached_property
     def middle(self) -> Array:
@@ -90,9 +94,13 @@ class Task:
     @cached_property
     def weights(self) -> Array:
         """(axes,) weights of eq. 17, one over the stroke in rad; the characteristic length is one rad of axes that slide."""
-        stroke = np.where(self.continuous, CONTINUOUS_STROKE, self.cell.limits.upper - self.cell.limits.lower)
+        stroke = np.where(
+            self.continuous, CONTINUOUS_STROKE, self.cell.limits.upper - self.cell.limits.lower
+        )
         sliding = self.cell.machine.chain.sliding
-        return np.asarray(np.where(sliding, 1.0 / (stroke * self.parameters.characteristic_length), 1.0 / stroke))
+        return np.asarray(
+            np.where(sliding, 1.0 / (stroke * self.parameters.characteristic_length), 1.0 / stroke)
+        )
 
     def rotation(self, points: Points, value: Array) -> tuple[Array, Array]:
         """phi (T,) and d phi / d value (T,) for the variable of the job: the rotation itself, or RZ of the paper."""
@@ -120,9 +128,13 @@ class Task:
             joints = following.from_before(self.arm, flange, self.branch, self._own(before))
         elif self.arm.followed:
             rows = flange.reshape(-1, *flange.shape[-3:])
-            joints = following.along_beads(self.arm, rows, self.branch, points).reshape(*phi.shape, -1)
+            joints = following.along_beads(self.arm, rows, self.branch, points).reshape(
+                *phi.shape, -1
+            )
         else:
-            joints = self.arm.inverse_branch(flange.reshape(-1, 4, 4), self.branch).reshape(*phi.shape, -1)
+            joints = self.arm.inverse_branch(flange.reshape(-1, 4, 4), self.branch).reshape(
+                *phi.shape, -1
+            )
         return joints if points.external is None else with_external(joints, points.external)
 
     def _raw_joints_of_all(self, points: Points, phi: Array) -> Array:
@@ -130,7 +142,9 @@ class Task:
         joints = np.empty((self.cell.machine.chain.axes, len(points))).T
         for some in in_pieces(len(points)):
             own = self.arm.inverse_branch(points.frames.of(some).by_entry(phi[some]), self.branch)
-            joints[some] = own if points.external is None else with_external(own, points.external[some])
+            joints[some] = (
+                own if points.external is None else with_external(own, points.external[some])
+            )
         return joints
 
     def inverse(self, flange: Array, near: Array | None = None) -> Array:
@@ -162,7 +176,9 @@ class Task:
     def in_range(self, joints: Array, points: Points) -> Array:
         """The same joints, each limited axis of each bead moved by the whole turns that centre its range."""
         every = tuple(range(joints.ndim - 1))
-        away = np.maximum(joints.max(axis=every) - self.middle, self.middle - joints.min(axis=every))
+        away = np.maximum(
+            joints.max(axis=every) - self.middle, self.middle - joints.min(axis=every)
+        )
         some = np.flatnonzero(~self.unturned & ~(away <= 0.5 * TURN))  # most axes never get so far
         low = np.minimum.reduceat(joints[..., some], points.first, axis=-2)
         high = np.maximum.reduceat(joints[..., some], points.first, axis=-2)
@@ -184,23 +200,35 @@ class Task:
         return self._jacobian(self._tips_of(poses, phi), joints)
 
     def _jacobian(self, flange: Array, joints: Array) -> Array:
-        result: Array = jac.jacobian(self.cell.robot.chain, self._own(joints), self.cell.deposition_point(flange))
+        result: Array = jac.jacobian(
+            self.cell.robot.chain, self._own(joints), self.cell.deposition_point(flange)
+        )
         return result
 
     def _tips_of(self, poses: PoseFrames, phi: Array) -> Array:
         """(N, 4, 4) flange poses that tell where the deposition point is and what phi turns about: where the torch stands
         that is known, and any will do."""
-        return np.broadcast_to(np.eye(4), (len(phi), 4, 4)) if self.cell.torch_stands else poses.at(phi)
+        return (
+            np.broadcast_to(np.eye(4), (len(phi), 4, 4))
+            if self.cell.torch_stands
+            else poses.at(phi)
+        )
 
     def condition(self, points: Points, phi: Array, joints: Array) -> Array:
         """(..., T) sigma_min / sigma_max of the scaled Jacobian at the deposition point, 0 where unreachable."""
         if phi.ndim == 1:
-            return np.concatenate([
-                self.condition_at(self._tips_of(points.frames.of(some), phi[some]), joints[some])
-                for some in in_pieces(len(points))
-            ])
+            return np.concatenate(
+                [
+                    self.condition_at(
+                        self._tips_of(points.frames.of(some), phi[some]), joints[some]
+                    )
+                    for some in in_pieces(len(points))
+                ]
+            )
         flange = points.frames.at(phi).reshape(-1, 4, 4)
-        return self.condition_at(flange, joints.reshape(-1, joints.shape[-1])).reshape(joints.shape[:-1])
+        return self.condition_at(flange, joints.reshape(-1, joints.shape[-1])).reshape(
+            joints.shape[:-1]
+        )
 
     def condition_at(self, flange: Array, joints: Array) -> Array:
         """(N,) the same for flange poses (N, 4, 4) and joints (N, axes); NaN where nothing is free."""

@@ -57,7 +57,9 @@ class Tried:
         """The cell of a toolpath of it."""
         found = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
         adjacent = external_links(found.external, known=self.external_links)
-        return dataclasses.replace(found, obstacles=self.obstacles, torch=self.torch, external_links=adjacent)
+        return dataclasses.replace(
+            found, obstacles=self.obstacles, torch=self.torch, external_links=adjacent
+        )
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
         """What is wrong with it; rapids only of a whole one."""
@@ -67,7 +69,9 @@ class Tried:
         found = (*toolpath.issues, *path.issues)
         if whole and not has_errors(found):
             height = toolpath.layer_height
-            _, rapids = assemble(path, cell, self.process, toolpath.surroundings, joints, height, self.cylinders)
+            _, rapids = assemble(
+                path, cell, self.process, toolpath.surroundings, joints, height, self.cylinders
+            )
             found += rapids
         return found
 

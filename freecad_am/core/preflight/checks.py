@@ -20,9 +20,12 @@ from .promise import Promise
 from .written import ReadBack
 
 OF_MOTION = (
-    "Every axis stays within its limits", "The joints bring the tool to every point",
-    "No axis is asked for more than its largest speed", "The tool keeps away from singularities while it deposits",
-    clearance.ON_RAPIDS, "The arm stays clear of part, deposit, platform, nozzle and itself",
+    "Every axis stays within its limits",
+    "The joints bring the tool to every point",
+    "No axis is asked for more than its largest speed",
+    "The tool keeps away from singularities while it deposits",
+    clearance.ON_RAPIDS,
+    "The arm stays clear of part, deposit, platform, nozzle and itself",
 )
 
 
@@ -73,12 +76,20 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
 def _of_motion(evidence: Evidence) -> list[Promise]:
     cell, motion = evidence.cell, evidence.motion
     rapids = evidence.rapids
-    if cell is None or motion is None or rapids is None or evidence.condition is None or evidence.threshold is None:
+    if (
+        cell is None
+        or motion is None
+        or rapids is None
+        or evidence.condition is None
+        or evidence.threshold is None
+    ):
         return [Promise(what, "not checked: there is no joint path", None) for what in OF_MOTION]
     return [
         *joints.promises(motion, cell, evidence.condition, evidence.threshold),
         clearance.rapids(evidence.issues, rapids),
         clearance.arm(motion, cell, evidence.arm, evidence.true_shapes),
-        *clearance.external_links(motion, cell, evidence.arm, evidence.true_shapes, evidence.issues),
+        *clearance.external_links(
+            motion, cell, evidence.arm, evidence.true_shapes, evidence.issues
+        ),
         *payload.carried(motion, cell, evidence.toolpath, evidence.process, evidence.issues),
     ]

@@ -16,17 +16,24 @@ ROUNDING = 1e-7  # deg or mm beyond a limit, and share of a speed, that are roun
 COMPUTED_MM = 1e-6  # mm by which two computations of one pose may differ
 
 
-def promises(motion: Motion, cell: Cell, condition: Array, threshold: Array, digits: float = 0.0) -> list[Promise]:
+def promises(
+    motion: Motion, cell: Cell, condition: Array, threshold: Array, digits: float = 0.0
+) -> list[Promise]:
     """The promises about the joints of a motion. condition, threshold: (n,) of its rows, NaN where not known. digits: % of
     the largest speed of an axis that digits of a text take."""
     return [
-        _limits(motion, cell), _reach(motion, cell), _speeds(motion, cell, PERCENT + digits),
+        _limits(motion, cell),
+        _reach(motion, cell),
+        _speeds(motion, cell, PERCENT + digits),
         _singularities(motion, condition, threshold),
     ]
 
 
 def _limits(motion: Motion, cell: Cell) -> Promise:
-    what, how = "Every axis stays within its limits", "every point of the motion, rapids included, against the machine file"
+    what, how = (
+        "Every axis stays within its limits",
+        "every point of the motion, rapids included, against the machine file",
+    )
     margins = shown_margins(cell, motion.joints)
     if not np.isfinite(margins).any():
         return Promise(what, "no axis has limits, or no point is reached", None)
@@ -34,8 +41,15 @@ def _limits(motion: Motion, cell: Cell) -> Promise:
     worst = float(margins[row, limit])
     units = cell.machine.units
     return Promise(
-        what, how, bool(worst >= -ROUNDING), worst, units[limit] if limit < len(units) else "deg", 0.0,
-        row_place(motion, int(row)), at_least=True, row=int(row),
+        what,
+        how,
+        bool(worst >= -ROUNDING),
+        worst,
+        units[limit] if limit < len(units) else "deg",
+        0.0,
+        row_place(motion, int(row)),
+        at_least=True,
+        row=int(row),
     )
 
 
@@ -44,13 +58,26 @@ def _reach(motion: Motion, cell: Cell) -> Promise:
     lost = np.flatnonzero(~motion.reachable)
     if len(lost):
         place = row_place(motion, int(lost[0]))
-        return Promise(what, "closed-form inverse", False, float(len(lost)), "points", 0.0, place, row=int(lost[0]))
+        return Promise(
+            what,
+            "closed-form inverse",
+            False,
+            float(len(lost)),
+            "points",
+            0.0,
+            place,
+            row=int(lost[0]),
+        )
     deposited = np.flatnonzero(motion.deposit)
-    away = np.linalg.norm(cell.tip_at(motion.joints[deposited]) - motion.position[deposited], axis=1)
+    away = np.linalg.norm(
+        cell.tip_at(motion.joints[deposited]) - motion.position[deposited], axis=1
+    )
     row = int(deposited[int(away.argmax())])
     how = "planned joints of the deposit driven through the joint-frame chain, which planning does not use"
     worst = float(away.max())
-    return Promise(what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row), row=row)
+    return Promise(
+        what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row), row=row
+    )
 
 
 def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
@@ -63,7 +90,16 @@ def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
     row = int(np.nanargmax(ratios))
     worst = PERCENT * float(ratios[row])
     how = "mean speed of each axis on each move, rapids included, against the machine file"
-    return Promise(what, how, bool(worst <= most * (1.0 + ROUNDING)), worst, "%", most, row_place(motion, row), row=row)
+    return Promise(
+        what,
+        how,
+        bool(worst <= most * (1.0 + ROUNDING)),
+        worst,
+        "%",
+        most,
+        row_place(motion, row),
+        row=row,
+    )
 
 
 def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promise:
@@ -75,6 +111,13 @@ def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promis
     row = int(spare.argmin())
     how = "inverse condition number of the Jacobian at the points of the deposit, against the least one allowed"
     return Promise(
-        what, how, bool(spare[row] >= -ROUNDING), float(condition[row]), "", float(threshold[row]), row_place(motion, row),
-        at_least=True, row=row,
+        what,
+        how,
+        bool(spare[row] >= -ROUNDING),
+        float(condition[row]),
+        "",
+        float(threshold[row]),
+        row_place(motion, row),
+        at_least=True,
+        row=row,
     )

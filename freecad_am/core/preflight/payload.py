@@ -18,21 +18,37 @@ WHAT = "What carries the part carries its weight"
 
 
 def carried(
-    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, issues: Sequence[Issue]
+    motion: Motion,
+    cell: Cell,
+    toolpath: Toolpath,
+    process: ProcessParameters,
+    issues: Sequence[Issue],
 ) -> list[Promise]:
     """Of robot or positioner; nothing where the part stands still, or lies on a machine with rotary axes."""
     if not cell.carriers or not cell.machine.free:
         return []
     mass, text = finished(motion, cell, toolpath, process), of_codes(issues, (CODE,))
     least = min(cell.carriers, key=lambda one: one.payload.kg)
-    weighed = Text("deposit and what it grows on, where that is closed, at {} g/cm3 (process.density)",
-                   number(process.density))
+    weighed = Text(
+        "deposit and what it grows on, where that is closed, at {} g/cm3 (process.density)",
+        number(process.density),
+    )
     untold = [one.title for one in cell.carriers if math.isinf(one.payload.kg)]
     if untold and not text:
-        return [Promise(WHAT, Text("not checked: the file of {} gives no payload; {}", untold[0], Word(weighed)), None, mass,
-                        "kg")]
+        return [
+            Promise(
+                WHAT,
+                Text("not checked: the file of {} gives no payload; {}", untold[0], Word(weighed)),
+                None,
+                mass,
+                "kg",
+            )
+        ]
     how = Text("{}, against what {} carries", Word(weighed), least.title)
     if not math.isinf(least.payload.from_axis):
-        how = Text("{}, against what {} carries, and its moment about the last axis, as it grows", Word(weighed),
-                   least.title)
+        how = Text(
+            "{}, against what {} carries, and its moment about the last axis, as it grows",
+            Word(weighed),
+            least.title,
+        )
     return [Promise(WHAT, how, not text, mass, "kg", least.payload.kg, issue_place(text))]

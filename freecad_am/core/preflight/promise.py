@@ -51,8 +51,14 @@ class Promise:
     def as_dict(self) -> dict[str, Any]:
         """The form used in report.json."""
         return {
-            "promise": self.promise, "how": self.how, "worst": self.worst, "unit": self.unit, "bound": self.bound,
-            "at_least": self.at_least, "place": None if self.place is None else self.place._asdict(), "ok": self.ok,
+            "promise": self.promise,
+            "how": self.how,
+            "worst": self.worst,
+            "unit": self.unit,
+            "bound": self.bound,
+            "at_least": self.at_least,
+            "place": None if self.place is None else self.place._asdict(),
+            "ok": self.ok,
         }
 
     @property
@@ -67,9 +73,13 @@ class Promise:
 def amount(value: float, unit: str, shown: Callable[[float], str] = number) -> str:
     """A value with its unit; what is counted in the singular or plural of the language, of which some have one for 0."""
     if unit == "points":
-        return Text("0 points" if value == 0.0 else "1 point" if value == 1.0 else "{} points", shown(value))
+        return Text(
+            "0 points" if value == 0.0 else "1 point" if value == 1.0 else "{} points", shown(value)
+        )
     if unit == "rapids":
-        return Text("0 rapids" if value == 0.0 else "1 rapid" if value == 1.0 else "{} rapids", shown(value))
+        return Text(
+            "0 rapids" if value == 0.0 else "1 rapid" if value == 1.0 else "{} rapids", shown(value)
+        )
     return " ".join(filter(None, (shown(value), unit)))
 
 
@@ -80,7 +90,9 @@ def row_place(motion: Motion, row: int) -> Place:
 
 def issue_place(issues: Sequence[Issue]) -> Place | None:
     """The place of the first issue that has one."""
-    return next((Place(one.layer, one.bead, one.point) for one in issues if one.layer is not None), None)
+    return next(
+        (Place(one.layer, one.bead, one.point) for one in issues if one.layer is not None), None
+    )
 
 
 def of_codes(issues: Sequence[Issue], codes: Collection[str], level: str = ERROR) -> list[Issue]:

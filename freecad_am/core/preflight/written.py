@@ -10,7 +10,10 @@ from dataclasses import dataclass
 from ..issues import Text, Word
 from .promise import Promise
 
-TEXT, BETWEEN = "The text takes the tool to the planned points", "Between its points the text keeps to the planned path"
+TEXT, BETWEEN = (
+    "The text takes the tool to the planned points",
+    "Between its points the text keeps to the planned path",
+)
 
 
 @dataclass(frozen=True)
@@ -34,14 +37,28 @@ def promises(read: ReadBack | None, on_controller: Sequence[str]) -> list[Promis
 
 def _read_back(read: ReadBack | None) -> list[Promise]:
     if read is None:
-        return [Promise(what, "not checked: there is no program that was read back", None) for what in (TEXT, BETWEEN)]
+        return [
+            Promise(what, "not checked: there is no program that was read back", None)
+            for what in (TEXT, BETWEEN)
+        ]
     how = "read back by a reader of its own and driven through the joint-frame chain"
-    both = Text("{} and PyKDL", Word(how)) if read.solvers > 1 else Text("{}; PyKDL is not installed", Word(how))
+    both = (
+        Text("{} and PyKDL", Word(how))
+        if read.solvers > 1
+        else Text("{}; PyKDL is not installed", Word(how))
+    )
     return [
-        Promise(TEXT, both, _within(read, read.at_points, read.bound), *_figure(read.at_points, read.bound)),
         Promise(
-            BETWEEN, "the path of the text between its points, as the controller interpolates it",
-            _within(read, read.between, read.allowed), *_figure(read.between, read.allowed),
+            TEXT,
+            both,
+            _within(read, read.at_points, read.bound),
+            *_figure(read.at_points, read.bound),
+        ),
+        Promise(
+            BETWEEN,
+            "the path of the text between its points, as the controller interpolates it",
+            _within(read, read.between, read.allowed),
+            *_figure(read.between, read.allowed),
         ),
     ]
 

@@ -7,7 +7,17 @@ from dataclasses import replace
 from typing import Any
 
 from ..issues import InputError, Word
-from ..parameters.bead_classes import CLASSES, CLOSING, CONTOUR, END, FILL, FIRST_LAYER, START, WALL, PhaseParameters
+from ..parameters.bead_classes import (
+    CLASSES,
+    CLOSING,
+    CONTOUR,
+    END,
+    FILL,
+    FIRST_LAYER,
+    START,
+    WALL,
+    PhaseParameters,
+)
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
@@ -27,9 +37,13 @@ def of_wall(layer: int, closing: bool = False) -> str:
     return FIRST_LAYER if layer == 0 else CLOSING if closing else WALL
 
 
-def leaning(build: BuildDirectionParameters, process: ProcessParameters, name: str) -> BuildDirectionParameters:
+def leaning(
+    build: BuildDirectionParameters, process: ProcessParameters, name: str
+) -> BuildDirectionParameters:
     """The build direction with the lead and tilt of a class."""
-    own: dict[str, Any] = {key: value for key, value in process.of_class(name).own_values().items() if key in LEANS}
+    own: dict[str, Any] = {
+        key: value for key, value in process.of_class(name).own_values().items() if key in LEANS
+    }
     return replace(build, **own) if own else build
 
 
@@ -37,13 +51,18 @@ def refuse_speeds(process: ProcessParameters) -> None:
     """InputError NOT_FOR_FAMILY where classes have travel speeds and a bead model sets these."""
     own = ("travel_speed", "start_travel_speed", "end_travel_speed")
     named = [
-        f"process.classes.{name}" for name in CLASSES
+        f"process.classes.{name}"
+        for name in CLASSES
         if any(process.of_class(name).own_values().get(key) for key in own)
     ]
-    named += [f"process.{end}" for end in (START, END) if getattr(process, end).travel_speed is not None]
+    named += [
+        f"process.{end}" for end in (START, END) if getattr(process, end).travel_speed is not None
+    ]
     if named and process.bead_model != "none":
         raise InputError(
-            "NOT_FOR_FAMILY", f"{named[0]}.travel_speed", "the bead model sets the travel speed of all "
+            "NOT_FOR_FAMILY",
+            f"{named[0]}.travel_speed",
+            "the bead model sets the travel speed of all "
             "beads; leave it out, or use bead_model: none",
         )
 
@@ -58,14 +77,25 @@ def with_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     for number, layer in enumerate(toolpath.layers):
         for bead in layer.beads:
             ends = of_class[bead.bead_class]
-            used, more = ends[0] + ends[2] + sum(ends[4:]) if ends else 0.0, " with their ramps" if ends[4:] else ""
+            used, more = (
+                ends[0] + ends[2] + sum(ends[4:]) if ends else 0.0,
+                " with their ramps" if ends[4:] else "",
+            )
             if used > bead.length:
                 raise InputError(
-                    "PHASE_LENGTH", f"process.classes.{bead.bead_class}",
+                    "PHASE_LENGTH",
+                    f"process.classes.{bead.bead_class}",
                     "start and end take {:.4g} mm{}, and a bead of this class in layer {} is {:.4g} mm long; make them "
-                    "shorter for the class, or lay no beads as short as that", used, Word(more), number, bead.length,
+                    "shorter for the class, or lay no beads as short as that",
+                    used,
+                    Word(more),
+                    number,
+                    bead.length,
                 )
-        layers[number] = replace(layer, beads=tuple(replace(bead, ends=of_class[bead.bead_class]) for bead in layer.beads))
+        layers[number] = replace(
+            layer,
+            beads=tuple(replace(bead, ends=of_class[bead.bead_class]) for bead in layer.beads),
+        )
     return replace(toolpath, layers=tuple(layers))
 
 
@@ -73,11 +103,17 @@ def _ends(process: ProcessParameters, name: str) -> tuple[float, ...]:
     """`Bead.ends` of a class; nothing where no end differs."""
     for end, phase in ((START, process.start), (END, process.end)):
         if phase.ramp > 0.0 and phase.travel_speed is None:
-            where = f"process.{end}" if getattr(process.of_class(name), f"{end}_ramp") is None else (
-                f"process.classes.{name}.{end}")
+            where = (
+                f"process.{end}"
+                if getattr(process.of_class(name), f"{end}_ramp") is None
+                else (f"process.classes.{name}.{end}")
+            )
             raise InputError(
-                "BAD_VALUE", f"{where}.ramp", "a ramp of {:g} mm leads from or to the travel_speed there, and there is "
-                "none; give it, or leave the ramp out", phase.ramp,
+                "BAD_VALUE",
+                f"{where}.ramp",
+                "a ramp of {:g} mm leads from or to the travel_speed there, and there is "
+                "none; give it, or leave the ramp out",
+                phase.ramp,
             )
     if not process.start.there and not process.end.there:
         return ()

@@ -52,22 +52,34 @@ class IslandOrder:
     def of(self, beads: Sequence[Bead], islands: Sequence[Sequence[int]]) -> list[Bead]:
         """The beads of a layer in the order of deposit. islands: the numbers of those of each, from inside out."""
         if self.as_below and islands:
-            middle = [np.vstack([beads[number].points for number in sorted(island)]).mean(axis=0) for island in islands]
+            middle = [
+                np.vstack([beads[number].points for number in sorted(island)]).mean(axis=0)
+                for island in islands
+            ]
             order = list(range(len(islands)))
             if (below := self.below) is not None:
-                order.sort(key=lambda number: int(np.argmin(np.linalg.norm(below - middle[number], axis=1))))
+                order.sort(
+                    key=lambda number: int(
+                        np.argmin(np.linalg.norm(below - middle[number], axis=1))
+                    )
+                )
             self.below = np.array([middle[number] for number in order])
             return [beads[number] for island in order for number in islands[island]]
         islands, order = list(islands), []
         while islands:
             points = np.array([beads[island[0]].points[0] for island in islands])
-            order += islands.pop(0 if self.point is None else int(np.argmin(np.linalg.norm(points - self.point, axis=1))))
+            order += islands.pop(
+                0
+                if self.point is None
+                else int(np.argmin(np.linalg.norm(points - self.point, axis=1)))
+            )
             self.point = beads[order[-1]].points[-1]
         return [beads[number] for number in order]
 
 
 def ordered(beads: Sequence[RankedBead], order: str) -> Course:
     """Beads as layers: group by group, and in each around the axis layer by layer, or solid by solid ('feature')."""
+
     def place(ranked: RankedBead) -> tuple[int, ...]:
         if order == "feature":
             return ranked.group, ranked.solid, ranked.layer, -ranked.ring
@@ -91,10 +103,15 @@ def ordered(beads: Sequence[RankedBead], order: str) -> Course:
         one = layer_of(layer[0])[:2]
         made.append(Layer(tuple(ranked.bead for ranked in layer), first=one != before))
         before = one
-    return Course(tuple(made), tuple(tuple((ranked.group, ranked.solid) for ranked in layer) for layer in layers))
+    return Course(
+        tuple(made),
+        tuple(tuple((ranked.group, ranked.solid) for ranked in layer) for layer in layers),
+    )
 
 
-def waited(course: Course, wait: float, rapid_speed: float, least: float = 0.0) -> tuple[Layer, ...]:
+def waited(
+    course: Course, wait: float, rapid_speed: float, least: float = 0.0
+) -> tuple[Layer, ...]:
     """The layers with so much time before each that no solid is returned to sooner than `wait` s after its layer before, and
     that none begins sooner than `least` s after the one before it.
 
@@ -113,9 +130,18 @@ def waited(course: Course, wait: float, rapid_speed: float, least: float = 0.0) 
             if at is not None:
                 time += float(np.linalg.norm(bead.points[0] - at)) / rapid_speed
             starts.setdefault(solid, time)
-            time += float((np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum())
+            time += float(
+                (np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum()
+            )
             ends[solid], at = time, bead.points[-1]
-        pause = max((ended[solid] + wait - now - start for solid, start in starts.items() if solid in ended), default=0.0)
+        pause = max(
+            (
+                ended[solid] + wait - now - start
+                for solid, start in starts.items()
+                if solid in ended
+            ),
+            default=0.0,
+        )
         pause = max(pause, short, 0.0)
         layers.append(dataclasses.replace(layer, wait=pause))
         ended.update({solid: now + pause + end for solid, end in ends.items()})
@@ -130,8 +156,23 @@ def no_shorter(toolpath: Toolpath, least: float, rapid_speed: float) -> Toolpath
     solids = tuple(((0, 0),) * len(layer.beads) for layer in toolpath.layers)
     layers = waited(Course(toolpath.layers, solids), 0.0, rapid_speed, least)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
-    text = [Issue(
-        NOTE, "WAITS", Text("the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no layer "
-            "takes less than {:g} s", len(waits), len(layers), max(waits), sum(waits), least),
-    )] if waits else []
+    text = (
+        [
+            Issue(
+                NOTE,
+                "WAITS",
+                Text(
+                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no layer "
+                    "takes less than {:g} s",
+                    len(waits),
+                    len(layers),
+                    max(waits),
+                    sum(waits),
+                    least,
+                ),
+            )
+        ]
+        if waits
+        else []
+    )
     return dataclasses.replace(toolpath, layers=layers, issues=(*toolpath.issues, *text))

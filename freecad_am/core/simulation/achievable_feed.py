@@ -48,7 +48,9 @@ class AchievableFeed:
     lost: float
 
 
-def achievable_feed(motion: Motion, max_speed: ArrayLike, max_acceleration: ArrayLike = np.inf) -> AchievableFeed:
+def achievable_feed(
+    motion: Motion, max_speed: ArrayLike, max_acceleration: ArrayLike = np.inf
+) -> AchievableFeed:
     """The pace a machine keeps of a motion.
 
     max_speed, max_acceleration: (axes,) rad/s and rad/s^2, mm/s and mm/s^2 of axes that slide; infinite where not known.
@@ -56,7 +58,9 @@ def achievable_feed(motion: Motion, max_speed: ArrayLike, max_acceleration: Arra
     rapid. Rows without joint values are left as asked.
     """
     most = np.asarray(max_speed, float)
-    shares = np.nan_to_num(speed_ratios(motion.joints, np.nan_to_num(motion.duration), most), posinf=0.0)
+    shares = np.nan_to_num(
+        speed_ratios(motion.joints, np.nan_to_num(motion.duration), most), posinf=0.0
+    )
     ratio = shares.max(axis=1, initial=0.0)
     factor = np.ones(len(motion))
     over = ratio > 1.0 + OVER
@@ -69,8 +73,13 @@ def achievable_feed(motion: Motion, max_speed: ArrayLike, max_acceleration: Arra
     asked = np.nan_to_num(motion.duration)
     duration = asked / factor
     return AchievableFeed(
-        ratio=ratio, axis=np.where(slowed, axis, -1), asked=motion.speed, achieved=motion.speed * factor,
-        duration=duration, slowed=slowed, lost=float((duration - asked).sum()),
+        ratio=ratio,
+        axis=np.where(slowed, axis, -1),
+        asked=motion.speed,
+        achieved=motion.speed * factor,
+        duration=duration,
+        slowed=slowed,
+        lost=float((duration - asked).sum()),
     )
 
 
@@ -99,7 +108,9 @@ def _accelerated(
     node = way.fastest()
     gain, by_speed = way.gain(node)
     # bends are told at nodes, and go on between two that have one
-    mean = _mean_rate(node[:-1], node[1:], np.minimum(square, np.maximum(way.bound[:-1], way.bound[1:])), gain)
+    mean = _mean_rate(
+        node[:-1], node[1:], np.minimum(square, np.maximum(way.bound[:-1], way.bound[1:])), gain
+    )
     result, limiting = factor.copy(), axis.copy()
     slower = mean < factor[moving] - OVER
     result[moving[slower]] = mean[slower]
@@ -133,7 +144,9 @@ class _Way:
             bounds = np.where(bend > 0.0, largest / bend, np.inf)
         most = np.zeros(len(bend))
         most[1:-1] = np.where(block[1:] == block[:-1], np.minimum(square[:-1], square[1:]), 0.0)
-        return _Way(np.abs(speed), time, bend, largest, most, bounds.min(axis=1), bounds.argmin(axis=1))
+        return _Way(
+            np.abs(speed), time, bend, largest, most, bounds.min(axis=1), bounds.argmin(axis=1)
+        )
 
     def fastest(self) -> Array:
         """(m + 1,) the largest p^2 at the nodes, to within a percent or so, from below.
@@ -146,7 +159,9 @@ class _Way:
         for share in CEILINGS:
             best = np.maximum(best, self._below(np.minimum(self.most, share * self.bound)))
         for _ in range(ROUNDS):
-            best = np.maximum(best, self._below(np.minimum(np.minimum(self.most, self.bound), GROWTH * best)))
+            best = np.maximum(
+                best, self._below(np.minimum(np.minimum(self.most, self.bound), GROWTH * best))
+            )
         return best
 
     def _below(self, ceiling: Array) -> Array:

@@ -39,7 +39,11 @@ def deposit_obstacles(motion: Motion, width: float, height: float) -> Obstacles 
         return None
     wide = np.where(np.isnan(motion.width[some]), width, motion.width[some])
     return Beads(
-        motion.position[some], motion.build[some], motion.tool[some], wide, np.full(len(wide), height),
+        motion.position[some],
+        motion.build[some],
+        motion.tool[some],
+        wide,
+        np.full(len(wide), height),
         motion.point[some] == 0,
     ).solid(LINK_GRAIN)
 
@@ -63,7 +67,9 @@ def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> Arm
     return ArmTouches(link, what, arm.names, step, arm.links)
 
 
-def places(joints: Array, most: int | None = None, sliding: Mask | None = None) -> tuple[Array, Index, float]:
+def places(
+    joints: Array, most: int | None = None, sliding: Mask | None = None
+) -> tuple[Array, Index, float]:
     """Joints (k, axes) along a motion (n, axes), the rows (k,) whose segments they are on, rising, and the step, rad.
 
     They are at even steps of the joint that moves most, SLIDE of those that are `sliding` counting as STEP, and at both ends
@@ -81,7 +87,9 @@ def places(joints: Array, most: int | None = None, sliding: Mask | None = None) 
     whole = float(way[-1]) if n else 0.0
     step = max(STEP, whole / (MAX_LOOKS if most is None else most))
     at = np.arange(step, whole, step)
-    inner = np.searchsorted(way, at, side="left")  # rows that move, so that both of their ends are known
+    inner = np.searchsorted(
+        way, at, side="left"
+    )  # rows that move, so that both of their ends are known
     share = (at - way[inner - 1]) / moved[inner]
     ends = np.flatnonzero(known & ~(goes_on & np.append(goes_on[1:], False)[:n]))
     row = np.concatenate([inner, ends])

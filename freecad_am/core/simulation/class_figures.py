@@ -23,11 +23,18 @@ def figures(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
         if not rows.any():
             continue
         beads = motion.layer[mine] * (1 + motion.bead[mine].max()) + motion.bead[mine]
-        found.append({
-            "class": name, "beads": len(np.unique(beads)), "length_mm": float(way[rows].sum()),
-            "deposit_s": float(np.nan_to_num(motion.duration)[rows].sum()),
-            "travel_speed_mm_s": {"min": float(motion.speed[rows].min()), "max": float(motion.speed[rows].max())},
-            "schedule": process.for_class(name).schedule,
-            **({"weave": process.for_class(name).weave or None} if process.weaves else {}),
-        })
+        found.append(
+            {
+                "class": name,
+                "beads": len(np.unique(beads)),
+                "length_mm": float(way[rows].sum()),
+                "deposit_s": float(np.nan_to_num(motion.duration)[rows].sum()),
+                "travel_speed_mm_s": {
+                    "min": float(motion.speed[rows].min()),
+                    "max": float(motion.speed[rows].max()),
+                },
+                "schedule": process.for_class(name).schedule,
+                **({"weave": process.for_class(name).weave or None} if process.weaves else {}),
+            }
+        )
     return found

@@ -20,14 +20,18 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     them in the mean. Toolpaths of older documents do not tell how wide beads count;
     there it is `process.bead_width`.
     """
-    length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[: len(motion)]
+    length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[
+        : len(motion)
+    ]
     nominal = process.bead_width if toolpath.bead_width is None else toolpath.bead_width
     width = np.where(np.isfinite(motion.width), motion.width, nominal)
     # the width of a segment is the mean of those at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
     height: Array | float = toolpath.layer_height
     if toolpath.features or toolpath.fitted is not None:
-        height = (_mean_heights(toolpath) if toolpath.fitted is not None else toolpath.layer_heights)[motion.layer]
+        height = (
+            _mean_heights(toolpath) if toolpath.fitted is not None else toolpath.layer_heights
+        )[motion.layer]
     return np.where(motion.deposit & motion.moves, mean_width * length, 0.0) * height
 
 
@@ -75,11 +79,16 @@ def alone(toolpath: Toolpath, axes: int = 0) -> Motion:
         build=np.concatenate([bead.build for _, _, bead in beads]),
         tool=np.concatenate([bead.tool for _, _, bead in beads]),
         speed=speed,
-        width=np.concatenate([np.full(len(b), np.nan) if b.width is None else b.width for _, _, b in beads]),
+        width=np.concatenate(
+            [np.full(len(b), np.nan) if b.width is None else b.width for _, _, b in beads]
+        ),
         joints=np.full((len(position), axes), np.nan),
         duration=np.where(point > 0, step / speed, 0.0),
-        wire=np.concatenate([
-            np.full(len(b), np.nan) if b.wire_share is None else b.wire_share * b.speed for _, _, b in beads
-        ]),
+        wire=np.concatenate(
+            [
+                np.full(len(b), np.nan) if b.wire_share is None else b.wire_share * b.speed
+                for _, _, b in beads
+            ]
+        ),
         bead_class=np.repeat([number_of(bead.bead_class) for _, _, bead in beads], sizes),
     )

@@ -19,8 +19,12 @@ def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:
     """
     moved = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
     lasts = duration[:, None] > 0.0
-    speed = np.where(lasts, moved / np.where(lasts, duration[:, None], 1.0), np.where(moved > 0.0, np.inf, moved))
-    return np.divide(speed, most, out=np.zeros_like(speed), where=np.isfinite(most) | np.isnan(speed))
+    speed = np.where(
+        lasts, moved / np.where(lasts, duration[:, None], 1.0), np.where(moved > 0.0, np.inf, moved)
+    )
+    return np.divide(
+        speed, most, out=np.zeros_like(speed), where=np.isfinite(most) | np.isnan(speed)
+    )
 
 
 def on_deposit(deposit: Mask, values: Array) -> Array:

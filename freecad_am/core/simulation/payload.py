@@ -25,7 +25,9 @@ KG = 1e-6  # of a mm3 at 1 g/cm3
 REMEDY = "process.density sets what it weighs; the payload is in the machine's file"
 
 
-def issues(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:
+def issues(
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters
+) -> list[Issue]:
     """At most one of each machine that carries the part and is overloaded, and one where the part is too far out, where
     that begins."""
     if all(np.isinf([one.payload.kg, one.payload.from_axis]).all() for one in cell.carriers):
@@ -38,11 +40,21 @@ def issues(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParam
         over = mass > machine.payload.kg
         if over.any():
             row = int(over.argmax())
-            found.append(_at(
-                motion, row, Text("the part weighs more than {:g} kg from here on, {:.4g} kg when it is finished, {:.3g} kg "
-                    "of which it grows on, and {} carries no more; {}", machine.payload.kg, mass[-1], bodies, machine.title,
-                    REMEDY)
-            ))
+            found.append(
+                _at(
+                    motion,
+                    row,
+                    Text(
+                        "the part weighs more than {:g} kg from here on, {:.4g} kg when it is finished, {:.3g} kg "
+                        "of which it grows on, and {} carries no more; {}",
+                        machine.payload.kg,
+                        mass[-1],
+                        bodies,
+                        machine.title,
+                        REMEDY,
+                    ),
+                )
+            )
     out = cell.carriers[-1].payload.from_axis
     if np.isfinite(out):
         from_axis = _from_axis(cell, cell.carriers[-1], motion.position, deposited, bodies, centre)
@@ -65,16 +77,34 @@ def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> li
         return []
     row = int(over.argmax())
     middle = moment[-1] / mass[-1] if mass[-1] > 0.0 else 0.0
-    rated = Text("{:g} mm", load.from_axis) if np.isinf(load.kg) else Text("{:g} mm with {:g} kg", load.from_axis, load.kg)
+    rated = (
+        Text("{:g} mm", load.from_axis)
+        if np.isinf(load.kg)
+        else Text("{:g} mm with {:g} kg", load.from_axis, load.kg)
+    )
     out = moment[row] / mass[row]
-    return [_at(
-        motion, row, Text("the centre of gravity of the part, {:.4g} kg by then, is {:.4g} mm from the last axis of {} "
-            "({:.4g} mm when it is finished), which carries {}; put it nearer to the middle (cell.platform may be a pose); "
-            "{}", mass[row], out, machine.title, middle, Word(rated), REMEDY)
-    )]
+    return [
+        _at(
+            motion,
+            row,
+            Text(
+                "the centre of gravity of the part, {:.4g} kg by then, is {:.4g} mm from the last axis of {} "
+                "({:.4g} mm when it is finished), which carries {}; put it nearer to the middle (cell.platform may be a pose); "
+                "{}",
+                mass[row],
+                out,
+                machine.title,
+                middle,
+                Word(rated),
+                REMEDY,
+            ),
+        )
+    ]
 
 
-def _from_axis(cell: Cell, machine: Machine, position: Array, deposited: Array, bodies: float, centre: Array) -> Array:
+def _from_axis(
+    cell: Cell, machine: Machine, position: Array, deposited: Array, bodies: float, centre: Array
+) -> Array:
     """(n,) kg mm, the moment of the part about the last axis of what carries it, after each row."""
     rest = machine.chain.frames(np.zeros(machine.chain.axes))
     to_flange = frames.inverse(rest.flange)
@@ -83,8 +113,17 @@ def _from_axis(cell: Cell, machine: Machine, position: Array, deposited: Array, 
     middles = 0.5 * (position + np.concatenate([position[:1], position[:-1]]))
     arms = np.cross(cell.on_carrier(np.nan_to_num(middles)) - through, axis)
     own = np.cross(cell.on_carrier(centre[None]) - through, axis)
-    return np.asarray(np.linalg.norm(bodies * own + np.cumsum(deposited[:, None] * arms, axis=0), axis=1))
+    return np.asarray(
+        np.linalg.norm(bodies * own + np.cumsum(deposited[:, None] * arms, axis=0), axis=1)
+    )
 
 
 def _at(motion: Motion, row: int, message: str) -> Issue:
-    return Issue(ERROR, CODE, message, int(motion.layer[row]), int(motion.bead[row]), max(0, int(motion.point[row])))
+    return Issue(
+        ERROR,
+        CODE,
+        message,
+        int(motion.layer[row]),
+        int(motion.bead[row]),
+        max(0, int(motion.point[row])),
+    )

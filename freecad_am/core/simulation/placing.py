@@ -48,8 +48,11 @@ def placing(cell: Cell, joints: ArrayLike) -> Placing:
         stands = cell.world(values[None])[0] @ frames.inverse(cell.robot.base)
     to_world = frames.inverse(stands)
     return Placing(
-        links=to_world @ links, part=to_world @ platform @ frames.inverse(cell.mount), nozzle=to_world @ nozzle,
-        platform=to_world @ platform, external_links=to_world @ cell.external_link_frames(values[None])[0],
+        links=to_world @ links,
+        part=to_world @ platform @ frames.inverse(cell.mount),
+        nozzle=to_world @ nozzle,
+        platform=to_world @ platform,
+        external_links=to_world @ cell.external_link_frames(values[None])[0],
     )
 
 
@@ -62,7 +65,9 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     place, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:
         on_flange, _ = cell.on_flange(place[None], cell.mount[None, :3, 2])
-        return np.asarray(FiveAxis(chain).placed(np.zeros((1, TURNING)), on_flange, cell.station)[0])
+        return np.asarray(
+            FiveAxis(chain).placed(np.zeros((1, TURNING)), on_flange, cell.station)[0]
+        )
     arm = cell.robot.arm
     assert arm is not None  # a cell has no other robots
     rotations = np.linspace(0.0, 2.0 * np.pi, _ROTATIONS, endpoint=False)

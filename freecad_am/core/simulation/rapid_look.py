@@ -33,7 +33,13 @@ class RapidsLooked:
 
 
 def looked_at(
-    motion: Motion, beads: Sequence[Bead], cell: Cell, bodies: Sequence[Body], width: float, height: float, most: int
+    motion: Motion,
+    beads: Sequence[Bead],
+    cell: Cell,
+    bodies: Sequence[Body],
+    width: float,
+    height: float,
+    most: int,
 ) -> RapidsLooked:
     """Whether the nozzle meets bodies, the platform or beads that are there by then on any rapid, which runs straight in the
     joints; at so many places at most, evenly along all rapids.
@@ -43,21 +49,29 @@ def looked_at(
     """
     rows = 1 + np.flatnonzero(~motion.deposit[1:] & motion.reachable[1:] & motion.reachable[:-1])
     start, turned = motion.joints[rows - 1], motion.joints[rows] - motion.joints[rows - 1]
-    chain, size = cell.machine.chain, Size(0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)),
-                                           cell.nozzle.length)
+    chain, size = (
+        cell.machine.chain,
+        Size(0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length),
+    )
     way, corners = np.zeros(len(rows)), [np.zeros((0, 3))]
     for some in _pieces(len(rows)):
         joints = start[some, None] + SHARES[:, None] * turned[some, None]
-        tip, axis = (each.reshape(len(some), len(SHARES), 3) for each in cell.tip_in_part(
-            chain.forward(joints.reshape(-1, chain.axes))))
+        tip, axis = (
+            each.reshape(len(some), len(SHARES), 3)
+            for each in cell.tip_in_part(chain.forward(joints.reshape(-1, chain.axes)))
+        )
         for end in (tip, tip + size.length * axis):
-            way[some] = np.maximum(way[some], np.linalg.norm(np.diff(end, axis=1), axis=2).sum(axis=1))
+            way[some] = np.maximum(
+                way[some], np.linalg.norm(np.diff(end, axis=1), axis=2).sum(axis=1)
+            )
         corners += [tip.min(axis=(0, 1))[None], tip.max(axis=(0, 1))[None]]
     # a row more for each move: both of its ends are looked at
     step = max(STEP, float(way.sum()) / max(most - 2 * len(rows), 1))
     count = 2 + np.floor(way / step).astype(np.intp)
     move = np.repeat(np.arange(len(rows)), count)
-    share = (np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
+    share = (np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(
+        count - 1, count
+    )
 
     ends = BeadEnds.of(Beads.of(beads, width, height), size)
     platform = [disc(cell.platform_diameter, cell.mount)] if cell.platform_diameter > 0.0 else []

@@ -34,7 +34,13 @@ def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[li
     first, stands = int(np.flatnonzero(chain.sliding)[0]), standing_link(chain)
     at_zero = chain.frames(np.zeros(chain.axes))
     _head(at_zero.directions[:first], at_zero.origins[:first], torch, found)
-    _table(at_zero.directions[stands:], at_zero.origins[stands:], at_zero.flange, radius, found[stands:])
+    _table(
+        at_zero.directions[stands:],
+        at_zero.origins[stands:],
+        at_zero.flange,
+        radius,
+        found[stands:],
+    )
     back = frames.inverse(chain.links(np.zeros(chain.axes)))
     return [[solid.moved(pose) for solid in link] for pose, link in zip(back, found)]
 
@@ -50,7 +56,9 @@ def _head(directions: Array, origins: Array, torch: float, found: list[list[Soli
             found[axis].append(capsule(place, pivot, 0.6 * JOINT, 0.8 * JOINT))
         half = JOINT * direction
         found[axis].append(cylinder(pivot - half, pivot + half, 0.9 * JOINT))
-        found[axis + 1].append(cylinder(pivot - 1.15 * half, pivot + 1.15 * half, 0.65 * JOINT, DARK))
+        found[axis + 1].append(
+            cylinder(pivot - 1.15 * half, pivot + 1.15 * half, 0.65 * JOINT, DARK)
+        )
         place = pivot
     ram = found[len(directions)]
     ram.append(cylinder(place, place + 1.6 * JOINT * up, 0.85 * JOINT))
@@ -58,7 +66,9 @@ def _head(directions: Array, origins: Array, torch: float, found: list[list[Soli
     ram.append(box(place + 5.5 * JOINT * up, x, y, (2.2 * JOINT, 2.2 * JOINT, 8.0 * JOINT)))
 
 
-def _table(directions: Array, origins: Array, flange: Array, radius: float, found: list[list[Solid]]) -> None:
+def _table(
+    directions: Array, origins: Array, flange: Array, radius: float, found: list[list[Solid]]
+) -> None:
     """The table's disc, and what carries it: bearings of its last axis, the cradle of one before."""
     face, up = flange[:3, 3], flange[:3, 2]
     thick = 0.16 * radius
@@ -72,28 +82,55 @@ def _table(directions: Array, origins: Array, flange: Array, radius: float, foun
     x = np.cross(side, up) / np.linalg.norm(np.cross(side, up))
     if carried < 2:
         stands.append(cylinder(floor, below, 0.62 * radius))
-    stands.append(box(floor - 0.1 * radius * up, x, np.cross(up, x), (2.9 * radius, 2.9 * radius, 0.2 * radius), DARK))
+    stands.append(
+        box(
+            floor - 0.1 * radius * up,
+            x,
+            np.cross(up, x),
+            (2.9 * radius, 2.9 * radius, 0.2 * radius),
+            DARK,
+        )
+    )
 
 
-def _cradle(direction: Array, origin: Array, below: Array, up: Array, radius: float, found: list[list[Solid]]) -> Array:
+def _cradle(
+    direction: Array,
+    origin: Array,
+    below: Array,
+    up: Array,
+    radius: float,
+    found: list[list[Solid]],
+) -> Array:
     """The cradle that turns about `direction` and its two bearings; the lowest point of what turns."""
     axis = origin + ((below - origin) @ direction) * direction
     across = np.cross(up, direction)
     reach = 1.22 * radius
     cradle, stands = found[-2], found[0]
     bottom = below - 0.14 * radius * up
-    cradle.append(box(0.5 * (bottom + below), direction, across, (2.0 * reach, 1.1 * radius, 0.14 * radius)))
+    cradle.append(
+        box(0.5 * (bottom + below), direction, across, (2.0 * reach, 1.1 * radius, 0.14 * radius))
+    )
     depth = float((axis - bottom) @ up)
     lowest = axis - (np.hypot(1.05 * radius, max(abs(depth), 0.3 * radius)) + 0.1 * radius) * up
     for sign in (-1.0, 1.0):
         end = axis + sign * reach * direction
         height = abs(depth) + 0.28 * radius
-        middle = bottom + sign * reach * direction + 0.5 * (height - 0.28 * radius) * np.sign(depth or 1.0) * up
+        middle = (
+            bottom
+            + sign * reach * direction
+            + 0.5 * (height - 0.28 * radius) * np.sign(depth or 1.0) * up
+        )
         cradle.append(box(middle, direction, across, (0.14 * radius, 0.55 * radius, height)))
         cradle.append(cylinder(end, end + sign * 0.3 * radius * direction, 0.16 * radius, DARK))
         outside = end + sign * 0.22 * radius * direction
         stands.append(cylinder(outside, outside + sign * 0.22 * radius * direction, 0.34 * radius))
         tall = float((axis - lowest) @ up) + 0.5 * radius
-        stands.append(box(outside + sign * 0.11 * radius * direction - 0.5 * tall * up, direction, across,
-                          (0.22 * radius, 0.6 * radius, tall)))
+        stands.append(
+            box(
+                outside + sign * 0.11 * radius * direction - 0.5 * tall * up,
+                direction,
+                across,
+                (0.22 * radius, 0.6 * radius, tall),
+            )
+        )
     return np.asarray(lowest)

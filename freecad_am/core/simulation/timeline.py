@@ -72,15 +72,24 @@ class Timeline:
         before = np.maximum(row - 1, 0)
         went = self.arrive[row] - self.leave[before]
         running = (when < self.arrive[row]) & (row > 0)
-        share = np.where(running, (when - self.leave[before]) / np.where(went > 0.0, went, 1.0), 1.0)
+        share = np.where(
+            running, (when - self.leave[before]) / np.where(went > 0.0, went, 1.0), 1.0
+        )
         start, end = (1.0 - share)[..., None], share[..., None]
-        joints = np.where(end < 1.0, start * motion.joints[before] + end * motion.joints[row], motion.joints[row])
+        joints = np.where(
+            end < 1.0, start * motion.joints[before] + end * motion.joints[row], motion.joints[row]
+        )
         position = start * motion.position[before] + end * motion.position[row]
         stayed_lit = (when - self.arrive[row] < self.lit[row]) & (self.lit[row] > 0.0)
         at_start = motion.deposit[row] & (motion.point[row] == 0)
         deposit = np.where(running, motion.deposit[row] & ~at_start, stayed_lit)
         return State(
-            row=row, share=share, joints=joints, position=position, deposit=deposit, standing=np.asarray(~running),
+            row=row,
+            share=share,
+            joints=joints,
+            position=position,
+            deposit=deposit,
+            standing=np.asarray(~running),
             speed=np.where(running, motion.speed[row], 0.0),
         )
 
@@ -111,10 +120,16 @@ def _between_layers(motion: Motion, process: ProcessParameters, waits: Sequence[
     """(n,) s to stand at each row for the layer that comes: withdrawn from the last bead where there is a withdrawal."""
     result = np.zeros(len(motion))
     starts = np.flatnonzero(np.diff(motion.layer)) + 1
-    of_layer = np.asarray(waits, float)[motion.layer[starts]] if len(waits) else np.zeros(len(starts))
+    of_layer = (
+        np.asarray(waits, float)[motion.layer[starts]] if len(waits) else np.zeros(len(starts))
+    )
     seconds = np.maximum(of_layer, process.between_layers.wait)
     deposits = np.flatnonzero(motion.deposit)
     # rapid rows that lead to the layer: up to its first deposit row
-    rapids = deposits[np.minimum(np.searchsorted(deposits, starts), len(deposits) - 1)] - starts if len(deposits) else starts
+    rapids = (
+        deposits[np.minimum(np.searchsorted(deposits, starts), len(deposits) - 1)] - starts
+        if len(deposits)
+        else starts
+    )
     result[np.where(rapids >= WITH_WITHDRAWAL, starts, starts - 1)] = seconds
     return result

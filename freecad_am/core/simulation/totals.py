@@ -32,12 +32,16 @@ class Totals:
     fed: float | None
 
 
-def totals(motion: Motion, times: Timeline, process: ProcessParameters, toolpath: Toolpath) -> Totals:
+def totals(
+    motion: Motion, times: Timeline, process: ProcessParameters, toolpath: Toolpath
+) -> Totals:
     """The totals of a motion.
 
     The volume is that of `deposit.volumes`, the mass that by `process.density`.
     """
-    length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[: len(motion)]
+    length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[
+        : len(motion)
+    ]
     deposits = motion.deposit & motion.moves
     volume = float(volumes(motion, process, toolpath).sum())
     steps = np.nan_to_num(motion.duration)
@@ -57,7 +61,13 @@ def totals(motion: Motion, times: Timeline, process: ProcessParameters, toolpath
 def as_dict(sums: Totals) -> dict[str, float | None]:
     """The totals as report.json tells them."""
     return {
-        "time_s": sums.time, "deposit_s": sums.deposit_time, "rapid_s": sums.rapid_time, "wait_s": sums.wait_time,
-        "deposit_mm": sums.length, "rapid_mm": sums.rapid_length, "volume_cm3": sums.volume / MM3_PER_CM3,
-        "mass_g": sums.mass, "fed_cm3": None if sums.fed is None else sums.fed / MM3_PER_CM3,
+        "time_s": sums.time,
+        "deposit_s": sums.deposit_time,
+        "rapid_s": sums.rapid_time,
+        "wait_s": sums.wait_time,
+        "deposit_mm": sums.length,
+        "rapid_mm": sums.rapid_length,
+        "volume_cm3": sums.volume / MM3_PER_CM3,
+        "mass_g": sums.mass,
+        "fed_cm3": None if sums.fed is None else sums.fed / MM3_PER_CM3,
     }

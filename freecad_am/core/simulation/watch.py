@@ -24,7 +24,14 @@ CLOSE = 0.5
 # programs keep 0.05 deg; what rounding leaves is not a violation, degrees or mm
 _ROUNDING = 1e-6
 
-UNREACHABLE, LIMIT, NEAR_LIMIT, SINGULAR, SLOWED, ISSUE = "unreachable", "limit", "near limit", "singular", "slowed", "issue"
+UNREACHABLE, LIMIT, NEAR_LIMIT, SINGULAR, SLOWED, ISSUE = (
+    "unreachable",
+    "limit",
+    "near limit",
+    "singular",
+    "slowed",
+    "issue",
+)
 TOUCHES = "touches"
 
 
@@ -81,7 +88,12 @@ def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
 
 
 def bad_links(
-    cell: Cell, margins: ArrayLike, ratios: ArrayLike, singular: bool, reachable: bool, touching: int = NONE
+    cell: Cell,
+    margins: ArrayLike,
+    ratios: ArrayLike,
+    singular: bool,
+    reachable: bool,
+    touching: int = NONE,
 ) -> Mask:
     """(axes + 1,) links to be marked, base first: those whose axis is at or past a limit, near one, or asked to be faster
     than it can be; those of a coupled limit; the one that is `touching` something; all that move where the machine is near a
@@ -107,7 +119,12 @@ def bad_links(
 
 
 def watch(
-    motion: Motion, cell: Cell, kept: AchievableFeed, condition: Array, threshold: Array, issues: Sequence[Issue] = (),
+    motion: Motion,
+    cell: Cell,
+    kept: AchievableFeed,
+    condition: Array,
+    threshold: Array,
+    issues: Sequence[Issue] = (),
     arm: ArmTouches | None = None,
 ) -> Watch:
     """What is to be seen in a motion; condition, threshold: (n,), NaN where not known. Notes are not findings. arm: what the
@@ -120,22 +137,39 @@ def watch(
     with np.errstate(invalid="ignore"):
         near = (margin < CLOSE) & ~seen.past
     labels, axes = cell.limits.labels, cell.machine.axes
-    found = [Finding(row, UNREACHABLE) for row, _ in _runs(~motion.reachable, np.zeros(len(motion)))]
-    for kind, mask in ((LIMIT, seen.past), (NEAR_LIMIT, near)):  # where it is worst, as errors of the plan say
-        found += [Finding(worst, kind, labels[limit[worst]], float(margin[worst])) for _, worst in _runs(mask, margin)]
+    found = [
+        Finding(row, UNREACHABLE) for row, _ in _runs(~motion.reachable, np.zeros(len(motion)))
+    ]
+    for kind, mask in (
+        (LIMIT, seen.past),
+        (NEAR_LIMIT, near),
+    ):  # where it is worst, as errors of the plan say
+        found += [
+            Finding(worst, kind, labels[limit[worst]], float(margin[worst]))
+            for _, worst in _runs(mask, margin)
+        ]
     found += [
         Finding(worst, SINGULAR, "", float(condition[worst]), float(threshold[worst]))
         for _, worst in _runs(seen.singular, condition)
     ]
     share = np.where(kept.slowed, kept.achieved / np.where(kept.asked > 0.0, kept.asked, 1.0), 1.0)
     found += [
-        Finding(row, SLOWED, axes[kept.axis[worst]], float(kept.achieved[worst]), float(kept.asked[worst]))
+        Finding(
+            row,
+            SLOWED,
+            axes[kept.axis[worst]],
+            float(kept.achieved[worst]),
+            float(kept.asked[worst]),
+        )
         for row, worst in _runs(kept.slowed, share)
     ]
     if arm is not None:
         found += _touching(arm)
-    found += [Finding(_row_of(motion, issue), ISSUE, issue.message) for issue in issues
-              if issue.level != NOTE and issue.layer is not None]
+    found += [
+        Finding(_row_of(motion, issue), ISSUE, issue.message)
+        for issue in issues
+        if issue.level != NOTE and issue.layer is not None
+    ]
     found.sort(key=lambda finding: finding.row)
     return replace(seen, findings=tuple(found))
 
@@ -144,14 +178,19 @@ def _touching(arm: ArmTouches) -> list[Finding]:
     """A finding for every run of rows on which one link touches one thing."""
     pair = np.where(arm.link == NONE, -1, arm.link * len(arm.names) + arm.what)
     starts = np.flatnonzero((pair != -1) & (np.diff(pair, prepend=-1) != 0))
-    return [Finding(int(row), TOUCHES, arm.links[arm.link[row]], other=arm.names[arm.what[row]]) for row in starts]
+    return [
+        Finding(int(row), TOUCHES, arm.links[arm.link[row]], other=arm.names[arm.what[row]])
+        for row in starts
+    ]
 
 
 def _runs(mask: Mask, values: Array) -> list[tuple[int, int]]:
     """First row, and row of the smallest value, of every run of rows in which the mask holds."""
     starts = np.flatnonzero(mask & ~np.concatenate([[False], mask[:-1]]))
     ends = np.flatnonzero(mask & ~np.concatenate([mask[1:], [False]])) + 1
-    return [(int(start), int(start + np.argmin(values[start:end]))) for start, end in zip(starts, ends)]
+    return [
+        (int(start), int(start + np.argmin(values[start:end]))) for start, end in zip(starts, ends)
+    ]
 
 
 def _row_of(motion: Motion, issue: Issue) -> int:

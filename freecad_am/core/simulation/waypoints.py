@@ -19,7 +19,9 @@ _ROWS_AT_ONCE = 4000
 CLASS = "class"
 _KINDS = np.frombuffer(b"rapid\0\0deposit", dtype=np.uint8).reshape(2, -1)
 _WIDEST = max(map(len, CLASSES))
-_CLASSES = np.array([list(name.encode().ljust(_WIDEST, b"\0")) for name in (*CLASSES, "")], dtype=np.uint8)
+_CLASSES = np.array(
+    [list(name.encode().ljust(_WIDEST, b"\0")) for name in (*CLASSES, "")], dtype=np.uint8
+)
 
 
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
@@ -29,7 +31,12 @@ def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()
     units = units or ("deg",) * len(axes)
     wire = has_wire(motion)
     last = [WIRE, CLASS] if wire else [CLASS]
-    yield ",".join((HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)), *last)) + "\n"
+    yield (
+        ",".join(
+            (HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)), *last)
+        )
+        + "\n"
+    )
     for start in range(0, len(motion), _ROWS_AT_ONCE):
         yield _rows(motion, units, wire, slice(start, start + _ROWS_AT_ONCE))
 
@@ -44,15 +51,28 @@ def _rows(motion: Motion, units: tuple[str, ...], wire: bool, rows: slice) -> st
     slides = np.array([unit == "mm" for unit in units])
     angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
     numbers = _cells((motion.layer[rows], motion.bead[rows], motion.point[rows]), 0)
-    x, y, z, speed, width = _cells((*motion.position[rows].T, motion.speed[rows], motion.width[rows]), _LENGTHS)
+    x, y, z, speed, width = _cells(
+        (*motion.position[rows].T, motion.speed[rows], motion.width[rows]), _LENGTHS
+    )
     vectors = _cells((*motion.build[rows].T, *motion.tool[rows].T), _DIRECTIONS)
-    texts = [*numbers, _KINDS[motion.deposit[rows].astype(np.intp)].T, x, y, z, *vectors, speed, width]
+    texts = [
+        *numbers,
+        _KINDS[motion.deposit[rows].astype(np.intp)].T,
+        x,
+        y,
+        z,
+        *vectors,
+        speed,
+        width,
+    ]
     texts += _cells((*angles.T,), _ANGLES)
     if wire:
         texts += _cells((motion.wire[rows],), _LENGTHS)
     texts.append(_CLASSES[motion.bead_class[rows]].T)  # of none the last one
     ends = [*[b","] * (len(texts) - 1), b"\n"]
-    return digits.joined([part for pair in zip(texts, ends, strict=True) for part in pair], len(motion.deposit[rows]))
+    return digits.joined(
+        [part for pair in zip(texts, ends, strict=True) for part in pair], len(motion.deposit[rows])
+    )
 
 
 def _cells(columns: Sequence[Array | Index], decimals: int) -> list[digits.Characters]:

@@ -18,9 +18,14 @@ def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]
     """
     if layer_height > meridian.length:
         raise InputError(
-            "LAYER_HEIGHT", "strategy.layer_height",
-            "{:g} mm is more than the wall is long ({:.4g} mm); give a smaller one", layer_height, meridian.length,
+            "LAYER_HEIGHT",
+            "strategy.layer_height",
+            "{:g} mm is more than the wall is long ({:.4g} mm); give a smaller one",
+            layer_height,
+            meridian.length,
         )
     steps = int(np.floor(meridian.length / layer_height + 1e-6))
     s = np.minimum(np.arange(steps + 1) * layer_height, meridian.length)
-    return [s[i : i + 1] for i in range(steps + 1)], max(0.0, meridian.length - steps * layer_height)
+    return [s[i : i + 1] for i in range(steps + 1)], max(
+        0.0, meridian.length - steps * layer_height
+    )

@@ -11,5 +11,9 @@ def refuse_too_many(layers: int, height: float, label: str) -> None:
     """InputError LAYER_HEIGHT once there are as many layers as may be."""
     if layers >= MOST_LAYERS:
         raise InputError(
-            "LAYER_HEIGHT", label, "more than {} layers of {:g} mm: use a larger layer height", MOST_LAYERS, height
+            "LAYER_HEIGHT",
+            label,
+            "more than {} layers of {:g} mm: use a larger layer height",
+            MOST_LAYERS,
+            height,
         )

@@ -18,7 +18,12 @@ HEAVY = 7  # from this weight on the turn is much less, or the band stops it: GA
 GAIN, IDLE = 0.02, 2
 AIM = 0.8  # of the limit; layers above sharpen what is round, so some of it is kept for them
 MARGIN = 0.02  # of the band, kept free for what the curve does between its points
-ROUNDS, LOOK, RELAXED, CLOSE = 2000, 5, 1.6, 1e-3  # of the alternation; how near its two halves come, of the band
+ROUNDS, LOOK, RELAXED, CLOSE = (
+    2000,
+    5,
+    1.6,
+    1e-3,
+)  # of the alternation; how near its two halves come, of the band
 
 
 class Weighed(Protocol):
@@ -34,7 +39,14 @@ class Weighed(Protocol):
 Layer = TypeVar("Layer", bound=Weighed)
 
 
-def between(wanted: Array, low: Array, high: Array, weight: float, bend: Array | None = None, closed: bool = True) -> Array:
+def between(
+    wanted: Array,
+    low: Array,
+    high: Array,
+    weight: float,
+    bend: Array | None = None,
+    closed: bool = True,
+) -> Array:
     """x (n,) that minimises |x - wanted|^2 + weight |second differences + bend|^2 with low <= x <= high.
 
     bend: second differences of what x is measured from, none unless given; (n,), or (n - 2,) of the places between the ends.

@@ -12,7 +12,9 @@ from ..geometry.walls.surface import dot
 from ..types import Array, Index
 
 CLOSER = 4  # places per arc of the curve at which its curvature is taken
-BETWEEN = np.arange(1, 8) / 8.0  # places of a segment at which its distance from the curve is measured
+BETWEEN = (
+    np.arange(1, 8) / 8.0
+)  # places of a segment at which its distance from the curve is measured
 MORE = 1.15  # times as many segments where the chord error is not met
 FEWEST = 24  # segments of a whole curve
 WITHIN = 5e-5  # mm; how far the outline of the points may be off the curve at INSIDE, half of what it is anywhere
@@ -30,13 +32,19 @@ def within_chord(curve: SpaceCurve, low: float, high: float, chord_error: float)
     corners = curve.w[curve.corners]
     if curve.closed:
         corners = np.concatenate([corners + turn * curve.period for turn in (-1, 0, 1, 2)])
-    inner = np.unique(corners[(corners > low + 1e-9 * curve.period) & (corners < high - 1e-9 * curve.period)])
+    inner = np.unique(
+        corners[(corners > low + 1e-9 * curve.period) & (corners < high - 1e-9 * curve.period)]
+    )
     breaks = np.r_[low, inner, high]
     nodes = curve.refined(CLOSER)
     if curve.closed:
         nodes = np.concatenate([nodes[:-1] + turn * curve.period for turn in (-1, 0, 1, 2)])
-    stretches = [_spaced(curve, nodes, a, b, chord_error)[:-1] for a, b in zip(breaks[:-1], breaks[1:])]
-    return _outlining(curve, np.concatenate([*stretches, [high]]), np.cumsum([0, *map(len, stretches)]))
+    stretches = [
+        _spaced(curve, nodes, a, b, chord_error)[:-1] for a, b in zip(breaks[:-1], breaks[1:])
+    ]
+    return _outlining(
+        curve, np.concatenate([*stretches, [high]]), np.cumsum([0, *map(len, stretches)])
+    )
 
 
 def _outlining(curve: SpaceCurve, w: Array, ends: Index) -> Array:
@@ -69,7 +77,9 @@ def _outlining(curve: SpaceCurve, w: Array, ends: Index) -> Array:
 def _spaced(curve: SpaceCurve, nodes: Array, low: float, high: float, chord_error: float) -> Array:
     """Parameters of a stretch without corners inside, equally spread by what the curvature asks for. nodes: (n,), rising,
     between which that is taken."""
-    w = np.r_[low, nodes[np.searchsorted(nodes, low, side="right") : np.searchsorted(nodes, high)], high]
+    w = np.r_[
+        low, nodes[np.searchsorted(nodes, low, side="right") : np.searchsorted(nodes, high)], high
+    ]
     _, slope, bend = curve.at(0.5 * (w[1:] + w[:-1]))
     rate = np.linalg.norm(slope, axis=1)
     curvature = np.linalg.norm(np.cross(slope, bend), axis=1) / rate**3
@@ -91,5 +101,7 @@ def _off_chords(curve: SpaceCurve, w: Array) -> float:
     chord = np.diff(ends, axis=0)
     between = w[:-1, None] + np.diff(w)[:, None] * BETWEEN
     away = curve.at(between.ravel())[0].reshape(*between.shape, 3) - ends[:-1, None]
-    share = np.clip(dot(away, chord[:, None]) / np.maximum(dot(chord, chord), 1e-300)[:, None], 0.0, 1.0)
+    share = np.clip(
+        dot(away, chord[:, None]) / np.maximum(dot(chord, chord), 1e-300)[:, None], 0.0, 1.0
+    )
     return float(np.linalg.norm(away - share[..., None] * chord[:, None], axis=-1).max())

@@ -19,7 +19,11 @@ SAME_POINT = 1e-6  # mm
 
 
 def on_implicit(
-    surface: Surface, substrate: Implicit, u_range: tuple[float, float], v: Array, label: str = "wall"
+    surface: Surface,
+    substrate: Implicit,
+    u_range: tuple[float, float],
+    v: Array,
+    label: str = "wall",
 ) -> WallLayer:
     """The curve in which the wall comes out of the substrate for good as u rises through `u_range`.
 
@@ -45,8 +49,11 @@ def _crossing(
     if not leaves.any(axis=0).all() or not outside[-1].all():
         missing = v[np.flatnonzero(~(leaves.any(axis=0) & outside[-1]))[0]]
         raise InputError(
-            "NO_INTERSECTION", label, "the wall does not come out of the substrate everywhere (at v = {:.4g}, for "
-            "instance): let it reach into the substrate all around, or choose the edges it starts from", missing,
+            "NO_INTERSECTION",
+            label,
+            "the wall does not come out of the substrate everywhere (at v = {:.4g}, for "
+            "instance): let it reach into the substrate all around, or choose the edges it starts from",
+            missing,
         )
     last = len(u) - 2 - np.argmax(leaves[::-1], axis=0)
     low, high = u[last], u[last + 1]
@@ -67,7 +74,9 @@ def _crossing(
     return at, -dot(gradient, around) / dot(gradient, along)
 
 
-def on_polyline(surface: Surface, points: Array, corner: float = np.radians(20.0), label: str = "wall") -> WallLayer:
+def on_polyline(
+    surface: Surface, points: Array, corner: float = np.radians(20.0), label: str = "wall"
+) -> WallLayer:
     """The layer through a closed chain of points (m, 3) on the wall, the first not repeated, in either direction.
 
     Between the points smooth curves run through the corners, the places where the chain turns by more than `corner` (rad).
@@ -82,9 +91,15 @@ def on_polyline(surface: Surface, points: Array, corner: float = np.radians(20.0
     if steps.sum() < 0.0:
         points, u, v = points[::-1], u[::-1], v[::-1]
         steps = -np.roll(steps[::-1], -1)
-    if len(points) < 4 or steps.min() <= 0.0 or abs(steps.sum() - surface.period) > 1e-6 * surface.period:
+    if (
+        len(points) < 4
+        or steps.min() <= 0.0
+        or abs(steps.sum() - surface.period) > 1e-6 * surface.period
+    ):
         raise InputError(
-            "NOT_AROUND", label, "the first layer does not run once around the wall: choose one closed loop of edges that "
+            "NOT_AROUND",
+            label,
+            "the first layer does not run once around the wall: choose one closed loop of edges that "
             "crosses each line up the wall once",
         )
     before = points - np.roll(points, 1, axis=0)

@@ -19,9 +19,12 @@ def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]
     low, high = float(meridian.points[:, 1].min()), float(meridian.points[:, 1].max())
     if layer_height > high - low:
         raise InputError(
-            "LAYER_HEIGHT", "strategy.layer_height",
+            "LAYER_HEIGHT",
+            "strategy.layer_height",
             "{:g} mm is more than the wall is high ({:.4g} mm); give a smaller one, or layers along the wall (spacing: "
-            "arc-length)", layer_height, high - low,
+            "arc-length)",
+            layer_height,
+            high - low,
         )
     steps = int(np.floor((high - low) / layer_height + 1e-6))
     heights = np.minimum(low + np.arange(steps + 1) * layer_height, high)

@@ -6,7 +6,9 @@ from __future__ import annotations
 from ..geometry.curves.space_curve import SpaceCurve
 from ..types import Array
 
-WITHIN = 1e-5  # mm; a tenth of the tolerance at the points, see interpolation_error for what it bounds
+WITHIN = (
+    1e-5  # mm; a tenth of the tolerance at the points, see interpolation_error for what it bounds
+)
 SHORTEST = 1e-5  # of the period; no arc is halved below this
 ROUNDS = 14
 

@@ -25,8 +25,12 @@ REPORTED_DISTORTION = 0.02  # distortion that is told
 
 
 def plan(
-    given: CladFaces, strategy: CladdingParameters, build: BuildDirectionParameters, process: ProcessParameters,
-    model: BeadModel | None, progress: Progress = silent,
+    given: CladFaces,
+    strategy: CladdingParameters,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
+    model: BeadModel | None,
+    progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of cladding, in part coordinates: layer i lies i layer heights above the faces.
 
@@ -45,7 +49,9 @@ def plan(
     for number, (sheet, piece) in enumerate(found):
         order = IslandOrder()
         for layer in slices(sheet, piece, strategy):
-            progress((number + layer.number / strategy.layers) / len(found), f"layer {layer.number}")
+            progress(
+                (number + layer.number / strategy.layers) / len(found), f"layer {layer.number}"
+            )
             picture = pictures.filled(layer, given.label)
             issues += picture.issues
             assert isinstance(layer.surface, FaceLayer)
@@ -56,27 +62,53 @@ def plan(
                 made.append(bead_of(curve, layer, strategy, build, process, model))
                 beads.append(made[-1].bead)
             beads = order.of(beads, picture.islands)
-            ranked += [RankedBead(0, number, layer.number, -rank, bead) for rank, bead in enumerate(beads)]
+            ranked += [
+                RankedBead(0, number, layer.number, -rank, bead) for rank, bead in enumerate(beads)
+            ]
     if not ranked:
         raise InputError(
-            "NOTHING_TO_DEPOSIT", given.label, "no bead of {:g} mm or more finds room on its faces; use a smaller bead "
-            "spacing, or thin = single", strategy.least_bead,
+            "NOTHING_TO_DEPOSIT",
+            given.label,
+            "no bead of {:g} mm or more finds room on its faces; use a smaller bead "
+            "spacing, or thin = single",
+            strategy.least_bead,
         )
-    layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
-    noted = [one for one in notes(made, layers, strategy, build, process, model) if one.code != "SINGLE_LAYER"]  # as asked
+    layers = waited(
+        ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time
+    )
+    noted = [
+        one
+        for one in notes(made, layers, strategy, build, process, model)
+        if one.code != "SINGLE_LAYER"
+    ]  # as asked
     issues = [*given.issues, *_stretched(stretch), *one_of_each(issues), *noted]
     return Toolpath(
-        layers, np.eye(4), strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap, "cladding",
-        given.surroundings, None if model is None else model.law(process.acceleration), width,
-        volumes=of_layers(strategy, covers), twice=twice(made, strategy, covers, width),
+        layers,
+        np.eye(4),
+        strategy.layer_height,
+        strategy.chord_error,
+        tuple(issues),
+        process.overlap,
+        "cladding",
+        given.surroundings,
+        None if model is None else model.law(process.acceleration),
+        width,
+        volumes=of_layers(strategy, covers),
+        twice=twice(made, strategy, covers, width),
     )
 
 
 def _stretched(share: float) -> tuple[Issue, ...]:
     if share <= REPORTED_DISTORTION:
         return ()
-    return (Issue(
-        NOTE, "DISTORTED", Text("faces that are bent both ways cannot be laid flat without distortion: beads are up to "
-            "{:.2g} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that",
-            100.0 * share),
-    ),)
+    return (
+        Issue(
+            NOTE,
+            "DISTORTED",
+            Text(
+                "faces that are bent both ways cannot be laid flat without distortion: beads are up to "
+                "{:.2g} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that",
+                100.0 * share,
+            ),
+        ),
+    )

@@ -20,11 +20,16 @@ from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array
 from .progress import Progress, silent
 
-ALONG = np.cos(np.radians(5.0))  # a bead runs along the direction in which it is laid if the angle between them is less
+ALONG = np.cos(
+    np.radians(5.0)
+)  # a bead runs along the direction in which it is laid if the angle between them is less
 
 
 def plan(
-    given: Curves, strategy: CurvesParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    given: Curves,
+    strategy: CurvesParameters,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of curves, in part coordinates: layer k is that of the curves k layer heights further along the
@@ -36,19 +41,40 @@ def plan(
         progress(again / strategy.repeat, f"layer {len(layers)}")
         for number in numbers:
             beads = [
-                _classed(curve, fixed, again * strategy.layer_height, (len(layers), k), build, process, given.label)
-                for k, curve in enumerate(given.curves) if curve.layer == number
+                _classed(
+                    curve,
+                    fixed,
+                    again * strategy.layer_height,
+                    (len(layers), k),
+                    build,
+                    process,
+                    given.label,
+                )
+                for k, curve in enumerate(given.curves)
+                if curve.layer == number
             ]
             layers.append(Layer(tuple(beads)))
     return Toolpath(
-        tuple(layers), np.eye(4), strategy.layer_height, strategy.chord_error, given.issues, process.overlap, "curves",
-        given.surroundings, bead_width=process.bead_width,
+        tuple(layers),
+        np.eye(4),
+        strategy.layer_height,
+        strategy.chord_error,
+        given.issues,
+        process.overlap,
+        "curves",
+        given.surroundings,
+        bead_width=process.bead_width,
     )
 
 
 def _classed(
-    curve: BeadCurve, fixed: Array, up: float, place: tuple[int, int], build: BuildDirectionParameters,
-    process: ProcessParameters, label: str,
+    curve: BeadCurve,
+    fixed: Array,
+    up: float,
+    place: tuple[int, int],
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
+    label: str,
 ) -> Bead:
     """The bead at a place, layer and number in it, as its class is laid."""
     name = classes.of_wall(place[0])
@@ -57,7 +83,12 @@ def _classed(
 
 
 def _bead(
-    curve: BeadCurve, fixed: Array, up: float, index: int, build: BuildDirectionParameters, process: ProcessParameters,
+    curve: BeadCurve,
+    fixed: Array,
+    up: float,
+    index: int,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
     label: str,
 ) -> Bead:
     away = np.tile(fixed, (len(curve.points), 1))
@@ -66,13 +97,18 @@ def _bead(
     points = curve.points + up * away
     if process.direction == "alternate" and index % 2:
         points, away = points[::-1], away[::-1]
-    forward = np.gradient(points, axis=0) if len(points) > 2 else np.tile(points[1] - points[0], (2, 1))
+    forward = (
+        np.gradient(points, axis=0) if len(points) > 2 else np.tile(points[1] - points[0], (2, 1))
+    )
     forward /= np.linalg.norm(forward, axis=1, keepdims=True)
     worst = int(np.abs((forward * away).sum(axis=1)).argmax())
     if abs(float(forward[worst] @ away[worst])) > ALONG:
         raise InputError(
-            "ALONG_DIRECTION", label, "a bead runs along the direction in which it is laid, at {}: the nozzle would be in "
-            "its own way; give another strategy.direction, faces, or directions in the table", place(points[worst]),
+            "ALONG_DIRECTION",
+            label,
+            "a bead runs along the direction in which it is laid, at {}: the nozzle would be in "
+            "its own way; give another strategy.direction, faces, or directions in the table",
+            place(points[worst]),
         )
     across = np.cross(forward, away)
     across /= np.linalg.norm(across, axis=1, keepdims=True)
@@ -80,4 +116,11 @@ def _bead(
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     if curve.closed:
         points, away, tool = (np.vstack([rows[:-1], rows[:1]]) for rows in (points, away, tool))
-    return Bead(points, away, tool, TURN * way / way[-1], np.full(len(points), process.travel_speed), curve.closed)
+    return Bead(
+        points,
+        away,
+        tool,
+        TURN * way / way[-1],
+        np.full(len(points), process.travel_speed),
+        curve.closed,
+    )

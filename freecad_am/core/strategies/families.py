@@ -10,7 +10,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
-from ..parameters.strategy import CurvesParameters, LayerParameters, RevolutionParameters, SurfaceParameters
+from ..parameters.strategy import (
+    CurvesParameters,
+    LayerParameters,
+    RevolutionParameters,
+    SurfaceParameters,
+)
 
 NEEDED, OPTIONAL, NONE = "needed", "optional", "none"
 
@@ -35,20 +40,74 @@ class Family:
 
 
 FAMILIES = (
-    Family("revolution", RevolutionParameters, NONE, False, False, ("local", "layer", "fixed"),
-           "symmetry-plane is not for parts of revolution; use local, layer or fixed"),
-    Family("surface", SurfaceParameters, NEEDED, True, False, ("local", "layer", "symmetry-plane", "fixed"), "", True),
-    Family("developable", DevelopableParameters, OPTIONAL, True, True, ("local",),
-           "{} is not for solids on a hub, which grow along its normals; use local"),
-    Family("curves", CurvesParameters, OPTIONAL, False, False, ("local", "fixed"),
-           "{} is for walls; curves are laid along their own directions or one: use local or fixed"),
-    Family("solid", SolidParameters, OPTIONAL, True, True, ("local", "layer", "fixed"),
-           "{} is for walls; plane layers grow along their normal: use local or fixed", faces=False),
-    Family("cladding", CladdingParameters, OPTIONAL, True, True, ("local",),
-           "{} is for walls; cladding grows along the normals of its faces: use local"),
+    Family(
+        "revolution",
+        RevolutionParameters,
+        NONE,
+        False,
+        False,
+        ("local", "layer", "fixed"),
+        "symmetry-plane is not for parts of revolution; use local, layer or fixed",
+    ),
+    Family(
+        "surface",
+        SurfaceParameters,
+        NEEDED,
+        True,
+        False,
+        ("local", "layer", "symmetry-plane", "fixed"),
+        "",
+        True,
+    ),
+    Family(
+        "developable",
+        DevelopableParameters,
+        OPTIONAL,
+        True,
+        True,
+        ("local",),
+        "{} is not for solids on a hub, which grow along its normals; use local",
+    ),
+    Family(
+        "curves",
+        CurvesParameters,
+        OPTIONAL,
+        False,
+        False,
+        ("local", "fixed"),
+        "{} is for walls; curves are laid along their own directions or one: use local or fixed",
+    ),
+    Family(
+        "solid",
+        SolidParameters,
+        OPTIONAL,
+        True,
+        True,
+        ("local", "layer", "fixed"),
+        "{} is for walls; plane layers grow along their normal: use local or fixed",
+        faces=False,
+    ),
+    Family(
+        "cladding",
+        CladdingParameters,
+        OPTIONAL,
+        True,
+        True,
+        ("local",),
+        "{} is for walls; cladding grows along the normals of its faces: use local",
+    ),
 )
 # what `kind: auto` is until its part is known: it may have whatever one of the families takes
-AUTO = Family("auto", LayerParameters, OPTIONAL, True, False, ("local", "layer", "symmetry-plane", "fixed"), "", True)
+AUTO = Family(
+    "auto",
+    LayerParameters,
+    OPTIONAL,
+    True,
+    False,
+    ("local", "layer", "symmetry-plane", "fixed"),
+    "",
+    True,
+)
 KINDS = {family.kind: family for family in FAMILIES}
 
 

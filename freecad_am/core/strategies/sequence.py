@@ -17,7 +17,9 @@ BY_FEATURE, BY_HEIGHT = "feature", "height"
 FLOATS = 0.9  # of the length of a first layer; with so much of it over nothing a feature floats
 
 
-def joined(toolpaths: Sequence[Toolpath], sequence: str, up: Array, bodies: Sequence[Body]) -> Toolpath:
+def joined(
+    toolpaths: Sequence[Toolpath], sequence: str, up: Array, bodies: Sequence[Body]
+) -> Toolpath:
     """One toolpath of those of several features, each with its label, in the order of deposit.
 
     sequence: BY_FEATURE, one after the other, or BY_HEIGHT: of the next layers of all features the one whose lowest point is
@@ -36,10 +38,20 @@ def joined(toolpaths: Sequence[Toolpath], sequence: str, up: Array, bodies: Sequ
     feeds = {one.wire_feed for one in toolpaths}
     return replace(
         first,
-        layers=tuple(replace(parts[k].layers[i], feature=k, first=i == 0 or parts[k].layers[i].first) for k, i in order),
+        layers=tuple(
+            replace(parts[k].layers[i], feature=k, first=i == 0 or parts[k].layers[i].first)
+            for k, i in order
+        ),
         chord_error=min(one.chord_error for one in toolpaths),
-        issues=tuple(issue for one, some in zip(toolpaths, numbers) for issue in renumbered(one.issues, some)),
-        surroundings=tuple(bodies), law=None, unsupported=None, on_part=None, volumes=None, twice=None,
+        issues=tuple(
+            issue for one, some in zip(toolpaths, numbers) for issue in renumbered(one.issues, some)
+        ),
+        surroundings=tuple(bodies),
+        law=None,
+        unsupported=None,
+        on_part=None,
+        volumes=None,
+        twice=None,
         feature_label="",
         wire_feed=first.wire_feed if len(feeds) == 1 else None,
         features=tuple(replace(one, layers=(), issues=(), surroundings=()) for one in toolpaths),
@@ -51,7 +63,8 @@ def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | 
     """Numbers, least and largest heights (k, 3) of the layers of all features that are not as high everywhere."""
     found = [
         np.column_stack([some[one.uneven[:, 0].astype(np.intp)], one.uneven[:, 1:]])
-        for one, some in zip(toolpaths, numbers) if one.uneven is not None
+        for one, some in zip(toolpaths, numbers)
+        if one.uneven is not None
     ]
     return np.vstack(found) if found else None
 
@@ -59,11 +72,14 @@ def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | 
 def renumbered(issues: Sequence[Issue], numbers: Index) -> tuple[Issue, ...]:
     """Issues of a feature as ones of a job with several, of which its layers have those numbers (n,)."""
     return tuple(
-        issue if issue.layer is None else replace(issue, layer=int(numbers[issue.layer])) for issue in issues
+        issue if issue.layer is None else replace(issue, layer=int(numbers[issue.layer]))
+        for issue in issues
     )
 
 
-def with_feature(toolpath: Toolpath, number: int, feature: Toolpath, issues: Sequence[Issue]) -> Toolpath:
+def with_feature(
+    toolpath: Toolpath, number: int, feature: Toolpath, issues: Sequence[Issue]
+) -> Toolpath:
     """The toolpath with what is now known of one of its features, and issues more, numbered through."""
     features = list(toolpath.features)
     features[number] = replace(feature, layers=(), issues=(), surroundings=())
@@ -79,9 +95,12 @@ def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) 
     if open_ < FLOATS * length:
         return
     raise InputError(
-        "FLOATS", part.feature_label, "nothing carries it: {:.4g} of {:.4g} mm of its first layer lie over nothing when "
-        "they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on", open_,
-        length
+        "FLOATS",
+        part.feature_label,
+        "nothing carries it: {:.4g} of {:.4g} mm of its first layer lie over nothing when "
+        "they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on",
+        open_,
+        length,
     )
 
 
@@ -89,7 +108,10 @@ def _lowest_first(heights: Sequence[Sequence[float]]) -> list[tuple[int, int]]:
     order: list[tuple[int, int]] = []
     at = [0] * len(heights)
     while any(at[k] < len(one) for k, one in enumerate(heights)):
-        k = min((k for k, one in enumerate(heights) if at[k] < len(one)), key=lambda k: (heights[k][at[k]], k))
+        k = min(
+            (k for k, one in enumerate(heights) if at[k] < len(one)),
+            key=lambda k: (heights[k][at[k]], k),
+        )
         order.append((k, at[k]))
         at[k] += 1
     return order
@@ -107,11 +129,20 @@ def _telling_widths(toolpath: Toolpath, first: Toolpath) -> Toolpath:
     ):
         return toolpath
     wide, high = toolpath.bead_width, toolpath.layer_height
-    return replace(toolpath, layers=tuple(
-        replace(layer, beads=tuple(
-            replace(bead, width=np.full(len(bead), wide) if bead.width is None else bead.width,
-                    height=np.full(len(bead), high) if bead.height is None else bead.height)
-            for bead in layer.beads
-        ))
-        for layer in toolpath.layers
-    ))
+    return replace(
+        toolpath,
+        layers=tuple(
+            replace(
+                layer,
+                beads=tuple(
+                    replace(
+                        bead,
+                        width=np.full(len(bead), wide) if bead.width is None else bead.width,
+                        height=np.full(len(bead), high) if bead.height is None else bead.height,
+                    )
+                    for bead in layer.beads
+                ),
+            )
+            for layer in toolpath.layers
+        ),
+    )

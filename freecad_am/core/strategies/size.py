@@ -22,7 +22,12 @@ from ..issues import NOTE, InputError, Issue, Text, Word
 from ..layers.curved.grid import step_of
 from ..parameters.filled import GEODESIC, OFFSET, CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters
-from ..parameters.strategy import MOST_LAYERS, LayerParameters, RevolutionParameters, SurfaceParameters
+from ..parameters.strategy import (
+    MOST_LAYERS,
+    LayerParameters,
+    RevolutionParameters,
+    SurfaceParameters,
+)
 from ..types import Array
 
 if TYPE_CHECKING:
@@ -34,12 +39,17 @@ if TYPE_CHECKING:
 # kB at the peak: these are more than 70 GB, and fifty times the largest jobs known
 MOST_POINTS = 50_000_000
 LARGE = "LARGE"
-LARGE_SECONDS, LARGE_GIGABYTES = 30.0, 1.0  # from which a job is told to be large; half of what anybody waits for untold
+LARGE_SECONDS, LARGE_GIGABYTES = (
+    30.0,
+    1.0,
+)  # from which a job is told to be large; half of what anybody waits for untold
 GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
 FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
-SECONDS_A_LAYER = 0.05  # s of the processor through all stages, however few points its beads have, measured at 25
+SECONDS_A_LAYER = (
+    0.05  # s of the processor through all stages, however few points its beads have, measured at 25
+)
 SECONDS_A_SQUARE = 1.5e-4  # s of the processor that filling layers that differ takes by the square of the spacing, measured
 SECONDS_A_REMEDY = 8e-3  # s of the processor that a point takes with each remedy on an arm with an offset wrist, measured
 SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
@@ -50,7 +60,10 @@ SECONDS_A_NODE = 5e-5  # s of the processor that curved layers take by the node 
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to
 # layer, and layers of cladding are laid flat to be filled
 _SECONDS_A_POINT: dict[type, float] = {
-    RevolutionParameters: 5.5e-5, SurfaceParameters: 2e-3, CladdingParameters: 1.5e-3, FilledParameters: 2.5e-4,
+    RevolutionParameters: 5.5e-5,
+    SurfaceParameters: 2e-3,
+    CladdingParameters: 1.5e-3,
+    FilledParameters: 2.5e-4,
 }
 
 
@@ -71,16 +84,23 @@ def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
     """That of a part of revolution; the turns of a spiral count as layers."""
     meridian, turn = wall.meridian, wall.end - wall.start
     radius, height, tangent = meridian.at(np.linspace(0.0, meridian.length, PLACES))
-    step = 4.0 * np.arcsin(np.sqrt(np.minimum(1.0, 0.5 * strategy.chord_error / np.maximum(radius, 1e-9))))
+    step = 4.0 * np.arcsin(
+        np.sqrt(np.minimum(1.0, 0.5 * strategy.chord_error / np.maximum(radius, 1e-9)))
+    )
     segments = np.maximum(turn / step, strategy.min_points * min(1.0, turn / (2.0 * math.pi)))
     cut = np.ones(PLACES) if strategy.spacing == "arc-length" else np.abs(tangent[:, 1])
     high = meridian.length if strategy.spacing == "arc-length" else float(np.ptp(height))
-    return Size(high / strategy.layer_height, meridian.length * float((cut * segments).mean()) / strategy.layer_height)
+    return Size(
+        high / strategy.layer_height,
+        meridian.length * float((cut * segments).mean()) / strategy.layer_height,
+    )
 
 
 def of_wall(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
     """That of a wall on an existing part."""
-    from ..geometry.walls.patch_wall import PatchWall  # no part of revolution needs it, and what it imports takes long
+    from ..geometry.walls.patch_wall import (
+        PatchWall,  # no part of revolution needs it, and what it imports takes long
+    )
 
     return of_fronts(wall, strategy) if isinstance(wall, PatchWall) else of_tube(wall, strategy)
 
@@ -93,8 +113,14 @@ def of_tube(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
     low, at = surface.inverse(wall.first[:: max(1, len(wall.first) // PLACES)])
     share = np.linspace(0.0, 1.0, PLACES)[:, None]
     lines = surface.point(low + share * (wall.end - low), np.broadcast_to(at, (PLACES, len(at))))
-    layers = float(np.linalg.norm(np.diff(lines, axis=0), axis=2).sum(axis=0).mean()) / strategy.layer_height
-    chords = 0.5 * (_chords(wall.first, True, strategy.chord_error)[0] + _chords(top, True, strategy.chord_error)[0])
+    layers = (
+        float(np.linalg.norm(np.diff(lines, axis=0), axis=2).sum(axis=0).mean())
+        / strategy.layer_height
+    )
+    chords = 0.5 * (
+        _chords(wall.first, True, strategy.chord_error)[0]
+        + _chords(top, True, strategy.chord_error)[0]
+    )
     return Size(layers, layers * max(FEWEST, chords))
 
 
@@ -109,11 +135,18 @@ def of_fronts(wall: PatchWall, strategy: SurfaceParameters) -> Size:
     # beads are bent as the first ones are, or as a circle through the whole wall would be, whichever is less
     chords = [_chords(curve.points, curve.closed, strategy.chord_error) for curve in wall.first]
     per_mm = sum(count for count, _ in chords) / sum(length for _, length in chords)
-    per_mm = min(per_mm, 1.0 / math.sqrt(4.0 * strategy.chord_error * np.linalg.norm(np.ptp(wall.vertices, axis=0))))
-    return Size(layers, max(FEWEST * layers, per_mm * area / strategy.layer_height), folds=wall.folds)
+    per_mm = min(
+        per_mm,
+        1.0 / math.sqrt(4.0 * strategy.chord_error * np.linalg.norm(np.ptp(wall.vertices, axis=0))),
+    )
+    return Size(
+        layers, max(FEWEST * layers, per_mm * area / strategy.layer_height), folds=wall.folds
+    )
 
 
-def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | None = None) -> Size:
+def of_solids(
+    solids: SolidsOnHub, strategy: FilledParameters, spacing: float | None = None
+) -> Size:
     """That of solids on a hub. spacing: mm between beads; None: as the parameter says, and nothing is told of points where
     an overlap takes its place."""
     if spacing is None:
@@ -128,17 +161,27 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
             solid = abs(SolidMesh(body.vertices, body.triangles).volume)
             volume += solid
             length = (
-                solid * float(np.prod(1.0 + 2.0 * strategy.margin / np.ptp(body.vertices, axis=0)))  # grown by the margin
-                * height / max(height + depth, 1e-9) / strategy.layer_height / spacing
+                solid
+                * float(
+                    np.prod(1.0 + 2.0 * strategy.margin / np.ptp(body.vertices, axis=0))
+                )  # grown by the margin
+                * height
+                / max(height + depth, 1e-9)
+                / strategy.layer_height
+                / spacing
             )
             # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
             extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
             points += length * max(
-                0.5 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(height, extent)), 2.0 / extent
+                0.5
+                / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(height, extent)),
+                2.0 / extent,
             )
             if strategy.margin > 0.0:  # rounded by it, each layer is another
                 squares += length / spacing
-        layers += (sum(heights) if strategy.order == "feature" else max(heights, default=0.0)) / strategy.layer_height
+        layers += (
+            sum(heights) if strategy.order == "feature" else max(heights, default=0.0)
+        ) / strategy.layer_height
         if getattr(strategy, "layers", "") in (GEODESIC, OFFSET):
             nodes += volume / step_of(volume, strategy.layer_height) ** 3
     return Size(layers, points, squares, nodes)
@@ -150,7 +193,8 @@ def of_cladding(faces: CladFaces, strategy: CladdingParameters) -> Size:
     high = strategy.layers * strategy.layer_height
     points = sum(
         weight * _on_sheet(sheet, share * high, strategy.chord_error)
-        for sheet in faces.sheets for share, weight in ((0.0, 1 / 6), (0.5, 2 / 3), (1.0, 1 / 6))  # Simpson's rule
+        for sheet in faces.sheets
+        for share, weight in ((0.0, 1 / 6), (0.5, 2 / 3), (1.0, 1 / 6))  # Simpson's rule
     )
     return Size(strategy.layers, strategy.layers * points / spacing)
 
@@ -174,16 +218,28 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
     height = strategy.layer_height
     if size.layers > MOST_LAYERS:
         raise InputError(
-            "TOO_MANY", "strategy.layer_height", "{:g} mm makes about {} layers, and more than {:,} cannot be worked with; "
-            "give at least {:g} mm", height, count(size.layers), MOST_LAYERS, at_least(height * size.layers / MOST_LAYERS),
+            "TOO_MANY",
+            "strategy.layer_height",
+            "{:g} mm makes about {} layers, and more than {:,} cannot be worked with; "
+            "give at least {:g} mm",
+            height,
+            count(size.layers),
+            MOST_LAYERS,
+            at_least(height * size.layers / MOST_LAYERS),
         )
     over = size.points / MOST_POINTS
     if over > 1.0:
         cause = max(_causes(strategy, width), key=lambda one: (one.usual / one.value) ** one.power)
         enough = at_least(cause.value * over ** (1.0 / cause.power))
         raise InputError(
-            "TOO_MANY", cause.key, "{:g} mm makes about {} points, and more than {:,} cannot be worked with; give at least "
-            "{:g} mm", cause.value, count(size.points), MOST_POINTS, enough,
+            "TOO_MANY",
+            cause.key,
+            "{:g} mm makes about {} points, and more than {:,} cannot be worked with; give at least "
+            "{:g} mm",
+            cause.value,
+            count(size.points),
+            MOST_POINTS,
+            enough,
         )
 
 
@@ -192,34 +248,62 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     layers or the folds of a mesh take longer than all points, and these take LARGE_GIGABYTES. Raises InputError as
     `refuse_absurd`."""
     refuse_absurd(size, strategy)
-    a_point = next(seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind))
-    seconds = max(size.points * a_point, size.layers * SECONDS_A_LAYER, size.squares * SECONDS_A_SQUARE)
+    a_point = next(
+        seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind)
+    )
+    seconds = max(
+        size.points * a_point, size.layers * SECONDS_A_LAYER, size.squares * SECONDS_A_SQUARE
+    )
     gigabytes = size.points * GIGABYTES_A_POINT
     shapes = _of_shape(size, max(seconds, LARGE_SECONDS))
     if gigabytes < LARGE_GIGABYTES and (shapes or seconds < LARGE_SECONDS):
         return shapes
-    return (*shapes, Issue(
-        NOTE, LARGE, Text("about {} points in {} layers are planned, which takes about {:g} min of the processor and {:g} "
-            "GB of memory; a larger strategy.layer_height or strategy.chord_error makes them fewer", count(size.points),
-            count(size.layers), at_least(seconds / 60.0), at_least(gigabytes)),
-    ))
+    return (
+        *shapes,
+        Issue(
+            NOTE,
+            LARGE,
+            Text(
+                "about {} points in {} layers are planned, which takes about {:g} min of the processor and {:g} "
+                "GB of memory; a larger strategy.layer_height or strategy.chord_error makes them fewer",
+                count(size.points),
+                count(size.layers),
+                at_least(seconds / 60.0),
+                at_least(gigabytes),
+            ),
+        ),
+    )
 
 
 def _of_shape(size: Size, seconds: float) -> tuple[Issue, ...]:
     """A note LARGE where it is the shape that takes longer than so many seconds, however few points its beads have."""
     grids, folds = size.nodes * SECONDS_A_NODE, size.folds * SECONDS_A_FOLD
     if grids > seconds:
-        return (Issue(
-            NOTE, LARGE, Text("curved layers are searched for on a grid of about {} nodes, which takes about {:g} min of "
-                "the processor; a larger strategy.layer_height, or layers: planes, takes less", count(size.nodes),
-                at_least(grids / 60.0)),
-        ),)
+        return (
+            Issue(
+                NOTE,
+                LARGE,
+                Text(
+                    "curved layers are searched for on a grid of about {} nodes, which takes about {:g} min of "
+                    "the processor; a larger strategy.layer_height, or layers: planes, takes less",
+                    count(size.nodes),
+                    at_least(grids / 60.0),
+                ),
+            ),
+        )
     if folds > seconds:
-        return (Issue(
-            NOTE, LARGE, Text("facets meet at sharp angles along about {} mm of edges; finding layers around these takes "
-                "about {:g} min of the processor; a larger strategy.layer_height, or a mesh with rounded edges, takes less",
-                count(size.folds), at_least(folds / 60.0)),
-        ),)
+        return (
+            Issue(
+                NOTE,
+                LARGE,
+                Text(
+                    "facets meet at sharp angles along about {} mm of edges; finding layers around these takes "
+                    "about {:g} min of the processor; a larger strategy.layer_height, or a mesh with rounded edges, takes less",
+                    count(size.folds),
+                    at_least(folds / 60.0),
+                ),
+            ),
+        )
     return ()
 
 
@@ -231,16 +315,32 @@ def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:
         return ()
     minutes = Text("{:g} min of the processor", at_least(seconds / 60.0))
     if times > 1:
-        return (Issue(
-            NOTE, LARGE, Text("with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on "
-                "beads of {} points; finding slower ones takes up to {}; a larger build_direction.max_turn, a slimmer "
-                "nozzle, or clearance: none, saves it", count(points), Word(minutes)),
-        ),)
-    return (Issue(
-        NOTE, LARGE, Text("with the tool axes asked for the nozzle touches beads of {} points; finding tilts that keep it "
-            "clear takes about {}, several times that where the tool would turn too fast; a smaller build_direction.lead "
-            "and build_direction.tilt, or clearance: none, saves it", count(points), Word(minutes)),
-    ),)
+        return (
+            Issue(
+                NOTE,
+                LARGE,
+                Text(
+                    "with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on "
+                    "beads of {} points; finding slower ones takes up to {}; a larger build_direction.max_turn, a slimmer "
+                    "nozzle, or clearance: none, saves it",
+                    count(points),
+                    Word(minutes),
+                ),
+            ),
+        )
+    return (
+        Issue(
+            NOTE,
+            LARGE,
+            Text(
+                "with the tool axes asked for the nozzle touches beads of {} points; finding tilts that keep it "
+                "clear takes about {}, several times that where the tool would turn too fast; a smaller build_direction.lead "
+                "and build_direction.tilt, or clearance: none, saves it",
+                count(points),
+                Word(minutes),
+            ),
+        ),
+    )
 
 
 def of_remedies(points: int) -> tuple[Issue, ...]:
@@ -249,10 +349,17 @@ def of_remedies(points: int) -> tuple[Issue, ...]:
     seconds = points * SECONDS_A_REMEDY
     if seconds < LARGE_SECONDS:
         return ()
-    return (Issue(
-        NOTE, LARGE, Text("as it is this job cannot be carried out; looking for what would make it feasible takes up to "
-            "{:g} min of the processor", at_least(seconds / 60.0)),
-    ),)
+    return (
+        Issue(
+            NOTE,
+            LARGE,
+            Text(
+                "as it is this job cannot be carried out; looking for what would make it feasible takes up to "
+                "{:g} min of the processor",
+                at_least(seconds / 60.0),
+            ),
+        ),
+    )
 
 
 class _Cause(NamedTuple):
@@ -273,7 +380,9 @@ def _causes(strategy: LayerParameters, width: float | None) -> list[_Cause]:
     if width is not None:
         found.append(_Cause("process.bead_width", width, ProcessParameters().bead_width))
     elif isinstance(strategy, FilledParameters):
-        found.append(_Cause("strategy.bead_spacing", strategy.bead_spacing, FilledParameters().bead_spacing))
+        found.append(
+            _Cause("strategy.bead_spacing", strategy.bead_spacing, FilledParameters().bead_spacing)
+        )
     return found
 
 
@@ -284,4 +393,6 @@ def _chords(points: Array, closed: bool, chord_error: float) -> tuple[float, flo
     length = np.linalg.norm(chord, axis=1)
     cosine = np.einsum("ij,ij->i", chord[:-1], chord[1:]) / (length[:-1] * length[1:])
     turn = np.arccos(np.clip(cosine, -1.0, 1.0))
-    return float(np.sqrt(turn * 0.5 * (length[:-1] + length[1:]) / (8.0 * chord_error)).sum()), float(length.sum())
+    return float(
+        np.sqrt(turn * 0.5 * (length[:-1] + length[1:]) / (8.0 * chord_error)).sum()
+    ), float(length.sum())

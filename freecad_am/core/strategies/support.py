@@ -26,10 +26,16 @@ ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever 
 FLUSH = 1e-6  # mm
 OVER_PLATFORM, ABOVE_PLATFORM = "OVER_PLATFORM", "ABOVE_PLATFORM"
 CURVES = "curves"
-BY_ITSELF = ("surface", CURVES, "cladding")  # families whose first layer lies where it begins by its making
+BY_ITSELF = (
+    "surface",
+    CURVES,
+    "cladding",
+)  # families whose first layer lies where it begins by its making
 
 
-def with_support(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]) -> Toolpath:
+def with_support(
+    toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
+) -> Toolpath:
     """The toolpath with how much of it lies over nothing, and issues where.
 
     planes: frames (4, 4) in part coordinates, what lies on the plane z = 0 of
@@ -37,19 +43,33 @@ def with_support(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[B
     hub is known by its surface alone. The first layer of a wall lies by its making where the wall begins, and is carried.
     """
     ground = _Ground(toolpath, planes, bodies, bases)
-    open_, issues = support.carried(toolpath, ground, toolpath.family in BY_ITSELF, _lowest(toolpath, toolpath.family, 0))
-    return replace(toolpath, unsupported=math.fsum(open_.values()), issues=(*toolpath.issues, *issues))
+    open_, issues = support.carried(
+        toolpath, ground, toolpath.family in BY_ITSELF, _lowest(toolpath, toolpath.family, 0)
+    )
+    return replace(
+        toolpath, unsupported=math.fsum(open_.values()), issues=(*toolpath.issues, *issues)
+    )
 
 
 def of_feature(
-    toolpath: Toolpath, number: int, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
+    toolpath: Toolpath,
+    number: int,
+    planes: Sequence[Array],
+    bodies: Sequence[Body],
+    bases: Sequence[Base],
 ) -> tuple[dict[int, float], list[Issue]]:
     """How much of the layers of one of the features of a toolpath lies over nothing, mm by layer, and issues where; deposit
     of the other features carries what comes after it. planes, bodies, bases: as of `with_support`."""
     part, numbers = toolpath.parts[number]
     ground = _Ground(part, planes, bodies, bases)
     whole = replace(toolpath, layer_height=part.layer_height)
-    return support.carried(whole, ground, part.family in BY_ITSELF, _lowest(whole, part.family, int(numbers[0])), numbers)
+    return support.carried(
+        whole,
+        ground,
+        part.family in BY_ITSELF,
+        _lowest(whole, part.family, int(numbers[0])),
+        numbers,
+    )
 
 
 def _lowest(toolpath: Toolpath, family: str, first: int) -> Mask:
@@ -61,7 +81,11 @@ def _lowest(toolpath: Toolpath, family: str, first: int) -> Mask:
 
 
 def over_edge(
-    toolpath: Toolpath, frame: Array, diameter: float, bodies: Sequence[Body], feature: Array | None = None
+    toolpath: Toolpath,
+    frame: Array,
+    diameter: float,
+    bodies: Sequence[Body],
+    feature: Array | None = None,
 ) -> list[Issue]:
     """A warning where beads of the first layer lie on the plane of the platform, a disc of `diameter` mm about the origin of
     the frame (4, 4) in part coordinates, or of solids below it, and beyond its edge by more than half of their width, on
@@ -73,23 +97,40 @@ def over_edge(
     if not len(out):
         return []
     worst = out[beyond[out].argmax()]
-    mounted = feature is not None and _stands_on(toolpath, feature, bodies) and bool(
-        (_beyond(toolpath, first, feature, diameter) <= 0.5 * first.width).all()
+    mounted = (
+        feature is not None
+        and _stands_on(toolpath, feature, bodies)
+        and bool((_beyond(toolpath, first, feature, diameter) <= 0.5 * first.width).all())
     )
-    return [Issue(
-        WARNING, OVER_PLATFORM, Text("{:.4g} mm of the first layer lie over the edge of the platform, up to {:.4g} mm "
-            "beyond it; {}, or set cell.platform_diameter to what there is (0 for none)",
-            math.fsum(first.length[out]), beyond[worst],
-            Word("put the part on its middle by cell.mount: feature, move it" if mounted else "move the part")),
-        0, int(first.bead[worst]), int(first.point[worst]),
-    )]
+    return [
+        Issue(
+            WARNING,
+            OVER_PLATFORM,
+            Text(
+                "{:.4g} mm of the first layer lie over the edge of the platform, up to {:.4g} mm "
+                "beyond it; {}, or set cell.platform_diameter to what there is (0 for none)",
+                math.fsum(first.length[out]),
+                beyond[worst],
+                Word(
+                    "put the part on its middle by cell.mount: feature, move it"
+                    if mounted
+                    else "move the part"
+                ),
+            ),
+            0,
+            int(first.bead[worst]),
+            int(first.point[worst]),
+        )
+    ]
 
 
 def _beyond(toolpath: Toolpath, first: Pieces, frame: Array, diameter: float) -> Array:
     """How far (n,) mm pieces of the first layer on the plane of a platform, or of solids below it, are beyond its edge; -inf
     of all others. The first layers of walls, hubs and curves may lie on what is not in the file."""
     local = (first.middle - frame[:3, 3]) @ frame[:3, :3]
-    on_plane = (np.abs(local[:, 2]) if toolpath.family != "solid" else local[:, 2]) <= ON * toolpath.layer_height
+    on_plane = (
+        np.abs(local[:, 2]) if toolpath.family != "solid" else local[:, 2]
+    ) <= ON * toolpath.layer_height
     return np.where(on_plane, np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter, -np.inf)
 
 
@@ -97,9 +138,14 @@ def _stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool
     """Whether all that is deposited, and bodies, are above a plane, z = 0 of a frame (4, 4), onto which the first layer
     comes."""
     points = [bead.points for _, _, bead in toolpath]
-    heights = [(some - frame[:3, 3]) @ frame[:3, 2] for some in (*points, *(body.vertices for body in bodies))]
+    heights = [
+        (some - frame[:3, 3]) @ frame[:3, 2]
+        for some in (*points, *(body.vertices for body in bodies))
+    ]
     first = np.concatenate(heights[: len(toolpath.layers[0].beads)])
-    return min(map(np.min, heights)) >= -ON * toolpath.layer_height and bool((first <= ON * toolpath.layer_height).any())
+    return min(map(np.min, heights)) >= -ON * toolpath.layer_height and bool(
+        (first <= ON * toolpath.layer_height).any()
+    )
 
 
 def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issue]:
@@ -112,12 +158,21 @@ def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issu
     if 2.0 * first.length[up].sum() <= first.length.sum():
         return []
     highest = up[height[up].argmax()]
-    return [Issue(
-        WARNING, ABOVE_PLATFORM, Text("{:.4g} mm of the first layer lie up to {:.4g} mm above the platform, over nothing; "
-            "put the part on it by cell.mount: feature, move it in its file, or name what it grows on as its substrate",
-            math.fsum(first.length[up]), height[highest]),
-        0, int(first.bead[highest]), int(first.point[highest]),
-    )]
+    return [
+        Issue(
+            WARNING,
+            ABOVE_PLATFORM,
+            Text(
+                "{:.4g} mm of the first layer lie up to {:.4g} mm above the platform, over nothing; "
+                "put the part on it by cell.mount: feature, move it in its file, or name what it grows on as its substrate",
+                math.fsum(first.length[up]),
+                height[highest],
+            ),
+            0,
+            int(first.bead[highest]),
+            int(first.point[highest]),
+        )
+    ]
 
 
 def surely_above(solids: SolidsOnHub, layer_height: float) -> bool:
@@ -139,13 +194,23 @@ class _Ground:
     `first` (n,) is not true, of those after it."""
 
     def __init__(
-        self, toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
+        self,
+        toolpath: Toolpath,
+        planes: Sequence[Array],
+        bodies: Sequence[Body],
+        bases: Sequence[Base],
     ) -> None:
         self._height, self._planes, self._bases = toolpath.layer_height, planes, bases
-        self._searches = [search for body in bodies if (search := _search(body, toolpath.layer_height)) is not None]
+        self._searches = [
+            search
+            for body in bodies
+            if (search := _search(body, toolpath.layer_height)) is not None
+        ]
         if bases and self._searches:
             first = toolpath.layers[0].beads
-            points, build = (np.vstack([getattr(bead, name) for bead in first]) for name in ("points", "build"))
+            points, build = (
+                np.vstack([getattr(bead, name) for bead in first]) for name in ("points", "build")
+            )
             some = slice(None, None, max(1, len(points) // 1000))
             reach = np.full(len(points), support.REACH * self._height)
             if self._on_bodies(points[some], build[some], reach[some]).mean() > 0.5:

@@ -67,7 +67,12 @@ def _attend(worker: Worker, title: str, doing: str, dialog: _Dialog) -> None:
                 progress.report(worker.fraction, worker.text)  # a macro may listen, and cancel
         except BaseException as error:  # else it would be lost here
             failure.append(error)
-        if worker.ended.is_set() or failure or dialog.cancelled or (dialog.is_due and not dialog.visible):
+        if (
+            worker.ended.is_set()
+            or failure
+            or dialog.cancelled
+            or (dialog.is_due and not dialog.visible)
+        ):
             loop.quit()
         dialog.tell(title, worker.fraction, worker.text or doing)
 
@@ -125,7 +130,11 @@ class _Dialog:
         self.box.setWindowModality(QtCore.Qt.ApplicationModal)
         self.box.setAutoClose(False)
         self.box.setAutoReset(False)
-        self.text, self.bar, self.button = QtGui.QLabel(), QtGui.QProgressBar(), QtGui.QPushButton(tr("Cancel"))
+        self.text, self.bar, self.button = (
+            QtGui.QLabel(),
+            QtGui.QProgressBar(),
+            QtGui.QPushButton(tr("Cancel")),
+        )
         self.text.setObjectName("text")
         self.bar.setObjectName("bar")
         self.button.setObjectName("cancel")
@@ -133,13 +142,19 @@ class _Dialog:
         self.box.setLabel(self.text)
         self.box.setBar(self.bar)
         self.box.setCancelButton(self.button)
-        for escape in self.box.findChildren(QtGui.QShortcut):  # also where the main window keeps the focus
+        for escape in self.box.findChildren(
+            QtGui.QShortcut
+        ):  # also where the main window keeps the focus
             escape.setContext(QtCore.Qt.ApplicationShortcut)
-            connect(escape, "activatedAmbiguously()", self.cancel)  # Qt makes one for each Cancel it was given
+            connect(
+                escape, "activatedAmbiguously()", self.cancel
+            )  # Qt makes one for each Cancel it was given
         self.box.setMinimumWidth(_WIDTH)
         self.box.canceled.connect(self.cancel)
         self.tell(title, None, doing)
-        QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.ArrowCursor))  # over FreeCAD's waiting one
+        QtGui.QApplication.setOverrideCursor(
+            QtGui.QCursor(QtCore.Qt.ArrowCursor)
+        )  # over FreeCAD's waiting one
         self.box.show()
         self.button.setFocus()
 
@@ -147,7 +162,11 @@ class _Dialog:
         """What is computed, how far it is (None: unknown) and what it is doing."""
         if self.box is None:
             return
-        shown = tr("{}: {}").format(title, translated(text)) if text else tr("{} is being computed").format(title)
+        shown = (
+            tr("{}: {}").format(title, translated(text))
+            if text
+            else tr("{} is being computed").format(title)
+        )
         if self.text.text() != shown:
             self.text.setText(shown)
         self.bar.setRange(0, 0 if fraction is None else STEPS)

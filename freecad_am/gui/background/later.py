@@ -19,7 +19,10 @@ from .worker import Worker
 
 WAIT = 300  # ms
 LOOK_EVERY = 30  # ms
-DELETED = ("already deleted", "of deleted object")  # in what PySide and FreeCAD say of a widget or a view that is gone
+DELETED = (
+    "already deleted",
+    "of deleted object",
+)  # in what PySide and FreeCAD say of a widget or a view that is gone
 
 
 @contextlib.contextmanager

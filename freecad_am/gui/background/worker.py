@@ -98,7 +98,9 @@ class Worker:
         if self._cancelled:
             self._stop()
             if self.ended.is_set():  # as it is where it was not alive before
-                self._value = self._error = None  # of no use, and its traceback refers to this worker
+                self._value = self._error = (
+                    None  # of no use, and its traceback refers to this worker
+                )
         return alive
 
 

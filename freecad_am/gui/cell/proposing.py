@@ -82,7 +82,12 @@ class ProposingPanel(PreviewPanel):
         self.noted.clear()
         if not machine.free or not (of_setup(setup).free and of_setup(setup).planned):
             return
-        folders, known, wanted, tool = user_machines.folders(), dict(self.of_machine), self.before, self._tool()
+        folders, known, wanted, tool = (
+            user_machines.folders(),
+            dict(self.of_machine),
+            self.before,
+            self._tool(),
+        )
 
         def work() -> dict[tuple[str, str], CellParameters]:
             for one in filter(None, (before, wanted)):
@@ -90,7 +95,9 @@ class ProposingPanel(PreviewPanel):
                     known[one] = known.get(one) or cell_of(one[0], folders, one[1], tool)
             return known
 
-        self.proposing.start(work, lambda worker: self._propose(worker, before, wanted, machine.title))
+        self.proposing.start(
+            work, lambda worker: self._propose(worker, before, wanted, machine.title)
+        )
 
     def _tool(self) -> Any:
         """The pose of the tip on the flange as it is entered, None where that cannot be read as numbers."""
@@ -116,7 +123,9 @@ class ProposingPanel(PreviewPanel):
         usual = (None if before is None else self.of_machine.get(before)) or default
         if proposal is None:  # no cell can have it, which the preview tells
             return
-        if EXTERNAL in self.put and self._may_put(EXTERNAL, default.external):  # that of the machine before
+        if EXTERNAL in self.put and self._may_put(
+            EXTERNAL, default.external
+        ):  # that of the machine before
             self.places[EXTERNAL][0].show(default.external)
         for place, value, *was in (
             (POINT, proposal.deposition_point, usual.deposition_point, default.deposition_point),
@@ -127,14 +136,23 @@ class ProposingPanel(PreviewPanel):
             if _alike(holds, shown):
                 continue
             if self._may_put(place, *map(field.row.outer, was)):
-                self._put(place, shown, tr("Proposed for {}; enter what yours really has.").format(title))
+                self._put(
+                    place, shown, tr("Proposed for {}; enter what yours really has.").format(title)
+                )
             else:
-                self._note(place, tr("Left as it was entered; for {} it would be {}.").format(title, _value_text(shown)))
+                self._note(
+                    place,
+                    tr("Left as it was entered; for {} it would be {}.").format(
+                        title, _value_text(shown)
+                    ),
+                )
         self._ask_for_job()
 
     def _may_put(self, place: str, *usual: Any) -> bool:
         """Whether nobody has entered anything else than the panel itself, or what is usual."""
-        return self.enabled[place] and any(_alike(self._holds(place), one) for one in (self.put.get(place), *usual))
+        return self.enabled[place] and any(
+            _alike(self._holds(place), one) for one in (self.put.get(place), *usual)
+        )
 
     def _put(self, place: str, shown: Any, text: str) -> None:
         """Enter what is proposed, and say so."""
@@ -164,7 +182,9 @@ class ProposingPanel(PreviewPanel):
                 settings = made().value
                 return flat(settings), flat(suited(settings))
 
-            self.suiting.start(draft.reporting(work), lambda worker: self._suit(worker, entered, label))
+            self.suiting.start(
+                draft.reporting(work), lambda worker: self._suit(worker, entered, label)
+            )
 
     def _suit(self, worker: Worker, entered: dict[str, Any], label: str) -> None:
         """Enter the cell of the job where nobody has entered anything else in any of its fields, else tell it there."""
@@ -183,11 +203,18 @@ class ProposingPanel(PreviewPanel):
             key = field.row.key
             if found[key] != asked[key]:
                 shown[place] = field.row.outer(found[key]), field.row.outer(default[key])
-        free = all(place in self.enabled and self._may_put(place, usual) for place, (_, usual) in shown.items())
+        free = all(
+            place in self.enabled and self._may_put(place, usual)
+            for place, (_, usual) in shown.items()
+        )
         for place, (value, _) in shown.items():
             self._unfolded(place)
             if free:
-                self._put(place, value, tr("Proposed for the job of {}; enter what yours really has.").format(label))
+                self._put(
+                    place,
+                    value,
+                    tr("Proposed for the job of {}; enter what yours really has.").format(label),
+                )
             else:
                 text = tr("Left as it was entered; the job of {} can be done with {}.")
                 self._note(place, text.format(label, _value_text(value)))
@@ -226,7 +253,9 @@ class ProposingPanel(PreviewPanel):
                 self.say(tr("Cancelled: the document is as it was."))
                 return False
             background.at_once()
-        unseen = [self._line(place) for place, value in self.put.items() if value != before.get(place)]
+        unseen = [
+            self._line(place) for place, value in self.put.items() if value != before.get(place)
+        ]
         done = super()._carry_out()
         for line in unseen if done else []:
             App.Console.PrintWarning(line)
@@ -235,7 +264,9 @@ class ProposingPanel(PreviewPanel):
     def _line(self, place: str) -> str:
         """A line of the report view about what the panel itself has entered at a place."""
         label, value = self.places[place][0].label, _value_text(self.put[place])
-        text = tr("{}: {} is now {}. {}").format(self.form.windowTitle(), label, value, self.notes[place].text())
+        text = tr("{}: {} is now {}. {}").format(
+            self.form.windowTitle(), label, value, self.notes[place].text()
+        )
         return f"{text}\n"
 
     def close(self, *_: Any) -> None:
@@ -252,7 +283,11 @@ def _alike(one: Any, other: Any) -> bool:
         if any(isinstance(number, str) for number in (*one, *other)):  # an expression
             return one == other
         return bool(np.allclose(one, other, rtol=0.0, atol=1e-6))
-    return isinstance(one, str) and isinstance(other, str) and one.replace(",", " ").split() == other.split()
+    return (
+        isinstance(one, str)
+        and isinstance(other, str)
+        and one.replace(",", " ").split() == other.split()
+    )
 
 
 def _value_text(value: Any) -> str:

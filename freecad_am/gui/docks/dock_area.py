@@ -32,9 +32,13 @@ class DockArea:
         self.area = area
         self.across = QtCore.Qt.Horizontal if area in _SIDE_AREAS else QtCore.Qt.Vertical
         self.parts: list[_Part] = []  # in the order in which they were opened
-        self.before: dict[str, int] = {}  # names of other docks, and the pixels they had before ours came
+        self.before: dict[
+            str, int
+        ] = {}  # names of other docks, and the pixels they had before ours came
         self.wishes: dict[str, int] = {}  # what docks had by the user's hand when they were closed
-        self.made: int | None = None  # what has come of the pixels that were asked for, once docks stand still
+        self.made: int | None = (
+            None  # what has come of the pixels that were asked for, once docks stand still
+        )
         self.last: int | None = None
         self.timer = QtCore.QTimer()
         self.timer.setSingleShot(True)
@@ -114,22 +118,36 @@ class DockArea:
     # ---- the window
 
     def _stands(self, dock: Any) -> bool:
-        return dock.isVisible() and not dock.isFloating() and Gui.getMainWindow().dockWidgetArea(dock) == self.area
+        return (
+            dock.isVisible()
+            and not dock.isFloating()
+            and Gui.getMainWindow().dockWidgetArea(dock) == self.area
+        )
 
     def _seen(self) -> list[Any]:
         """The docks that stand there, without those behind others: Qt keeps these outside of the window."""
         window = Gui.getMainWindow()
         docks = present(window, QtGui.QDockWidget)
-        return [one for one in docks if self._stands(one) and one.geometry().intersects(window.rect())]
+        return [
+            one for one in docks if self._stands(one) and one.geometry().intersects(window.rect())
+        ]
 
     def _extent(self, dock: Any) -> int:
         """Pixels of a dock, with the tabs above or below it: so Qt counts when docks are resized."""
         if self.across == QtCore.Qt.Horizontal:
             return int(dock.width())
         window, place = Gui.getMainWindow(), dock.geometry()
-        bars = [bar.geometry() for bar in present(window, QtGui.QTabBar) if bar.parent() is window and bar.isVisible()]
-        tabs = [bar.height() for bar in bars if bar.left() <= place.center().x() <= bar.right()
-                and place.adjusted(0, -_TOLERANCE_PX, 0, _TOLERANCE_PX).intersects(bar)]
+        bars = [
+            bar.geometry()
+            for bar in present(window, QtGui.QTabBar)
+            if bar.parent() is window and bar.isVisible()
+        ]
+        tabs = [
+            bar.height()
+            for bar in bars
+            if bar.left() <= place.center().x() <= bar.right()
+            and place.adjusted(0, -_TOLERANCE_PX, 0, _TOLERANCE_PX).intersects(bar)
+        ]
         return int(place.height() + sum(tabs[:1]))
 
     def _resize(self, docks: list[Any], pixels: list[int]) -> None:

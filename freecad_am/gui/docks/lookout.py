@@ -24,7 +24,10 @@ class Lookout:
     and whether the document goes, until it is stopped. `goes` is called at once when an object goes, `ended` after it."""
 
     def __init__(
-        self, shown: Callable[[], Shown], changed: Callable[[Any, str], None], ended: Callable[[str, bool], None],
+        self,
+        shown: Callable[[], Shown],
+        changed: Callable[[Any, str], None],
+        ended: Callable[[str, bool], None],
         goes: Callable[[], None] = lambda: None,
     ) -> None:
         self.shown, self.changed, self.ended, self.goes = shown, changed, ended, goes

@@ -60,8 +60,11 @@ class Dock(QtGui.QDockWidget):
 
     def _join(self, window: Any) -> None:
         """Become a tab of one of ours that stands there, or would if it were open."""
-        there = [one for one in _docks.values() if one is not self and not one.isFloating()
-                 and window.dockWidgetArea(one) == self.area]
+        there = [
+            one
+            for one in _docks.values()
+            if one is not self and not one.isFloating() and window.dockWidgetArea(one) == self.area
+        ]
         if there:
             window.tabifyDockWidget(max(there, key=lambda one: one.isVisible()), self)
 

@@ -54,7 +54,9 @@ class Histogram(QtGui.QWidget):
         for start, end, count, band in zip(edges[:-1], edges[1:], counts, which, strict=True):
             tall = area.height() * int(count) / most
             left = across(float(start))
-            bar = QtCore.QRectF(left, area.bottom() - tall, max(across(float(end)) - left - 0.5, 0.5), tall)
+            bar = QtCore.QRectF(
+                left, area.bottom() - tall, max(across(float(end)) - left - 0.5, 0.5), tall
+            )
             painter.fillRect(bar, shades[int(band)])
         self._axis(painter, area, across, low, high)
         painter.end()
@@ -65,7 +67,10 @@ class Histogram(QtGui.QWidget):
         faint.setAlpha(_FAINT)
         painter.setPen(QtGui.QPen(faint, 1.0, QtCore.Qt.DashLine))
         for limit in (-self.tolerance, self.tolerance):
-            painter.drawLine(QtCore.QPointF(across(limit), area.top()), QtCore.QPointF(across(limit), area.bottom()))
+            painter.drawLine(
+                QtCore.QPointF(across(limit), area.top()),
+                QtCore.QPointF(across(limit), area.bottom()),
+            )
         painter.setPen(ink)
         painter.drawLine(area.bottomLeft(), area.bottomRight())
         line = painter.fontMetrics().height()

@@ -39,8 +39,12 @@ class PlannedChoice(Input):
         for obj in found:
             self.widget.addItem(obj.Label, obj.Name)
         selected = [obj for obj in meant(self.document.Name) if obj in found]
-        features = [obj for obj in found if stage_of(obj) is not None and stage_of(obj).kind == "feature"]
-        wanted = next(iter([*([present] if present is not None else selected), *features[-1:], *found]), None)
+        features = [
+            obj for obj in found if stage_of(obj) is not None and stage_of(obj).kind == "feature"
+        ]
+        wanted = next(
+            iter([*([present] if present is not None else selected), *features[-1:], *found]), None
+        )
         if wanted is not None:
             self.widget.setCurrentIndex(max(0, self.widget.findData(wanted.Name)))
 
@@ -60,13 +64,19 @@ class PlannedChoice(Input):
 
     @property
     def missing(self) -> str:
-        return "" if self.widget.count() else tr("There is nothing to compare with in this document; open the part first.")
+        return (
+            ""
+            if self.widget.count()
+            else tr("There is nothing to compare with in this document; open the part first.")
+        )
 
     def arguments(self) -> dict[str, str]:
         name = self.widget.currentData() if self.widget.count() else ""
         chosen = self.document.getObject(name) if name else None
         if name and chosen is None:
-            raise InputError("NO_INPUT", "Inspection", "Planned is missing; it was deleted, choose another")
+            raise InputError(
+                "NO_INPUT", "Inspection", "Planned is missing; it was deleted, choose another"
+            )
         return {"planned": "None" if chosen is None else recorded.reference(chosen)}
 
 
@@ -92,7 +102,9 @@ class FileChoice(Input):
         self.predict = QtGui.QPushButton(tr("Predicted"))
         self.predict.setObjectName("PredictedDeposit")
         self.predict.setAutoDefault(False)
-        self.predict.setToolTip(tr("Nothing was measured: the deposit that the toolpath is predicted to leave"))
+        self.predict.setToolTip(
+            tr("Nothing was measured: the deposit that the toolpath is predicted to leave")
+        )
         self.predict.setWhatsThis(self.predict.toolTip())
         self.predict.clicked.connect(lambda *_: self.line.setText(PREDICTED))
         for widget in (self.line, self.button, self.predict):
@@ -114,7 +126,10 @@ class FileChoice(Input):
         first = os.path.dirname(present or App.ActiveDocument.FileName)
         some = " ".join(f"*{ending} *{ending.upper()}" for ending in (*TABLES, *MESHES))
         path, _ = QtGui.QFileDialog.getOpenFileName(
-            Gui.getMainWindow(), tr("Measured points"), first, f"{tr('Points and meshes')} ({some});;{tr('All files')} (*)"
+            Gui.getMainWindow(),
+            tr("Measured points"),
+            first,
+            f"{tr('Points and meshes')} ({some});;{tr('All files')} (*)",
         )
         if path:
             self.line.setText(path)

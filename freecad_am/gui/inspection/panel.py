@@ -33,7 +33,10 @@ class InspectionPanel(StagePanel):
 
     def __init__(self, obj: Any = None) -> None:
         link = Inspection.links[0]
-        choices = [PlannedChoice(link, None if obj is None else obj.Planned), FileChoice("" if obj is None else obj.File)]
+        choices = [
+            PlannedChoice(link, None if obj is None else obj.Planned),
+            FileChoice("" if obj is None else obj.File),
+        ]
         choices[1].predict.clicked.connect(lambda *_: choices[0].choose_toolpath())
         super().__init__(Inspection, tr("Inspect") if obj is None else obj.Label, choices, obj)
         if obj is None and not choices[0].missing:
@@ -52,7 +55,9 @@ class InspectionPanel(StagePanel):
         self.export = QtGui.QPushButton(tr("Save figures…"))
         self.export.setObjectName("SaveFigures")
         self.export.setAutoDefault(False)
-        self.export.setToolTip(tr("Writes the figures and the deviation of every point into a folder"))
+        self.export.setToolTip(
+            tr("Writes the figures and the deviation of every point into a folder")
+        )
         self.export.clicked.connect(self._save)
         column = QtGui.QVBoxLayout()
         for widget in (self.histogram, self.table, self.export):
@@ -83,7 +88,9 @@ class InspectionPanel(StagePanel):
                 self.table.setSpan(self.table.rowCount() - 1, 0, 1, self.table.columnCount())
             place = row.place
             text = translated(row.short)
-            self._add_line(f"{_INDENT}{text}" if place else text, row.text, row.unit, help=translated(row.name))
+            self._add_line(
+                f"{_INDENT}{text}" if place else text, row.text, row.unit, help=translated(row.name)
+            )
         self.table.resizeColumnsToContents()
         self.table.horizontalHeader().setSectionResizeMode(0, QtGui.QHeaderView.Stretch)
         high = sum(self.table.rowHeight(number) for number in range(self.table.rowCount()))
@@ -122,10 +129,14 @@ class InspectionPanel(StagePanel):
         """Ask for a folder and write the figures."""
         try:
             first = os.path.dirname(self.obj.Document.FileName)
-            folder = QtGui.QFileDialog.getExistingDirectory(Gui.getMainWindow(), tr("Save figures"), first)
+            folder = QtGui.QFileDialog.getExistingDirectory(
+                Gui.getMainWindow(), tr("Save figures"), first
+            )
             if folder:
                 paths = api.export(self.obj, folder)
-                Gui.getMainWindow().statusBar().showMessage(tr("Files written: {}").format(len(paths)), 5000)
+                Gui.getMainWindow().statusBar().showMessage(
+                    tr("Files written: {}").format(len(paths)), 5000
+                )
         except AmError as error:
             self.say(translated_error(error))
         except ReferenceError:
@@ -134,7 +145,11 @@ class InspectionPanel(StagePanel):
 
 def inspect() -> None:
     """Open the panel of a new inspection; of the one that is selected, if there is one."""
-    chosen = [obj for obj in Gui.Selection.getSelection() if isinstance(getattr(obj, "Proxy", None), Inspection)]
+    chosen = [
+        obj
+        for obj in Gui.Selection.getSelection()
+        if isinstance(getattr(obj, "Proxy", None), Inspection)
+    ]
     if chosen and chosen[-1].Document is App.ActiveDocument:
         show(InspectionPanel(chosen[-1]))
     else:

@@ -23,7 +23,11 @@ class InspectionView(StageView):
     icon = "inspect"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
         "PointSize": ("App::PropertyFloat", 4.0, "Size of the points in pixels."),
-        "ShowLegend": ("App::PropertyBool", True, "Show in the corner of the view what the colours mean."),
+        "ShowLegend": (
+            "App::PropertyBool",
+            True,
+            "Show in the corner of the view what the colours mean.",
+        ),
     }
     scale: Scale | None = None
 
@@ -40,7 +44,10 @@ class InspectionView(StageView):
 
     def draw(self, obj: Any, value: Inspected) -> None:
         fill(self.coordinates.point, value.points.astype(np.float32))
-        fill(self.material.diffuseColor, colours(value.deviation, value.counted, value.tolerance).astype(np.float32))
+        fill(
+            self.material.diffuseColor,
+            colours(value.deviation, value.counted, value.tolerance).astype(np.float32),
+        )
         self.points.numPoints = len(value.points)
         self.scale = scale_of(value)
 
@@ -60,4 +67,13 @@ def scale_of(value: Inspected) -> Scale:
     classes = tuple((band.text, band.colour) for band in reversed(bands(value.tolerance)))
     if not value.counted.all():
         classes += ((marked("past the edges"), PAST_EDGES),)
-    return Scale(marked("deviation"), "mm", 0.0, 0.0, (), value.spread.least, value.spread.most, classes=classes)
+    return Scale(
+        marked("deviation"),
+        "mm",
+        0.0,
+        0.0,
+        (),
+        value.spread.least,
+        value.spread.most,
+        classes=classes,
+    )

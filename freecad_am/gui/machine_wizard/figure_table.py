@@ -23,7 +23,9 @@ MOST_SHOWN = 9  # rows that are to be seen at once
 class FigureTable:
     """The table `widget`: rows of figures under columns. Empty cells are NaN where `blank` lets them."""
 
-    def __init__(self, name: str, rows: Sequence[str], columns: Sequence[str], helps: Sequence[str] = ()) -> None:
+    def __init__(
+        self, name: str, rows: Sequence[str], columns: Sequence[str], helps: Sequence[str] = ()
+    ) -> None:
         self.widget = _Table(self.paste)
         self.widget.setObjectName(name)
         self.widget.verticalHeader().setDefaultSectionSize(ROW_HEIGHT)
@@ -45,18 +47,25 @@ class FigureTable:
         for column, text in enumerate(self.helps[: len(columns)]):
             self.widget.horizontalHeaderItem(column).setToolTip(text)
         self.widget.horizontalHeader().setSectionResizeMode(QtGui.QHeaderView.Stretch)
-        self.widget.setTextElideMode(QtCore.Qt.ElideNone)  # '0.7071', not '0.…', where a column is narrow
+        self.widget.setTextElideMode(
+            QtCore.Qt.ElideNone
+        )  # '0.7071', not '0.…', where a column is narrow
         self.widget.setWordWrap(False)  # which would break a figure at its point
         self.fit()
 
     def fit(self) -> None:
         """Be as high as the rows there are."""
         shown = min(self.widget.rowCount(), MOST_SHOWN)
-        self.widget.setFixedHeight(ROW_HEIGHT * shown + self.widget.horizontalHeader().sizeHint().height() + 4)
+        self.widget.setFixedHeight(
+            ROW_HEIGHT * shown + self.widget.horizontalHeader().sizeHint().height() + 4
+        )
 
     def widen(self, columns: Sequence[int], widest: str) -> None:
         """Let columns have room for such a figure; the others share what is left."""
-        header, width = self.widget.horizontalHeader(), self.widget.fontMetrics().boundingRect(widest).width() + CELL_PADDING
+        header, width = (
+            self.widget.horizontalHeader(),
+            self.widget.fontMetrics().boundingRect(widest).width() + CELL_PADDING,
+        )
         for column in columns:
             header.setSectionResizeMode(column, QtGui.QHeaderView.Fixed)
             header.resizeSection(column, width)
@@ -119,7 +128,11 @@ class FigureTable:
             words = line.replace(";", " ").split()
             for right, word in enumerate(words):
                 row, column = first + down, left + right
-                if row < self.widget.rowCount() and column < self.widget.columnCount() and column not in self.read_only:
+                if (
+                    row < self.widget.rowCount()
+                    and column < self.widget.columnCount()
+                    and column not in self.read_only
+                ):
                     self.widget.item(row, column).setText(word)
 
 
@@ -134,7 +147,9 @@ class _Table(QtGui.QTableWidget):
         if event.matches(QtGui.QKeySequence.Paste):
             self.paste()
         elif event.key() in (QtCore.Qt.Key_Return, QtCore.Qt.Key_Enter):
-            self.setCurrentCell(min(self.currentRow() + 1, self.rowCount() - 1), self.currentColumn())
+            self.setCurrentCell(
+                min(self.currentRow() + 1, self.rowCount() - 1), self.currentColumn()
+            )
         else:
             super().keyPressEvent(event)
 
@@ -152,5 +167,7 @@ def number(text: str, where: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise InputError("BAD_VALUE", where, tr("{} is not a number; enter one such as 12.5").format(repr(text)))
+        raise InputError(
+            "BAD_VALUE", where, tr("{} is not a number; enter one such as 12.5").format(repr(text))
+        )
     return value

@@ -26,27 +26,64 @@ class FramesPage(Page):
     """Frames in mm and deg, roll, pitch and yaw as URDF has them; signs and zeros of the axes on the pendant."""
 
     def __init__(self, wizard: Any) -> None:
-        super().__init__(wizard, "FramesPage", tr("Frames and conventions"), tr(
-            "The next page compares this with poses of your controller, and says what is likely to be wrong: leave what "
-            "you do not know as it is."))
-        self.frames = FigureTable("frames", [tr("Base"), tr("Flange")], _POSE, [tr(
-            "Base: the maker's own base frame, in which the pendant shows positions, seen from the floor plate. FANUC's "
-            "lies at the height of axis 2. Flange: in the last link, its Z out of the plate. Rotation: about X, then Y, "
-            "then Z."
-        )] * 6)
-        self.column.addWidget(heading(tr("Frames (mm, deg): the maker's base on the floor, the flange in the last link")))
+        super().__init__(
+            wizard,
+            "FramesPage",
+            tr("Frames and conventions"),
+            tr(
+                "The next page compares this with poses of your controller, and says what is likely to be wrong: leave what "
+                "you do not know as it is."
+            ),
+        )
+        self.frames = FigureTable(
+            "frames",
+            [tr("Base"), tr("Flange")],
+            _POSE,
+            [
+                tr(
+                    "Base: the maker's own base frame, in which the pendant shows positions, seen from the floor plate. FANUC's "
+                    "lies at the height of axis 2. Flange: in the last link, its Z out of the plate. Rotation: about X, then Y, "
+                    "then Z."
+                )
+            ]
+            * 6,
+        )
+        self.column.addWidget(
+            heading(
+                tr("Frames (mm, deg): the maker's base on the floor, the flange in the last link")
+            )
+        )
         self.column.addWidget(self.frames.widget)
         self.axes = FigureTable("axes", [tr("Sign"), tr("Shows at zero")], ["J1"])
-        self.column.addWidget(heading(tr("Axes on the pendant: -1 where it counts the other way; what it shows at zero")))
+        self.column.addWidget(
+            heading(
+                tr("Axes on the pendant: -1 where it counts the other way; what it shows at zero")
+            )
+        )
         self.column.addWidget(self.axes.widget)
-        self.coupling = choice("coupling", [
-            (tr("Axis 3 is shown against link 2, as it is"), pendant.NONE),
-            (tr("Axis 3 is shown against the horizontal (FANUC, some of ABB)"), pendant.HORIZONTAL),
-        ])
+        self.coupling = choice(
+            "coupling",
+            [
+                (tr("Axis 3 is shown against link 2, as it is"), pendant.NONE),
+                (
+                    tr("Axis 3 is shown against the horizontal (FANUC, some of ABB)"),
+                    pendant.HORIZONTAL,
+                ),
+            ],
+        )
         self.column.addWidget(self.coupling)
-        self.range = FigureTable("horizontal", [tr("J3 as shown")], [tr("From"), tr("To")], [tr(
-            "Its limits as the data sheet has them; leave them empty where there are none. Those of the page before are "
-            "against link 2.")] * 2)
+        self.range = FigureTable(
+            "horizontal",
+            [tr("J3 as shown")],
+            [tr("From"), tr("To")],
+            [
+                tr(
+                    "Its limits as the data sheet has them; leave them empty where there are none. Those of the page before are "
+                    "against link 2."
+                )
+            ]
+            * 2,
+        )
         self.column.addWidget(self.range.widget)
         self.column.addStretch(1)
         self.coupling.currentIndexChanged.connect(self._follow)
@@ -72,7 +109,9 @@ class FramesPage(Page):
     def take(self) -> None:
         """Into the draft; the closed form must be there now."""
         draft = self.owner.draft
-        base, flange = (frames.from_rpy(line[:3], np.radians(line[3:])) for line in self.frames.figures())
+        base, flange = (
+            frames.from_rpy(line[:3], np.radians(line[3:])) for line in self.frames.figures()
+        )
         signs, zeros = self.axes.figures()
         for column, sign in enumerate(signs.tolist()):
             if sign not in (1.0, -1.0):
@@ -83,11 +122,18 @@ class FramesPage(Page):
         if coupling == pendant.HORIZONTAL:
             lower, upper = self.range.row(0, blank=True).tolist()
             if np.isnan(lower) != np.isnan(upper) or lower >= upper:
-                raise InputError("BAD_VALUE", tr("J3 as shown"), tr("give the lower end first, or leave both empty"))
+                raise InputError(
+                    "BAD_VALUE",
+                    tr("J3 as shown"),
+                    tr("give the lower end first, or leave both empty"),
+                )
             horizontal = None if np.isnan(lower) else (lower, upper)
         chain = Chain(draft.chain.origins, draft.chain.directions, flange, draft.chain.sliding)
         draft = replace(
-            draft, chain=chain, base=base, horizontal=horizontal,
+            draft,
+            chain=chain,
+            base=base,
+            horizontal=horizontal,
             shown=Shown(tuple(int(sign) for sign in signs), tuple(zeros.tolist()), coupling),
         )
         machine_draft.closed_form(draft)

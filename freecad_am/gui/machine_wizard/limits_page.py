@@ -18,10 +18,16 @@ class LimitsPage(Page):
     """One row per axis. A range is left empty for an endless axis, the others where they are not known."""
 
     def __init__(self, wizard: Any) -> None:
-        super().__init__(wizard, "LimitsPage", tr("Limits, speeds, accelerations and jerks"), tr(
-            "Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, "
-            "sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without "
-            "end, speeds, accelerations and jerks where they are not known."))
+        super().__init__(
+            wizard,
+            "LimitsPage",
+            tr("Limits, speeds, accelerations and jerks"),
+            tr(
+                "Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, "
+                "sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without "
+                "end, speeds, accelerations and jerks where they are not known."
+            ),
+        )
         self.table = FigureTable("limits", ["J1"], _heads())
         self.column.addWidget(self.table.widget)
         self.notes = self.add_text("")
@@ -32,7 +38,9 @@ class LimitsPage(Page):
         draft = self.owner.draft
         names = axis_names(self.owner)
         self.table.set_shape(names, _heads())
-        values = np.column_stack((draft.lower, draft.upper, draft.max_speed, draft.max_acceleration, draft.max_jerk))
+        values = np.column_stack(
+            (draft.lower, draft.upper, draft.max_speed, draft.max_acceleration, draft.max_jerk)
+        )
         # what a URDF writes in rad is rarely a whole degree in its last digits
         self.table.fill(np.round(values / draft.units[:, None], 6))
         self.notes.setText("\n".join(draft.notes))
@@ -44,18 +52,39 @@ class LimitsPage(Page):
         for row, (lower, upper, *rates) in enumerate(values.tolist()):
             name = self.table.widget.verticalHeaderItem(row).text()
             if np.isnan(lower) != np.isnan(upper):
-                raise InputError("BAD_VALUE", name, tr("give both ends of its range, or none for an endless axis"))
+                raise InputError(
+                    "BAD_VALUE",
+                    name,
+                    tr("give both ends of its range, or none for an endless axis"),
+                )
             if lower >= upper:
-                raise InputError("BAD_VALUE", name, tr("{} is not below {}; enter the smaller end "
-                                                       "first").format(f"{lower:g}", f"{upper:g}"))
+                raise InputError(
+                    "BAD_VALUE",
+                    name,
+                    tr("{} is not below {}; enter the smaller end first").format(
+                        f"{lower:g}", f"{upper:g}"
+                    ),
+                )
             if draft.chain.sliding[row] and np.isnan(lower):
-                raise InputError("BAD_VALUE", name, tr("an axis that slides has two ends; enter both"))
+                raise InputError(
+                    "BAD_VALUE", name, tr("an axis that slides has two ends; enter both")
+                )
             if any(rate <= 0.0 for rate in rates):
-                raise InputError("BAD_VALUE", name, tr("enter speed, acceleration and jerk of more than 0, or leave them "
-                                                       "empty"))
-        values = np.where(np.isnan(values), [-np.inf, np.inf, np.inf, np.inf, np.inf], values) * draft.units[:, None]
+                raise InputError(
+                    "BAD_VALUE",
+                    name,
+                    tr("enter speed, acceleration and jerk of more than 0, or leave them empty"),
+                )
+        values = (
+            np.where(np.isnan(values), [-np.inf, np.inf, np.inf, np.inf, np.inf], values)
+            * draft.units[:, None]
+        )
         self.owner.draft = replace(
-            draft, lower=values[:, 0], upper=values[:, 1], max_speed=values[:, 2], max_acceleration=values[:, 3],
+            draft,
+            lower=values[:, 0],
+            upper=values[:, 1],
+            max_speed=values[:, 2],
+            max_acceleration=values[:, 3],
             max_jerk=values[:, 4],
         )
 

@@ -24,13 +24,21 @@ class NamePage(Page):
     """Finish writes the file."""
 
     def __init__(self, wizard: Any) -> None:
-        super().__init__(wizard, "NamePage", tr("Name and posts"), tr(
-            "The machine is kept in the folder of your own machines; cells and jobs know it by its name."))
+        super().__init__(
+            wizard,
+            "NamePage",
+            tr("Name and posts"),
+            tr(
+                "The machine is kept in the folder of your own machines; cells and jobs know it by its name."
+            ),
+        )
         form = QtGui.QFormLayout()
         self.title_of = self._line(form, "machineTitle", tr("Maker and model"))
         self.name = self._line(form, "machineName", tr("Name in jobs"))
         self.source = self._line(form, "poseSource", tr("Where the check poses are from"))
-        self.source.setPlaceholderText(tr("such as: pendant of R-30iB, 21 November; or a simulator with its version"))
+        self.source.setPlaceholderText(
+            tr("such as: pendant of R-30iB, 21 November; or a simulator with its version")
+        )
         self.remark = self._line(form, "remark", tr("Remarks"))
         self.posts = {}
         rows = QtGui.QGridLayout()
@@ -56,7 +64,9 @@ class NamePage(Page):
     def _propose(self, *_: Any) -> None:
         """A name from the title, unless one was typed."""
         if self.name.text() == self.proposed:
-            self.proposed = re.sub(r"[^a-z0-9]+", "-", plain(self.title_of.text()).lower()).strip("-")
+            self.proposed = re.sub(r"[^a-z0-9]+", "-", plain(self.title_of.text()).lower()).strip(
+                "-"
+            )
             self.name.setText(self.proposed)
 
     def fill(self) -> None:
@@ -76,13 +86,18 @@ class NamePage(Page):
         super().initializePage()
         arm = machine_draft.closed_form(self.owner.draft)
         if arm is None:
-            self.summary.setText(tr("What stands beside a robot: a cell names it as external axis.") if is_mechanism(
-                self.owner.draft.chain) else tr("Three axes that slide and two that turn."))
+            self.summary.setText(
+                tr("What stands beside a robot: a cell names it as external axis.")
+                if is_mechanism(self.owner.draft.chain)
+                else tr("Three axes that slide and two that turn.")
+            )
             return
         if not isinstance(arm, OpwArm):
             self.summary.setText(tr("Six axes that turn, without a spherical wrist."))
             return
-        lengths = "   ".join(f"{name} {getattr(arm, name):.6g}" for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4"))
+        lengths = "   ".join(
+            f"{name} {getattr(arm, name):.6g}" for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+        )
         self.summary.setText(tr("Closed form (mm): {}").format(lengths))
 
     def take(self) -> None:
@@ -90,19 +105,31 @@ class NamePage(Page):
         draft, source = self.owner.draft, self.source.text().strip()
         title = self.title_of.text().strip()
         if not title:
-            raise InputError("BAD_NAME", tr("Maker and model"), tr("it is empty; give maker and model"))
+            raise InputError(
+                "BAD_NAME", tr("Maker and model"), tr("it is empty; give maker and model")
+            )
         sources = tuple(dict.fromkeys((*self.owner.geometry_sources, f"check poses: {source}")))
         draft = replace(
-            draft, id=self.name.text().strip(), title=title, sources=sources,
+            draft,
+            id=self.name.text().strip(),
+            title=title,
+            sources=sources,
             remarks=tuple(filter(None, [self.remark.text().strip()])),
             posts=tuple(name for name, box in self.posts.items() if box.isChecked()),
         )
         try:
             text = machine_draft.text(draft)
         except InputError as error:
-            raise InputError(error.code, tr("Name in jobs"), error.message) if error.where == "id" else error from None
+            raise (
+                InputError(error.code, tr("Name in jobs"), error.message)
+                if error.where == "id"
+                else error
+            ) from None
         if not source:
-            raise InputError("NO_INPUT", tr("Where the check poses are from"),
-                             tr("it is empty; a machine file is worth no more than its check poses"))
+            raise InputError(
+                "NO_INPUT",
+                tr("Where the check poses are from"),
+                tr("it is empty; a machine file is worth no more than its check poses"),
+            )
         self.owner.saved = user_machines.save(draft.id, text)
         self.owner.draft = draft

@@ -71,7 +71,11 @@ class Page(QtGui.QWizardPage):
 
 def error_text(error: InputError) -> str:
     """An error with its place, where that is a place a user knows."""
-    return sentence(error.message) if error.where in ("geometry", "flange", "table") else translated_error(error)
+    return (
+        sentence(error.message)
+        if error.where in ("geometry", "flange", "table")
+        else translated_error(error)
+    )
 
 
 def choice(name: str, entries: list[tuple[str, Any]]) -> Any:
@@ -94,6 +98,8 @@ def axis_names(owner: Any) -> list[str]:
     """How the axes of the draft are called: by number, or the names of a machine tool."""
     draft = owner.draft
     if draft.chain.sliding.any():
-        return [tr("{} (mm)").format(name) if slides else tr("{} (deg)").format(name)
-                for name, slides in zip(draft.joints, draft.chain.sliding.tolist())]
+        return [
+            tr("{} (mm)").format(name) if slides else tr("{} (deg)").format(name)
+            for name, slides in zip(draft.joints, draft.chain.sliding.tolist())
+        ]
     return [f"J{number}" for number in range(1, draft.chain.axes + 1)]

@@ -31,12 +31,23 @@ class PosesPage(Page):
     """A row per pose: joints and place as the controller shows them, then the deviations."""
 
     def __init__(self, wizard: Any) -> None:
-        super().__init__(wizard, "PosesPage", tr("Check poses"), tr(
-            "Jog the machine to at least three poses in which every axis has moved, and type what the pendant shows: the "
-            "joints, and the place of the tool frame in the base frame. The maker's simulator does as well; figures that "
-            "were computed from this geometry prove nothing. A table can be pasted."))
-        self.convention = choice("convention", [
-            (f"{figures}   {who}", name) for name, (figures, who) in pose_figures.CONVENTIONS.items()])
+        super().__init__(
+            wizard,
+            "PosesPage",
+            tr("Check poses"),
+            tr(
+                "Jog the machine to at least three poses in which every axis has moved, and type what the pendant shows: the "
+                "joints, and the place of the tool frame in the base frame. The maker's simulator does as well; figures that "
+                "were computed from this geometry prove nothing. A table can be pasted."
+            ),
+        )
+        self.convention = choice(
+            "convention",
+            [
+                (f"{figures}   {who}", name)
+                for name, (figures, who) in pose_figures.CONVENTIONS.items()
+            ],
+        )
         self.column.addWidget(self.convention)
         self.zero = self.add_text("")
         self.table = FigureTable("poses", ["1"], ["J1"])
@@ -49,7 +60,11 @@ class PosesPage(Page):
         buttons.addWidget(self.more)
         buttons.addStretch(1)
         self.column.addLayout(buttons)
-        self.column.addWidget(heading(tr("The pendant's tool frame on the flange (mm, deg); zeros for the flange itself")))
+        self.column.addWidget(
+            heading(
+                tr("The pendant's tool frame on the flange (mm, deg); zeros for the flange itself")
+            )
+        )
         self.tool = FigureTable("tool", [tr("Tool")], ["X", "Y", "Z", "roll", "pitch", "yaw"])
         self.tool.fill(np.zeros((1, 6)))
         self.column.addWidget(self.tool.widget)
@@ -120,7 +135,9 @@ class PosesPage(Page):
         """Called by Qt when the page comes: poses stay, deviations are those of the conventions as they are now."""
         super().initializePage()
         zeros = ", ".join(shown(value) for value in self.owner.draft.shown.zeros)
-        self.zero.setText(tr("One pose is that of the serial zeros, where the controller shows {}.").format(zeros))
+        self.zero.setText(
+            tr("One pose is that of the serial zeros, where the controller shows {}.").format(zeros)
+        )
         self.judge()
 
     # ---- what is entered
@@ -140,17 +157,25 @@ class PosesPage(Page):
                 if whole:
                     raise
                 continue
-            if not line[self.axes + 3:].any() and str(self.convention.currentData()) == pose_figures.QUATERNION:
-                raise InputError("BAD_VALUE", tr("Pose {}").format(row + 1), tr("a quaternion is not all zeros; enter the "
-                                                                                "one that the controller shows"))
+            if (
+                not line[self.axes + 3 :].any()
+                and str(self.convention.currentData()) == pose_figures.QUATERNION
+            ):
+                raise InputError(
+                    "BAD_VALUE",
+                    tr("Pose {}").format(row + 1),
+                    tr("a quaternion is not all zeros; enter the one that the controller shows"),
+                )
             values.append(line[: self.axes])
-            figures.append(line[self.axes:])
+            figures.append(line[self.axes :])
             rows.append(row)
         tool = self.tool.row(0)
         if not rows:
             return np.zeros((0, self.axes)), np.zeros((0, 4, 4)), rows
         on_flange = frames.from_rpy(tool[:3], np.radians(tool[3:]))
-        poses = pose_figures.flange_poses(str(self.convention.currentData()), np.stack(figures), draft.base, on_flange)
+        poses = pose_figures.flange_poses(
+            str(self.convention.currentData()), np.stack(figures), draft.base, on_flange
+        )
         return np.stack(values), poses, rows
 
     def take(self) -> None:
@@ -158,15 +183,33 @@ class PosesPage(Page):
         draft = self.owner.draft
         values, poses, rows = self._entered(whole=True)
         if len(rows) < LEAST:
-            raise InputError("NO_POSES", tr("Check poses"), tr("there are {}; at least {} are needed, for a machine without "
-                             "them is not loaded; enter more").format(len(rows), LEAST))
+            raise InputError(
+                "NO_POSES",
+                tr("Check poses"),
+                tr(
+                    "there are {}; at least {} are needed, for a machine without "
+                    "them is not loaded; enter more"
+                ).format(len(rows), LEAST),
+            )
         if not np.isclose(values, draft.shown.zeros, atol=1e-9).all(axis=1).any():
-            raise InputError("NO_POSES", tr("Check poses"), tr("the pose at the serial zeros is missing; enter it too"))
+            raise InputError(
+                "NO_POSES",
+                tr("Check poses"),
+                tr("the pose at the serial zeros is missing; enter it too"),
+            )
         if np.ptp(values, axis=0).min() < 1.0:
             still = axis_names(self.owner)[int(np.argmin(np.ptp(values, axis=0)))]
-            raise InputError("NO_POSES", still, tr("it is the same in all poses, which proves nothing; add another pose"))
+            raise InputError(
+                "NO_POSES",
+                still,
+                tr("it is the same in all poses, which proves nothing; add another pose"),
+            )
         if not pendant.fits(pendant.deviations(draft.chain, draft.shown, values, poses)):
-            raise InputError("MISSED", tr("Check poses"), tr("the machine does not give them; see the deviations"))
+            raise InputError(
+                "MISSED",
+                tr("Check poses"),
+                tr("the machine does not give them; see the deviations"),
+            )
         self.owner.draft = replace(draft, values=values, poses=poses)
 
     # ---- what it says
@@ -193,7 +236,9 @@ class PosesPage(Page):
             self._tell("", None)
         elif pendant.fits(found):
             worst = max(found, key=lambda one: one.position)
-            text = tr("The machine gives all {} poses, within {} mm.").format(len(rows), f"{worst.position:.3g}")
+            text = tr("The machine gives all {} poses, within {} mm.").format(
+                len(rows), f"{worst.position:.3g}"
+            )
             if draft.shown.coupling == pendant.HORIZONTAL and draft.horizontal is None:
                 text += " " + tr("The limits of J3 as it is shown can be given on the page before.")
             self._tell(text, RIGHT)
@@ -204,15 +249,21 @@ class PosesPage(Page):
 
     def _reason(self, count: int) -> str:
         if count < LEAST:
-            return tr("The machine does not give these poses; three or more would show what is wrong.")
+            return tr(
+                "The machine does not give these poses; three or more would show what is wrong."
+            )
         if self.suspects:
             return tr("The machine does not give these poses. It would if:")
-        return tr("The machine does not give these poses, and no sign, zero, coupling or frame alone explains it. Look for "
-                  "a slip of typing, the way angles are written, the tool frame, and lengths.")
+        return tr(
+            "The machine does not give these poses, and no sign, zero, coupling or frame alone explains it. Look for "
+            "a slip of typing, the way angles are written, the tool frame, and lengths."
+        )
 
     def _show_deviation(self, row: int, deviation: Deviation) -> None:
-        for column, value, most in ((self.width, deviation.position, pendant.TOLERANCE_MM),
-                                    (self.width + 1, deviation.angle, pendant.TOLERANCE_DEG)):
+        for column, value, most in (
+            (self.width, deviation.position, pendant.TOLERANCE_MM),
+            (self.width + 1, deviation.angle, pendant.TOLERANCE_DEG),
+        ):
             self.table.show(row, column, f"{value:.3f}", RIGHT if value <= most else WRONG)
 
     def _tell(self, text: str, colour: str | None) -> None:
@@ -242,9 +293,15 @@ class PosesPage(Page):
         words = [] if suspect.shown is None else [self._of_joints(suspect)]
         if suspect.pose is not None:
             x, y, z = (round(value, 2) + 0.0 for value in suspect.pose[:3, 3].tolist())
-            turn = math.degrees(math.acos(float(np.clip(0.5 * (np.trace(suspect.pose[:3, :3]) - 1.0), -1.0, 1.0))))
+            turn = math.degrees(
+                math.acos(float(np.clip(0.5 * (np.trace(suspect.pose[:3, :3]) - 1.0), -1.0, 1.0)))
+            )
             what = tr("the flange") if suspect.kind == pendant.FLANGE else tr("the base frame")
-            words.append(tr("{} is moved by {} mm and turned by {} deg").format(what, f"{x:g}, {y:g}, {z:g}", f"{turn:.4g}"))
+            words.append(
+                tr("{} is moved by {} mm and turned by {} deg").format(
+                    what, f"{x:g}, {y:g}, {z:g}", f"{turn:.4g}"
+                )
+            )
         text = tr(", and ").join(words)
         return text[:1].upper() + text[1:]
 
@@ -256,7 +313,10 @@ class PosesPage(Page):
             return tr("{} counts the other way (sign)").format(axes)
         if suspect.kind == pendant.COUPLED:
             return tr("axis 3 is shown {}").format(
-                tr("against the horizontal") if now.coupling == pendant.HORIZONTAL else tr("against link 2"))
+                tr("against the horizontal")
+                if now.coupling == pendant.HORIZONTAL
+                else tr("against link 2")
+            )
         if suspect.kind == pendant.ZERO and now.coupling == self.owner.draft.shown.coupling:
             axis = suspect.axes[0]
             return tr("{} shows {} at zero").format(names[0], shown(now.zeros[axis]))
@@ -270,7 +330,9 @@ class PosesPage(Page):
         if suspect.kind == pendant.FLANGE:
             chain = draft.chain
             flange = chain.flange @ suspect.pose
-            draft = replace(draft, chain=Chain(chain.origins, chain.directions, flange, chain.sliding))
+            draft = replace(
+                draft, chain=Chain(chain.origins, chain.directions, flange, chain.sliding)
+            )
         elif suspect.pose is not None:
             draft = replace(draft, base=suspect.pose @ draft.base)
         self.owner.draft = draft

@@ -36,14 +36,25 @@ class SourcePage(Page):
     """Makes the draft anew where the source is another one."""
 
     def __init__(self, wizard: Any) -> None:
-        super().__init__(wizard, "SourcePage", tr("Where the geometry comes from"), tr(
-            "Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide "
-            "and two that turn; whether yours is one is checked when you go on. Tracks, turntables and positioners, "
-            "which stand beside a robot, have one axis or two."))
-        self.kind = choice("source", [
-            (tr("A URDF file"), "urdf"), (tr("A table of Denavit and Hartenberg"), "table"),
-            (tr("Figures of an arm with a spherical wrist (OPW)"), "opw"), (tr("A copy of another machine"), "copy"),
-        ])
+        super().__init__(
+            wizard,
+            "SourcePage",
+            tr("Where the geometry comes from"),
+            tr(
+                "Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide "
+                "and two that turn; whether yours is one is checked when you go on. Tracks, turntables and positioners, "
+                "which stand beside a robot, have one axis or two."
+            ),
+        )
+        self.kind = choice(
+            "source",
+            [
+                (tr("A URDF file"), "urdf"),
+                (tr("A table of Denavit and Hartenberg"), "table"),
+                (tr("Figures of an arm with a spherical wrist (OPW)"), "opw"),
+                (tr("A copy of another machine"), "copy"),
+            ],
+        )
         self.column.addWidget(self.kind)
         self.stack = QtGui.QStackedWidget()
         for make in (self._urdf_form, self._table_form, self._opw_form, self._copy_form):
@@ -77,14 +88,23 @@ class SourcePage(Page):
         line.addWidget(self.file, 1)
         line.addWidget(browse)
         rows.addRow(tr("File"), line)
-        self.mechanism, self.mechanism_row = choice("mechanism", []), QtGui.QLabel(tr("Of the cell"))
-        self.mechanism.setToolTip(tr("What the file has beside one another; each gets a machine file of its own"))
+        self.mechanism, self.mechanism_row = (
+            choice("mechanism", []),
+            QtGui.QLabel(tr("Of the cell")),
+        )
+        self.mechanism.setToolTip(
+            tr("What the file has beside one another; each gets a machine file of its own")
+        )
         rows.addRow(self.mechanism_row, self.mechanism)
         self.mechanism.currentIndexChanged.connect(self._choose_mechanism)
         self.mechanisms: list[tuple[str, Any, str]] = []
         self.base, self.tip = choice("baseLink", []), choice("tipLink", [])
         self.base.setToolTip(tr("The link that stands still"))
-        self.tip.setToolTip(tr("The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial"))
+        self.tip.setToolTip(
+            tr(
+                "The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial"
+            )
+        )
         rows.addRow(tr("From link"), self.base)
         rows.addRow(tr("To link"), self.tip)
         self.file.textChanged.connect(self._look)
@@ -97,23 +117,49 @@ class SourcePage(Page):
         form = QtGui.QWidget()
         column = QtGui.QVBoxLayout(form)
         column.setContentsMargins(0, 0, 0, 0)
-        self.craig = choice("tableKind", [
-            (tr("Standard: Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)"), False),
-            (tr("Modified (Craig): Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)"), True),
-        ])
-        self.rows = FigureTable("dhTable", [f"J{number}" for number in range(1, MOST_AXES + 1)], [
-            "theta", "d", "a", "alpha", tr("sign"), tr("slides")], [
-            tr("Angle that is added to the joint's, deg"), tr("Offset along z, mm"), tr("Length along x, mm"),
-            tr("Twist about x, deg"), tr("1, or -1 where the joint moves the other way"),
-            tr("0, or 1 where the joint slides along z: a machine with rotary axes has three of them")])
+        self.craig = choice(
+            "tableKind",
+            [
+                (tr("Standard: Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)"), False),
+                (tr("Modified (Craig): Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)"), True),
+            ],
+        )
+        self.rows = FigureTable(
+            "dhTable",
+            [f"J{number}" for number in range(1, MOST_AXES + 1)],
+            ["theta", "d", "a", "alpha", tr("sign"), tr("slides")],
+            [
+                tr("Angle that is added to the joint's, deg"),
+                tr("Offset along z, mm"),
+                tr("Length along x, mm"),
+                tr("Twist about x, deg"),
+                tr("1, or -1 where the joint moves the other way"),
+                tr(
+                    "0, or 1 where the joint slides along z: a machine with rotary axes has three of them"
+                ),
+            ],
+        )
         self.rows.fill([[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]] * MOST_AXES)
-        self.ends = FigureTable("dhEnds", [tr("Before"), tr("After")], ["X", "Y", "Z", "roll", "pitch", "yaw"], [
-            tr("The frame of the first row in that of the base, and the flange in that of the last row. mm and deg; about X "
-               "first, then Y, then Z of the outer frame.")] * 6)
+        self.ends = FigureTable(
+            "dhEnds",
+            [tr("Before"), tr("After")],
+            ["X", "Y", "Z", "roll", "pitch", "yaw"],
+            [
+                tr(
+                    "The frame of the first row in that of the base, and the flange in that of the last row. mm and deg; about X "
+                    "first, then Y, then Z of the outer frame."
+                )
+            ]
+            * 6,
+        )
         self.ends.fill(np.zeros((2, 6)))
         column.addWidget(self.craig)
         column.addWidget(self.rows.widget)
-        column.addWidget(QtGui.QLabel(tr("Poses before the first row and after the last, where the table has some")))
+        column.addWidget(
+            QtGui.QLabel(
+                tr("Poses before the first row and after the last, where the table has some")
+            )
+        )
         column.addWidget(self.ends.widget)
         column.addStretch(1)
         return form
@@ -122,14 +168,19 @@ class SourcePage(Page):
         form = QtGui.QWidget()
         column = QtGui.QVBoxLayout(form)
         column.setContentsMargins(0, 0, 0, 0)
-        note = QtGui.QLabel(tr(
-            "Axis 2 is a1 ahead of axis 1 and c1 above the base; c2 to axis 3; axis 4 is a2 from axis 3 (negative: above "
-            "it), b to the side; c3 to the wrist centre, c4 to the flange. The angle of the arm is q · sign - offset; at "
-            "zero it stretches straight up."))
+        note = QtGui.QLabel(
+            tr(
+                "Axis 2 is a1 ahead of axis 1 and c1 above the base; c2 to axis 3; axis 4 is a2 from axis 3 (negative: above "
+                "it), b to the side; c3 to the wrist centre, c4 to the flange. The angle of the arm is q · sign - offset; at "
+                "zero it stretches straight up."
+            )
+        )
         note.setWordWrap(True)
         self.lengths = FigureTable("opwLengths", ["mm"], LENGTHS)
         self.lengths.fill(np.zeros((1, 7)))
-        self.turns = FigureTable("opwTurns", [tr("Offset (deg)"), tr("Sign")], [f"J{number}" for number in range(1, 7)])
+        self.turns = FigureTable(
+            "opwTurns", [tr("Offset (deg)"), tr("Sign")], [f"J{number}" for number in range(1, 7)]
+        )
         self.turns.fill([[0, 0, -90, 0, 0, 0], [1] * 6])
         for widget in (note, self.lengths.widget, self.turns.widget):
             column.addWidget(widget)
@@ -149,7 +200,9 @@ class SourcePage(Page):
     # ---- URDF
 
     def _browse(self, *_: Any) -> None:
-        found = QtGui.QFileDialog.getOpenFileName(self, tr("URDF file"), self.file.text(), "URDF (*.urdf *.xml)")
+        found = QtGui.QFileDialog.getOpenFileName(
+            self, tr("URDF file"), self.file.text(), "URDF (*.urdf *.xml)"
+        )
         if found and found[0]:
             self.file.setText(found[0])
 
@@ -174,8 +227,12 @@ class SourcePage(Page):
             with contextlib.suppress(InputError):  # no whole cell: links are chosen one by one
                 cell = UrdfCell(self.robot.path)
                 self.mechanisms = [(tr("Robot"), cell.machine(), "")] + [
-                    (tr("Track") if one.carries == ROBOT else tr("Positioner"), reference(one.machine),
-                     f"{one.where()} carries {one.carries}") for one in cell.external()
+                    (
+                        tr("Track") if one.carries == ROBOT else tr("Positioner"),
+                        reference(one.machine),
+                        f"{one.where()} carries {one.carries}",
+                    )
+                    for one in cell.external()
                 ]
         several = len(self.mechanisms) > 1
         self.mechanism.clear()
@@ -193,7 +250,9 @@ class SourcePage(Page):
     def _stands(self) -> str:
         """Where the mechanism of these links stands in the cell of the file; '' where nothing tells it."""
         links = self.base.currentText(), self.tip.currentText()
-        return next((where for _, meant, where in self.mechanisms if (meant.base, meant.tip) == links), "")
+        return next(
+            (where for _, meant, where in self.mechanisms if (meant.base, meant.tip) == links), ""
+        )
 
     def _offer_tips(self, *_: Any) -> None:
         self.tip.clear()
@@ -208,8 +267,12 @@ class SourcePage(Page):
         entered = self._entered()
         if entered == self.taken and self.owner.draft is not None:
             return
-        draft = {"urdf": self._of_urdf, "table": self._of_table, "opw": self._of_opw, "copy": self._of_copy}[
-            self.kind.currentData()]()
+        draft = {
+            "urdf": self._of_urdf,
+            "table": self._of_table,
+            "opw": self._of_opw,
+            "copy": self._of_copy,
+        }[self.kind.currentData()]()
         try:
             machine_draft.closed_form(draft)
         except InputError as error:
@@ -220,13 +283,28 @@ class SourcePage(Page):
 
     def _entered(self) -> str:
         """All that tells one source from another."""
-        tables = [[table.text(row, column) for row in range(table.widget.rowCount())
-                   for column in range(table.widget.columnCount())]
-                  for table in (self.rows, self.ends, self.lengths, self.turns)]
+        tables = [
+            [
+                table.text(row, column)
+                for row in range(table.widget.rowCount())
+                for column in range(table.widget.columnCount())
+            ]
+            for table in (self.rows, self.ends, self.lengths, self.turns)
+        ]
         file = self.file.text().strip()
         stamp = os.path.getmtime(file) if os.path.isfile(file) else 0.0
-        return repr([self.kind.currentData(), file, stamp, self.base.currentText(), self.tip.currentText(),
-                     self.craig.currentData(), self.original.currentData(), tables])
+        return repr(
+            [
+                self.kind.currentData(),
+                file,
+                stamp,
+                self.base.currentText(),
+                self.tip.currentText(),
+                self.craig.currentData(),
+                self.original.currentData(),
+                tables,
+            ]
+        )
 
     def _of_urdf(self) -> Draft:
         path = self.file.text().strip()
@@ -240,11 +318,15 @@ class SourcePage(Page):
         described = self.robot.between(*ends[1:])
         if urdf_machine.is_mechanism(described.chain):
             described = urdf_machine.external_chain(*ends)
-        draft = machine_draft.of_description(described, f"URDF {os.path.basename(path)}, {self.base.currentText()} to "
-                                             f"{self.tip.currentText()}")
+        draft = machine_draft.of_description(
+            described,
+            f"URDF {os.path.basename(path)}, {self.base.currentText()} to {self.tip.currentText()}",
+        )
         if not self._stands():
             return draft
-        stands = tr("Beside the robot of this file, in its base frame, as a cell names it: NAME {}").format(self._stands())
+        stands = tr(
+            "Beside the robot of this file, in its base frame, as a cell names it: NAME {}"
+        ).format(self._stands())
         return replace(draft, notes=(*draft.notes, stands))
 
     def _of_table(self) -> Draft:
@@ -256,11 +338,21 @@ class SourcePage(Page):
                 raise InputError("BAD_VALUE", f"J{number + 1}, {tr('sign')}", tr("use 1 or -1"))
             if slides not in (0.0, 1.0):
                 raise InputError("BAD_VALUE", f"J{number + 1}, {tr('slides')}", tr("use 0 or 1"))
-            rows.append(denavit_hartenberg.Row(np.radians(theta), d, a, np.radians(alpha), int(sign), bool(slides)))
-        before, after = (frames.from_rpy(line[:3], np.radians(line[3:])) for line in self.ends.figures())
+            rows.append(
+                denavit_hartenberg.Row(
+                    np.radians(theta), d, a, np.radians(alpha), int(sign), bool(slides)
+                )
+            )
+        before, after = (
+            frames.from_rpy(line[:3], np.radians(line[3:])) for line in self.ends.figures()
+        )
         craig = bool(self.craig.currentData())
-        chain = denavit_hartenberg.chain_of(denavit_hartenberg.Table(tuple(rows), before, after, craig))
-        return machine_draft.of_chain(chain, f"{'modified' if craig else 'standard'} Denavit-Hartenberg table, as entered")
+        chain = denavit_hartenberg.chain_of(
+            denavit_hartenberg.Table(tuple(rows), before, after, craig)
+        )
+        return machine_draft.of_chain(
+            chain, f"{'modified' if craig else 'standard'} Denavit-Hartenberg table, as entered"
+        )
 
     def _of_opw(self) -> Draft:
         lengths = dict(zip(LENGTHS, self.lengths.row(0).tolist(), strict=True))
@@ -268,8 +360,14 @@ class SourcePage(Page):
         for number, sign in enumerate(signs.tolist(), 1):
             if sign not in (1.0, -1.0):
                 raise InputError("BAD_VALUE", f"J{number}, {tr('Sign')}", tr("use 1 or -1"))
-        arm = OpwArm(**lengths, offsets=tuple(np.radians(offsets).tolist()), signs=tuple(int(sign) for sign in signs))
-        return machine_draft.of_chain(opw_recognition.chain_of(arm), "closed-form figures, as entered")
+        arm = OpwArm(
+            **lengths,
+            offsets=tuple(np.radians(offsets).tolist()),
+            signs=tuple(int(sign) for sign in signs),
+        )
+        return machine_draft.of_chain(
+            opw_recognition.chain_of(arm), "closed-form figures, as entered"
+        )
 
     def _of_copy(self) -> Draft:
         return machine_draft.of_machine(str(self.original.currentData()), user_machines.folders())

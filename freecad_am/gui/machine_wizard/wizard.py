@@ -42,7 +42,13 @@ class MachineWizard(QtGui.QWizard):
         self.frames_page = FramesPage(self)
         self.poses_page = PosesPage(self)
         self.name_page = NamePage(self)
-        for page in (self.source_page, self.limits_page, self.frames_page, self.poses_page, self.name_page):
+        for page in (
+            self.source_page,
+            self.limits_page,
+            self.frames_page,
+            self.poses_page,
+            self.name_page,
+        ):
             self.addPage(page)
         self.resize(980, 680)
         self.finished.connect(self._closed)
@@ -65,8 +71,13 @@ class MachineWizard(QtGui.QWizard):
 
     def _to_be_lost(self) -> bool:
         box = QtGui.QMessageBox
-        asked = box.question(self, tr("New machine"), tr("Close without a machine file? What you entered on the pages is "
-                             "lost."), box.Discard | box.Cancel, box.Cancel)
+        asked = box.question(
+            self,
+            tr("New machine"),
+            tr("Close without a machine file? What you entered on the pages is lost."),
+            box.Discard | box.Cancel,
+            box.Cancel,
+        )
         return bool(asked == box.Discard)
 
     def keyPressEvent(self, event: Any) -> None:
@@ -76,7 +87,9 @@ class MachineWizard(QtGui.QWizard):
 
     def _closed(self, *_: Any) -> None:
         if self.saved:
-            App.Console.PrintMessage(tr("Machine {} is written: {}").format(self.draft.id, self.saved) + "\n")
+            App.Console.PrintMessage(
+                tr("Machine {} is written: {}").format(self.draft.id, self.saved) + "\n"
+            )
         if self in _open:
             _open.remove(self)
 

@@ -24,19 +24,31 @@ def tell_next(stages: list[Any], proposed: str = "") -> None:
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:
         # why is in the report view already
-        state = {FAILED: tr("{} failed."), INFEASIBLE: tr("{} is infeasible."), STALE: tr("{} is stale.")}[wrong.Status]
-        text = tr("{} Double-click a stage in the tree to change it.").format(state.format(wrong.Label))
+        state = {
+            FAILED: tr("{} failed."),
+            INFEASIBLE: tr("{} is infeasible."),
+            STALE: tr("{} is stale."),
+        }[wrong.Status]
+        text = tr("{} Double-click a stage in the tree to change it.").format(
+            state.format(wrong.Label)
+        )
     elif stages[-1].Proxy.kind == "program":
-        text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
+        text = tr(
+            "The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up."
+        )
     else:
         text = tr(
             "The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export "
             "Path… writes its points as a table."
         )
-    warned = [obj.Label for obj in stages if any(issue.level == WARNING for issue in issues_of(obj))]
+    warned = [
+        obj.Label for obj in stages if any(issue.level == WARNING for issue in issues_of(obj))
+    ]
     if wrong is None and warned:
         text = tr("{} Read the warnings first: double-click {}.").format(text, ", ".join(warned))
-    if proposed == GEODESIC and any(obj.Proxy.kind == "feature" and obj.Layers != GEODESIC for obj in stages):
+    if proposed == GEODESIC and any(
+        obj.Proxy.kind == "feature" and obj.Layers != GEODESIC for obj in stages
+    ):
         text = tr("In plane layers, for curved ones could not be carried out. {}").format(text)
     Gui.getMainWindow().statusBar().showMessage(text, SHOWN_MS)
     App.Console.PrintMessage(text + "\n")
@@ -57,8 +69,12 @@ def show_machine(stages: list[Any], asked: bool) -> None:
         return
     cell.ViewObject.ShowMachine = True
     if externals(cell.External):
-        App.Console.PrintWarning(tr("{}: proposed for this job: {}; enter what yours really has.").format(
-            cell.Label, cell.External) + "\n")
+        App.Console.PrintWarning(
+            tr("{}: proposed for this job: {}; enter what yours really has.").format(
+                cell.Label, cell.External
+            )
+            + "\n"
+        )
 
 
 def _show_whole() -> None:

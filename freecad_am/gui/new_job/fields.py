@@ -42,7 +42,9 @@ def machines(chosen: str, doc: Any) -> Any:
     """The machines there are, one of them chosen, and the saved cells, first."""
     machine = QtGui.QComboBox()
     machine.setObjectName("Machine")
-    machine.setToolTip(tr("The machine that deposits, or a saved cell; the program is written for its controller"))
+    machine.setToolTip(
+        tr("The machine that deposits, or a saved cell; the program is written for its controller")
+    )
     machine.setEditable(True)
     cells = [(path, tr("saved cell: {}").format(name)) for path, name in saved_cells.known(doc)]
     choices.offer(machine, [*cells, *choices.machines()])
@@ -86,8 +88,12 @@ class HowItStands:
     def __init__(self) -> None:
         self.setup = QtGui.QComboBox()
         self.setup.setObjectName("Setup")
-        self.setup.setToolTip(tr("What the robot carries. Where the job cannot be done in the cell that suits the robot, "
-                                 "another place, another branch or a positioner is proposed, and the robot shown there."))
+        self.setup.setToolTip(
+            tr(
+                "What the robot carries. Where the job cannot be done in the cell that suits the robot, "
+                "another place, another branch or a positioner is proposed, and the robot shown there."
+            )
+        )
         for one in OF_ROBOTS:
             if one.planned:
                 self.setup.addItem(choices.worded(one.setup), one.setup)
@@ -109,7 +115,11 @@ class HowItStands:
 
     def chosen(self) -> str:
         """The set-up that was chosen, '' where it is the usual one, or there is none to choose."""
-        return str(self.setup.currentData()) if self.setup.isEnabled() and self.setup.currentIndex() else ""
+        return (
+            str(self.setup.currentData())
+            if self.setup.isEnabled() and self.setup.currentIndex()
+            else ""
+        )
 
     def arguments(self) -> dict[str, str]:
         """Keywords of `make_all` and their values as text; none for the usual set-up. InputError for what cannot be read."""

@@ -22,7 +22,11 @@ from .proposal import DEVELOPABLE, REVOLUTION, SURFACE, JobProposal
 def left_out(found: JobProposal) -> Callable[[], tuple[Issue, ...]]:
     """The work, which touches no document, that finds what of the part would not be deposited as it is understood.
     What refuses the job is told by who makes it."""
-    parts, ground, width = [taken(pick.obj) for pick in found.parts], found.ground, deposit.bead_width()
+    parts, ground, width = (
+        [taken(pick.obj) for pick in found.parts],
+        found.ground,
+        deposit.bead_width(),
+    )
     names = found.parts[0].names
     own = ground is not None and ground.obj == found.parts[0].obj
     under = None if ground is None or own else taken(ground.obj)
@@ -37,7 +41,11 @@ def left_out(found: JobProposal) -> Callable[[], tuple[Issue, ...]]:
 
 
 def _balance(
-    found: JobProposal, parts: Sequence[Taken], names: tuple[str, ...], under: Taken | None, width: float
+    found: JobProposal,
+    parts: Sequence[Taken],
+    names: tuple[str, ...],
+    under: Taken | None,
+    width: float,
 ) -> deposit_balance.Balance | None:
     first, depths = parts[0], None
     if found.kind == DEVELOPABLE:
@@ -50,8 +58,12 @@ def _balance(
         return None
     shape = first.shape.copy(False)
     if found.kind == REVOLUTION:
-        depths = part_depths.of_revolved(shape, find_wall(shape, names, label=first.label), first.label)
+        depths = part_depths.of_revolved(
+            shape, find_wall(shape, names, label=first.label), first.label
+        )
     else:
         faces = tuple(name for name, _ in named_faces(shape, names, first.label))
-        depths = part_depths.of_faces(shape, faces, first.label, None if under is None else under.body())
+        depths = part_depths.of_faces(
+            shape, faces, first.label, None if under is None else under.body()
+        )
     return None if depths is None else deposit_balance.of_wall(depths, width)

@@ -35,7 +35,9 @@ from .fields import HowItStands, JobName, label, machines, shown
 from .left_out import left_out
 from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
 
-WIDEST_LABEL = 80  # pixels; with wider ones the choice of the set-up makes it wider than what is seen of it
+WIDEST_LABEL = (
+    80  # pixels; with wider ones the choice of the set-up makes it wider than what is seen of it
+)
 
 
 class JobPanel:
@@ -46,9 +48,13 @@ class JobPanel:
     def __init__(self) -> None:
         self.document = App.ActiveDocument
         self.kinds = {
-            REVOLUTION: tr("Part of revolution"), SURFACE: tr("Wall on a part"), SOLID: tr("Solids in plane layers"),
-            GEODESIC: tr("Solids without support"), DEVELOPABLE: tr("Solids on a hub"),
-            CLADDING: tr("Cladding of faces"), CURVES: tr("Curves as beads"),
+            REVOLUTION: tr("Part of revolution"),
+            SURFACE: tr("Wall on a part"),
+            SOLID: tr("Solids in plane layers"),
+            GEODESIC: tr("Solids without support"),
+            DEVELOPABLE: tr("Solids on a hub"),
+            CLADDING: tr("Cladding of faces"),
+            CURVES: tr("Curves as beads"),
         }
         self.picks: list[Pick] = []
         self.found = JobProposal("", "")
@@ -71,28 +77,48 @@ class JobPanel:
         self.error.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
         self.kind = self._kinds()
         self.part = shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
-        self.ground = shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
+        self.ground = shown(
+            "Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view")
+        )
         self.machine = machines(before.machine(self.document), self.document)
         self.stands = HowItStands()
         self.name = JobName()
         self.fold = Fold(tr("Inputs"), True, WIDEST_LABEL)
         rows = (
-            (tr("Deposit"), self.part), (tr("Grows on"), self.ground), (tr("Kind"), self.kind),
-            (tr("Machine"), self.machine), (tr("Setup"), self.stands.setup),
-            (self.stands.leaning.heading, self.stands.leaning.widget), (tr("Name"), self.name.widget),
+            (tr("Deposit"), self.part),
+            (tr("Grows on"), self.ground),
+            (tr("Kind"), self.kind),
+            (tr("Machine"), self.machine),
+            (tr("Setup"), self.stands.setup),
+            (self.stands.leaning.heading, self.stands.leaning.widget),
+            (tr("Name"), self.name.widget),
         )
         notes = {widget: self.fold.add(text, widget) for text, widget in rows}
         # under the fields, by what errors call what is entered there
-        self.notes = {"cell.machine": notes[self.machine], self.name.place: notes[self.name.widget],
-                      self.stands.leaning.label: notes[self.stands.leaning.widget]}
+        self.notes = {
+            "cell.machine": notes[self.machine],
+            self.name.place: notes[self.name.widget],
+            self.stands.leaning.label: notes[self.stands.leaning.widget],
+        }
         connect(self.machine, "editTextChanged(QString)", self._entered_anew)
         self.stands.setup.currentIndexChanged.connect(self._entered_anew)
         connect(self.name.widget, "textChanged(QString)", self._entered_anew)
-        hint = QtGui.QLabel(tr("Cell, feature, toolpath, joint path and program are made with their defaults; "
-                               "double-click one in the tree to change it."))
+        hint = QtGui.QLabel(
+            tr(
+                "Cell, feature, toolpath, joint path and program are made with their defaults; "
+                "double-click one in the tree to change it."
+            )
+        )
         hint.setWordWrap(True)
         column = QtGui.QVBoxLayout(self.form)
-        for widget in (self.fold.widget, self.error, self.reason, self.left_out, self.no_post, hint):
+        for widget in (
+            self.fold.widget,
+            self.error,
+            self.reason,
+            self.left_out,
+            self.no_post,
+            hint,
+        ):
             column.addWidget(widget)
         column.addStretch(1)
         scrolls(self.form)
@@ -103,7 +129,9 @@ class JobPanel:
         kind = QtGui.QComboBox()
         kind.setObjectName("Kind")
         kind.setToolTip(tr("How the part is cut into layers; proposed from the selection"))
-        kind.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)  # a narrow panel stays whole
+        kind.setSizeAdjustPolicy(
+            QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon
+        )  # a narrow panel stays whole
         for key, text in self.kinds.items():
             kind.addItem(text, key)
         kind.activated.connect(self._choose)
@@ -177,7 +205,9 @@ class JobPanel:
                 self.background.start(left_out(found), self._look_at_left_out)
 
     def _look_at_left_out(self, worker: Worker) -> None:
-        with contextlib.suppress(AmError, Cancelled, RuntimeError):  # so is this; or the panel is closed
+        with contextlib.suppress(
+            AmError, Cancelled, RuntimeError
+        ):  # so is this; or the panel is closed
             self._tell_left_out(worker.result())
 
     def _tell_left_out(self, issues: Sequence[Issue]) -> None:
@@ -190,21 +220,30 @@ class JobPanel:
         found = self.found
         if found.kind:
             self.kind.setCurrentIndex(self.kind.findData(found.choice))
-        for widget, picks in ((self.part, found.parts), (self.ground, () if found.ground is None else (found.ground,))):
+        for widget, picks in (
+            (self.part, found.parts),
+            (self.ground, () if found.ground is None else (found.ground,)),
+        ):
             text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in picks)
             widget.setText(text)
             widget.setCursorPosition(0)
             widget.setToolTip(text or widget.whatsThis())
         self.fold.enable(self.ground, found.kind != REVOLUTION)
-        missing = found.missing if self.picks else tr(
-            "Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such."
+        missing = (
+            found.missing
+            if self.picks
+            else tr(
+                "Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such."
+            )
         )
         reason = found.reason
         if found.kind and found.reason:
             reason = tr("{}: {}.").format(self.kinds[found.choice], found.reason)
         whole = proposal.taken_whole(found, self.picks)
         self.reason.setText("\n".join(filter(None, (reason, whole, missing))))
-        self.reason.setStyleSheet(f"QLabel {{ color: {WRONG if missing and self.picks else 'palette(text)'}; }}")
+        self.reason.setStyleSheet(
+            f"QLabel {{ color: {WRONG if missing and self.picks else 'palette(text)'}; }}"
+        )
         self.reason.setVisible(bool(self.reason.text()))
         if found.parts:
             self.name.of(found.parts[0].obj.Label)

@@ -15,7 +15,13 @@ from ..picking.picking import Pick
 from ..texts.translation import tr, translated
 
 # as in job files
-REVOLUTION, SURFACE, DEVELOPABLE, SOLID, CURVES = "revolution", "surface", "developable", "solid", "curves"
+REVOLUTION, SURFACE, DEVELOPABLE, SOLID, CURVES = (
+    "revolution",
+    "surface",
+    "developable",
+    "solid",
+    "curves",
+)
 CLADDING = "cladding"
 
 
@@ -53,24 +59,37 @@ def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
     kind, layers = (SOLID, choice) if choice == GEODESIC else (choice, "")
     if kind == REVOLUTION:
         if picking.is_mesh(picks[0].obj):
-            return JobProposal(kind, reason, (), None, tr("A part of revolution needs exact faces; {} is a mesh.")
-                               .format(picks[0].obj.Label))
+            return JobProposal(
+                kind,
+                reason,
+                (),
+                None,
+                tr("A part of revolution needs exact faces; {} is a mesh.").format(
+                    picks[0].obj.Label
+                ),
+            )
         return JobProposal(kind, reason, (picking.whole(picks[0]),))
     if kind == SURFACE:
         wall, ground, unclear = picking.proposal(picks)
         if wall is None:
-            missing = unclear or tr("Select also, with Ctrl, the faces to deposit on {}.").format(picks[0].obj.Label)
+            missing = unclear or tr("Select also, with Ctrl, the faces to deposit on {}.").format(
+                picks[0].obj.Label
+            )
             return JobProposal(kind, reason, (), ground, missing)
         wall = picking.whole(wall)
         missing = "" if picking.stands(wall) else _ground_missing(wall, ground)
         return JobProposal(kind, reason, (wall,), ground, unclear or missing)
     if kind == CURVES:
-        return JobProposal(kind, reason, (_with_edges(picks[0]),), next((Pick(one.obj) for one in picks[1:]), None))
+        return JobProposal(
+            kind, reason, (_with_edges(picks[0]),), next((Pick(one.obj) for one in picks[1:]), None)
+        )
     if kind == CLADDING:
         faces = picking.with_faces(picks[0])
         solid = not picking.is_mesh(faces.obj) and bool(global_shape(faces.obj).Solids)
         missing = tr("Click, with Ctrl, the faces to cover.") if solid and not faces.names else ""
-        return JobProposal(kind, reason, (faces,), next((Pick(one.obj) for one in picks[1:]), None), missing)
+        return JobProposal(
+            kind, reason, (faces,), next((Pick(one.obj) for one in picks[1:]), None), missing
+        )
     if kind == SOLID:
         return JobProposal(kind, reason, tuple(Pick(pick.obj) for pick in picks), layers=layers)
     faced = [pick for pick in picks if picking.with_faces(pick).names]
@@ -81,7 +100,12 @@ def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
         ground = picking.with_faces(faced[0]) if faced else None
         return JobProposal(kind, reason, (Pick(picks[0].obj),), ground, missing)
     hub = faced[0] if len(faced) == 1 else picks[-1]
-    return JobProposal(kind, reason, tuple(Pick(one.obj) for one in picks if one is not hub), picking.with_faces(hub))
+    return JobProposal(
+        kind,
+        reason,
+        tuple(Pick(one.obj) for one in picks if one is not hub),
+        picking.with_faces(hub),
+    )
 
 
 def taken_whole(found: JobProposal, picks: Sequence[Pick]) -> str:
@@ -89,17 +113,25 @@ def taken_whole(found: JobProposal, picks: Sequence[Pick]) -> str:
     clicked = {pick.obj.Name for pick in picks if len(picking.with_faces(pick).names) == 1}
     for part in found.parts:
         if found.kind != DEVELOPABLE and not part.names and part.obj.Name in clicked:
-            return tr("The whole of {} is taken. To take single faces, click several with Ctrl; for a single one, use "
-                      "the panel of Feature or Wall on Part.").format(part.obj.Label)
+            return tr(
+                "The whole of {} is taken. To take single faces, click several with Ctrl; for a single one, use "
+                "the panel of Feature or Wall on Part."
+            ).format(part.obj.Label)
     return ""
 
 
 def _of_one(pick: Pick, part: Taken, width: float) -> JobProposal:
     meant = _meant(pick, part)
     clicked = picking.with_faces(pick).names
-    found = proposed(part, meant.names, None, False, width, True, clicked=() if meant.names else clicked)
+    found = proposed(
+        part, meant.names, None, False, width, True, clicked=() if meant.names else clicked
+    )
     if found.kind == DEVELOPABLE:  # hub and solids are of one object
-        ground = Pick(pick.obj, clicked) if clicked and part.shape is not None and len(part.shape.Solids) < 2 else None
+        ground = (
+            Pick(pick.obj, clicked)
+            if clicked and part.shape is not None and len(part.shape.Solids) < 2
+            else None
+        )
         return _as_proposed(found, (Pick(pick.obj),), ground)
     return _as_proposed(found, (meant,), None)
 
@@ -111,26 +143,39 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
     for ground, hub in (*faced, *(one for one in reversed(known) if one not in faced)):
         rest = [one for one in known if one[0] is not ground]
         base = picking.with_faces(ground).names
-        if all(not picking.with_faces(pick).names and stands_on_hub(part, hub, base) for pick, part in rest):
+        if all(
+            not picking.with_faces(pick).names and stands_on_hub(part, hub, base)
+            for pick, part in rest
+        ):
             found = proposed(rest[0][1], (), hub, False, width, True, base=base)
-            return _as_proposed(found, tuple(Pick(pick.obj) for pick, _ in rest), picking.with_faces(ground))
+            return _as_proposed(
+                found, tuple(Pick(pick.obj) for pick, _ in rest), picking.with_faces(ground)
+            )
     if len(known) > 2:
         if all(part.shape is None or part.shape.Solids for _, part in known):
             reason = tr("{} solids are selected, which are filled").format(len(known))
-            return JobProposal(SOLID, reason, tuple(Pick(pick.obj) for pick in picks), layers=PLANES)
+            return JobProposal(
+                SOLID, reason, tuple(Pick(pick.obj) for pick in picks), layers=PLANES
+            )
         return as_kind(SURFACE, picks, tr("some of what is selected is not a solid"))
     wall, ground, _ = picking.proposal(picks)
     if wall is None or ground is None:  # both are meshes
         wall, ground = picks
-    part, under = (next(look for pick, look in known if pick.obj == one.obj) for one in (wall, ground))
+    part, under = (
+        next(look for pick, look in known if pick.obj == one.obj) for one in (wall, ground)
+    )
     meant = _meant(next(pick for pick in picks if pick.obj == wall.obj), part)
-    return _as_proposed(proposed(part, meant.names, under, False, width, True), (meant,), Pick(ground.obj))
+    return _as_proposed(
+        proposed(part, meant.names, under, False, width, True), (meant,), Pick(ground.obj)
+    )
 
 
 def _as_proposed(found: Proposal, parts: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
     starts = found.stands and picking.is_alone(parts[0].obj)
     missing = _ground_missing(parts[0], ground) if found.kind == SURFACE and not starts else ""
-    return JobProposal(found.kind, translated(found.reason), parts, ground, missing, found.layers, found.mend)
+    return JobProposal(
+        found.kind, translated(found.reason), parts, ground, missing, found.layers, found.mend
+    )
 
 
 def _ground_missing(wall: Pick, ground: Pick | None) -> str:

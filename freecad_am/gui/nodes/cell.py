@@ -78,18 +78,27 @@ def at_end(tip: Array, tool: Array) -> Array:
     return frames.pose(frames.smallest_rotation([0.0, 0.0, 1.0], tool), tip)
 
 
-def at_the_end(parameters: CellParameters, toolpath: Toolpath | None, folders: Sequence[str]) -> Scenery:
+def at_the_end(
+    parameters: CellParameters, toolpath: Toolpath | None, folders: Sequence[str]
+) -> Scenery:
     """The nozzle where a toolpath ends, upright on the platform without one. Errors as `cell.resolve`."""
     if toolpath is None:
         return without_machine(parameters, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.eye(4))
-    mount, last = cells.resolve(parameters, toolpath.frame, toolpath.family, folders).mount, toolpath.layers[-1].beads[-1]
+    mount, last = (
+        cells.resolve(parameters, toolpath.frame, toolpath.family, folders).mount,
+        toolpath.layers[-1].beads[-1],
+    )
     return without_machine(parameters, last.points[-1], last.tool[-1], mount)
 
 
-def with_machine(parameters: CellParameters, toolpath: Toolpath | None, folders: Sequence[str]) -> Scenery:
+def with_machine(
+    parameters: CellParameters, toolpath: Toolpath | None, folders: Sequence[str]
+) -> Scenery:
     """The machine at rest: the part upright, its highest point under the nozzle; the platform without a toolpath. Errors as
     `cell.resolve`."""
-    frame, family = (np.eye(4), "revolution") if toolpath is None else (toolpath.frame, toolpath.family)
+    frame, family = (
+        (np.eye(4), "revolution") if toolpath is None else (toolpath.frame, toolpath.family)
+    )
     cell = cells.resolve(parameters, frame, family, folders)
     cell = replace(cell, external_links=external_links(cell.external, readable_mesh))
     point = resting_point(toolpath, cell.mount)
@@ -104,8 +113,17 @@ def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[A
     nozzle = to_part @ place.nozzle
     reached = bool(np.linalg.norm(nozzle[:3, 3] - point) < _REACHED)
     machine = cell.robot
-    return nozzle, Rest(machine, to_part @ place.links, solids, meshes_of(machine), reached, cell.limits, joints,
-                        cell.external_links, to_part @ place.external_links)
+    return nozzle, Rest(
+        machine,
+        to_part @ place.links,
+        solids,
+        meshes_of(machine),
+        reached,
+        cell.limits,
+        joints,
+        cell.external_links,
+        to_part @ place.external_links,
+    )
 
 
 def resting_point(toolpath: Toolpath | None, mount: Array) -> Array:
@@ -124,7 +142,11 @@ class CellNodes:
         self.external_links: ExternalLinkNodes | None = None
         self.standing: Any = None  # the transformation of the nozzle
         self.looks: tuple[Any, ...] = ()  # what the machine's nodes were made of
-        self.platform, self.nozzle, self.links = coin.SoSeparator(), coin.SoSeparator(), coin.SoSeparator()
+        self.platform, self.nozzle, self.links = (
+            coin.SoSeparator(),
+            coin.SoSeparator(),
+            coin.SoSeparator(),
+        )
         self.switch, root = coin.SoSwitch(), coin.SoSeparator()
         if ghost:
             root.addChild(unpickable())
@@ -185,7 +207,8 @@ def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
     they are drawn to fit, and the files a user gave the links."""
     chain = rest.machine.chain
     return (
-        rest.machine.id, chain.links(np.zeros(chain.axes)).tobytes(),
+        rest.machine.id,
+        chain.links(np.zeros(chain.axes)).tobytes(),
         () if of_setup(value.setup).links_known else (value.platform_diameter, value.nozzle.length),
         *(None if mesh is None else hash(mesh[0].tobytes()) for mesh in rest.meshes),
         *((link.name, hash(link.body.vertices.tobytes())) for link in rest.external_links),
@@ -195,8 +218,13 @@ def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
 def _seen_through() -> Any:
     """The node that makes what follows transparent, and leaves its colours."""
     material = coin.SoMaterial()
-    for channel in (material.ambientColor, material.diffuseColor, material.specularColor, material.emissiveColor,
-                  material.shininess):
+    for channel in (
+        material.ambientColor,
+        material.diffuseColor,
+        material.specularColor,
+        material.emissiveColor,
+        material.shininess,
+    ):
         channel.setIgnored(True)
     material.transparency = _GHOST
     material.setOverride(True)
@@ -231,7 +259,9 @@ def nozzle_node(value: CellParameters) -> Any:
     nozzle = value.nozzle
     tip_radius = 0.5 * nozzle.diameter
     top_radius = tip_radius + nozzle.length * np.tan(nozzle.half_angle)
-    return turned([(0.0, 0.0), (tip_radius, 0.0), (top_radius, nozzle.length), (0.0, nozzle.length)])
+    return turned(
+        [(0.0, 0.0), (tip_radius, 0.0), (top_radius, nozzle.length), (0.0, nozzle.length)]
+    )
 
 
 def torch_seen(value: CellParameters) -> Torch | None:
@@ -250,6 +280,10 @@ def holder_node(value: CellParameters) -> Any:
         tip = frames.bryant(value.nozzle.tool) @ frames.pose(frames.about_x(np.pi), np.zeros(3))
         flange = frames.inverse(tip)[:3, 3]
     radius = 0.5 * value.nozzle.diameter + length * np.tan(value.nozzle.half_angle)
-    if not arrangement.links_known or np.linalg.norm(flange - end) < 1.0 or torch_seen(value) is not None:
+    if (
+        not arrangement.links_known
+        or np.linalg.norm(flange - end) < 1.0
+        or torch_seen(value) is not None
+    ):
         return coin.SoSeparator()  # drawn with the machine's head, or with the nozzle
     return of_solid(capsule(end, flange, radius, radius))

@@ -27,7 +27,11 @@ class ExternalLinkNodes:
         self.materials: list[Any] = []
         self.bad = np.zeros(len(links), dtype=bool)
         for link in links:
-            group, transform, material = coin.SoSeparator(), coin.SoMatrixTransform(), coin.SoMaterial()
+            group, transform, material = (
+                coin.SoSeparator(),
+                coin.SoMatrixTransform(),
+                coin.SoMaterial(),
+            )
             material.diffuseColor.setValue(*_colour(link))
             for child in (transform, material, of_mesh((link.body.vertices, link.body.triangles))):
                 group.addChild(child)
@@ -44,7 +48,9 @@ class ExternalLinkNodes:
         """bad: (k,) of the external axes, those whose links are to be red; the others get their own colours back."""
         red = np.array([link.link > 0 and bool(bad[link.axis]) for link in self.links], dtype=bool)
         for index in np.flatnonzero(red != self.bad):
-            self.materials[index].diffuseColor.setValue(*(BAD if red[index] else _colour(self.links[index])))
+            self.materials[index].diffuseColor.setValue(
+                *(BAD if red[index] else _colour(self.links[index]))
+            )
         self.bad = red
 
 

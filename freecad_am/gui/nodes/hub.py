@@ -20,7 +20,9 @@ from .wall import WallNodes, unpickable
 OUTLINE, TINT = (0.0, 0.45, 0.45), (0.1, 0.62, 0.6)
 SIDES = 96
 BEYOND = 0.15  # of the way along the axis from contour to contour, by which a base is drawn longer on either side
-OUTSIDE = 0.003  # of its radius; the base is drawn that far out, to be seen before the hub's own face
+OUTSIDE = (
+    0.003  # of its radius; the base is drawn that far out, to be seen before the hub's own face
+)
 NEARLY = 0.98  # of the way to the apex
 
 
@@ -41,8 +43,12 @@ class HubNodes(WallNodes):
 
     def set(self, drawn: Drawing) -> None:
         """Draw what `drawing` has made."""
-        self.set_first([contour for group in drawn.contours for solid in group for contour in solid])
-        self.outline.set(np.concatenate([np.zeros((0, 3)), *drawn.lines]), [len(line) for line in drawn.lines])
+        self.set_first(
+            [contour for group in drawn.contours for solid in group for contour in solid]
+        )
+        self.outline.set(
+            np.concatenate([np.zeros((0, 3)), *drawn.lines]), [len(line) for line in drawn.lines]
+        )
         self.faces.set(drawn.points, drawn.corners)
 
 
@@ -63,28 +69,38 @@ def drawing(solids: SolidsOnHub) -> Drawing:
     """What is drawn of solids, made without the window. InputError OPEN_MESH."""
     contours = [first_contours(group, solids.chord_error) for group in solids.groups]
     bases = [
-        _base(group, [contour for solid in some for contour in solid]) for group, some in zip(solids.groups, contours)
+        _base(group, [contour for solid in some for contour in solid])
+        for group, some in zip(solids.groups, contours)
     ]
     counts = np.cumsum([0, *(len(points) for points, _, _ in bases)])
     return Drawing(
         contours,
         np.concatenate([np.zeros((0, 3)), *(points for points, _, _ in bases)]),
-        np.concatenate([np.zeros((0, 3), int), *(corners + k for (_, corners, _), k in zip(bases, counts))]),
+        np.concatenate(
+            [np.zeros((0, 3), int), *(corners + k for (_, corners, _), k in zip(bases, counts))]
+        ),
         [line for _, _, some in bases for line in some],
     )
 
 
 def first_contours(group: Group, chord_error: float) -> list[list[Array]]:
     """Where each solid of a group leaves the base: closed curves (k, 3) in part coordinates, the first point repeated."""
-    return [[np.concatenate([loop, loop[:1]]) for loop in some] for some in footprints(group, chord_error)]
+    return [
+        [np.concatenate([loop, loop[:1]]) for loop in some]
+        for some in footprints(group, chord_error)
+    ]
 
 
 def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array]]:
     """Points and triangles of the base about contours, and lines along its ends and up it."""
     base = group.base
     if isinstance(base.surface, Guide):
-        points, corners, lines = _plane(base, np.concatenate(contours or [body.vertices for body in group.bodies]))
-        length = max(float(base.surface.distance(base.inside(body.vertices)).max()) for body in group.bodies)
+        points, corners, lines = _plane(
+            base, np.concatenate(contours or [body.vertices for body in group.bodies])
+        )
+        length = max(
+            float(base.surface.distance(base.inside(body.vertices)).max()) for body in group.bodies
+        )
         way = np.linspace(0.0, length, SIDES + 1)
         return points, corners, [*lines, base.placed(base.surface.at(way)[0])]
     if isinstance(base.surface, Plane):
@@ -94,9 +110,12 @@ def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array
     turn = np.linspace(0.0, 2.0 * np.pi, SIDES + 1)
     rings = [base.placed(_ring(outside, turn, z)) for z in (low, high)]
     k = np.arange(SIDES)
-    corners = np.concatenate([
-        np.stack([k, k + 1, k + SIDES + 1], axis=1), np.stack([k + 1, k + SIDES + 2, k + SIDES + 1], axis=1)
-    ])
+    corners = np.concatenate(
+        [
+            np.stack([k, k + 1, k + SIDES + 1], axis=1),
+            np.stack([k + 1, k + SIDES + 2, k + SIDES + 1], axis=1),
+        ]
+    )
     up = [np.stack([rings[0][number], rings[1][number]]) for number in range(0, SIDES, SIDES // 8)]
     return np.concatenate(rings), corners, [*rings, *up]
 
@@ -115,7 +134,9 @@ def _reach(base: Base, curves: list[Array]) -> tuple[float, float]:
     along = base.inside(np.concatenate(curves))[:, 2]
     low, high = float(along.min()), float(along.max())
     more = BEYOND * max(high - low, 0.1 * base.surface.radius)
-    return low - more, high + more if base.surface.is_cylinder else min(high + more, NEARLY * base.surface.height)
+    return low - more, high + more if base.surface.is_cylinder else min(
+        high + more, NEARLY * base.surface.height
+    )
 
 
 def _ring(surface: Any, turn: Array, z: float) -> Array:

@@ -20,7 +20,9 @@ DASHED = 0xF0F0
 class Lines:
     """Polylines in one node, coloured by vertex or all alike, not shaded."""
 
-    def __init__(self, width: float = 2.0, colour: Sequence[float] = (0.2, 0.2, 0.2), pattern: int = 0xFFFF) -> None:
+    def __init__(
+        self, width: float = 2.0, colour: Sequence[float] = (0.2, 0.2, 0.2), pattern: int = 0xFFFF
+    ) -> None:
         self.style = coin.SoDrawStyle()
         self.style.lineWidth = width
         self.style.linePattern = pattern
@@ -31,7 +33,14 @@ class Lines:
         self.lines = coin.SoLineSet()
         self.switch = coin.SoSwitch()
         node = coin.SoSeparator()
-        for child in (unshaded(), self.style, self.colour, self.binding, self.coordinates, self.lines):
+        for child in (
+            unshaded(),
+            self.style,
+            self.colour,
+            self.binding,
+            self.coordinates,
+            self.lines,
+        ):
             node.addChild(child)
         self.switch.addChild(node)
         self.show(True)
@@ -103,10 +112,18 @@ class Faces:
         """points (n, 3), corners (m, 3) their indices."""
         corners = np.asarray(corners, dtype=np.int32).reshape(-1, 3)
         fill(self.coordinates.point, np.asarray(points, dtype=np.float32).reshape(-1, 3))
-        fill(self.triangles.coordIndex, np.column_stack([corners, np.full(len(corners), -1, dtype=np.int32)]).ravel())
+        fill(
+            self.triangles.coordIndex,
+            np.column_stack([corners, np.full(len(corners), -1, dtype=np.int32)]).ravel(),
+        )
 
 
-_KINDS = {coin.SoMFVec3f: np.float32, coin.SoMFColor: np.float32, coin.SoMFInt32: np.int32, coin.SoMFUInt32: np.uint32}
+_KINDS = {
+    coin.SoMFVec3f: np.float32,
+    coin.SoMFColor: np.float32,
+    coin.SoMFInt32: np.int32,
+    coin.SoMFUInt32: np.uint32,
+}
 
 
 def fill(field: Any, values: Any) -> None:

@@ -44,7 +44,9 @@ def plain_links(machine: Machine, platform: float, torch: float) -> Links:
     """The solids of each link (axes + 1), base first. platform: diameter of the platform on a table, torch: length of the
     nozzle, mm; machines with rotary axes are drawn to fit them."""
     if not machine.arrangements[0].links_known:
-        return table_links.solids(machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch)
+        return table_links.solids(
+            machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch
+        )
     return robot_links.solids(machine.chain)
 
 
@@ -58,7 +60,9 @@ class MachineNodes:
     def __init__(self, machine: Machine, solids: Links, meshes: Sequence[Mesh | None] = ()) -> None:
         self.node = coin.SoSeparator()
         self.transforms: list[Any] = []
-        self.matrices: list[Any] = []  # of the transforms; to ask a node for its field takes longer than to set it
+        self.matrices: list[
+            Any
+        ] = []  # of the transforms; to ask a node for its field takes longer than to set it
         self.materials: list[list[tuple[Any, Look]]] = []
         self.bad = np.zeros(machine.chain.axes + 1, dtype=bool)
         for shape, mesh, plain in zip_longest(machine.shapes, meshes, solids):
@@ -69,9 +73,11 @@ class MachineNodes:
         link.addChild(transform)
         mesh = mesh if mesh is not None or shape is None else _drawn_mesh(shape)
         own = None if mesh is None else of_mesh(mesh)
-        parts = [(own, _SHAPE if shape is None or shape.colour is None else shape.colour)] if own is not None else [
-            (of_solid(solid), TONES.get(solid.tone)) for solid in plain
-        ]
+        parts = (
+            [(own, _SHAPE if shape is None or shape.colour is None else shape.colour)]
+            if own is not None
+            else [(of_solid(solid), TONES.get(solid.tone)) for solid in plain]
+        )
         for node, colour in parts:
             material, part = coin.SoMaterial(), coin.SoSeparator()
             material.diffuseColor.setValue(*_rgb(colour))
@@ -127,7 +133,9 @@ def _drawn_mesh(shape: LinkShape) -> Mesh | None:
     try:
         return mesh_of(shape)
     except InputError as error:
-        reported = InputError(error.code, shape.where, "{}; the link has its plain solid for now", error.message)
+        reported = InputError(
+            error.code, shape.where, "{}; the link has its plain solid for now", error.message
+        )
         App.Console.PrintError(error_line(reported))
         return None
 
@@ -135,7 +143,10 @@ def _drawn_mesh(shape: LinkShape) -> Mesh | None:
 def of_mesh(mesh: Mesh) -> Any:
     """The node of a user's file."""
     group, hints = coin.SoGroup(), coin.SoShapeHints()
-    hints.vertexOrdering, hints.shapeType = coin.SoShapeHints.COUNTERCLOCKWISE, coin.SoShapeHints.UNKNOWN_SHAPE_TYPE
+    hints.vertexOrdering, hints.shapeType = (
+        coin.SoShapeHints.COUNTERCLOCKWISE,
+        coin.SoShapeHints.UNKNOWN_SHAPE_TYPE,
+    )
     hints.creaseAngle = _CREASE
     coordinates, faces = coin.SoCoordinate3(), coin.SoIndexedFaceSet()
     fill(coordinates.point, mesh[0].astype(np.float32))

@@ -20,7 +20,11 @@ class MeridianNodes:
     """Draws a wall, nothing at first."""
 
     def __init__(self) -> None:
-        self.meridian, self.axis, self.layers = Lines(3.0, COLOUR), Lines(2.0, COLOUR, DASHED), Lines(1.0, COLOUR)
+        self.meridian, self.axis, self.layers = (
+            Lines(3.0, COLOUR),
+            Lines(2.0, COLOUR, DASHED),
+            Lines(1.0, COLOUR),
+        )
         self.switch = coin.SoSwitch()
         for lines in (self.meridian, self.axis, self.layers):
             self.switch.addChild(lines.node)
@@ -49,6 +53,12 @@ class MeridianNodes:
         """The beads of layers, or of some of many."""
         count = len(slices.layer)
         shown = np.unique(np.linspace(0, count - 1, min(count, MOST_LAYERS)).round().astype(int))
-        angles = np.linspace(wall.start, wall.end, max(2, round(SIDES * (wall.end - wall.start) / (2.0 * np.pi)) + 1))
-        radius, height = (np.repeat(column[shown], len(angles)) for column in (slices.radius, slices.height))
-        self.layers.set(wall.points(radius, height, np.tile(angles, len(shown))), [len(angles)] * len(shown))
+        angles = np.linspace(
+            wall.start, wall.end, max(2, round(SIDES * (wall.end - wall.start) / (2.0 * np.pi)) + 1)
+        )
+        radius, height = (
+            np.repeat(column[shown], len(angles)) for column in (slices.radius, slices.height)
+        )
+        self.layers.set(
+            wall.points(radius, height, np.tile(angles, len(shown))), [len(angles)] * len(shown)
+        )

@@ -37,8 +37,13 @@ class WallNodes:
         depth.test = False
         lines = coin.SoSeparator()
         for parent, child in (
-            (self.root, lines), (lines, self.first.node), (self.root, unpickable()), (behind, depth),
-            (behind, self.hidden.node), (self.root, self.faces.node), (self.root, behind),
+            (self.root, lines),
+            (lines, self.first.node),
+            (self.root, unpickable()),
+            (behind, depth),
+            (behind, self.hidden.node),
+            (self.root, self.faces.node),
+            (self.root, behind),
         ):
             parent.addChild(child)
         if not pickable:
@@ -78,7 +83,9 @@ def first_curves(wall: Any) -> list[Array]:
     first = wall.first
     if isinstance(first, np.ndarray):
         return [np.concatenate([first, first[:1]])]
-    return [np.concatenate([one.points, one.points[:1]]) if one.closed else one.points for one in first]
+    return [
+        np.concatenate([one.points, one.points[:1]]) if one.closed else one.points for one in first
+    ]
 
 
 def drawn(part: Taken, names: Sequence[str]) -> tuple[Array, Array]:
@@ -93,7 +100,9 @@ def triangles_of(shape: Any, names: Sequence[str]) -> tuple[Array, Array]:
     """Points (n, 3) and triangles (m, 3) of faces of a shape, all where none are named; NONE where it has none such. Those
     that the shape has, as it has on screen, are taken: others would lie in front of them here and behind them there."""
     try:
-        faces = [shape.getElement(name.rsplit(".", maxsplit=1)[-1]) for name in names] or shape.Faces
+        faces = [
+            shape.getElement(name.rsplit(".", maxsplit=1)[-1]) for name in names
+        ] or shape.Faces
     except (ValueError, IndexError, RuntimeError):  # the shape has changed
         return NONE
     points, corners, count = [_NOTHING], [NONE[1]], 0

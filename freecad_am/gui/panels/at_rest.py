@@ -18,6 +18,9 @@ def stands(rest: Rest) -> str:
         return text.format(rest.machine.title)
     margin, label = rest.limits.smallest(rest.joints)
     left, axis = float(np.degrees(margin)), rest.limits.labels[int(label)]
-    text = tr("{} with the nozzle upright: {} is {:.0f}° from its limit") if left >= 0.0 else tr(
-        "{} with the nozzle upright: {} is {:.0f}° past its limit")
+    text = (
+        tr("{} with the nozzle upright: {} is {:.0f}° from its limit")
+        if left >= 0.0
+        else tr("{} with the nozzle upright: {} is {:.0f}° past its limit")
+    )
     return text.format(rest.machine.title, axis, abs(left))

@@ -54,11 +54,15 @@ class CellPanel(ProposingPanel):
     def _add_machine_box(self) -> None:
         self.machine_box = QtGui.QCheckBox(tr("Show the machine"))
         self.machine_box.setObjectName("PreviewMachine")
-        help = tr("Shows the machine at rest while the panel is open, the nozzle upright on the highest point of the path")
+        help = tr(
+            "Shows the machine at rest while the panel is open, the nozzle upright on the highest point of the path"
+        )
         self.machine_box.setToolTip(help)
         self.machine_box.setWhatsThis(help)
         self.machine_box.setChecked(True)
-        self.column.insertWidget(self.column.indexOf(self.messages) + 1, self.machine_box, 0, QtCore.Qt.AlignLeft)
+        self.column.insertWidget(
+            self.column.indexOf(self.messages) + 1, self.machine_box, 0, QtCore.Qt.AlignLeft
+        )
 
     # ---- what the machine asks for
 
@@ -115,7 +119,11 @@ class CellPanel(ProposingPanel):
 
     def _entered(self) -> Any:
         toolpath = self._toolpath()
-        return *super()._entered(), self.machine_box.isChecked(), None if toolpath is None else toolpath.Key
+        return (
+            *super()._entered(),
+            self.machine_box.isChecked(),
+            None if toolpath is None else toolpath.Key,
+        )
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Scenery]]:
         draft.check()
@@ -134,7 +142,11 @@ class CellPanel(ProposingPanel):
         """The toolpath that is for the cell; for a new one the selected toolpath, or the only one there is."""
         if self.obj is not None:
             return toolpath_of(self.obj)
-        known = [obj for obj in self.document.Objects if getattr(stage_of(obj), "kind", "") == "toolpath" and obj.Key]
+        known = [
+            obj
+            for obj in self.document.Objects
+            if getattr(stage_of(obj), "kind", "") == "toolpath" and obj.Key
+        ]
         if len(known) > 1:
             known = [obj for obj in meant(self.document.Name) if obj in known]
         return known[0] if len(known) == 1 else None
@@ -142,11 +154,17 @@ class CellPanel(ProposingPanel):
     def _draw(self, made: Outcome, drawing: Scenery) -> str:
         self.nodes.set(drawing)
         without = suggestions.no_post(self.places[MACHINE][0].value)
-        return "\n".join(filter(None, ("" if drawing.rest is None else at_rest.stands(drawing.rest), without)))
+        return "\n".join(
+            filter(None, ("" if drawing.rest is None else at_rest.stands(drawing.rest), without))
+        )
 
     def _placed(self, error: AmError) -> tuple[str, str]:
         """What is wrong with the file of a machine is told under its name."""
-        return (MACHINE, translated(error.message)) if error.code == "BAD_MACHINE" else super()._placed(error)
+        return (
+            (MACHINE, translated(error.message))
+            if error.code == "BAD_MACHINE"
+            else super()._placed(error)
+        )
 
     def _draw_without(self) -> None:
         self.nodes.clear()

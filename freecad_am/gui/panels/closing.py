@@ -21,7 +21,9 @@ class Watch:
     def __init__(self) -> None:
         self.form: Any = None
         self.document = ""
-        self.follow_undo: Callable[[], Callable[[], None] | None] = lambda: None  # gives it as long as the panel is there
+        self.follow_undo: Callable[[], Callable[[], None] | None] = lambda: (
+            None
+        )  # gives it as long as the panel is there
 
     def slotDeletedDocument(self, document: Any) -> None:
         """A document is about to go; once it is gone, so does the panel."""
@@ -61,7 +63,10 @@ def with_document(panel: Any) -> None:
         _watches.append(Watch())
         App.addDocumentObserver(_watches[0])
     watch = _watches[0]
-    watch.form, watch.document = panel.form, panel.document.Name if panel.document is not None else ""
+    watch.form, watch.document = (
+        panel.form,
+        panel.document.Name if panel.document is not None else "",
+    )
     follow = getattr(panel, "follow_undo", None)
     watch.follow_undo = (lambda: None) if follow is None else WeakMethod(follow)
     panel.form.destroyed.connect(watch.forget)

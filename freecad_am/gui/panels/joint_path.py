@@ -36,7 +36,10 @@ MOST_SHOWN = 3  # findings
 METHOD = "joints_method"
 _ENDS = {"joints_rotation_range_low", "joints_rotation_range_high"}
 _OF_ROTARY_AXES = ("lock", "lock_at", "max_residual")
-_OF_METHODS = {"constant": ("rz",), "layer-by-layer": ("degree", "given", "parameter", "external_axes")}
+_OF_METHODS = {
+    "constant": ("rz",),
+    "layer-by-layer": ("degree", "given", "parameter", "external_axes"),
+}
 
 
 @dataclass(frozen=True)
@@ -60,14 +63,21 @@ class JointPathPanel(PreviewPanel):
     def __init__(self, obj: Any = None) -> None:
         self.aside = Aside()
         super().__init__(
-            tr("Joint path") if obj is None else obj.Label, inputs.of(JointPath, obj), obj, JointPathNodes()
+            tr("Joint path") if obj is None else obj.Label,
+            inputs.of(JointPath, obj),
+            obj,
+            JointPathNodes(),
         )
         self.places[METHOD][0].widget.currentIndexChanged.connect(self._fit)
         self._cell().widget.currentIndexChanged.connect(self._fit)
         self._fit()
 
     def _cell(self) -> Any:
-        return next(one for one in self.choices if isinstance(one, inputs.StageChoice) and one.link.kind == "cell")
+        return next(
+            one
+            for one in self.choices
+            if isinstance(one, inputs.StageChoice) and one.link.kind == "cell"
+        )
 
     def _fit(self, *_: Any) -> None:
         """Leave out what has no meaning for the machine of the cell, or with the method."""
@@ -97,10 +107,19 @@ class JointPathPanel(PreviewPanel):
     def _draw(self, made: Outcome, drawing: Trial) -> str:
         judgement = drawing.judgement
         kind = self._colouring(judgement)
-        values = {MARGIN: judgement.margin, CONDITION: judgement.condition, RATIO: judgement.ratio}[kind]
+        values = {MARGIN: judgement.margin, CONDITION: judgement.condition, RATIO: judgement.ratio}[
+            kind
+        ]
         self.nodes.set(drawing.planned.beads, values, kind, np.isnan(judgement.margin))
         self.aside.put(self.obj, drawing.toolpath)
-        return "\n".join([*_found(drawing), *_figures(judgement), *stale_lines(drawing.stale), _looked_at(drawing.sample)])
+        return "\n".join(
+            [
+                *_found(drawing),
+                *_figures(judgement),
+                *stale_lines(drawing.stale),
+                _looked_at(drawing.sample),
+            ]
+        )
 
     def _colouring(self, judgement: Judgement) -> str:
         """What the object's own view tells by its colours, if that is of the machine and known."""
@@ -128,7 +147,9 @@ def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement]:
     sample = sampled(job.toolpath(), MAX_POINTS)
     toolpath = sample.toolpath
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
-    parameters = replace(job.parameters, compare=(), given=sample.given(job.parameters.given), external_axes=LEVEL)
+    parameters = replace(
+        job.parameters, compare=(), given=sample.given(job.parameters.given), external_axes=LEVEL
+    )
     planned = plan_joints(toolpath, cell, parameters, progress.report)
     return sample, planned, judged(planned.beads, cell.limits, cell.machine.max_speed)
 
@@ -137,9 +158,15 @@ def _found(trial: Trial) -> list[str]:
     """Whether it can be carried out, as far as that is known, and where not."""
     errors = [issue for issue in trial.planned.issues if issue.level == ERROR]
     if not errors:
-        return [tr("All deposit points can be carried out.") if trial.sample.whole else tr(
-            "Nothing stands against it so far.")]
-    lines = [tr("Cannot be carried out:"), *(_issue_text(issue, trial.sample.whole) for issue in errors[:MOST_SHOWN])]
+        return [
+            tr("All deposit points can be carried out.")
+            if trial.sample.whole
+            else tr("Nothing stands against it so far.")
+        ]
+    lines = [
+        tr("Cannot be carried out:"),
+        *(_issue_text(issue, trial.sample.whole) for issue in errors[:MOST_SHOWN]),
+    ]
     if len(errors) > MOST_SHOWN:
         lines.append(tr("and {} more").format(len(errors) - MOST_SHOWN))
     return lines
@@ -148,8 +175,11 @@ def _found(trial: Trial) -> list[str]:
 def _issue_text(issue: Issue, whole: bool) -> str:
     """A finding with its place: of some points alone it is the layer, whose beads and points have other numbers."""
     placed = issue if whole else replace(issue, bead=None, point=None)
-    return tr("{}: {}").format(translated(placed.where), translated(issue.message)) if placed.where else translated(
-        issue.message)
+    return (
+        tr("{}: {}").format(translated(placed.where), translated(issue.message))
+        if placed.where
+        else translated(issue.message)
+    )
 
 
 def _figures(judgement: Judgement) -> list[str]:
@@ -157,10 +187,16 @@ def _figures(judgement: Judgement) -> list[str]:
     found = (
         (tr("Least joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
         (tr("Least condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
-        (tr("Largest joint speed: {:.0f} % of what {} can do, in layer {}"), judgement.worst_ratio, 100.0),
+        (
+            tr("Largest joint speed: {:.0f} % of what {} can do, in layer {}"),
+            judgement.worst_ratio,
+            100.0,
+        ),
     )
     return [
-        text.format(factor * worst.value, worst.label, worst.layer) for text, worst, factor in found if worst is not None
+        text.format(factor * worst.value, worst.label, worst.layer)
+        for text, worst, factor in found
+        if worst is not None
     ]
 
 
@@ -169,8 +205,14 @@ def _looked_at(sample: Sampled) -> str:
     if sample.whole:
         return tr("Preview of all points; OK looks at the rapid moves too.")
     if sample.beads == 1:
-        return tr("Preview of one point in {}; OK looks at those between and at the rapid moves too.").format(sample.points)
+        return tr(
+            "Preview of one point in {}; OK looks at those between and at the rapid moves too."
+        ).format(sample.points)
     if sample.points == 1:
-        return tr("Preview of one bead in {}; OK looks at those between and at the rapid moves too.").format(sample.beads)
-    text = tr("Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.")
+        return tr(
+            "Preview of one bead in {}; OK looks at those between and at the rapid moves too."
+        ).format(sample.beads)
+    text = tr(
+        "Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too."
+    )
     return text.format(sample.points, sample.beads)

@@ -38,7 +38,9 @@ class Noted:
     marked: dict[str, str]  # places with an error of OK or Apply, and what was entered there
     remarks: dict[str, str]  # those with what an expression gives or is wrong as typed, and that
     notes: dict[str, Any]  # under the fields, by the label of an input or the place of a parameter
-    places: dict[str, tuple[fields.Field, str, Fold]]  # by the name that errors give a parameter: field, how it is called
+    places: dict[
+        str, tuple[fields.Field, str, Fold]
+    ]  # by the name that errors give a parameter: field, how it is called
 
     def say(self, text: str) -> None:
         """Show what is wrong."""
@@ -80,12 +82,18 @@ class Noted:
 
     def _names(self) -> list[str]:
         """What errors call the stage: by its label, while it is made and where it is but previewed."""
-        return [self.draft, self.proxy.kind.capitalize(), *([] if self.obj is None else [self.obj.Label])]
+        return [
+            self.draft,
+            self.proxy.kind.capitalize(),
+            *([] if self.obj is None else [self.obj.Label]),
+        ]
 
     def leave_out(self, places: Collection[str], also_entered: bool = False) -> None:
         """Show all fields but some that mean nothing now; those that hold something all the same only where it is said."""
         for place, (field, _, fold) in self.places.items():
-            default = field.row.outer(field.row.default)  # which some fields hold as a text, of nothing too
+            default = field.row.outer(
+                field.row.default
+            )  # which some fields hold as a text, of nothing too
             empty = {repr(default), repr("" if default is None else str(default))}
             holds = not also_entered and self._entry(place) not in empty
             fold.show(field.widget, place not in places or holds)

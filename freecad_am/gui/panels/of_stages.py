@@ -18,10 +18,22 @@ from .program import ProgramPanel
 from .stage import show
 from .toolpath import ToolpathPanel
 
-PANELS: dict[type, Any] = {panel.stage: panel for panel in (
-    CellPanel, FeaturePanel, WallPanel, HubPanel, SolidPanel, CladdingPanel, CurvesPanel, ToolpathPanel, JointPathPanel,
-    ProgramPanel, InspectionPanel,
-)}
+PANELS: dict[type, Any] = {
+    panel.stage: panel
+    for panel in (
+        CellPanel,
+        FeaturePanel,
+        WallPanel,
+        HubPanel,
+        SolidPanel,
+        CladdingPanel,
+        CurvesPanel,
+        ToolpathPanel,
+        JointPathPanel,
+        ProgramPanel,
+        InspectionPanel,
+    )
+}
 
 
 def edit(obj: Any) -> None:

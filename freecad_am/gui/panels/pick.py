@@ -60,8 +60,10 @@ class PickPanel(PreviewPanel):
         lacking = self._lacking()
         if lacking is None:
             return ""
-        text = tr("{} are missing: click them in the tree or the 3D view.") if lacking.several else tr(
-            "{} is missing: click it in the tree or the 3D view."
+        text = (
+            tr("{} are missing: click them in the tree or the 3D view.")
+            if lacking.several
+            else tr("{} is missing: click it in the tree or the 3D view.")
         )
         return text.format(lacking.label)
 
@@ -71,7 +73,11 @@ class PickPanel(PreviewPanel):
         """Of a new feature the part and whatever else was picked, of one that is changed all inputs: some may be emptied."""
         if self.obj is not None:
             return inputs
-        return {key: text for key, text in inputs.items() if key == "source" or text not in ("None", "[]")}
+        return {
+            key: text
+            for key, text in inputs.items()
+            if key == "source" or text not in ("None", "[]")
+        }
 
     def _field(self, name: str) -> PickField:
         return next(field for field in self.picks if field.link.name == name)
@@ -130,10 +136,17 @@ class PickPanel(PreviewPanel):
             return place, text
         names = [self.draft, *self._names()]
         named = [(pick.obj.Label, field.label) for field in self.picks for pick in field.picks]
-        named += [(f"{name}.{link}", place) for link, place in self._link_places().items() for name in names]
+        named += [
+            (f"{name}.{link}", place)
+            for link, place in self._link_places().items()
+            for name in names
+        ]
         for label, place in sorted(named, key=lambda pair: -len(pair[0])):
             if error.where == label or error.where.startswith(f"{label} "):
-                return place, f"{error.where.removeprefix(label)} {translated(error.message)}".strip()
+                return (
+                    place,
+                    f"{error.where.removeprefix(label)} {translated(error.message)}".strip(),
+                )
         return "", translated_error(error)
 
     # ---- the end

@@ -37,7 +37,10 @@ def entries(obj: Any, proxy: type[Stage], inputs: dict[str, Any]) -> dict[str, A
 
 
 def show_other(
-    fields: Iterable[tuple[str, Field]], choices: Sequence[Input], before: dict[str, Any], now: dict[str, Any]
+    fields: Iterable[tuple[str, Field]],
+    choices: Sequence[Input],
+    before: dict[str, Any],
+    now: dict[str, Any],
 ) -> None:
     """Show what is another one now than before; what was entered elsewhere stays."""
     for place, field in fields:

@@ -211,7 +211,9 @@ class PreviewPanel(StagePanel):
     def _carry_out(self) -> bool:
         self.background.cancel()
         done = super()._carry_out()
-        self.seen = self.shown = None  # what was being previewed is begun again, what was made is another one
+        self.seen = self.shown = (
+            None  # what was being previewed is begun again, what was made is another one
+        )
         if not done:
             with contextlib.suppress(ReferenceError):
                 self.refused = self._entered()
@@ -232,7 +234,9 @@ class PreviewPanel(StagePanel):
             self.preview.remove()
         with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer
             self.timer.stop()
-        with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):  # the object is gone
+        with contextlib.suppress(
+            RuntimeError, ReferenceError, AttributeError
+        ):  # the object is gone
             self._show_own(True)
 
 
@@ -244,4 +248,8 @@ def stale_lines(labels: Sequence[str]) -> list[str]:
 def coarsened(values: dict[str, Any]) -> dict[str, Any]:
     """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
     error = values["ChordError"]
-    return {**values, "ChordError": COARSE} if 0.0 < getattr(error, "Value", error) < COARSE else values
+    return (
+        {**values, "ChordError": COARSE}
+        if 0.0 < getattr(error, "Value", error) < COARSE
+        else values
+    )

@@ -34,7 +34,12 @@ from .preview import PreviewPanel, stale_lines
 FIRST = 40  # lines that are shown: controllers want a head of twenty
 HIGH = 14  # lines that are seen at once, about
 SMALLER, LEAST = 0.85, 6.0  # than the text of the panel, which is narrow, and points at least
-POST, MOTION, START, START_LAYER = "program_post", "program_motion", "program.start_at", "program_start_at_layer"
+POST, MOTION, START, START_LAYER = (
+    "program_post",
+    "program_motion",
+    "program.start_at",
+    "program_start_at_layer",
+)
 
 
 @dataclass(frozen=True)
@@ -61,14 +66,19 @@ class ProgramPanel(PreviewPanel):
     def __init__(self, obj: Any = None) -> None:
         self.name = inputs.NameChoice("" if obj is None else obj.ProgramName)
         super().__init__(
-            tr("Program") if obj is None else obj.Label, [*inputs.of(Program, obj), self.name], obj, None
+            tr("Program") if obj is None else obj.Label,
+            [*inputs.of(Program, obj), self.name],
+            obj,
+            None,
         )
         if obj is None:
             found = suggestions.post_for(self._links()["JointPath"])
             for name, text in zip((POST, MOTION), found, strict=True):
                 if text:
                     self.places[name][0].show(text)
-            self.name.widget.setText(naming.name_for(_part_label(), found[0] or suggestions.usual_post()))
+            self.name.widget.setText(
+                naming.name_for(_part_label(), found[0] or suggestions.usual_post())
+            )
         self._add_text()
 
     def _add_text(self) -> None:
@@ -81,7 +91,9 @@ class ProgramPanel(PreviewPanel):
         self.text.setToolTip(help)
         self.text.setWhatsThis(help)
         self.text.hide()
-        self.column.insertWidget(self.column.indexOf(self.messages) + (1 if self.heading is None else 2), self.text)
+        self.column.insertWidget(
+            self.column.indexOf(self.messages) + (1 if self.heading is None else 2), self.text
+        )
         self.preflight = PreflightList(self._go)
         self.preflight.widget.hide()
         self.column.insertWidget(self.column.indexOf(self.text) + 1, self.preflight.widget)
@@ -103,14 +115,21 @@ class ProgramPanel(PreviewPanel):
         promised = preflight.prepared(path.Toolpath, path, job.parameters, read)
 
         def work() -> tuple[Outcome, Beginning | None]:
-            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(job, stale, promised)
+            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(
+                job, stale, promised
+            )
 
         return work
 
     def _read_back(self, job: Job, path: Any) -> Any:
         """The `Verification` of the program, where it is up to date and what is entered is what it was made of."""
         obj = self.obj
-        if obj is None or obj.Status != UP_TO_DATE or obj.JointPath is not path or obj.ProgramName != job.name:
+        if (
+            obj is None
+            or obj.Status != UP_TO_DATE
+            or obj.JointPath is not path
+            or obj.ProgramName != job.name
+        ):
             return None
         same = obj.Proxy.parameters(obj, ProgramParameters) == job.parameters
         return preflight.read_back_of(obj) if same else None
@@ -135,7 +154,11 @@ class ProgramPanel(PreviewPanel):
 
     def _placed(self, error: AmError) -> tuple[str, str]:
         """Where a program starts is told under the first of its two fields."""
-        return (START_LAYER, translated(error.message)) if error.where == START else super()._placed(error)
+        return (
+            (START_LAYER, translated(error.message))
+            if error.where == START
+            else super()._placed(error)
+        )
 
 
 def _begun(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginning:
@@ -145,17 +168,28 @@ def _begun(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginn
     lines = made.files[main].decode("latin-1").splitlines()[:FIRST]
     times = timeline(made.motion, job.process, [layer.wait for layer in made.toolpath.layers])
     return Beginning(
-        main, "\n".join(lines), sum(content.count(b"\n") for content in made.files.values()), len(made.files),
-        totals(made.motion, times, job.process, made.toolpath), job.parameters.dry_run, stale,
+        main,
+        "\n".join(lines),
+        sum(content.count(b"\n") for content in made.files.values()),
+        len(made.files),
+        totals(made.motion, times, job.process, made.toolpath),
+        job.parameters.dry_run,
+        stale,
         promised(),
     )
 
 
 def _lines(beginning: Beginning) -> list[str]:
     sums = beginning.sums
-    deposits = tr("dry run, nothing is deposited") if beginning.dry else tr("mass: {:.1f} g").format(sums.mass)
+    deposits = (
+        tr("dry run, nothing is deposited")
+        if beginning.dry
+        else tr("mass: {:.1f} g").format(sums.mass)
+    )
     return [
-        tr("Begins with {}. Lines: {}, files: {}").format(beginning.name, beginning.lines, beginning.files),
+        tr("Begins with {}. Lines: {}, files: {}").format(
+            beginning.name, beginning.lines, beginning.files
+        ),
         tr("Time: {}, {}").format(wording.clock(sums.time), deposits),
     ]
 

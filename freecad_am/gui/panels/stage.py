@@ -49,7 +49,9 @@ class StagePanel(Noted):
     lines = 3  # that messages have room for above the fields
     draft = ""  # the name in errors of what is not made yet
 
-    def __init__(self, proxy: type[Stage], title: str, choices: Sequence[Input], obj: Any = None) -> None:
+    def __init__(
+        self, proxy: type[Stage], title: str, choices: Sequence[Input], obj: Any = None
+    ) -> None:
         self.proxy, self.choices, self.obj = proxy, choices, obj
         self.document = App.ActiveDocument if obj is None else obj.Document
         self.form = QtGui.QWidget()
@@ -62,11 +64,19 @@ class StagePanel(Noted):
         self.column.addWidget(self.messages)
         self.error = self.messages.add("error", WRONG)
         self.following = self.messages.add("following", WRONG)
-        self.findings = self.messages.add("findings", "palette(text)")  # above all fields: some change what is deposited
-        self.marked: dict[str, str] = {}  # places with an error of OK or Apply, and what was entered there
-        self.remarks: dict[str, str] = {}  # those with what an expression gives or is wrong as typed, and that
+        self.findings = self.messages.add(
+            "findings", "palette(text)"
+        )  # above all fields: some change what is deposited
+        self.marked: dict[
+            str, str
+        ] = {}  # places with an error of OK or Apply, and what was entered there
+        self.remarks: dict[
+            str, str
+        ] = {}  # those with what an expression gives or is wrong as typed, and that
         self.heading: Any = None
-        self.notes: dict[str, Any] = {}  # under the fields, by the label of an input or the place of a parameter
+        self.notes: dict[
+            str, Any
+        ] = {}  # under the fields, by the label of an input or the place of a parameter
         if choices:
             self.heading = Fold(tr("Inputs"), obj is None)
             for choice in choices:
@@ -83,7 +93,9 @@ class StagePanel(Noted):
         if obj is not None:
             self.messages.hold(self.findings)
         self._watch_entries()
-        self.known = {} if obj is None else self._entries()  # what the document had when it was shown last
+        self.known = (
+            {} if obj is None else self._entries()
+        )  # what the document had when it was shown last
         scrolls(self.form)
         upright(self.form)
         missing = [choice.missing for choice in choices if choice.missing]
@@ -95,7 +107,10 @@ class StagePanel(Noted):
     def _watch_entries(self) -> None:
         """Judge what is entered, now and a moment after it was typed."""
         self.later_entries = Later(self.form, self.judge_entries)
-        widgets = [*(field.widget for field, _, _ in self.places.values()), *(choice.widget for choice in self.choices)]
+        widgets = [
+            *(field.widget for field, _, _ in self.places.values()),
+            *(choice.widget for choice in self.choices),
+        ]
         for line in (line for widget in widgets for line in lines_of(widget)):
             connect(line, "textChanged(QString)", self.later_entries.ask)
         self.judge_entries()
@@ -108,11 +123,19 @@ class StagePanel(Noted):
             title = group = group_of(row) if nested else section.group
             title = ADVANCED if row.spec.advanced else title
             if title not in folds:
-                text = tr(ADVANCED).format(translated(section.group)) if title == ADVANCED else translated(title)
+                text = (
+                    tr(ADVANCED).format(translated(section.group))
+                    if title == ADVANCED
+                    else translated(title)
+                )
                 folds[title] = Fold(text, title == section.group)
-            value = preferences.proposed(section.prefix, row) if current is None else current[row.key]
+            value = (
+                preferences.proposed(section.prefix, row) if current is None else current[row.key]
+            )
             follows = "" if self.obj is None else expressions.of(self.obj, row)
-            field = fields.make(row, value, suggestions.of(section.prefix, row.key), follows, section.prefix)
+            field = fields.make(
+                row, value, suggestions.of(section.prefix, row.key), follows, section.prefix
+            )
             if current is None and value != row.default:
                 field.differs_from(row.default)
             self._mark_driven(field)
@@ -194,7 +217,11 @@ class StagePanel(Noted):
         if not self._carry_out():
             return False
         if self.obj is None:
-            made = [obj for obj in self.document.Objects if obj.Name not in before and type(obj.Proxy) is self.proxy]
+            made = [
+                obj
+                for obj in self.document.Objects
+                if obj.Name not in before and type(obj.Proxy) is self.proxy
+            ]
             self.obj = made[-1]
             self.form.setWindowTitle(self.obj.Label)
         for field, _, _ in self.places.values():
@@ -257,7 +284,9 @@ def _narrow(box: Any) -> None:
     with contextlib.suppress(RuntimeError):  # the panel is closed again
         for button in box.buttons():
             button.setIcon(QtGui.QIcon())
-            button.setFixedWidth(button.fontMetrics().boundingRect(button.text()).width() + BUTTON_PADDING)
+            button.setFixedWidth(
+                button.fontMetrics().boundingRect(button.text()).width() + BUTTON_PADDING
+            )
 
 
 def _number(button: Any) -> int:

@@ -19,8 +19,10 @@ def own_lines(obj: Any) -> list[str]:
     message = [translated(message_of(obj))] if obj.Message and not found else []
     lines = [
         tr("{}: {}").format(
-            " ".join(filter(None, (translated(issue.level), translated(issue.where)))), translated(issue.message)
-        ) for issue in found
+            " ".join(filter(None, (translated(issue.level), translated(issue.where)))),
+            translated(issue.message),
+        )
+        for issue in found
     ]
     return [tr("Status: {}").format(translated(obj.Status)), *message, *_first(lines)]
 
@@ -28,11 +30,16 @@ def own_lines(obj: Any) -> list[str]:
 def lines_of_followers(obj: Any) -> list[str]:
     """Which of the stages that follow failed or cannot be carried out, and why; none that only waits for another one."""
     followers = set(obj.InListRecursive)
-    wrong = [one for one in api.stages_of(obj.Document)
-             if one.Status in (FAILED, INFEASIBLE) and (one is obj or one in followers)]
+    wrong = [
+        one
+        for one in api.stages_of(obj.Document)
+        if one.Status in (FAILED, INFEASIBLE) and (one is obj or one in followers)
+    ]
     first = [one for one in wrong if one is not obj and not set(one.OutListRecursive) & set(wrong)]
     texts = {FAILED: tr("{} failed: {}"), INFEASIBLE: tr("{} is infeasible: {}")}
-    return _first([texts[one.Status].format(one.Label, translated(reason_of(one))) for one in first])
+    return _first(
+        [texts[one.Status].format(one.Label, translated(reason_of(one))) for one in first]
+    )
 
 
 def _first(lines: list[str]) -> list[str]:

@@ -38,7 +38,9 @@ class ToolpathPanel(StagePanel):
         feature, *others = inputs.of(Toolpath, obj)
         assert isinstance(feature, inputs.StageChoice)
         link = next(link for link in Toolpath.links if link.many)
-        present, sequence = (None, BY_FEATURE) if obj is None else (getattr(obj, link.name), obj.Sequence)
+        present, sequence = (
+            (None, BY_FEATURE) if obj is None else (getattr(obj, link.name), obj.Sequence)
+        )
         order = FeatureOrder(link, feature, present, sequence)
         super().__init__(Toolpath, title, [feature, order, *others], obj)
         self.plot = FitPlot()
@@ -49,7 +51,9 @@ class ToolpathPanel(StagePanel):
         field, _, fold = self.places[MODEL]
         self.choose = QtGui.QPushButton(tr("Choose a table…"))
         self.choose.setObjectName("ChooseBeadTable")
-        self.choose.setToolTip(tr("Takes the beads that were measured from a file of comma separated values"))
+        self.choose.setToolTip(
+            tr("Takes the beads that were measured from a file of comma separated values")
+        )
         self.choose.setAutoDefault(False)
         self.choose.clicked.connect(self._choose)
         for more in (self.fit, self.plot, self.choose):
@@ -65,12 +69,21 @@ class ToolpathPanel(StagePanel):
 
     def _fit_to(self, scan: Any) -> None:
         """Leave out what is asked about a scan where there is none."""
-        self.leave_out(() if scan.value() is not None else {place for place in self.places if place.startswith(SCAN)})
+        self.leave_out(
+            ()
+            if scan.value() is not None
+            else {place for place in self.places if place.startswith(SCAN)}
+        )
 
     def _choose(self, *_: Any) -> None:
         """Ask for the file of a calibration table."""
-        first, kinds = os.path.dirname(self.document.FileName), f"{tr('Tables')} (*.csv);;{tr('All files')} (*)"
-        path, _ = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), tr("Calibration table"), first, kinds)
+        first, kinds = (
+            os.path.dirname(self.document.FileName),
+            f"{tr('Tables')} (*.csv);;{tr('All files')} (*)",
+        )
+        path, _ = QtGui.QFileDialog.getOpenFileName(
+            Gui.getMainWindow(), tr("Calibration table"), first, kinds
+        )
         if path:
             self.places[MODEL][0].widget.setEditText(path)
 
@@ -96,7 +109,9 @@ class ToolpathPanel(StagePanel):
             return
         width = self._width()
         self.plot.set(measured, model, width)
-        self.fit.setText(fits_text(measured, model) + ("" if width is None else f"\n{speeds_text(model, width)}"))
+        self.fit.setText(
+            fits_text(measured, model) + ("" if width is None else f"\n{speeds_text(model, width)}")
+        )
         self.plot.show()
         self.fit.show()
         if self.to_be_seen:

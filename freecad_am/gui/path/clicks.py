@@ -44,18 +44,25 @@ class ClickNode:
     """
 
     def __init__(
-        self, wanted: Callable[[], bool], seen: Callable[[], tuple[Array, float, float]],
+        self,
+        wanted: Callable[[], bool],
+        seen: Callable[[], tuple[Array, float, float]],
         clicked: Callable[[int], None],
     ) -> None:
         self.wanted, self.seen, self.clicked = wanted, seen, clicked
         self.node = coin.SoEventCallback()
         # pivy never gives back what it is handed here, so that is no more than a weak reference
-        self.node.addEventCallback(coin.SoMouseButtonEvent.getClassTypeId(), _event, weakref.ref(self))
+        self.node.addEventCallback(
+            coin.SoMouseButtonEvent.getClassTypeId(), _event, weakref.ref(self)
+        )
 
     def event(self, node: Any) -> None:
         """The scene has heard of a button of the mouse."""
         event = node.getEvent()
-        if coin.SoMouseButtonEvent.isButtonPressEvent(event, coin.SoMouseButtonEvent.BUTTON1) and self.wanted():
+        if (
+            coin.SoMouseButtonEvent.isButtonPressEvent(event, coin.SoMouseButtonEvent.BUTTON1)
+            and self.wanted()
+        ):
             self._wait(_sight(node.getAction()), _pair(event.getPosition()), QtGui.QCursor.pos())
 
     def _wait(self, sight: Sight, place: Array, start: Any) -> None:

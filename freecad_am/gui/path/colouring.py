@@ -27,10 +27,21 @@ MARGIN, RATIO, CONDITION = marked("joint margin"), marked("joint speed"), marked
 JOINT_KINDS = (MARGIN, RATIO, CONDITION, *KINDS)
 UNREACHABLE = (0.90, 0.10, 0.20)
 TOO_NEAR, TOO_FAR, NONE = (0.89, 0.10, 0.16), (0.90, 0.24, 0.84), (0.55, 0.55, 0.57)
-CLOSED, OPEN = (marked("contour, or closed"), (0.13, 0.40, 0.80)), (marked("fill, or open"), (0.93, 0.55, 0.10))
-CENTRE, CLOSING = (marked("in the middle"), (0.20, 0.62, 0.35)), (marked("closes a gap"), (0.80, 0.20, 0.55))
+CLOSED, OPEN = (
+    (marked("contour, or closed"), (0.13, 0.40, 0.80)),
+    (marked("fill, or open"), (0.93, 0.55, 0.10)),
+)
+CENTRE, CLOSING = (
+    (marked("in the middle"), (0.20, 0.62, 0.35)),
+    (marked("closes a gap"), (0.80, 0.20, 0.55)),
+)
 _CLASSES = {
-    "contour": CLOSED, "line": OPEN, "zigzag": OPEN, "spiral": OPEN, "centre": CENTRE, "closing": CLOSING,
+    "contour": CLOSED,
+    "line": OPEN,
+    "zigzag": OPEN,
+    "spiral": OPEN,
+    "centre": CENTRE,
+    "closing": CLOSING,
 }
 NO_WIDTH = (marked("no bead model"), NONE)
 FIRST = marked("first layer")
@@ -97,7 +108,9 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
         values, title, unit = np.linspace(0.0, 100.0, len(beads[0])), marked("way"), "%"
     else:
         number = numbered(toolpath)
-        values = np.repeat([number[layer] for layer, _, _ in toolpath], [len(bead) for bead in beads]).astype(float)
+        values = np.repeat(
+            [number[layer] for layer, _, _ in toolpath], [len(bead) for bead in beads]
+        ).astype(float)
         title, unit = LAYER, ""
     scale = automatic(values, title, unit)
     return ramp(scale.share(values)), replace(scale, values=values)
@@ -118,9 +131,13 @@ def numbered(toolpath: Toolpath) -> list[int]:
     return found
 
 
-def _classed(beads: list[Bead], classes: list[tuple[str, Colour]], title: str) -> tuple[Array, Scale]:
+def _classed(
+    beads: list[Bead], classes: list[tuple[str, Colour]], title: str
+) -> tuple[Array, Scale]:
     """Each bead in the colour of its class."""
-    colours = np.repeat(np.array([colour for _, colour in classes]), [len(bead) for bead in beads], axis=0)
+    colours = np.repeat(
+        np.array([colour for _, colour in classes]), [len(bead) for bead in beads], axis=0
+    )
     present = tuple(one for one in (CLOSED, OPEN, CENTRE, CLOSING, NO_WIDTH) if one in classes)
     return colours, Scale(title, "", 0.0, 0.0, (), 0.0, 0.0, classes=present)
 
@@ -130,7 +147,15 @@ def automatic(values: Array, title: str, unit: str) -> Scale:
     low, high = float(values.min()), float(values.max())
     if high - low <= _TOLERANCE * max(1.0, abs(high)):
         return Scale(title, unit, low, low, ((low, f"{low:.4g}"),), low, high)
-    return Scale(title, unit, low, high, _texts(round_numbers(low, high, least=1.0 if title == LAYER else 0.0)), low, high)
+    return Scale(
+        title,
+        unit,
+        low,
+        high,
+        _texts(round_numbers(low, high, least=1.0 if title == LAYER else 0.0)),
+        low,
+        high,
+    )
 
 
 def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
@@ -138,7 +163,9 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
     known = np.isfinite(values)
     height, title = toolpath.layer_height, DISTANCE
     if not known.any():
-        scale = Scale(title, "mm", height, height, ((height, f"{height:.4g}"),), height, height, without=FIRST)
+        scale = Scale(
+            title, "mm", height, height, ((height, f"{height:.4g}"),), height, height, without=FIRST
+        )
         return np.tile(np.array(NONE), (len(values), 1)), scale
     low, high = height * (1.0 - band), height * (1.0 + band)
     found = values[known]
@@ -146,9 +173,17 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
     below, above = known & (values < low - within), known & (values > high + within)
     ticks = _texts(np.linspace(low, high, TICKS if high > low else 1))
     scale = Scale(
-        title, "mm", low, high, ticks, float(found.min()), float(found.max()),
-        f"< {ticks[0][1]}" if below.any() else "", f"> {ticks[-1][1]}" if above.any() else "",
-        "" if known.all() else FIRST, values=values,
+        title,
+        "mm",
+        low,
+        high,
+        ticks,
+        float(found.min()),
+        float(found.max()),
+        f"< {ticks[0][1]}" if below.any() else "",
+        f"> {ticks[-1][1]}" if above.any() else "",
+        "" if known.all() else FIRST,
+        values=values,
     )
     colours = ramp(scale.share(np.where(known, values, height)))
     for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, NONE)):
@@ -169,14 +204,24 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
     below = known & (values < -_ROUNDED) & (kind == MARGIN)
     above = known & (values > 1.0 + _ROUNDED) & (kind == RATIO)
     within = known & ~below & ~above
-    beyond, faster = marked("beyond a limit") if below.any() else "", marked("faster than it can") if above.any() else ""
+    beyond, faster = (
+        marked("beyond a limit") if below.any() else "",
+        marked("faster than it can") if above.any() else "",
+    )
     if within.any():
         scale = automatic(shown[within], kind, unit)
     else:
         only = ((faster, TOO_FAR), (beyond, TOO_NEAR), (without, UNREACHABLE))
-        scale = Scale(kind, unit, 0.0, 0.0, (), 0.0, 0.0, classes=tuple(one for one in only if one[0]))
+        scale = Scale(
+            kind, unit, 0.0, 0.0, (), 0.0, 0.0, classes=tuple(one for one in only if one[0])
+        )
     scale = replace(
-        scale, below=beyond, above=faster, without=without, without_colour=UNREACHABLE, values=shown,
+        scale,
+        below=beyond,
+        above=faster,
+        without=without,
+        without_colour=UNREACHABLE,
+        values=shown,
     )
     colours = ramp(scale.share(np.where(within, shown, scale.low)))
     for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, UNREACHABLE)):
@@ -186,7 +231,9 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
 
 def unknown(count: int, kind: str, why: str) -> tuple[Array, Scale]:
     """Grey (count, 3), and the scale that says why."""
-    return np.tile(np.array(NONE), (count, 1)), Scale(kind, "", 0.0, 0.0, (), 0.0, 0.0, classes=((why, NONE),))
+    return np.tile(np.array(NONE), (count, 1)), Scale(
+        kind, "", 0.0, 0.0, (), 0.0, 0.0, classes=((why, NONE),)
+    )
 
 
 def round_numbers(low: float, high: float, least: float) -> Array:
@@ -201,6 +248,8 @@ def _texts(ticks: Array) -> tuple[tuple[float, str], ...]:
     """Numbers with as many decimals as tell them apart."""
     step = float(ticks[1] - ticks[0]) if len(ticks) > 1 else 0.0
     decimals = max(0, -int(np.floor(np.log10(step) + _TOLERANCE))) if step > 0.0 else 3
-    while not np.allclose(ticks, np.round(ticks, decimals), rtol=0.0, atol=1e-3 * step + _TOLERANCE):
+    while not np.allclose(
+        ticks, np.round(ticks, decimals), rtol=0.0, atol=1e-3 * step + _TOLERANCE
+    ):
         decimals += 1
     return tuple((float(tick), f"{tick:.{decimals}f}") for tick in ticks)

@@ -56,9 +56,13 @@ class PathDock(Follower):
 
     def _connect(self) -> None:
         self.form.choice.activated.connect(self._chosen)
-        self.form.colouring.activated.connect(lambda *_: self._set("Colouring", self.form.colouring.currentData()))
+        self.form.colouring.activated.connect(
+            lambda *_: self._set("Colouring", self.form.colouring.currentData())
+        )
         self.form.look.activated.connect(lambda *_: self._set("Look", self.form.look.currentData()))
-        self.form.directions.clicked.connect(lambda *_: self._set("ShowDirections", self.form.directions.isChecked()))
+        self.form.directions.clicked.connect(
+            lambda *_: self._set("ShowDirections", self.form.directions.isChecked())
+        )
         self.form.single.clicked.connect(lambda *_: self._moved(self.form.to))
         self.form.all.clicked.connect(self._show_all)
         for row in (self.form.from_, self.form.to, self.form.point):
@@ -131,8 +135,11 @@ class PathDock(Follower):
         paths = _paths()
         offer(form.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
         if not there:
-            form.facts.tell(tr("There is no path to look at yet: make a toolpath or a joint path.") if obj is None else
-                            tr("{} is hidden, or has no result.").format(obj.Label))
+            form.facts.tell(
+                tr("There is no path to look at yet: make a toolpath or a joint path.")
+                if obj is None
+                else tr("{} is hidden, or has no result.").format(obj.Label)
+            )
             return
         vobj = obj.ViewObject
         for combo, name in ((form.colouring, "Colouring"), (form.look, "Look")):
@@ -154,10 +161,14 @@ class PathDock(Follower):
             return
         first, last = form.from_.value(), form.to.value()
         if form.single.isChecked():
-            first = last = (first if row is form.from_ else last)
+            first = last = first if row is form.from_ else last
         elif first > last:
             first, last = (first, first) if row is form.from_ else (last, last)
-        count = form.point.value() + 1 if row is form.point and form.point.value() < form.point.most() else None
+        count = (
+            form.point.value() + 1
+            if row is form.point and form.point.value() < form.point.most()
+            else None
+        )
         whole = (first, last, count) == (0, view.rows.layer_count - 1, None)
         self._show(view, None if whole else (first, last, count))
 
@@ -215,7 +226,9 @@ class PathDock(Follower):
 
     def addSelection(self, document: str, name: str, *_: Any) -> None:
         """Something was selected."""
-        found = App.getDocument(document).getObject(name) if document in App.listDocuments() else None
+        found = (
+            App.getDocument(document).getObject(name) if document in App.listDocuments() else None
+        )
         if _is_path(found) and found.ViewObject.Visibility:
             self.target = (document, name)
             self.fill()

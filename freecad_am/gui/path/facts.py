@@ -27,22 +27,32 @@ def facts(rows: Rows, row: int) -> str:
     low, high = rows.of_layers(layer, layer)
     place = tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(at, len(bead) - 1, x, y, z)
     if end - first > 1:
-        place = tr("point {} (0 to {}) of the layer, of the bead {}").format(row - low, high - low - 1, place)
-    return " · ".join((
-        tr("Layer {} (0 to {})").format(layer, rows.layer_count - 1),
-        tr("bead {} (0 to {}), {}").format(index - int(first), int(end - first) - 1, _kind(bead)),
-        f"{preferences.speed(float(bead.speed[max(at, 1)])):.4g} {preferences.speed_unit()}",
-        tr("{:.4g} mm wide").format(float(rows.width[row])),
-        tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time),
-        place,
-    ))
+        place = tr("point {} (0 to {}) of the layer, of the bead {}").format(
+            row - low, high - low - 1, place
+        )
+    return " · ".join(
+        (
+            tr("Layer {} (0 to {})").format(layer, rows.layer_count - 1),
+            tr("bead {} (0 to {}), {}").format(
+                index - int(first), int(end - first) - 1, _kind(bead)
+            ),
+            f"{preferences.speed(float(bead.speed[max(at, 1)])):.4g} {preferences.speed_unit()}",
+            tr("{:.4g} mm wide").format(float(rows.width[row])),
+            tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time),
+            place,
+        )
+    )
 
 
 def _kind(bead: Bead) -> str:
     if bead.closing:
         return tr("closes a gap")
     names = {
-        "contour": tr("contour"), "line": tr("line"), "zigzag": tr("zigzag"), "spiral": tr("spiral"),
-        "centre": tr("in the middle"), "closing": tr("closes a gap"),
+        "contour": tr("contour"),
+        "line": tr("line"),
+        "zigzag": tr("zigzag"),
+        "spiral": tr("spiral"),
+        "centre": tr("in the middle"),
+        "closing": tr("closes a gap"),
     }
     return names.get(bead.kind, tr("closed") if bead.closed else tr("open"))

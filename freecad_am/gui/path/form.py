@@ -27,7 +27,9 @@ class PathForm(QtGui.QWidget):
         column.setSpacing(3)
         self.choice = _combo("path", tr("The toolpath or joint path to look at"))
         self.colouring = _combo("colouring", tr("What the colours of the beads show"))
-        self.look = _combo("look", tr("Draw beads as lines, or as tubes of their width and layer height"))
+        self.look = _combo(
+            "look", tr("Draw beads as lines, or as tubes of their width and layer height")
+        )
         self.directions = QtGui.QCheckBox(tr("Build directions"))
         self.directions.setObjectName("directions")
         self.single = QtGui.QCheckBox(tr("One layer only"))
@@ -37,7 +39,12 @@ class PathForm(QtGui.QWidget):
         self.from_, self.to, self.point = (
             Row("from", tr("From layer"), tr("The first layer that is shown"), _LAYER_PAGE),
             Row("to", tr("To layer"), tr("The last layer that is shown"), _LAYER_PAGE),
-            Row("point", tr("Point"), tr("The last point that is shown, counted from 0 in the last layer"), _POINT_PAGE),
+            Row(
+                "point",
+                tr("Point"),
+                tr("The last point that is shown, counted from 0 in the last layer"),
+                _POINT_PAGE,
+            ),
         )
         self.facts = SteadyText("facts", LINES)
         column.addLayout(self._choices())
@@ -52,14 +59,23 @@ class PathForm(QtGui.QWidget):
 
     def enable(self, there: bool) -> None:
         """Whether there is a path to choose something of."""
-        for widget in (self.controls, self.colouring, self.look, self.directions, self.single, self.all):
+        for widget in (
+            self.controls,
+            self.colouring,
+            self.look,
+            self.directions,
+            self.single,
+            self.all,
+        ):
             widget.setEnabled(there)
 
     def _choices(self) -> Any:
         lines = QtGui.QVBoxLayout()
         what, how = QtGui.QHBoxLayout(), QtGui.QHBoxLayout()
         for line, text, widget in (
-            (what, tr("Path"), self.choice), (what, tr("Colours"), self.colouring), (how, tr("Look"), self.look),
+            (what, tr("Path"), self.choice),
+            (what, tr("Colours"), self.colouring),
+            (how, tr("Look"), self.look),
         ):
             line.addWidget(QtGui.QLabel(text))
             line.addWidget(widget)
@@ -87,5 +103,7 @@ def _combo(name: str, help: str) -> Any:
     combo.setObjectName(name)
     combo.setToolTip(help)
     combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
-    combo.setMinimumWidth(LABEL * combo.fontMetrics().averageCharWidth())  # a long label widens no window
+    combo.setMinimumWidth(
+        LABEL * combo.fontMetrics().averageCharWidth()
+    )  # a long label widens no window
     return combo

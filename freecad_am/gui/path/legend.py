@@ -26,7 +26,11 @@ from .colouring import DISTANCE, TOO_FAR, TOO_NEAR, Scale
 
 _FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
 _MARGIN, _PAD, _BAR_WIDTH, _BAR_HEIGHT, _STEPS = 10, 9, 16, 150, 150
-_GROUND, _EDGE, _INK = QtGui.QColor(255, 255, 255, 225), QtGui.QColor(150, 155, 165), QtGui.QColor(29, 36, 48)
+_GROUND, _EDGE, _INK = (
+    QtGui.QColor(255, 255, 255, 225),
+    QtGui.QColor(150, 155, 165),
+    QtGui.QColor(29, 36, 48),
+)
 Entry = tuple[tuple[str, ...], Scale]  # the lines above, and the scale
 
 
@@ -46,11 +50,21 @@ class Legend:
         corner, pick, callback = coin.SoTranslation(), coin.SoPickStyle(), coin.SoCallback()
         corner.translation = (-1.0, 1.0, 0.0)
         pick.style = coin.SoPickStyle.UNPICKABLE
-        callback.setCallback(_look, weakref.ref(self))  # pivy never gives back what it is handed here
+        callback.setCallback(
+            _look, weakref.ref(self)
+        )  # pivy never gives back what it is handed here
         bounds = coin.SoResetTransform()  # it counts in no bounding box
         bounds.whatToReset = coin.SoResetTransform.BBOX
         on_top = coin.SoAnnotation()
-        for child in (pick, unshaded(), coin.SoResetTransform(), callback, corner, self.image, bounds):
+        for child in (
+            pick,
+            unshaded(),
+            coin.SoResetTransform(),
+            callback,
+            corner,
+            self.image,
+            bounds,
+        ):
             on_top.addChild(child)
         self.switch.addChild(on_top)
 
@@ -66,7 +80,9 @@ class Legend:
         if (entry, left, look) != (self.entry, self.left, self.look):
             self.entry, self.left, self.look = entry, left, look
             pixels = _picture(entry, left)
-            self.image.image.setValue(coin.SbVec2s(pixels.shape[1], pixels.shape[0]), 4, pixels.tobytes())
+            self.image.image.setValue(
+                coin.SbVec2s(pixels.shape[1], pixels.shape[0]), 4, pixels.tobytes()
+            )
         self.switch.whichChild = coin.SO_SWITCH_ALL
         return width + _MARGIN
 
@@ -113,7 +129,9 @@ def _lines(names: tuple[str, ...], scale: Scale) -> list[str]:
 
 def _foot(scale: Scale) -> str:
     decimals = 3 if scale.most - scale.least > _FINE else 5
-    return f"{scale.least:.{decimals}f} … {scale.most:.{decimals}f}" if scale.title == DISTANCE else ""
+    return (
+        f"{scale.least:.{decimals}f} … {scale.most:.{decimals}f}" if scale.title == DISTANCE else ""
+    )
 
 
 def _metrics() -> Any:
@@ -130,7 +148,9 @@ def _wide(text: str) -> int:
 
 def _width(names: tuple[str, ...], scale: Scale) -> int:
     texts = [text for _, text in scale.ticks]
-    texts += map(translated, [*(text for text, _ in scale.classes), scale.below, scale.above, scale.without])
+    texts += map(
+        translated, [*(text for text, _ in scale.classes), scale.below, scale.above, scale.without]
+    )
     side = _BAR_WIDTH + 10 + max(map(_wide, texts))
     return 2 * _PAD + max(side, *map(_wide, [*_lines(names, scale), _foot(scale)]))
 
@@ -139,7 +159,12 @@ def _height(names: tuple[str, ...], scale: Scale) -> int:
     if scale.classes:
         return 2 * _PAD + (len(_lines(names, scale)) + len(scale.classes)) * (_line() + 3)
     more = [scale.below, scale.above, scale.without, _foot(scale)]
-    return 2 * _PAD + (len(_lines(names, scale)) + sum(map(bool, more))) * (_line() + 3) + _BAR_HEIGHT + _line()
+    return (
+        2 * _PAD
+        + (len(_lines(names, scale)) + sum(map(bool, more))) * (_line() + 3)
+        + _BAR_HEIGHT
+        + _line()
+    )
 
 
 def _draw(painter: Any, names: tuple[str, ...], scale: Scale) -> None:
@@ -230,8 +255,14 @@ def _arrange(document: Any) -> None:
 
 def shown(document: Any) -> list[Scale]:
     """The scales whose legends are to be seen in a document."""
-    legends = [getattr(getattr(obj.ViewObject, "Proxy", None), "legend", None) for obj in document.Objects]
-    return [legend.entry[1] for legend in legends if isinstance(legend, Legend) and legend.entry is not None]
+    legends = [
+        getattr(getattr(obj.ViewObject, "Proxy", None), "legend", None) for obj in document.Objects
+    ]
+    return [
+        legend.entry[1]
+        for legend in legends
+        if isinstance(legend, Legend) and legend.entry is not None
+    ]
 
 
 class _Observer:

@@ -24,11 +24,27 @@ from .rows import Rows
 
 LINES, TUBES = marked("lines"), marked("tubes")
 OPTIONS: dict[str, tuple[str, Any, str]] = {
-    "Look": ("App::PropertyEnumeration", (LINES, TUBES), "Draw beads as lines, or as tubes as wide and high as they are."),
-    "ShowLegend": ("App::PropertyBool", True, "Show in the corner of the view what the colours mean."),
+    "Look": (
+        "App::PropertyEnumeration",
+        (LINES, TUBES),
+        "Draw beads as lines, or as tubes as wide and high as they are.",
+    ),
+    "ShowLegend": (
+        "App::PropertyBool",
+        True,
+        "Show in the corner of the view what the colours mean.",
+    ),
     "ShowDirections": ("App::PropertyBool", False, "Show the build directions as short lines."),
-    "DirectionStep": ("App::PropertyInteger", 8, "Show the build direction of every how many-th point."),
-    "DirectionLength": ("App::PropertyLength", 4.0, "Length of the lines that show build directions."),
+    "DirectionStep": (
+        "App::PropertyInteger",
+        8,
+        "Show the build direction of every how many-th point.",
+    ),
+    "DirectionLength": (
+        "App::PropertyLength",
+        4.0,
+        "Length of the lines that show build directions.",
+    ),
     "LineWidth": ("App::PropertyFloat", 2.0, "Width of the beads' lines in pixels."),
 }
 
@@ -68,7 +84,9 @@ class PathView(StageView):
 
     def scene(self, root: Any) -> None:
         self.path, self.legend = PathNodes(), legend.Legend()
-        self.clicks = ClickNode(lambda: any(wanted() for wanted, _ in _choosers), self._seen, self._clicked)
+        self.clicks = ClickNode(
+            lambda: any(wanted() for wanted, _ in _choosers), self._seen, self._clicked
+        )
         root.addChild(self.clicks.node)
         root.addChild(self.path.node)
         root.addChild(self.legend.node)
@@ -101,7 +119,11 @@ class PathView(StageView):
         legend.renew_soon()
         self.path.style.lineWidth = max(1.0, vobj.LineWidth)
         self.path.look(vobj.Look == TUBES)
-        wanted = (max(1, vobj.DirectionStep), vobj.DirectionLength.Value) if vobj.ShowDirections else None
+        wanted = (
+            (max(1, vobj.DirectionStep), vobj.DirectionLength.Value)
+            if vobj.ShowDirections
+            else None
+        )
         if wanted is None:
             self.path.hide_directions()
         elif wanted != self.path.drawn_directions:

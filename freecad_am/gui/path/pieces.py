@@ -57,8 +57,13 @@ class Look:
         """Pieces between these rows, none of which is made."""
         self.cuts = cuts
         self.made: dict[int, Piece] = {}
-        self.drawn: dict[int, tuple[int, int]] = {}  # of pieces switched on: up to which row, and the rest from which
-        self.before: tuple[tuple[int, int] | None, Any] = (None, None)  # the stretch before the first piece, and its node
+        self.drawn: dict[
+            int, tuple[int, int]
+        ] = {}  # of pieces switched on: up to which row, and the rest from which
+        self.before: tuple[tuple[int, int] | None, Any] = (
+            None,
+            None,
+        )  # the stretch before the first piece, and its node
         self.pieces.removeAllChildren()
         self.ends.removeAllChildren()
 
@@ -106,7 +111,9 @@ class Look:
             self.made[index] = self.make(int(self.cuts[index]), end)
             switch.addChild(self.made[index].node)
         switch.set(ALL)
-        return row, row if new and row == end else self.made[index].cut(row)  # a new one draws all of it
+        return row, row if new and row == end else self.made[index].cut(
+            row
+        )  # a new one draws all of it
 
     def _stretch(self, first: int, end: int) -> Any:
         assert self.make is not None
@@ -117,13 +124,20 @@ class PathNodes:
     """A path as lines or as tubes, and its build directions."""
 
     def __init__(self) -> None:
-        self.style, directions_style, directions_colour = coin.SoDrawStyle(), coin.SoDrawStyle(), coin.SoMaterial()
+        self.style, directions_style, directions_colour = (
+            coin.SoDrawStyle(),
+            coin.SoDrawStyle(),
+            coin.SoMaterial(),
+        )
         directions_style.lineWidth = 1.0
         directions_colour.diffuseColor.setValue(0.86, 0.2, 0.55)
         material, hints = coin.SoMaterial(), coin.SoShapeHints()
         material.specularColor.setValue(0.2, 0.2, 0.2)
         material.shininess = _SHININESS
-        hints.vertexOrdering, hints.shapeType = coin.SoShapeHints.COUNTERCLOCKWISE, coin.SoShapeHints.SOLID
+        hints.vertexOrdering, hints.shapeType = (
+            coin.SoShapeHints.COUNTERCLOCKWISE,
+            coin.SoShapeHints.SOLID,
+        )
         self.lines = Look(unshaded(), self.style)
         self.tubes = Look(material, hints)
         self.directions = Look(unshaded(), directions_style, directions_colour)
@@ -174,7 +188,10 @@ class PathNodes:
     def draw_directions(self, step: int, length: float) -> None:
         """Show the build direction of every `step`-th point by a line of this length, mm."""
         self.drawn_directions = (step, length)
-        foot = self.rows.points + (self.rows.height[:, None] if self.as_tubes else 0.0) * self.rows.build  # on top of a tube
+        foot = (
+            self.rows.points
+            + (self.rows.height[:, None] if self.as_tubes else 0.0) * self.rows.build
+        )  # on top of a tube
         tips, feet = (foot + length * self.rows.build).astype(np.float32), foot.astype(np.float32)
 
         def make(first: int, end: int) -> Piece:
@@ -196,7 +213,12 @@ class PathNodes:
         return row + 1 if within else row
 
     def _lines(self, first: int, end: int) -> Piece:
-        return _line_set(self.points[first:end], lambda row: self.rows.counts(first, row), end, self.colours[first:end])
+        return _line_set(
+            self.points[first:end],
+            lambda row: self.rows.counts(first, row),
+            end,
+            self.colours[first:end],
+        )
 
     def _tubes(self, first: int, end: int) -> Piece:
         mesh, rows = self.rows.tube(first, end)
@@ -217,7 +239,9 @@ class PathNodes:
 
         def cut(row: int) -> int:
             nonlocal filled
-            sections = len(rows) if row >= end else BLOCK * (int(np.searchsorted(rows, row)) // BLOCK)
+            sections = (
+                len(rows) if row >= end else BLOCK * (int(np.searchsorted(rows, row)) // BLOCK)
+            )
             if sections != filled:
                 fill(shape.coordIndex, corners[: count[sections]].ravel())
                 filled = sections

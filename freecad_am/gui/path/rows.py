@@ -34,13 +34,27 @@ class Rows:
     read_bead: Callable[[int], Bead] | None = None
 
     @classmethod
-    def of(cls, beads: Sequence[Bead], layers: Sequence[int], width: float, layer_height: Callable[[], float]) -> Rows:
+    def of(
+        cls,
+        beads: Sequence[Bead],
+        layers: Sequence[int],
+        width: float,
+        layer_height: Callable[[], float],
+    ) -> Rows:
         """`width` (mm) is that of beads that know none."""
         points = np.concatenate([*(bead.points for bead in beads), np.zeros((0, 3))])
         starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads], dtype=np.intp)])
-        columns = [np.full(len(bead), width) if bead.width is None else bead.width for bead in beads]
-        return cls(points, starts, np.array(layers, dtype=np.intp), np.concatenate([*columns, np.zeros(0)]), lambda: beads,
-                   layer_height)
+        columns = [
+            np.full(len(bead), width) if bead.width is None else bead.width for bead in beads
+        ]
+        return cls(
+            points,
+            starts,
+            np.array(layers, dtype=np.intp),
+            np.concatenate([*columns, np.zeros(0)]),
+            lambda: beads,
+            layer_height,
+        )
 
     def __len__(self) -> int:
         return len(self.width)
@@ -103,7 +117,10 @@ class Rows:
     def height(self) -> Array:
         """(n,) mm, as predicted, else that of a layer."""
         height = self.layer_height()
-        columns = [np.full(len(bead), height) if bead.height is None else bead.height for bead in self.beads]
+        columns = [
+            np.full(len(bead), height) if bead.height is None else bead.height
+            for bead in self.beads
+        ]
         return np.concatenate([*columns, np.zeros(0)])
 
     @cached_property
@@ -130,4 +147,6 @@ class Rows:
         bead = np.searchsorted(self.starts, rows, side="right")
         ends = np.append(np.diff(bead) > 0, True)
         across = tubes.Frames(*(column[rows] for column in self.frames))
-        return tubes.mesh(self.points[rows], across, self.width[rows], self.height[rows], ends, self.sides), rows
+        return tubes.mesh(
+            self.points[rows], across, self.width[rows], self.height[rows], ends, self.sides
+        ), rows

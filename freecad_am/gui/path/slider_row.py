@@ -15,9 +15,16 @@ class Row:
     """A slider with arrows at its ends and its number beside it; `moved` is called when the user has moved it."""
 
     def __init__(self, name: str, text: str, help: str, page: int) -> None:
-        self.label, self.slider, self.box = QtGui.QLabel(text), QtGui.QSlider(QtCore.Qt.Horizontal), QtGui.QSpinBox()
+        self.label, self.slider, self.box = (
+            QtGui.QLabel(text),
+            QtGui.QSlider(QtCore.Qt.Horizontal),
+            QtGui.QSpinBox(),
+        )
         self.back, self.on = QtGui.QToolButton(), QtGui.QToolButton()
-        for button, arrow, step in ((self.back, QtCore.Qt.LeftArrow, -1), (self.on, QtCore.Qt.RightArrow, 1)):
+        for button, arrow, step in (
+            (self.back, QtCore.Qt.LeftArrow, -1),
+            (self.on, QtCore.Qt.RightArrow, 1),
+        ):
             button.setArrowType(arrow)
             button.setAutoRepeat(True)
             button.clicked.connect(lambda *_, step=step: self.box.setValue(self.box.value() + step))

@@ -38,7 +38,9 @@ class StageChoice(Input):
         if not link.required:
             self.widget.addItem(tr("none"), "")
         wished = [obj.Name for obj in meant() if obj.Name in names]
-        last = [] if link.kind == INSPECTION else names[-1:]  # what is compared elsewhere is an input only if chosen
+        last = (
+            [] if link.kind == INSPECTION else names[-1:]
+        )  # what is compared elsewhere is an input only if chosen
         self.proposed = present.Name if present is not None else (wished or last or [""])[0]
         self.widget.setCurrentIndex(max(0, self.widget.findData(self.proposed)))
 
@@ -57,7 +59,11 @@ class StageChoice(Input):
 
     def _propose(self, toolpath: StageChoice) -> None:
         cell = getattr(toolpath.value(), "Cell", None)
-        if cell is not None and self.widget.currentData() == self.proposed and self.widget.findData(cell.Name) >= 0:
+        if (
+            cell is not None
+            and self.widget.currentData() == self.proposed
+            and self.widget.findData(cell.Name) >= 0
+        ):
             self.proposed = cell.Name
             self.widget.setCurrentIndex(self.widget.findData(cell.Name))
 
@@ -65,7 +71,9 @@ class StageChoice(Input):
     def missing(self) -> str:
         if not self.link.required or self.widget.count():
             return ""
-        return tr("{0} is missing in this document. Make it first: button {0} in the toolbar.").format(self.label)
+        return tr(
+            "{0} is missing in this document. Make it first: button {0} in the toolbar."
+        ).format(self.label)
 
     def value(self) -> Any:
         """As the link of the stage holds it."""
@@ -91,7 +99,9 @@ class NameChoice(Input):
         self.label = tr("Name")
         self.widget = QtGui.QLineEdit(name)
         self.widget.setObjectName("ProgramName")
-        self.widget.setToolTip(tr("Name of the program and of its files; the controller may refuse some"))
+        self.widget.setToolTip(
+            tr("Name of the program and of its files; the controller may refuse some")
+        )
 
     def stored(self, obj: Any) -> Any:
         return obj.ProgramName

@@ -21,8 +21,14 @@ class PickField(Input):
     """What a link of a stage holds: faces or edges of one object, a whole object, or several objects."""
 
     def __init__(
-        self, link: Link, label: str, present: Any, toggled: Callable[[PickField, bool], None], element: str = "",
-        meshes: bool = False, whole: bool = False,
+        self,
+        link: Link,
+        label: str,
+        present: Any,
+        toggled: Callable[[PickField, bool], None],
+        element: str = "",
+        meshes: bool = False,
+        whole: bool = False,
     ) -> None:
         """element: what of an object is picked, where it is not the whole; meshes: they may be picked all the same;
         whole: so may an object as a whole in place of its edges."""
@@ -31,7 +37,9 @@ class PickField(Input):
         self.meshes = meshes or not element
         self.whole = whole or element != EDGE
         self.picks = self._present(present)
-        self.explicit = link.required or bool(self.picks)  # whether a macro must say that there is nothing
+        self.explicit = link.required or bool(
+            self.picks
+        )  # whether a macro must say that there is nothing
         self.widget = QtGui.QWidget()
         self.widget.setObjectName(f"Input{link.name}")
         self.widget.setToolTip(translated(link.help))
@@ -40,7 +48,9 @@ class PickField(Input):
         self.text.setReadOnly(True)
         self.text.setMinimumWidth(40)
         self.pick = _button(
-            tr("Pick"), f"Pick{link.name}", tr("Then click in the tree or the 3D view. {}").format(translated(link.help))
+            tr("Pick"),
+            f"Pick{link.name}",
+            tr("Then click in the tree or the 3D view. {}").format(translated(link.help)),
         )
         self.pick.setCheckable(True)
         self.pick.toggled.connect(lambda on: toggled(self, on))
@@ -101,7 +111,9 @@ class PickField(Input):
         self.text.setToolTip(text or translated(self.link.help))
         if self.pick.isChecked():
             several = tr("click objects") if self.several else tr("click an object")
-            asked = {FACE: tr("click faces or an object"), EDGE: tr("click edges")}.get(self.element, several)
+            asked = {FACE: tr("click faces or an object"), EDGE: tr("click edges")}.get(
+                self.element, several
+            )
         else:
             asked = tr("pick") if self.link.required else tr("none")
         self.text.setPlaceholderText(asked)
@@ -141,7 +153,9 @@ class PickField(Input):
         names = list(self.picks[0].names)
         if self.link.name == "Source":
             return {"source": references[0], "faces": repr(names)}
-        return {self.link.key: repr(names) if self.element else references[0]}  # edges are the wall's own
+        return {
+            self.link.key: repr(names) if self.element else references[0]
+        }  # edges are the wall's own
 
 
 def _button(text: str, name: str, help: str) -> Any:

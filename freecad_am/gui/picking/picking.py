@@ -36,7 +36,9 @@ def selected(document: Any) -> list[Pick]:
             obj = _alone(obj)
             if usable(obj):
                 before = found.get(obj.Name, Pick(obj)).names
-                found[obj.Name] = Pick(obj, (*before, name) if name and name not in before else before)
+                found[obj.Name] = Pick(
+                    obj, (*before, name) if name and name not in before else before
+                )
     return list(found.values())
 
 
@@ -118,8 +120,10 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
     faced = [pick for pick in walls if pick.names]
     if len(picks) > 2:
         wall = faced[0] if len(faced) == 1 else None
-        text = tr("{} objects are selected; pick the wall and the substrate") if wall is None else tr(
-            "{} objects are selected; pick the substrate"
+        text = (
+            tr("{} objects are selected; pick the wall and the substrate")
+            if wall is None
+            else tr("{} objects are selected; pick the substrate")
         )
         return wall, None, text.format(len(picks))
     wall = (faced or walls or [None])[0]
@@ -136,6 +140,8 @@ def refused(document: Any) -> str:
         if stage_of(obj) is not None or is_group(obj):
             return tr("{} belongs to a job; select the part itself.").format(obj.Label)
         if obj.isDerivedFrom("App::Link") and obj.getLinkedObject() in (None, obj):
-            return tr("{} links to nothing: what it showed is gone or was not loaded.").format(obj.Label)
+            return tr("{} links to nothing: what it showed is gone or was not loaded.").format(
+                obj.Label
+            )
         return tr("{} has no shape; select a body, solid, face, link or sketch.").format(obj.Label)
     return ""

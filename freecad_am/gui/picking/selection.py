@@ -48,7 +48,9 @@ def _job(obj: Any) -> list[Any]:
         return []
     if group is None:
         return sorted(linked, key=lambda stage: (_rank(stage), -stage.ID))
-    held = sorted(stages_in(group), key=lambda stage: (_rank(stage), bool(linked) and stage not in linked))
+    held = sorted(
+        stages_in(group), key=lambda stage: (_rank(stage), bool(linked) and stage not in linked)
+    )
     return [*held, *(one for stage in held for one in _leading_to(stage) if one not in held)]
 
 

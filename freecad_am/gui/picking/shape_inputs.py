@@ -24,7 +24,9 @@ class ShapeChoice(Input):
 
     def __init__(self, link: Link, present: Any, take_now: bool) -> None:
         self.link, self.label, self.present = link, translated(link.label), present
-        self.explicit = link.required or bool(present)  # whether a macro must say that there is none
+        self.explicit = link.required or bool(
+            present
+        )  # whether a macro must say that there is none
         self.document = App.ActiveDocument
         self.widget = QtGui.QWidget()
         self.widget.setToolTip(translated(link.help))
@@ -54,14 +56,18 @@ class ShapeChoice(Input):
         pick = found if found is None or self.link.name == "Axis" else picking.whole(found)
         self._take(pick)
         if found is not None and pick is not None and found.names and not pick.names:
-            self.note = tr("The whole of {} is taken; Use selection takes the selected faces only.").format(pick.obj.Label)
+            self.note = tr(
+                "The whole of {} is taken; Use selection takes the selected faces only."
+            ).format(pick.obj.Label)
 
     def _take_selected(self, *_: Any) -> None:
         """The button was pressed, perhaps after the document was closed."""
         try:
             self.take()
         except ReferenceError:
-            self.tell(tr("The document or object of this panel is gone; cancel and open the panel again."))
+            self.tell(
+                tr("The document or object of this panel is gone; cancel and open the panel again.")
+            )
 
     def take(self, *_: Any) -> None:
         """Take what is selected now; what cannot be taken is told, and what was taken before stays."""
@@ -80,7 +86,9 @@ class ShapeChoice(Input):
         if self.link.name == "Axis":
             return picking.selected_line(self.document)
         picks = picking.selected(self.document)
-        return next((picking.with_faces(pick) for pick in picks if not picking.is_mesh(pick.obj)), None)
+        return next(
+            (picking.with_faces(pick) for pick in picks if not picking.is_mesh(pick.obj)), None
+        )
 
     def value(self) -> Any:
         """As the link of the stage holds it."""
@@ -90,8 +98,12 @@ class ShapeChoice(Input):
         """Why nothing is taken."""
         meshes = [pick.obj.Label for pick in picking.selected(self.document)]
         if meshes:
-            return tr("{} is a mesh, which has no exact faces; select a part such as of a STEP file.").format(meshes[0])
-        return picking.refused(self.document) or tr("Nothing is selected: click in the tree or the 3D view first.")
+            return tr(
+                "{} is a mesh, which has no exact faces; select a part such as of a STEP file."
+            ).format(meshes[0])
+        return picking.refused(self.document) or tr(
+            "Nothing is selected: click in the tree or the 3D view first."
+        )
 
     def _show(self) -> None:
         text = "" if self.present is None else " ".join([self.present[0].Label, *self.present[1]])
@@ -135,7 +147,9 @@ class ObjectChoice(ShapeChoice):
         return None if self.present is None else self.present[0]
 
     def arguments(self) -> dict[str, str]:
-        return {self.link.key: "None" if self.present is None else recorded.reference(self.present[0])}
+        return {
+            self.link.key: "None" if self.present is None else recorded.reference(self.present[0])
+        }
 
 
 class ObjectsChoice(ShapeChoice):

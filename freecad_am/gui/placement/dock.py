@@ -52,12 +52,16 @@ class PlacementDock:
         self.scroll.setMinimumWidth(WIDE)
         self._build({})
         self.work = Work(self.scroll, self._judged, lambda text, wrong: self.form.tell(text, wrong))
-        self.reaching = Work(self.scroll, self._reached, lambda text, wrong: self.form.tell(text, wrong))
+        self.reaching = Work(
+            self.scroll, self._reached, lambda text, wrong: self.form.tell(text, wrong)
+        )
         self.dock.hold(self._title(), self.scroll)
         self.dock.closed = self.close
         self._stand()
         self.dock.come()
-        QtCore.QTimer.singleShot(FIT, self._fit)  # once the dock has its place and the view the rest
+        QtCore.QTimer.singleShot(
+            FIT, self._fit
+        )  # once the dock has its place and the view the rest
         self.lookout = Lookout(lambda: _Shown(self.placing), self._changed_object, self.end)
         watch.listen(self._paint)
         watch.listen_to_language(self._speak)
@@ -131,14 +135,20 @@ class PlacementDock:
         def work() -> Reach:
             import numpy as np
 
-            return reach(cells.resolve(settings, np.eye(4), folders=folders), REACH_STEP, progress.report)
+            return reach(
+                cells.resolve(settings, np.eye(4), folders=folders), REACH_STEP, progress.report
+            )
 
         self.reaching.start(work)
 
     def _reached(self, found: Reach | None) -> None:
         self.volume = found
         if found is not None:
-            self.form.tell(tr("The robot can be at {} places of a grid of {:.0f} mm.").format(len(found.places), found.step))
+            self.form.tell(
+                tr("The robot can be at {} places of a grid of {:.0f} mm.").format(
+                    len(found.places), found.step
+                )
+            )
         self._paint()
         self._fit()
 
@@ -173,7 +183,11 @@ class PlacementDock:
         if self.scene is None:
             return
         try:
-            shown = None if self.found is None else figures.coloured(self.found, self.form.colour.currentData())
+            shown = (
+                None
+                if self.found is None
+                else figures.coloured(self.found, self.form.colour.currentData())
+            )
             self.scene.show(self.found, shown, self.chosen())
             self.scene.show_reach(self.volume)
         except (RuntimeError, ReferenceError):
@@ -194,7 +208,9 @@ class PlacementDock:
             recorded.change(self.placing.cell, entries)
             self.placing = placing_of(self.obj)
         except (AmError, Cancelled, ReferenceError) as error:
-            self.form.tell(translated_error(error) or tr("Cancelled: the document is as it was."), True)
+            self.form.tell(
+                translated_error(error) or tr("Cancelled: the document is as it was."), True
+            )
             return
         finally:
             self.entering = False
@@ -232,7 +248,9 @@ class PlacementDock:
         """End it by itself, and say why."""
         if not self.gone:
             self.close(document_goes)
-            Gui.getMainWindow().statusBar().showMessage(tr("The placement was closed: {}").format(why), 8000)
+            Gui.getMainWindow().statusBar().showMessage(
+                tr("The placement was closed: {}").format(why), 8000
+            )
 
 
 class _Shown:

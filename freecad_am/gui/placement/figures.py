@@ -17,7 +17,9 @@ from ..texts.translation import marked, tr, translated
 
 SHARE, MARGIN, TIME, CLEARANCE = "share", "margin", "time", "clearance"
 NAMES = {
-    MARGIN: marked("Least margin, %"), SHARE: marked("Points served, %"), TIME: marked("Time, s"),
+    MARGIN: marked("Least margin, %"),
+    SHARE: marked("Points served, %"),
+    TIME: marked("Time, s"),
     CLEARANCE: marked("Arm clearance, mm"),
 }
 GREY = (0.62, 0.64, 0.68)
@@ -38,23 +40,38 @@ class Coloured:
 def figure(found: Placed, number: int, name: str) -> float:
     """One of the figures of a pose as it is shown."""
     one = found.of_pose(number)
-    return {SHARE: 100.0 * one.share, MARGIN: 100.0 * one.margin, TIME: one.time, CLEARANCE: one.clearance}[name]
+    return {
+        SHARE: 100.0 * one.share,
+        MARGIN: 100.0 * one.margin,
+        TIME: one.time,
+        CLEARANCE: one.clearance,
+    }[name]
 
 
 def coloured(found: Placed, name: str) -> Coloured:
     """The poses coloured by a figure: those that serve from the least to the most, others grey; by their share all of them.
     Of poses at the same place the best one is shown, or the one that serves most."""
     rank = {number: k for k, number in enumerate(ranked(found, MARGIN))}
-    order = sorted(range(len(found.poses)), key=lambda k: (rank.get(k, len(rank)), -found.judged[k].share, k))
+    order = sorted(
+        range(len(found.poses)), key=lambda k: (rank.get(k, len(rank)), -found.judged[k].share, k)
+    )
     places = np.round(found.poses[order, :3], 6)
     _, first = np.unique(places, axis=0, return_index=True)
     shown = np.array(order)[np.sort(first)]
     values = np.array([figure(found, int(number), name) for number in shown])
-    known = np.isfinite(values) & (np.array([found.of_pose(int(k)).feasible for k in shown]) | (name == SHARE))
+    known = np.isfinite(values) & (
+        np.array([found.of_pose(int(k)).feasible for k in shown]) | (name == SHARE)
+    )
     colours = np.tile(GREY, (len(shown), 1))
-    least, most = (float(values[known].min()), float(values[known].max())) if known.any() else (np.nan, np.nan)
+    least, most = (
+        (float(values[known].min()), float(values[known].max()))
+        if known.any()
+        else (np.nan, np.nan)
+    )
     if known.any():
-        colours[known] = ramp((values[known] - least) / (most - least) if most > least else np.ones(int(known.sum())))
+        colours[known] = ramp(
+            (values[known] - least) / (most - least) if most > least else np.ones(int(known.sum()))
+        )
     return Coloured(shown, colours, least, most)
 
 
@@ -68,7 +85,10 @@ def texts(found: Placed, number: int) -> list[str]:
     """The cells of a row: the pose, its figures, and with how many points it was planned or why it fails."""
     pose = [f"{value:.6g}" for value in outer(found.pose(number))]
     values = [figure(found, number, name) for name in (MARGIN, TIME, CLEARANCE)]
-    cells = [format(value, form) if np.isfinite(value) else "–" for value, form in zip(values, (".3g", ".0f", ".3g"))]
+    cells = [
+        format(value, form) if np.isfinite(value) else "–"
+        for value, form in zip(values, (".3g", ".0f", ".3g"))
+    ]
     one = found.of_pose(number)
     points = tr("all") if number in found.proven else f"{found.points}"
     return [*pose, *cells, points if one.feasible else f"{points}: {one.code}"]
@@ -76,18 +96,32 @@ def texts(found: Placed, number: int) -> list[str]:
 
 def heads() -> list[str]:
     """The heads of the columns."""
-    return ["x", "y", "z", "RX", "RY", "RZ", *(translated(NAMES[name]) for name in (MARGIN, TIME, CLEARANCE)), tr("Points")]
+    return [
+        "x",
+        "y",
+        "z",
+        "RX",
+        "RY",
+        "RZ",
+        *(translated(NAMES[name]) for name in (MARGIN, TIME, CLEARANCE)),
+        tr("Points"),
+    ]
 
 
 def summed(found: Placed) -> str:
     """How many poses serve, in a sentence."""
     serve = sum(one.feasible for one in found.judged)
     text = tr("{} of {} poses are feasible, as far as {} of {} points show.").format(
-        serve, len(found.poses), found.points, found.of)
+        serve, len(found.poses), found.points, found.of
+    )
     if found.best is None and not serve:
         most = max(range(len(found.poses)), key=lambda k: found.judged[k].share)
         one = found.judged[most]
-        wrong = tr("no rotation about the tool serves the others") if one.code == UNREACHED else translated(one.message)
+        wrong = (
+            tr("no rotation about the tool serves the others")
+            if one.code == UNREACHED
+            else translated(one.message)
+        )
         more = tr("At most {:.0f} % of the points are served: {}.").format(100.0 * one.share, wrong)
         return f"{text} {more}"
     if found.best is None:

@@ -36,8 +36,12 @@ class Form(QtGui.QWidget):
             (more if row.spec.advanced else box).add(heading, field.widget)
         column.addWidget(box.widget)
         column.addWidget(more.widget)
-        self.compute = _button("compute", tr("Compute"), tr("Try all poses beside the window; it can be cancelled"))
-        self.use = _button("use", tr("Use this"), tr("Enter the pose that is chosen in the table into the cell"))
+        self.compute = _button(
+            "compute", tr("Compute"), tr("Try all poses beside the window; it can be cancelled")
+        )
+        self.use = _button(
+            "use", tr("Use this"), tr("Enter the pose that is chosen in the table into the cell")
+        )
         self.reach = _reach()
         self.colour = QtGui.QComboBox()
         self.colour.setObjectName("colour")
@@ -47,7 +51,10 @@ class Form(QtGui.QWidget):
         self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()
         self.key.setObjectName("key")
         self.summary.setObjectName("told")
-        for label, most in ((self.key, 1), (self.summary, 2)):  # lines, with which what is below stays where it is
+        for label, most in (
+            (self.key, 1),
+            (self.summary, 2),
+        ):  # lines, with which what is below stays where it is
             label.setWordWrap(True)
             label.setMinimumHeight(most * label.fontMetrics().lineSpacing())
             label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
@@ -74,7 +81,9 @@ class Form(QtGui.QWidget):
         if shown is None or shown.least != shown.least:
             self.key.setText("")
             return
-        self.key.setText(tr("blue {:.4g} … yellow {:.4g}; grey: not feasible").format(shown.least, shown.most))
+        self.key.setText(
+            tr("blue {:.4g} … yellow {:.4g}; grey: not feasible").format(shown.least, shown.most)
+        )
 
     def fill(self, found: Placed | None, numbers: list[int]) -> None:
         """The rows of the table."""
@@ -100,9 +109,13 @@ def _button(name: str, text: str, help: str) -> Any:
 def _reach() -> Any:
     box = QtGui.QCheckBox(tr("Reach of the robot"))
     box.setObjectName("reach")
-    box.setSizePolicy(QtGui.QSizePolicy.Fixed, QtGui.QSizePolicy.Fixed)  # Qt takes clicks on its text alone
+    box.setSizePolicy(
+        QtGui.QSizePolicy.Fixed, QtGui.QSizePolicy.Fixed
+    )  # Qt takes clicks on its text alone
     box.setToolTip(
-        tr("Show where the robot can hold what it carries: blue in few directions, yellow in all of them")
+        tr(
+            "Show where the robot can hold what it carries: blue in few directions, yellow in all of them"
+        )
     )
     return box
 

@@ -14,8 +14,12 @@ from ..nodes.lines import Lines, fill, unshaded
 from ..nodes.wall import unpickable
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-_SIDES = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
-_EDGES = np.array([(0, 1), (1, 3), (3, 2), (2, 0), (4, 5), (5, 7), (7, 6), (6, 4), (0, 4), (1, 5), (2, 6), (3, 7)])
+_SIDES = np.array(
+    [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+)
+_EDGES = np.array(
+    [(0, 1), (1, 3), (3, 2), (2, 0), (4, 5), (5, 7), (7, 6), (6, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+)
 CHOSEN = (0.86, 0.1, 0.12)
 DOT = 7.0  # pixels
 
@@ -25,7 +29,11 @@ class Cubes:
 
     def __init__(self) -> None:
         self.node = coin.SoSeparator()
-        self.colour, binding, hints = coin.SoMaterial(), coin.SoMaterialBinding(), coin.SoShapeHints()
+        self.colour, binding, hints = (
+            coin.SoMaterial(),
+            coin.SoMaterialBinding(),
+            coin.SoShapeHints(),
+        )
         binding.value = coin.SoMaterialBinding.PER_FACE
         hints.vertexOrdering = coin.SoShapeHints.UNKNOWN_ORDERING
         self.coordinates, self.faces = coin.SoCoordinate3(), coin.SoIndexedFaceSet()
@@ -64,8 +72,20 @@ class Cloud:
         style, binding = coin.SoDrawStyle(), coin.SoMaterialBinding()
         style.pointSize = DOT
         binding.value = coin.SoMaterialBinding.PER_VERTEX
-        self.colour, self.coordinates, self.points = coin.SoMaterial(), coin.SoCoordinate3(), coin.SoPointSet()
-        for child in (unpickable(), unshaded(), style, self.colour, binding, self.coordinates, self.points):
+        self.colour, self.coordinates, self.points = (
+            coin.SoMaterial(),
+            coin.SoCoordinate3(),
+            coin.SoPointSet(),
+        )
+        for child in (
+            unpickable(),
+            unshaded(),
+            style,
+            self.colour,
+            binding,
+            self.coordinates,
+            self.points,
+        ):
             self.node.addChild(child)
         self.set(np.zeros((0, 3)), np.zeros((0, 3)))
 

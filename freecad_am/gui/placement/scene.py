@@ -34,7 +34,12 @@ class Scene:
     """Nodes in a 3D view from when it is made until `remove`."""
 
     def __init__(self, view: Any) -> None:
-        self.view, self.machine, self.cubes, self.cloud = view, CellNodes(ghost=True), Cubes(), Cloud()
+        self.view, self.machine, self.cubes, self.cloud = (
+            view,
+            CellNodes(ghost=True),
+            Cubes(),
+            Cloud(),
+        )
         self.places, self.size = np.zeros((0, 3)), 1.0
         self.root = coin.SoSeparator()
         for node in (self.machine.switch, self.cubes.node, self.cloud.node):

@@ -22,7 +22,11 @@ def placement() -> None:
     of the document."""
     selected = [found for found in map(_path, meant()) if found is not None]
     if not selected and job_named():
-        _say(tr("{} has no toolpath with a cell to place; make one first, or select another job.").format(job_named()))
+        _say(
+            tr(
+                "{} has no toolpath with a cell to place; make one first, or select another job."
+            ).format(job_named())
+        )
         return
     paths = [obj for obj in App.ActiveDocument.Objects if _path(obj) is obj]
     made = sorted(paths, key=lambda obj: -KINDS.index(_kind(obj)))

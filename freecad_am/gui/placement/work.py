@@ -21,7 +21,9 @@ class Work:
     """One kind of work at a time. `done` gets its result, None where it was cancelled or failed; `tell` what goes on, and
     whether it is an error."""
 
-    def __init__(self, form: Any, done: Callable[[Any], None], tell: Callable[[str, bool], None]) -> None:
+    def __init__(
+        self, form: Any, done: Callable[[Any], None], tell: Callable[[str, bool], None]
+    ) -> None:
         self.done, self.tell = done, tell
         self.background = Background(form)
         self.timer = QtCore.QTimer(form)
@@ -58,5 +60,9 @@ class Work:
     def _tell(self) -> None:
         worker = self.background.worker
         if worker is not None:
-            share = "" if worker.fraction is None else f"{100.0 * worker.fraction:.0f} %  {translated(worker.text)}"
+            share = (
+                ""
+                if worker.fraction is None
+                else f"{100.0 * worker.fraction:.0f} %  {translated(worker.text)}"
+            )
             self.tell(f"{tr('Computing')} {share}", False)

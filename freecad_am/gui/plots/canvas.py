@@ -97,7 +97,9 @@ class Canvas(QtGui.QWidget):
         if up:
             self.up[chart] = zoomed(self.up.get(chart, place.up), factor, share, None)
         else:
-            self.across[number] = zoomed(self.across.get(number, place.across), factor, share, self._most(chart))
+            self.across[number] = zoomed(
+                self.across.get(number, place.across), factor, share, self._most(chart)
+            )
         self._changed()
 
     def _across_of(self, chart: int) -> int:
@@ -123,7 +125,11 @@ class Canvas(QtGui.QWidget):
         if self._worker is not None:
             self._again = True
             return
-        ratio, look, size = float(self.devicePixelRatioF()), look_of(self.palette()), (self.width(), self.height())
+        ratio, look, size = (
+            float(self.devicePixelRatioF()),
+            look_of(self.palette()),
+            (self.width(), self.height()),
+        )
         charts, across, up = self.picture.charts, dict(self.across), dict(self.up)
         self._worker = Worker(lambda: _drawn(charts, look, size, ratio, across, up))
         self._again = False
@@ -145,10 +151,14 @@ class Canvas(QtGui.QWidget):
             if self._again:
                 self.draw()
 
-    def _take(self, drawn: tuple[bytes, int, int, float, tuple[Chart, ...], tuple[Place, ...], bool]) -> None:
+    def _take(
+        self, drawn: tuple[bytes, int, int, float, tuple[Chart, ...], tuple[Place, ...], bool]
+    ) -> None:
         pixels, width, height, ratio, charts, places, shared = drawn
         if self.picture is not None:
-            image = QtGui.QImage(pixels, width, height, 4 * width, QtGui.QImage.Format_RGBA8888).copy()
+            image = QtGui.QImage(
+                pixels, width, height, 4 * width, QtGui.QImage.Format_RGBA8888
+            ).copy()
             image.setDevicePixelRatio(ratio)
             self.drawn = Drawn(image, charts, places, shared)
 
@@ -169,7 +179,11 @@ class Canvas(QtGui.QWidget):
         if self.drawn is None:
             painter.setPen(self.palette().color(QtGui.QPalette.Text))
             text = self.text if self.picture is None else tr("Drawing…")
-            painter.drawText(self.rect().adjusted(20, 10, -20, -10), QtCore.Qt.AlignCenter | QtCore.Qt.TextWordWrap, text)
+            painter.drawText(
+                self.rect().adjusted(20, 10, -20, -10),
+                QtCore.Qt.AlignCenter | QtCore.Qt.TextWordWrap,
+                text,
+            )
         else:
             painter.drawImage(QtCore.QPointF(0.0, 0.0), self.drawn.image)
             self._overlay(painter)
@@ -186,8 +200,12 @@ class Canvas(QtGui.QWidget):
         elif self._pointer is not None:
             number, x = self._at(self._pointer), float(self._pointer.x())
             for other, place in enumerate(self.drawn.places):
-                if (other == number or self.drawn.shared) and place.left <= x <= place.left + place.width:
-                    painter.drawLine(QtCore.QPointF(x, place.top), QtCore.QPointF(x, place.top + place.height))
+                if (
+                    other == number or self.drawn.shared
+                ) and place.left <= x <= place.left + place.width:
+                    painter.drawLine(
+                        QtCore.QPointF(x, place.top), QtCore.QPointF(x, place.top + place.height)
+                    )
 
     # ---- called by Qt for the mouse
 
@@ -215,9 +233,18 @@ class Canvas(QtGui.QWidget):
             return
         number, start, _ = self._drag
         self._drag = None
-        if self.by_rectangle and min(abs(event.pos().x() - start.x()), abs(event.pos().y() - start.y())) >= LEAST:
-            place, box = self.drawn.places[number], QtCore.QRectF(QtCore.QRect(start, event.pos()).normalized())
-            self.across[self._across_of(number)] = (self._x(place, box.left()), self._x(place, box.right()))
+        if (
+            self.by_rectangle
+            and min(abs(event.pos().x() - start.x()), abs(event.pos().y() - start.y())) >= LEAST
+        ):
+            place, box = (
+                self.drawn.places[number],
+                QtCore.QRectF(QtCore.QRect(start, event.pos()).normalized()),
+            )
+            self.across[self._across_of(number)] = (
+                self._x(place, box.left()),
+                self._x(place, box.right()),
+            )
             self.up[number] = (self._y(place, box.bottom()), self._y(place, box.top()))
         self._changed()
 
@@ -241,8 +268,12 @@ class Canvas(QtGui.QWidget):
         number = self._at(where)
         place = self.drawn.places[number]
         up = bool(event.modifiers() & QtCore.Qt.ControlModifier)
-        share = (place.top + place.height - where.y()) / place.height if up else (where.x() - place.left) / place.width
-        self.zoom(STEP ** turns, number, min(max(share, 0.0), 1.0), up)
+        share = (
+            (place.top + place.height - where.y()) / place.height
+            if up
+            else (where.x() - place.left) / place.width
+        )
+        self.zoom(STEP**turns, number, min(max(share, 0.0), 1.0), up)
         event.accept()
 
     def _move(self, number: int, right: float, down: float) -> None:
@@ -250,7 +281,9 @@ class Canvas(QtGui.QWidget):
         place, across = self.drawn.places[number], self._across_of(number)
         if across in self.across:
             low, high = self.across[across]
-            self.across[across] = moved((low, high), -right / place.width * (high - low), self._most(number))
+            self.across[across] = moved(
+                (low, high), -right / place.width * (high - low), self._most(number)
+            )
         if number in self.up:
             low, high = self.up[number]
             self.up[number] = moved((low, high), down / place.height * (high - low), None)
@@ -263,7 +296,9 @@ class Canvas(QtGui.QWidget):
         return next((number for number, end in enumerate(ends) if where.y() <= end), len(ends) - 1)
 
     def _x(self, place: Place, left: float) -> float:
-        return place.across[0] + (left - place.left) / place.width * (place.across[1] - place.across[0])
+        return place.across[0] + (left - place.left) / place.width * (
+            place.across[1] - place.across[0]
+        )
 
     def _y(self, place: Place, top: float) -> float:
         return place.up[1] - (top - place.top) / place.height * (place.up[1] - place.up[0])
@@ -274,17 +309,25 @@ class Canvas(QtGui.QWidget):
         number = self._at(self._pointer)
         place = self.drawn.places[number]
         inside = place.left <= self._pointer.x() <= place.left + place.width
-        self.say(text_at(self.drawn.charts[number], self._x(place, self._pointer.x())) if inside else "")
+        self.say(
+            text_at(self.drawn.charts[number], self._x(place, self._pointer.x())) if inside else ""
+        )
 
 
 def look_of(palette: Any) -> Look:
     """The look on the ground that fields of the window have."""
     ground = palette.color(QtGui.QPalette.Base)
-    return dataclasses.replace(LIGHT if ground.lightness() > 128 else DARK, paper=ground.name(), words=of_frames())
+    return dataclasses.replace(
+        LIGHT if ground.lightness() > 128 else DARK, paper=ground.name(), words=of_frames()
+    )
 
 
 def _drawn(
-    charts: tuple[Chart, ...], look: Look, size: tuple[int, int], ratio: float, across: Mapping[int, Range],
+    charts: tuple[Chart, ...],
+    look: Look,
+    size: tuple[int, int],
+    ratio: float,
+    across: Mapping[int, Range],
     up: Mapping[int, Range],
 ) -> tuple[bytes, int, int, float, tuple[Chart, ...], tuple[Place, ...], bool]:
     """Drawn by matplotlib, whose import takes some time: beside the window."""

@@ -28,7 +28,11 @@ from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, 
 
 NAME = "RoboticAM_Plots"
 HEIGHT = 250
-LABEL, NARROW, WIDE = 9, 14, 36  # letters: of a label there is room for, to which it shrinks and grows
+LABEL, NARROW, WIDE = (
+    9,
+    14,
+    36,
+)  # letters: of a label there is room for, to which it shrinks and grows
 CHANGES = ("Key", "Status", "Label", "StartAtLayer", "StartAtBead")
 KINDS = (TOOLPATH, JOINT_PATH, PROGRAM, "cell")
 
@@ -37,11 +41,15 @@ class PlotsDock(Follower):
     """One for all documents; it follows what was selected last, and changes of it."""
 
     def __init__(self) -> None:
-        self.target: tuple[str, str] | None = None  # names of document and object that were asked for
+        self.target: tuple[str, str] | None = (
+            None  # names of document and object that were asked for
+        )
         self.source: tuple[Any, Source] | None = None  # its key, and what was made from it
         self.picture: Picture | None = None
         self.shown: tuple[Any, ...] = ()  # object, picture and axis that are looked at
-        self.layers_of: tuple[str, str] | None = None  # whose layers are chosen: names are those of other documents too
+        self.layers_of: tuple[str, str] | None = (
+            None  # whose layers are chosen: names are those of other documents too
+        )
         self.dock = places.dock(NAME, places.BELOW)
         self.canvas = Canvas()
         self.canvas.setObjectName("canvas")
@@ -65,11 +73,18 @@ class PlotsDock(Follower):
     def _build(self) -> None:
         """The fields, in the language of the window, about the canvas."""
         form = QtGui.QWidget()
-        self.choice = self._combo("plotted", tr("The toolpath, joint path or program to look at"), LABEL)
-        self.choice.setMaximumWidth(WIDE * self.choice.fontMetrics().averageCharWidth())  # leave room for the rest
+        self.choice = self._combo(
+            "plotted", tr("The toolpath, joint path or program to look at"), LABEL
+        )
+        self.choice.setMaximumWidth(
+            WIDE * self.choice.fontMetrics().averageCharWidth()
+        )  # leave room for the rest
         self.which = self._combo("picture", tr("What is drawn"))
         self.over = self._combo("over", tr("Along the time of the job, or along its path"))
-        self.first, self.last = self._layer("from", tr("The first layer")), self._layer("to", tr("The last layer"))
+        self.first, self.last = (
+            self._layer("from", tr("The first layer")),
+            self._layer("to", tr("The last layer")),
+        )
         self.note, self.reading = QtGui.QLabel(), QtGui.QLabel()
         self.note.setObjectName("note")
         self.reading.setObjectName("reading")
@@ -88,7 +103,10 @@ class PlotsDock(Follower):
     def _speak(self) -> None:
         """The window has another language: what is chosen stays."""
         chosen = [(name, getattr(self, name).currentIndex()) for name in ("which", "over")]
-        layers = [(name, getattr(self, name).maximum(), getattr(self, name).value()) for name in ("first", "last")]
+        layers = [
+            (name, getattr(self, name).maximum(), getattr(self, name).value())
+            for name in ("first", "last")
+        ]
         rectangle = self.buttons["rectangle"].isChecked()
         self._build()
         for name, index in chosen:
@@ -111,7 +129,9 @@ class PlotsDock(Follower):
         combo.setToolTip(help)
         combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
         combo.setMinimumContentsLength(least)
-        combo.setMinimumWidth(NARROW * combo.fontMetrics().averageCharWidth())  # long names widen no window
+        combo.setMinimumWidth(
+            NARROW * combo.fontMetrics().averageCharWidth()
+        )  # long names widen no window
         return combo
 
     def _layer(self, name: str, help: str) -> Any:
@@ -125,20 +145,44 @@ class PlotsDock(Follower):
         column, line = QtGui.QVBoxLayout(form), QtGui.QHBoxLayout()
         column.setContentsMargins(9, 4, 9, 4)
         column.setSpacing(3)
-        for text, widget in (("", self.choice), ("", self.which), (tr("over"), self.over), (tr("layers"), self.first),
-                             (tr("to"), self.last)):
+        for text, widget in (
+            ("", self.choice),
+            ("", self.which),
+            (tr("over"), self.over),
+            (tr("layers"), self.first),
+            (tr("to"), self.last),
+        ):
             if text:
                 line.addWidget(QtGui.QLabel(text))
             line.addWidget(widget)
         line.addStretch(1)
         self.buttons = {}
         for name, text, help, act in (
-            ("rectangle", "▭", tr("Zoom into a rectangle that the mouse draws; else it moves the picture"),
-             self._rectangle),
-            ("in", "+", tr("Zoom in; so does the wheel, with Ctrl up and down"), lambda *_: self.canvas.zoom(STEP ** 2)),
-            ("out", "−", tr("Zoom out"), lambda *_: self.canvas.zoom(STEP ** -2)),
-            ("whole", tr("Whole"), tr("Show all there is; so does a double click"), lambda *_: self.canvas.whole()),
-            ("save", tr("Save…"), tr("Save as an image (PNG, SVG, PDF), or the values (CSV)"), self._save),
+            (
+                "rectangle",
+                "▭",
+                tr("Zoom into a rectangle that the mouse draws; else it moves the picture"),
+                self._rectangle,
+            ),
+            (
+                "in",
+                "+",
+                tr("Zoom in; so does the wheel, with Ctrl up and down"),
+                lambda *_: self.canvas.zoom(STEP**2),
+            ),
+            ("out", "−", tr("Zoom out"), lambda *_: self.canvas.zoom(STEP**-2)),
+            (
+                "whole",
+                tr("Whole"),
+                tr("Show all there is; so does a double click"),
+                lambda *_: self.canvas.whole(),
+            ),
+            (
+                "save",
+                tr("Save…"),
+                tr("Save as an image (PNG, SVG, PDF), or the values (CSV)"),
+                self._save,
+            ),
         ):
             button = QtGui.QToolButton()
             button.setObjectName(name)
@@ -171,7 +215,9 @@ class PlotsDock(Follower):
             if plottable(found):
                 return found
         some = _plottable()
-        return max(some, key=lambda obj: kind_of(obj) == JOINT_PATH) if some else None  # asked anew: a later stage may come
+        return (
+            max(some, key=lambda obj: kind_of(obj) == JOINT_PATH) if some else None
+        )  # asked anew: a later stage may come
 
     def _chosen(self, index: int) -> None:
         some = _plottable()
@@ -207,7 +253,10 @@ class PlotsDock(Follower):
             return
         known = self.source[1] if self.source is not None and self.source[0] == key else None
         name, over = self.which.currentData(), self.over.currentData()
-        layers = min(self.first.value(), self.last.value()), max(self.first.value(), self.last.value())
+        layers = (
+            min(self.first.value(), self.last.value()),
+            max(self.first.value(), self.last.value()),
+        )
         self.note.setText(self.note.text() or tr("Computing…"))
         if self.canvas.picture is None:
             self.canvas.show_picture(None, tr("Computing…"))
@@ -225,8 +274,10 @@ class PlotsDock(Follower):
         most = max(len(toolpath.Proxy.value(toolpath).layers) - 1, 0)
         other, self.layers_of = self.layers_of != _identity(obj), _identity(obj)
         anew = other or self.last.value() == self.last.maximum()
-        for box, value in ((self.first, 0 if other else self.first.value()),
-                            (self.last, most if anew else self.last.value())):
+        for box, value in (
+            (self.first, 0 if other else self.first.value()),
+            (self.last, most if anew else self.last.value()),
+        ):
             blocked = box.blockSignals(True)
             box.setRange(0, most)
             box.setValue(value)
@@ -269,7 +320,9 @@ class PlotsDock(Follower):
 
     def addSelection(self, document: str, name: str, *_: Any) -> None:
         """Something was selected."""
-        found = App.getDocument(document).getObject(name) if document in App.listDocuments() else None
+        found = (
+            App.getDocument(document).getObject(name) if document in App.listDocuments() else None
+        )
         if found is not None and plottable(found) and self.target != (document, name):
             self.target = (document, name)
             QtCore.QTimer.singleShot(0, self.fill)

@@ -18,12 +18,17 @@ CSV = "csv"
 ENDINGS = (*KINDS, CSV)
 
 
-def content(picture: Picture, ending: str, size: tuple[int, int], across: Ranges, up: Ranges) -> bytes:
+def content(
+    picture: Picture, ending: str, size: tuple[int, int], across: Ranges, up: Ranges
+) -> bytes:
     """The file for an ending, one of ENDINGS: an image on white of the part that is looked at (`draw.Window`), or all values
     of the picture."""
     if ending == CSV:
         return "".join(values(picture)).encode()
-    return image(figure(picture.charts, replace(LIGHT, words=of_frames()), *size, Window(across, up))[0], ending)
+    return image(
+        figure(picture.charts, replace(LIGHT, words=of_frames()), *size, Window(across, up))[0],
+        ending,
+    )
 
 
 def write(content: bytes, path: str) -> None:

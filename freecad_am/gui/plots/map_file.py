@@ -45,26 +45,45 @@ def values(board: Any, picture: Picture) -> Iterator[str]:
     """
     names, across = _across(board)
     up_name, up = _up(board)
-    yield ",".join([*names, up_name, "phi_deg", "joint_margin_percent", "condition", "state"]) + "\n"
+    yield (
+        ",".join([*names, up_name, "phi_deg", "joint_margin_percent", "condition", "state"]) + "\n"
+    )
     arm = np.zeros_like(picture.outside) if picture.arm is None else picture.arm
     state = np.select(
         [~picture.reachable, picture.beyond, picture.singular, arm, picture.forbidden],
-        ["unreachable", "beyond a limit", "near a singularity", "a link touches", "not allowed"], "")
+        ["unreachable", "beyond a limit", "near a singularity", "a link touches", "not allowed"],
+        "",
+    )
     phi = np.degrees(_phi(board, picture))
     for column, place in enumerate(across):
         for row, value in enumerate(up):
             figures = 100.0 * picture.margin[row, column], picture.condition[row, column]
             found = [f"{one:.10g}" if picture.reachable[row, column] else "" for one in figures]
-            yield ",".join([*place, f"{value:.10g}", f"{phi[row, column]:.10g}", *found, state[row, column]]) + "\n"
+            yield (
+                ",".join(
+                    [
+                        *place,
+                        f"{value:.10g}",
+                        f"{phi[row, column]:.10g}",
+                        *found,
+                        state[row, column],
+                    ]
+                )
+                + "\n"
+            )
 
 
 def _across(board: Any) -> tuple[list[str], list[list[str]]]:
     """Names and texts (C,) of what goes across."""
-    places = [[str(number) for number in board.place(column)] for column in range(len(board.columns))]
+    places = [
+        [str(number) for number in board.place(column)] for column in range(len(board.columns))
+    ]
     if board.offsets is None or board.across is None:
         return ["layer", "bead", "point"], places
     name, shown = _axis(board, board.across, board.offsets)
-    return ["layer", "bead", "point", name], [[*place, f"{value:.10g}"] for place, value in zip(places, shown, strict=True)]
+    return ["layer", "bead", "point", name], [
+        [*place, f"{value:.10g}"] for place, value in zip(places, shown, strict=True)
+    ]
 
 
 def _up(board: Any) -> tuple[str, Array]:
@@ -103,16 +122,28 @@ def _cells(board: Any, painted: Any, curves: list[Any], made: Any) -> Any:
         jumps = np.abs(np.diff(rows, prepend=rows[:1])) > 0.5 * count
         lines.append((np.where(jumps, np.nan, rows), tuple(part / 255.0 for part in curve.colour)))
     if board.pair is not None:
-        up, rows_ = board.pair.name, [(float(row(height)), text) for height, text in board.pair.labels]
+        up, rows_ = (
+            board.pair.name,
+            [(float(row(height)), text) for height, text in board.pair.labels],
+        )
         across = [float(row(board.pair.planned))]
     else:
         up, across = (tr("RZ") if board.axis == RZ else tr("rotation")), []
         rows_ = [(float(row(np.radians(tick))), f"{tick}°") for tick in TICKS]
     scale = painted.scale
     return made(
-        title=board.title, up=up, colours=painted.colours, hatched=painted.hatched, columns=board.labels, rows=rows_,
-        lines=([mark - 0.5 for mark in board.marks[1:]], across), curves=lines,
-        ramp=ramp(np.linspace(0.0, 1.0, STEPS)), low=scale.low, high=max(scale.high, scale.low + 1e-9),
-        scale=f"{tr(scale.title)} {scale.unit}".strip(), classes=[(tr(text), colour) for text, colour in painted.classes],
+        title=board.title,
+        up=up,
+        colours=painted.colours,
+        hatched=painted.hatched,
+        columns=board.labels,
+        rows=rows_,
+        lines=([mark - 0.5 for mark in board.marks[1:]], across),
+        curves=lines,
+        ramp=ramp(np.linspace(0.0, 1.0, STEPS)),
+        low=scale.low,
+        high=max(scale.high, scale.low + 1e-9),
+        scale=f"{tr(scale.title)} {scale.unit}".strip(),
+        classes=[(tr(text), colour) for text, colour in painted.classes],
         hatching=tr("not allowed, or touching"),
     )

@@ -35,7 +35,9 @@ def save(picture: Picture, obj: Any, canvas: Canvas) -> None:
 def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> None:
     """Ask for a file, and write to it, beside the window, what `content` gives for its ending, png, svg, pdf or csv."""
     first = os.path.join(os.path.dirname(obj.Document.FileName), f"{obj.Label}-{name}.png")
-    kinds = ";;".join((tr("Image (*.png)"), tr("Drawing (*.svg)"), tr("Document (*.pdf)"), tr("Values (*.csv)")))
+    kinds = ";;".join(
+        (tr("Image (*.png)"), tr("Drawing (*.svg)"), tr("Document (*.pdf)"), tr("Values (*.csv)"))
+    )
     path, kind = QtGui.QFileDialog.getSaveFileName(Gui.getMainWindow(), title, first, kinds)
     if path:
         _write(content, path, kind)
@@ -45,7 +47,9 @@ def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
     def write() -> str:
         from . import export  # with matplotlib, whose import takes some time
 
-        ending = next((ending for ending in export.ENDINGS if f"*.{ending}" in kind), export.ENDINGS[0])
+        ending = next(
+            (ending for ending in export.ENDINGS if f"*.{ending}" in kind), export.ENDINGS[0]
+        )
         whole = path if path.rpartition(".")[2].lower() in export.ENDINGS else f"{path}.{ending}"
         export.write(content(whole.rpartition(".")[2].lower()), whole)
         return whole
@@ -55,7 +59,10 @@ def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
         try:
             _say(tr("{} is written.").format(worker.result()), App.Console.PrintMessage)
         except OSError as error:
-            _say(tr("{} cannot be written: {}").format(path, error.strerror or error), App.Console.PrintError)
+            _say(
+                tr("{} cannot be written: {}").format(path, error.strerror or error),
+                App.Console.PrintError,
+            )
 
     writing = Background(Gui.getMainWindow())
     _writing.append(writing)

@@ -49,7 +49,9 @@ def made_from(obj: Any) -> list[Any]:
 
 def key_of(obj: Any) -> tuple[Any, ...]:
     """What changes whenever the pictures of an object do."""
-    start = obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
+    start = (
+        obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
+    )
     return (obj.Document.Name, obj.Name, start, *(one.Key for one in made_from(obj)))
 
 
@@ -61,17 +63,29 @@ def maker_of(obj: Any) -> Callable[[], Source]:
     band = band_of(toolpath_object) if hasattr(toolpath_object.Feature, "Band") else None
     solids, cut_at = _filled(toolpath_object.Feature)
     if kind_of(path) == TOOLPATH:
-        return lambda: Source(toolpath, deposit.alone(toolpath), process, band=band, solids=solids, cut_at=cut_at)
-    planned, settings, folders = path.Proxy.value(path), path.Cell.Proxy.value(path.Cell), user_machines.folders()
-    start = obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
+        return lambda: Source(
+            toolpath, deposit.alone(toolpath), process, band=band, solids=solids, cut_at=cut_at
+        )
+    planned, settings, folders = (
+        path.Proxy.value(path),
+        path.Cell.Proxy.value(path.Cell),
+        user_machines.folders(),
+    )
+    start = (
+        obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
+    )
 
     def make() -> Source:
         motion, run = planned.motion, planned.joint_path.toolpath(toolpath)
         cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
-        condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
+        condition, threshold = (
+            on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion)
+        )
         if start is not None:
             rows = programs.rows_from(motion, start)
-            motion = Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
+            motion = Motion(
+                **{field.name: getattr(motion, field.name)[rows] for field in fields(motion)}
+            )
             condition, threshold = condition[rows], threshold[rows]
         return Source(run, motion, process, cell, condition, threshold, band, solids, cut_at)
 

@@ -28,9 +28,12 @@ class PreferencesPage:
         self.form.setObjectName("RoboticAM_Preferences")
         self.form.setWindowTitle(tr("General"))
         self.column = QtGui.QVBoxLayout(self.form)
-        note = QtGui.QLabel(tr(
-            "These are proposals of the window for what is made from now on, and its looks. Existing documents, jobs and "
-            "macros never depend on them."))
+        note = QtGui.QLabel(
+            tr(
+                "These are proposals of the window for what is made from now on, and its looks. Existing documents, jobs and "
+                "macros never depend on them."
+            )
+        )
         note.setWordWrap(True)
         self.column.addWidget(note)
         self._new_work()
@@ -71,14 +74,29 @@ class PreferencesPage:
 
     def _folders(self) -> None:
         rows = self._group(tr("Folders"))
-        self.machines = self._folder(rows, "machineFolder", tr("Machine files"), tr(
-            "A further folder of machine files, such as one that is shared; your own are in {} as well").format(
-                os.path.join("RoboticAM", "machines")))
-        self.programs = self._folder(rows, "programsFolder", tr("Programs"), tr(
-            "Where programs are written first; empty for the folder of last time, or next to the document"))
+        self.machines = self._folder(
+            rows,
+            "machineFolder",
+            tr("Machine files"),
+            tr(
+                "A further folder of machine files, such as one that is shared; your own are in {} as well"
+            ).format(os.path.join("RoboticAM", "machines")),
+        )
+        self.programs = self._folder(
+            rows,
+            "programsFolder",
+            tr("Programs"),
+            tr(
+                "Where programs are written first; empty for the folder of last time, or next to the document"
+            ),
+        )
 
     def _folder(self, rows: Any, name: str, label: str, help: str) -> Any:
-        line, edit, button = QtGui.QHBoxLayout(), QtGui.QLineEdit(), QtGui.QPushButton(tr("Browse…"))
+        line, edit, button = (
+            QtGui.QHBoxLayout(),
+            QtGui.QLineEdit(),
+            QtGui.QPushButton(tr("Browse…")),
+        )
         edit.setObjectName(name)
         edit.setToolTip(help)
         button.setAutoDefault(False)
@@ -134,7 +152,9 @@ class PreferencesPage:
                 preferences.keep(name, folder)
         self._keep_machine()  # it may be in the folder
         preferences.keep_process(self._figures())
-        preferences.keep("SpeedUnit", "" if self.unit.currentIndex() == 0 else self.unit.currentText())
+        preferences.keep(
+            "SpeedUnit", "" if self.unit.currentIndex() == 0 else self.unit.currentText()
+        )
         preferences.keep("Ramp", "" if self.ramp.currentIndex() == 0 else self.ramp.currentData())
         colour = self.colour.property("color")
         plain = QtGui.QColor.fromRgbF(*preferences.MACHINE_COLOUR).name()
@@ -157,7 +177,11 @@ class PreferencesPage:
                 value = field.value
                 inner = field.row.inner(value, field.label)
                 preferences.check(field.row, inner)
-                found[key] = field.row.text(inner) if field.row.form == MIXED else float(field.row.outer(inner))
+                found[key] = (
+                    field.row.text(inner)
+                    if field.row.form == MIXED
+                    else float(field.row.outer(inner))
+                )
             except InputError as error:
                 _warn(tr("{}: {}").format(field.label, translated(error.message)))
         return found

@@ -9,6 +9,7 @@ from PySide import QtGui
 
 FAINT = 70  # of 255, the ground of a marked line
 
+
 def listing(name: str) -> Any:
     """A field of that name for lines that are shown as they stand, in letters of one width."""
     text = QtGui.QPlainTextEdit()

@@ -39,7 +39,9 @@ class Located:
         """File and line, from 0, that lay the point of a bead that is nearest to a position (3,), mm; None where the program
         has none of it."""
         motion, rows = self.motion, self.rows
-        mine = np.flatnonzero(motion.deposit[rows] & (motion.layer[rows] == layer) & (motion.bead[rows] == bead))
+        mine = np.flatnonzero(
+            motion.deposit[rows] & (motion.layer[rows] == layer) & (motion.bead[rows] == bead)
+        )
         if not len(mine):
             return None
         away = np.linalg.norm(motion.position[rows[mine]] - position, axis=1)

@@ -28,7 +28,9 @@ class PreflightList:
         self.widget.setResizeMode(QtGui.QListView.Adjust)
         self.widget.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
         self.widget.setMinimumHeight(HIGH * self.widget.fontMetrics().lineSpacing())
-        help = tr("What is promised of this program, how it was checked and where it is worst; a click goes there")
+        help = tr(
+            "What is promised of this program, how it was checked and where it is worst; a click goes there"
+        )
         self.widget.setToolTip(help)
         self.widget.setWhatsThis(help)
         self.widget.itemClicked.connect(lambda item: _clicked(item, go))
@@ -47,16 +49,26 @@ class PreflightList:
 def summary(promises: Sequence[Promise]) -> str:
     """How many promises are kept, broken and not checked."""
     kept, broken = (sum(one.ok is ok for one in promises) for ok in (True, False))
-    return tr("Preflight: {} kept, {} broken, {} not checked").format(kept, broken, len(promises) - kept - broken)
+    return tr("Preflight: {} kept, {} broken, {} not checked").format(
+        kept, broken, len(promises) - kept - broken
+    )
 
 
 def _row(one: Promise) -> Any:
     """Two lines: what is promised, and how far it is kept and where. How it was checked is the tip."""
     mark, colour = {True: ("✓", GOOD), False: ("✗", WRONG), None: ("?", UNKNOWN)}[one.ok]
     further = [translated(one.figure), "" if one.place is None else _where(one.place)]
-    item = QtGui.QListWidgetItem("\n".join(filter(None, (
-        f"{mark} {translated(one.promise)}", "    ".join(["", *filter(None, further)]) if any(further) else "",
-    ))))
+    item = QtGui.QListWidgetItem(
+        "\n".join(
+            filter(
+                None,
+                (
+                    f"{mark} {translated(one.promise)}",
+                    "    ".join(["", *filter(None, further)]) if any(further) else "",
+                ),
+            )
+        )
+    )
     item.setForeground(QtGui.QBrush(QtGui.QColor(colour)))
     item.setToolTip(sentence(one.how))
     item.setData(PLACE_ROLE, None if one.place is None else list(one.place))

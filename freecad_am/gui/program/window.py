@@ -49,14 +49,19 @@ class ProgramWindow:
         self.choice = QtGui.QComboBox()
         self.choice.setObjectName("file")
         self.text = listing("text")
-        self.text.setToolTip(tr("A click shows the point of a line in the path; a click on the path marks its line"))
+        self.text.setToolTip(
+            tr("A click shows the point of a line in the path; a click on the path marks its line")
+        )
         self.text.cursorPositionChanged.connect(self._at_line)
         self.place = QtGui.QLabel()
         self.place.setObjectName("place")
         self.located: Located | None = None
         self.filling = False  # while the cursor is moved by what is shown, not by a click
         self.export_button = _button(
-            tr("Export…"), "export", tr("Writes all files of the program into a folder"), self._export
+            tr("Export…"),
+            "export",
+            tr("Writes all files of the program into a folder"),
+            self._export,
         )
         self._lay_out()
         self.load()
@@ -77,19 +82,30 @@ class ProgramWindow:
         self.choice.setCurrentIndex(names.index(chosen) if chosen in names else 0)
         self.choice.blockSignals(False)
         self.export_button.setEnabled(not self._refused())
-        self.export_button.setToolTip(self._refused() or tr("Writes all files of the program into a folder"))
+        self.export_button.setToolTip(
+            self._refused() or tr("Writes all files of the program into a folder")
+        )
         fits = self.obj.Status == UP_TO_DATE
         warning = "" if fits or not names else tr("This text is of an earlier plan; do not run it.")
         status = tr("Status: {}.").format(translated(self.obj.Status))
-        self.state.setText(" ".join(filter(None, (warning, status, translated(message_of(self.obj))))))
+        self.state.setText(
+            " ".join(filter(None, (warning, status, translated(message_of(self.obj)))))
+        )
         self.located = None
         self.place.clear()
         try:
             run = run_of(self.obj)
-            self.sums.setText("  ·  ".join(tr("{}: {}").format(name, value) for name, value in wording.totals(run)))
+            self.sums.setText(
+                "  ·  ".join(
+                    tr("{}: {}").format(name, value) for name, value in wording.totals(run)
+                )
+            )
             if fits and names:
                 self.located = Located.of(self.obj.Post, self.files, run.motion)
-        except (AmError, AttributeError):  # its joint path is gone, or undo has not yet brought all of it back
+        except (
+            AmError,
+            AttributeError,
+        ):  # its joint path is gone, or undo has not yet brought all of it back
             self.sums.setText("")
         self.state.setStyleSheet("" if fits else f"QLabel {{ color: {WRONG}; }}")
         self.text.setStyleSheet("" if fits else "QPlainTextEdit { color: gray; }")
@@ -99,7 +115,9 @@ class ProgramWindow:
         column, row = QtGui.QVBoxLayout(self.window), QtGui.QHBoxLayout()
         row.addWidget(self.choice, 1)
         row.addWidget(self.export_button)
-        row.addWidget(_button(tr("Close"), "close", tr("Closes this window"), lambda *_: self.window.close()))
+        row.addWidget(
+            _button(tr("Close"), "close", tr("Closes this window"), lambda *_: self.window.close())
+        )
         column.addLayout(row)
         column.addWidget(self.text, 1)
         column.addWidget(self.place)
@@ -107,7 +125,9 @@ class ProgramWindow:
         column.addWidget(self.state)
 
     def _show(self, *_: Any) -> None:
-        text = self.files.get(self.choice.currentText(), b"").decode("latin-1").replace("\r\n", "\n")
+        text = (
+            self.files.get(self.choice.currentText(), b"").decode("latin-1").replace("\r\n", "\n")
+        )
         if text != self.text.toPlainText():
             self.filling = True
             self.text.setPlainText(text)
@@ -219,7 +239,9 @@ def export(obj: Any, window: Any = None) -> str:
         Gui.getMainWindow().statusBar().showMessage(translated_error(refused), 5000)
         return translated_error(refused)
     first = preferences.programs_folder() or os.path.dirname(obj.Document.FileName)
-    folder = QtGui.QFileDialog.getExistingDirectory(window or Gui.getMainWindow(), tr("Export program"), first)
+    folder = QtGui.QFileDialog.getExistingDirectory(
+        window or Gui.getMainWindow(), tr("Export program"), first
+    )
     if not folder:
         return tr("Status: {}.").format(translated(obj.Status))
     try:

@@ -19,7 +19,9 @@ ROUGH, FINE = 6, 1  # one of so many rows is looked at
 class Cells:
     """`known` is called when more is known of a board, `drawn` when its cells are shown."""
 
-    def __init__(self, form: Any, canvas: Canvas, known: Callable[[], None], drawn: Callable[[], None]) -> None:
+    def __init__(
+        self, form: Any, canvas: Canvas, known: Callable[[], None], drawn: Callable[[], None]
+    ) -> None:
         self.canvas, self.known, self.drawn = canvas, known, drawn
         self.background = Background(form)
 
@@ -63,6 +65,10 @@ class Cells:
     def _draw(self) -> None:
         board = self.board
         self.canvas.title = board.title
-        self.canvas.heights = None if board.pair is None else (board.pair.labels, board.pair.planned)
-        self.canvas.set_map(painted(board.pictures[self.branch], self.kind), board.marks, board.labels)
+        self.canvas.heights = (
+            None if board.pair is None else (board.pair.labels, board.pair.planned)
+        )
+        self.canvas.set_map(
+            painted(board.pictures[self.branch], self.kind), board.marks, board.labels
+        )
         self.drawn()

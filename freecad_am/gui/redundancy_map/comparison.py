@@ -25,7 +25,9 @@ TELL_EVERY = 100  # ms
 class Comparison:
     """`done` gets the methods, none of them where it came to nothing; `tell` what goes on."""
 
-    def __init__(self, form: Any, done: Callable[[tuple[Compared, ...]], None], tell: Callable[[str], None]) -> None:
+    def __init__(
+        self, form: Any, done: Callable[[tuple[Compared, ...]], None], tell: Callable[[str], None]
+    ) -> None:
         self.done, self.tell = done, tell
         self.background = Background(form)
         self.timer = QtCore.QTimer(form)
@@ -40,7 +42,9 @@ class Comparison:
     def start(self, source: Source, task: Task) -> None:
         """Plan the beads of the toolpath, from their own seams, by all methods; with external axes those of the plan, which
         tell where these axes are."""
-        beads = source.beads if source.cell.external else tuple(bead for _, _, bead in source.toolpath)
+        beads = (
+            source.beads if source.cell.external else tuple(bead for _, _, bead in source.toolpath)
+        )
         self.background.start(
             lambda: rotation_curve.compared(task, beads, source.places, progress.report), self._show
         )
@@ -64,5 +68,9 @@ class Comparison:
     def _tell(self) -> None:
         worker = self.background.worker
         if worker is not None:
-            share = "" if worker.fraction is None else f"{100.0 * worker.fraction:.0f} %  {translated(worker.text)}"
+            share = (
+                ""
+                if worker.fraction is None
+                else f"{100.0 * worker.fraction:.0f} %  {translated(worker.text)}"
+            )
             self.tell(f"{tr('Planning')} {share}")

@@ -79,9 +79,14 @@ class Consequences:
         edited = self.draft.edited
         self.form.buttons["use"].setEnabled(edited)
         if sums.lost:
-            text, wrong = tr("{} of the points tried do not serve: they are red").format(sums.lost), True
+            text, wrong = (
+                tr("{} of the points tried do not serve: they are red").format(sums.lost),
+                True,
+            )
         elif edited and sums.ratio > 1.0:
-            asked = tr("A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse")
+            asked = tr(
+                "A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse"
+            )
             text, wrong = asked.format(100.0 * sums.ratio), True
         else:
             text, wrong = self.status() if not edited else (tr("All points serve"), False)

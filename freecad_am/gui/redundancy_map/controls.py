@@ -26,7 +26,10 @@ class Controls(QtGui.QWidget):
     """Functions are called with what the user chose; `fill` shows a state without calling any."""
 
     def __init__(
-        self, chosen: Callable[[], None], curve: Callable[[], None], set_value: Callable[[int, float], None]
+        self,
+        chosen: Callable[[], None],
+        curve: Callable[[], None],
+        set_value: Callable[[int, float], None],
     ) -> None:
         super().__init__()
         self.setObjectName("controls")
@@ -35,21 +38,35 @@ class Controls(QtGui.QWidget):
         self.grid = QtGui.QGridLayout(self)
         self.grid.setContentsMargins(4, 2, 4, 2)
         self.grid.setVerticalSpacing(3)
-        self.layer = self._box("layer", tr("Layer"), tr("The layer that is shown; -1 for all of them"), chosen)
+        self.layer = self._box(
+            "layer", tr("Layer"), tr("The layer that is shown; -1 for all of them"), chosen
+        )
         self.layer.setSpecialValueText(tr("all"))
         self.branch = self._combo(
-            "branch", tr("Branch"),
-            tr("Shoulder, elbow and wrist; behind it the share of the map that it reaches within its limits"), chosen,
+            "branch",
+            tr("Branch"),
+            tr(
+                "Shoulder, elbow and wrist; behind it the share of the map that it reaches within its limits"
+            ),
+            chosen,
         )
         self.kind = self._combo("colours", tr("Colours"), tr("What the colours show"), chosen)
         self.kind.addItems([tr(kind) for kind in KINDS])
-        help = tr("RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across")
+        help = tr(
+            "RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across"
+        )
         self.axis = self._combo("axis", tr("Upwards"), help, chosen)
         self.across = self._add_across()
-        self.type = self._combo("curve", tr("Curve"), tr("One polynomial per bead, or one RZ for the whole job"), curve)
+        self.type = self._combo(
+            "curve", tr("Curve"), tr("One polynomial per bead, or one RZ for the whole job"), curve
+        )
         self.type.addItems([tr("polynomials"), tr("constant RZ")])
-        self.bead = self._box("bead", tr("Bead"), tr("The bead whose polynomial is shown; a click on the map chooses one"),
-                               curve)
+        self.bead = self._box(
+            "bead",
+            tr("Bead"),
+            tr("The bead whose polynomial is shown; a click on the map chooses one"),
+            curve,
+        )
         self.degree = self._box("degree", tr("Degree"), tr("Degree of the polynomials"), curve)
         self.degree.setRange(0, HIGHEST)
         self.together = QtGui.QCheckBox(tr("All beads together"))
@@ -65,7 +82,11 @@ class Controls(QtGui.QWidget):
             box.setDecimals(3)
             box.setSingleStep(STEP)
             box.setKeyboardTracking(False)
-            box.setSuffix(" °" if number == 0 else " °/" + tr("turn") + ("" if number == 1 else "²³⁴⁵⁶"[number - 2]))
+            box.setSuffix(
+                " °"
+                if number == 0
+                else " °/" + tr("turn") + ("" if number == 1 else "²³⁴⁵⁶"[number - 2])
+            )
             box.valueChanged.connect(lambda value, number=number: self._entered(number, value))
             row = self.grid.rowCount()
             self.names.append(QtGui.QLabel())
@@ -87,7 +108,9 @@ class Controls(QtGui.QWidget):
         return self._add(combo, name, text, help)
 
     def _add_across(self) -> Any:
-        help = tr("The path, or an external axis at the point that was clicked last, the other axes as planned there")
+        help = tr(
+            "The path, or an external axis at the point that was clicked last, the other axes as planned there"
+        )
         return self._combo("across", tr("Across"), help, self.chosen)
 
     def _add(self, widget: Any, name: str, text: str, help: str) -> Any:
@@ -105,10 +128,20 @@ class Controls(QtGui.QWidget):
     def wanted(self) -> tuple[int | None, str, int | None, int | None]:
         """Which layer, None for all; the rotation upwards; which external axis across, None for the path; and which external
         axis upwards, None for the rotation."""
-        layer, across, axis = self.layer.value(), self.across.currentIndex() - 1, self.axis.currentIndex()
-        up = axis - len(AXES) if axis >= len(AXES) and across not in (-1, axis - len(AXES)) else None
+        layer, across, axis = (
+            self.layer.value(),
+            self.across.currentIndex() - 1,
+            self.axis.currentIndex(),
+        )
+        up = (
+            axis - len(AXES) if axis >= len(AXES) and across not in (-1, axis - len(AXES)) else None
+        )
         return (
-            None if layer < 0 else layer, AXES[axis if axis < len(AXES) else 0], across if across >= 0 else None, up)
+            None if layer < 0 else layer,
+            AXES[axis if axis < len(AXES) else 0],
+            across if across >= 0 else None,
+            up,
+        )
 
     # ---- what is shown
 
@@ -128,13 +161,19 @@ class Controls(QtGui.QWidget):
         self.degree.setValue(draft.degree)
         for widget in (self.bead, self.degree, self.together):
             widget.setEnabled(not constant)
-        values = [draft.rz] if constant else [c * (2.0 * np.pi) ** k for k, c in enumerate(draft.coefficients[bead])]
+        values = (
+            [draft.rz]
+            if constant
+            else [c * (2.0 * np.pi) ** k for k, c in enumerate(draft.coefficients[bead])]
+        )
         for number, (name, box) in enumerate(zip(self.names, self.coefficients, strict=True)):
             there = number < len(values)
             name.setVisible(there)
             box.setVisible(there)
             name.setText("RZ" if constant else f"c{number}")
-            if there and not (box.hasFocus() and abs(box.value() - np.degrees(values[number])) < 6e-4):
+            if there and not (
+                box.hasFocus() and abs(box.value() - np.degrees(values[number])) < 6e-4
+            ):
                 box.setValue(float(np.degrees(values[number])))
         self.filling = False
 
@@ -142,11 +181,16 @@ class Controls(QtGui.QWidget):
         machine = board.source.cell.machine
         external = list(machine.axes[len(machine.axes) - machine.external :])
         names = [tr("the path"), *external]
-        for combo, texts in ((self.across, names), (self.axis, [tr("RZ"), tr("rotation"), *external])):
+        for combo, texts in (
+            (self.across, names),
+            (self.axis, [tr("RZ"), tr("rotation"), *external]),
+        ):
             if [combo.itemText(k) for k in range(combo.count())] != texts:
                 combo.clear()
                 combo.addItems(texts)
-        self.axis.setCurrentIndex(AXES.index(board.axis) if board.up is None else len(AXES) + board.up)
+        self.axis.setCurrentIndex(
+            AXES.index(board.axis) if board.up is None else len(AXES) + board.up
+        )
         self.across.setCurrentIndex(0 if board.across is None else board.across + 1)
         self.across.setEnabled(len(names) > 1)
 
@@ -170,5 +214,7 @@ def scrolled(widget: Any) -> Any:
     area.setFrameShape(QtGui.QFrame.NoFrame)
     area.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
     area.setWidget(widget)
-    area.setMinimumWidth(max(210, widget.minimumSizeHint().width() + area.verticalScrollBar().sizeHint().width()))
+    area.setMinimumWidth(
+        max(210, widget.minimumSizeHint().width() + area.verticalScrollBar().sizeHint().width())
+    )
     return area

@@ -52,7 +52,9 @@ class RedundancyMapDock:
         self._build()
         self.cells = Cells(self.holder, self.canvas, self._fill_controls, self._show_curves)
         self.consequences = Consequences(self.holder, self.form, lambda: status_of(self.obj))
-        self.comparison = Comparison(self.holder, self._show_compared, lambda text: self.form.tell(text))
+        self.comparison = Comparison(
+            self.holder, self._show_compared, lambda text: self.form.tell(text)
+        )
         self.renewing = Later(self.holder, self.renew)
         self.canvas.hovered, self.canvas.clicked = self._hovered, self._clicked
         self.canvas.dragged, self.canvas.dropped = self._dragged, self.consequences.exactly
@@ -60,7 +62,9 @@ class RedundancyMapDock:
         self.dock.closed = self.close
         self._take(source_of(obj))
         self.dock.come()
-        self.lookout = Lookout(lambda: self.source, self._changed_object, lambda why, _: self.end(why))
+        self.lookout = Lookout(
+            lambda: self.source, self._changed_object, lambda why, _: self.end(why)
+        )
         watch.listen(self._renew_cells)
         watch.listen_to_language(self._speak)
 
@@ -71,8 +75,15 @@ class RedundancyMapDock:
         self.controls = Controls(self._chosen, self._curve_chosen, self._entered)
         self.figures = Figures(self._show_curves)
         self.form = Form(self.canvas, self.controls, self.figures)
-        self.form.buttons["save"].clicked.connect(lambda *_: save(self.board, self.draft.branch, self.canvas, self.obj))
-        for name, act in (("use", self._use), ("free", self._free), ("again", self._again), ("compare", self._compare)):
+        self.form.buttons["save"].clicked.connect(
+            lambda *_: save(self.board, self.draft.branch, self.canvas, self.obj)
+        )
+        for name, act in (
+            ("use", self._use),
+            ("free", self._free),
+            ("again", self._again),
+            ("compare", self._compare),
+        ):
             self.form.buttons[name].clicked.connect(lambda *_, act=act: act())
         before = self.holder.currentWidget()
         self.holder.addWidget(self.form)
@@ -83,7 +94,10 @@ class RedundancyMapDock:
 
     def _speak(self) -> None:
         """The window has another language: what is chosen stays."""
-        before, hidden = self.controls, [name for name in self.figures.rows if not self.figures.shows(name)]
+        before, hidden = (
+            self.controls,
+            [name for name in self.figures.rows if not self.figures.shows(name)],
+        )
         self._build()
         self.controls.kind.setCurrentIndex(before.kind.currentIndex())
         self.controls.together.setChecked(before.together.isChecked())
@@ -100,7 +114,9 @@ class RedundancyMapDock:
 
     def _name_compare(self) -> None:
         """What the button does now."""
-        self.form.buttons["compare"].setText(tr("Cancel") if self.comparison.runs else tr("Compare methods"))
+        self.form.buttons["compare"].setText(
+            tr("Cancel") if self.comparison.runs else tr("Compare methods")
+        )
 
     # ---- the joint path
 
@@ -135,7 +151,9 @@ class RedundancyMapDock:
     def _renew_cells(self) -> None:
         """Show the picture of the branch, computed first where it is not known."""
         self._fill_controls()
-        self.cells.show(self.board, self.draft.branch, KINDS[max(self.controls.kind.currentIndex(), 0)])
+        self.cells.show(
+            self.board, self.draft.branch, KINDS[max(self.controls.kind.currentIndex(), 0)]
+        )
 
     def _fill_controls(self) -> None:
         self.controls.fill(self.board, self.draft, self.bead)
@@ -148,7 +166,9 @@ class RedundancyMapDock:
             if layer is not None and layer not in {of for of, _ in self.source.places}:
                 self._fill_controls()
                 return
-            self.board = Board(self.source, layer, axis, across, (self.bead, self.clicked.get(self.bead)), up)
+            self.board = Board(
+                self.source, layer, axis, across, (self.bead, self.clicked.get(self.bead)), up
+            )
             shown = self.board.columns.bead
             self.bead = int(shown[np.abs(shown - self.bead).argmin()])
         if branch != self.draft.branch:
@@ -159,7 +179,11 @@ class RedundancyMapDock:
     # ---- the curve
 
     def _together(self) -> list[int]:
-        return list(range(len(self.source.beads))) if self.controls.together.isChecked() else [self.bead]
+        return (
+            list(range(len(self.source.beads)))
+            if self.controls.together.isChecked()
+            else [self.bead]
+        )
 
     def _curve_chosen(self) -> None:
         """Another kind of curve, bead or degree."""
@@ -200,10 +224,17 @@ class RedundancyMapDock:
 
     def _show_curves(self) -> None:
         """Draw the curves that are to be seen."""
-        self.canvas.set_curves(*drawn(
-            self.board, self.draft, self.bead, self.source.planned.beads, self.compared, self.consequences.followed,
-            self.figures.shows,
-        ))
+        self.canvas.set_curves(
+            *drawn(
+                self.board,
+                self.draft,
+                self.bead,
+                self.source.planned.beads,
+                self.compared,
+                self.consequences.followed,
+                self.figures.shows,
+            )
+        )
 
     # ---- side by side
 
@@ -224,14 +255,20 @@ class RedundancyMapDock:
             self._changed()
         planned = self.consequences.of_plan()
         for one in self.compared:
-            help = "; ".join(translated(issue.message) for issue in one.issues[:3]) or tr("nothing forbids it")
-            self.figures.set(one.name, translated(one.name), COLOURS[one.name], one.sums, planned, help=help)
+            help = "; ".join(translated(issue.message) for issue in one.issues[:3]) or tr(
+                "nothing forbids it"
+            )
+            self.figures.set(
+                one.name, translated(one.name), COLOURS[one.name], one.sums, planned, help=help
+            )
         self._show_curves()
 
     # ---- what the mouse is over
 
     def _hovered(self, column: int, value: float) -> None:
-        self.form.readout.setText(readout(self.board.cell(self.draft.branch, column, value), self.source.cell.machine))
+        self.form.readout.setText(
+            readout(self.board.cell(self.draft.branch, column, value), self.source.cell.machine)
+        )
 
     def _clicked(self, column: int, value: float) -> None:
         self.bead = int(self.board.columns.bead[column])
@@ -258,7 +295,9 @@ class RedundancyMapDock:
         try:
             recorded.change(self.obj, arguments)
         except (AmError, Cancelled, ReferenceError) as error:
-            self.form.tell(translated_error(error) or tr("Cancelled: the document is as it was."), True)
+            self.form.tell(
+                translated_error(error) or tr("Cancelled: the document is as it was."), True
+            )
             return
         self.renewing.timer.stop()
         self.renew()
@@ -283,7 +322,9 @@ class RedundancyMapDock:
         """End it by itself, and say why."""
         if not self.gone:
             self.close()
-            Gui.getMainWindow().statusBar().showMessage(tr("The map was closed: {why}").format(why=why), 8000)
+            Gui.getMainWindow().statusBar().showMessage(
+                tr("The map was closed: {why}").format(why=why), 8000
+            )
 
     def _changed_object(self, obj: Any, name: str) -> None:
         if name in ("Key", "Label"):

@@ -77,10 +77,14 @@ class Draft:
         known = [by_place.get(place) for place in source.places]
         points = self.live.points
         width = max([source.parameters.degree + 1, *(len(row) for row in known if row is not None)])
-        if all(row is not None for row in known) and len(source.planned.beads) == len(source.places):
+        if all(row is not None for row in known) and len(source.planned.beads) == len(
+            source.places
+        ):
             self.coefficients = np.array([np.pad(row, (0, width - len(row))) for row in known])
         else:
-            self.coefficients = rotation_curve.fitted(points, self._variable(points, self.live.planned), width - 1)
+            self.coefficients = rotation_curve.fitted(
+                points, self._variable(points, self.live.planned), width - 1
+            )
             whole = len(source.planned.beads) == len(source.places)
             for row, known_row in zip(self.coefficients, known):
                 if known_row is not None and whole:
@@ -103,7 +107,12 @@ class Draft:
         width = min(first.shape[1], self.first.shape[1])
         first[:, :width] = self.first[:, :width]
         lost = np.abs(self.first[:, width:]).max(axis=1, initial=0.0) > TOLERANCE
-        return [int(k) for k in np.flatnonzero((np.abs(self.coefficients - first).max(axis=1) > TOLERANCE) | lost)]
+        return [
+            int(k)
+            for k in np.flatnonzero(
+                (np.abs(self.coefficients - first).max(axis=1) > TOLERANCE) | lost
+            )
+        ]
 
     @property
     def edited(self) -> bool:
@@ -144,7 +153,9 @@ class Draft:
     def along(self, paths: Sequence[BeadPath], at: Columns) -> Array:
         """(C,) the rotation of planned paths, at columns of a map."""
         wanted = {int(k): at.points.parameter[at.bead == k] for k in np.unique(at.bead)}
-        return np.concatenate(list(rotation_along(paths, self.source.beads, self.source.places, wanted).values()))
+        return np.concatenate(
+            list(rotation_along(paths, self.source.beads, self.source.places, wanted).values())
+        )
 
     # ---- changing it
 
@@ -160,17 +171,23 @@ class Draft:
         if self.kind == CONSTANT:
             self.rz = float(value)
         else:
-            self.coefficients[beads, number] += value / TURN**number - self.coefficients[bead, number]
+            self.coefficients[beads, number] += (
+                value / TURN**number - self.coefficients[bead, number]
+            )
 
     def handles(self, bead: int) -> Array:
         """(n,) parameters at which the polynomial of a bead is taken hold of."""
-        return rotation_curve.handles(self.source.task(self.branch), self.live.points, bead, self.degree)
+        return rotation_curve.handles(
+            self.source.task(self.branch), self.live.points, bead, self.degree
+        )
 
     def pull(self, bead: int, handle: int, by: float, beads: list[int]) -> None:
         """Move one handle of a bead by an angle, and the same of further beads."""
         task, points = self.source.task(self.branch), self.live.points
         low, high = points.ends
-        known: dict[tuple[float, float, bool], Array] = {}  # beads that run over the same change alike
+        known: dict[
+            tuple[float, float, bool], Array
+        ] = {}  # beads that run over the same change alike
         for k in beads:
             key = float(low[k]), float(high[k]), bool(points.closed[k])
             if key not in known:
@@ -185,7 +202,9 @@ class Draft:
             self.coefficients = np.concatenate([self.coefficients, more], axis=1)
         elif degree < self.degree:
             points = self.live.points
-            self.coefficients = rotation_curve.fitted(points, points.polynomial(self.coefficients), degree)
+            self.coefficients = rotation_curve.fitted(
+                points, points.polynomial(self.coefficients), degree
+            )
 
     # ---- making it the choice
 
@@ -194,13 +213,22 @@ class Draft:
         own = OF_CELL if self.source.cell.branch == self.branch else BRANCH_WORDS[self.branch]
         found = {"own_branch": repr(own)}
         if self.kind == CONSTANT:
-            return {"method": repr(CONSTANT), "rz": repr(round(float(np.degrees(self.rz)), 9)), "given": "()", **found}
+            return {
+                "method": repr(CONSTANT),
+                "rz": repr(round(float(np.degrees(self.rz)), 9)),
+                "given": "()",
+                **found,
+            }
         return {"method": repr(METHOD), "given": repr(self.given()), **found}
 
     def given(self) -> tuple[str, ...]:
         """The polynomials of the beads, as the job file has them; one for all where they are alike."""
         same = np.abs(self.coefficients - self.coefficients[0]).max() <= TOLERANCE
-        rows = [(None, self.coefficients[0])] if same else list(zip(self.source.places, self.coefficients))
+        rows = (
+            [(None, self.coefficients[0])]
+            if same
+            else list(zip(self.source.places, self.coefficients))
+        )
         return tuple(given_text(place, tuple(float(value) for value in row)) for place, row in rows)
 
     # ----
@@ -211,7 +239,11 @@ class Draft:
         for bead in source.beads:
             turns = abs(float(bead.parameter[-1] - bead.parameter[0])) / (2.0 * np.pi)
             least = max(10, int(np.ceil(12 * turns)))
-            count = len(bead) if most >= total else min(len(bead), max(least, len(bead) * most // total))
+            count = (
+                len(bead)
+                if most >= total
+                else min(len(bead), max(least, len(bead) * most // total))
+            )
             kept.append(np.unique(np.round(np.linspace(0, len(bead) - 1, count)).astype(np.int64)))
         row = np.concatenate([start + index for start, index in zip(self.starts, kept)])
         counts = np.array([len(index) for index in kept])
@@ -219,16 +251,33 @@ class Draft:
             np.concatenate([getattr(bead, name)[index] for bead, index in zip(source.beads, kept)])
             for name in ("points", "tool", "parameter")
         )
-        external, slides = redundancy_map.external_of(source.cell, source.beads, kept), source.cell.machine.chain.sliding
-        points = Points(
-            position, tool, parameter, np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
-            np.repeat(np.arange(len(kept)), counts), np.array([bead.closed for bead in source.beads], dtype=bool),
-            source.cell.pose_frames(position, tool, external), external, slides if slides.any() else None,
+        external, slides = (
+            redundancy_map.external_of(source.cell, source.beads, kept),
+            source.cell.machine.chain.sliding,
         )
-        wanted = {k: bead.parameter[index] for k, (bead, index) in enumerate(zip(source.beads, kept))}
-        planned = list(rotation_along(source.planned.beads, source.beads, source.places, wanted).values())
+        points = Points(
+            position,
+            tool,
+            parameter,
+            np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
+            np.repeat(np.arange(len(kept)), counts),
+            np.array([bead.closed for bead in source.beads], dtype=bool),
+            source.cell.pose_frames(position, tool, external),
+            external,
+            slides if slides.any() else None,
+        )
+        wanted = {
+            k: bead.parameter[index] for k, (bead, index) in enumerate(zip(source.beads, kept))
+        }
+        planned = list(
+            rotation_along(source.planned.beads, source.beads, source.places, wanted).values()
+        )
         return Sampled(
-            points, tuple(kept), rotation_curve.durations(source.beads, kept), np.concatenate(planned), row.astype(np.int64)
+            points,
+            tuple(kept),
+            rotation_curve.durations(source.beads, kept),
+            np.concatenate(planned),
+            row.astype(np.int64),
         )
 
     def _variable(self, points: Points, phi: Array) -> Array:

@@ -29,7 +29,8 @@ class Figures(QtGui.QTableWidget):
             [tr("Curve"), tr("Lost"), tr("Margin"), tr("Condition"), tr("Speed"), tr("Eq. 17")]
         )
         helps = (
-            tr("Shown on the map"), tr("Points that are unreachable, past a limit, near a singularity or not allowed"),
+            tr("Shown on the map"),
+            tr("Points that are unreachable, past a limit, near a singularity or not allowed"),
             tr("The least share of half a joint's range that is left to a limit"),
             tr("The least sigma_min / sigma_max of the Jacobian"),
             tr("The largest share of a joint's greatest speed at the travel speed"),
@@ -46,7 +47,13 @@ class Figures(QtGui.QTableWidget):
         self.itemChanged.connect(self._clicked)
 
     def set(
-        self, name: str, title: str, colour: tuple[int, int, int], sums: Sums, planned: Sums | None, about: bool = False,
+        self,
+        name: str,
+        title: str,
+        colour: tuple[int, int, int],
+        sums: Sums,
+        planned: Sums | None,
+        about: bool = False,
         help: str = "",
     ) -> None:
         """Fill a row, which is made when it is new. about: the figures are of some of the points."""
@@ -57,9 +64,16 @@ class Figures(QtGui.QTableWidget):
             self.insertRow(self.rowCount())
         row, sign = self.rows[name], "≈ " if about else ""
         reached = np.isfinite(sums.margin)
-        times = "" if planned is None or not planned.displacement else f" (×{sums.displacement / planned.displacement:.3g})"
+        times = (
+            ""
+            if planned is None or not planned.displacement
+            else f" (×{sums.displacement / planned.displacement:.3g})"
+        )
         texts = (
-            title, f"{sums.lost}", f"{100.0 * sums.margin:.1f} %" if reached else tr("unreachable"), f"{sums.condition:.4f}",
+            title,
+            f"{sums.lost}",
+            f"{100.0 * sums.margin:.1f} %" if reached else tr("unreachable"),
+            f"{sums.condition:.4f}",
             f"{100.0 * sums.ratio:.1f} %" if np.isfinite(sums.ratio) else "—",
             f"{sums.displacement:.3g}{times}" if np.isfinite(sums.displacement) else "—",
         )
@@ -77,7 +91,9 @@ class Figures(QtGui.QTableWidget):
             image.fill(QtGui.QColor(*colour))
             mark.setIcon(QtGui.QIcon(image))
         mark.setToolTip(help)
-        wound = tr("{} of them past a limit only because an axis runs out of turns along its bead").format(sums.wound)
+        wound = tr(
+            "{} of them past a limit only because an axis runs out of turns along its bead"
+        ).format(sums.wound)
         self.item(row, 1).setToolTip(wound if sums.wound else "")
         for column, wrong in ((1, sums.lost > 0), (4, sums.ratio > 1.0)):
             ink = QtGui.QColor(WRONG) if wrong else self.palette().color(QtGui.QPalette.Text)

@@ -34,20 +34,37 @@ class Form(QtGui.QWidget):
         self.joints.setObjectName("joints")
         self.joints.setWordWrap(True)
         self.joints.setTextFormat(QtCore.Qt.RichText)
-        self.joints.setToolTip(tr("From where to where each joint goes on this curve; red past a limit"))
+        self.joints.setToolTip(
+            tr("From where to where each joint goes on this curve; red past a limit")
+        )
         right.addWidget(figures, 1)
         right.addWidget(self.joints)
         right.addWidget(self.verdict)
         grid = QtGui.QGridLayout()
-        self.buttons = {name: _button(name, text, help) for name, text, help in (
-            ("use", tr("Use this"), tr("Make the curve that of the joint path, and plan it again")),
-            ("free", tr("Let the planner choose"),
-             tr("Plan the joint path again layer by layer, without a curve that is given")),
-            ("again", tr("Back"), tr("Start again from what was planned")),
-            ("compare", tr("Compare methods"),
-             tr("Plan constant, point-by-point and layer-by-layer on this branch, to look at")),
-            ("save", tr("Save…"), tr("Save as an image (PNG, SVG, PDF), or the values (CSV)")),
-        )}
+        self.buttons = {
+            name: _button(name, text, help)
+            for name, text, help in (
+                (
+                    "use",
+                    tr("Use this"),
+                    tr("Make the curve that of the joint path, and plan it again"),
+                ),
+                (
+                    "free",
+                    tr("Let the planner choose"),
+                    tr("Plan the joint path again layer by layer, without a curve that is given"),
+                ),
+                ("again", tr("Back"), tr("Start again from what was planned")),
+                (
+                    "compare",
+                    tr("Compare methods"),
+                    tr(
+                        "Plan constant, point-by-point and layer-by-layer on this branch, to look at"
+                    ),
+                ),
+                ("save", tr("Save…"), tr("Save as an image (PNG, SVG, PDF), or the values (CSV)")),
+            )
+        }
         for number, button in enumerate(self.buttons.values()):
             grid.addWidget(button, number // 2, number % 2)
         right.addLayout(grid)

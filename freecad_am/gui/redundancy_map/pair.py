@@ -36,8 +36,15 @@ class Pair:
         """All branches, cells in one row, where they are not known yet, and the picture (R, C) of one."""
         task = self.source.task(branch)
         found = known or redundancy_map.redundancy_map(
-            task, self.cells, redundancy_map.ROTATION, self.source.toolpath.surroundings, np.array([self.phi]))
-        return found, rotation_across.in_rows(redundancy_map.picture(task, found, branch), len(self.values))
+            task,
+            self.cells,
+            redundancy_map.ROTATION,
+            self.source.toolpath.surroundings,
+            np.array([self.phi]),
+        )
+        return found, rotation_across.in_rows(
+            redundancy_map.picture(task, found, branch), len(self.values)
+        )
 
     def arm(self, branch: int, known: RedundancyMap) -> Mask:
         """(R, C) where links of the robot touch something."""
@@ -63,18 +70,33 @@ class Pair:
         unit = float(machine.unit_values[self.source.cell.robot.chain.axes + self.up])
         sign = " mm" if machine.chain.sliding[self.source.cell.robot.chain.axes + self.up] else "°"
         shown = np.unique(np.round(np.linspace(0, len(self.values) - 1, LABELS)).astype(int))
-        return [(float(TURN * k / (len(self.values) - 1) - np.pi), f"{self.values[k] / unit:.0f}{sign}") for k in shown]
+        return [
+            (float(TURN * k / (len(self.values) - 1) - np.pi), f"{self.values[k] / unit:.0f}{sign}")
+            for k in shown
+        ]
 
     @property
     def planned(self) -> float:
         """The height at which the axis is planned."""
-        return float(np.interp(self.here, self.values, np.linspace(-np.pi, np.pi, len(self.values))))
+        return float(
+            np.interp(self.here, self.values, np.linspace(-np.pi, np.pi, len(self.values)))
+        )
 
 
 def pair_of(source: Source, at: tuple[int, int], axes: tuple[int, int], offsets: Array) -> Pair:
     """At a point (bead, point): values (C,) of the first of two external axes against those of the second over its range."""
     bead, point = at
-    values = rotation_across.span(source.task(source.branch), source.beads[bead], point, axes[1], ROWS)
+    values = rotation_across.span(
+        source.task(source.branch), source.beads[bead], point, axes[1], ROWS
+    )
     cells = rotation_across.of_two(source.beads, source.cell, at, axes, (offsets, values))
     here = float(redundancy_map.planned_external(source.beads[bead])[point, axes[1]])
-    return Pair(source, axes[1], cells, values, here, float(source.planned.beads[bead].phi[point]), len(offsets))
+    return Pair(
+        source,
+        axes[1],
+        cells,
+        values,
+        here,
+        float(source.planned.beads[bead].phi[point]),
+        len(offsets),
+    )

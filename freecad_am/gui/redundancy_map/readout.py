@@ -39,8 +39,12 @@ def readout(cell: Cell, machine: Machine) -> str:
         notes.append(link_touches(*cell.arm))
     margin = tr("margin {:.1f} % ({})").format(100.0 * cell.margin, cell.nearest)
     condition = tr("condition {:.4f}, least {:.4f}").format(cell.condition, cell.threshold)
-    joints = "   ".join(f"{name} {value:.2f}{unit}" for name, value, unit in zip(
-        machine.axes, cell.joints / machine.unit_values, _units(machine), strict=True))
+    joints = "   ".join(
+        f"{name} {value:.2f}{unit}"
+        for name, value, unit in zip(
+            machine.axes, cell.joints / machine.unit_values, _units(machine), strict=True
+        )
+    )
     return f"{where}   {turned}   {margin}   {condition}   {', '.join(notes)}\n{joints}"
 
 
@@ -53,7 +57,11 @@ def certified(optimality: Mapping[str, Any] | None) -> str:
     )
     worst = optimality["worst"]
     return text.format(
-        optimality["objective"], optimality["bound"], 100.0 * optimality["gap"], 100.0 * worst["gap"], worst["layer"],
+        optimality["objective"],
+        optimality["bound"],
+        100.0 * optimality["gap"],
+        100.0 * worst["gap"],
+        worst["layer"],
         worst["bead"],
     )
 
@@ -69,7 +77,13 @@ def joint_ranges(joints: Array, station: Station) -> list[tuple[str, bool]]:
     return [
         (f"{name} {a:.1f}…{b:.1f}{unit}", bool(wrong))
         for name, a, b, wrong, unit in zip(
-            station.machine.axes, low / units, high / units, past, _units(station.machine), strict=True)
+            station.machine.axes,
+            low / units,
+            high / units,
+            past,
+            _units(station.machine),
+            strict=True,
+        )
     ]
 
 

@@ -86,16 +86,25 @@ def source_of(obj: Any) -> Source:
     cell = resolved(looks, toolpath, user_machines.folders())
     if not cell.machine.free or not value.joint_path.branch:
         raise InputError(
-            "NO_MAP", obj.Label, "its machine has two rotary axes, which leave no rotation about the tool to choose; open "
+            "NO_MAP",
+            obj.Label,
+            "its machine has two rotary axes, which leave no rotation about the tool to choose; open "
             "the map "
             "of a robot",
         )
     return Source(
-        document=obj.Document.Name, name=obj.Name, title=obj.Label,
-        objects=tuple(dict.fromkeys((obj.Name, obj.Toolpath.Name, obj.Cell.Name))), cell=cell,
-        parameters=obj.Proxy.parameters(obj, JointParameters), toolpath=toolpath, planned=value.joint_path,
-        beads=_as_run(toolpath, value.joint_path, cell), places=_places(toolpath, value.joint_path, cell),
-        width=obj.Toolpath.Proxy.parameters(obj.Toolpath, ProcessParameters).bead_width, shapes=meshes_of(cell.robot),
+        document=obj.Document.Name,
+        name=obj.Name,
+        title=obj.Label,
+        objects=tuple(dict.fromkeys((obj.Name, obj.Toolpath.Name, obj.Cell.Name))),
+        cell=cell,
+        parameters=obj.Proxy.parameters(obj, JointParameters),
+        toolpath=toolpath,
+        planned=value.joint_path,
+        beads=_as_run(toolpath, value.joint_path, cell),
+        places=_places(toolpath, value.joint_path, cell),
+        width=obj.Toolpath.Proxy.parameters(obj.Toolpath, ProcessParameters).bead_width,
+        shapes=meshes_of(cell.robot),
     )
 
 
@@ -104,7 +113,9 @@ def status_of(obj: Any) -> tuple[str, bool]:
     with contextlib.suppress(ReferenceError, RuntimeError):
         message = first_message(issues_of(obj))
         wrong, status = obj.Status != UP_TO_DATE, translated(obj.Status)
-        return tr("{}: {}").format(status, translated(message)) if message and wrong else status, wrong
+        return tr("{}: {}").format(
+            status, translated(message)
+        ) if message and wrong else status, wrong
     return "", False
 
 
@@ -121,7 +132,10 @@ def _as_run(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[Bead, .
     if cell.external is not None:
         return tuple(path.bead for path in planned.beads)
     run = {(path.layer, path.index): path.bead for path in planned.beads}
-    pieces, beads = Counter(path.layer for path in planned.beads), Counter(layer for layer, _, _ in toolpath)
+    pieces, beads = (
+        Counter(path.layer for path in planned.beads),
+        Counter(layer for layer, _, _ in toolpath),
+    )
     found = []
     for layer, index, bead in toolpath:
         other = run.get((layer, index))

@@ -32,7 +32,11 @@ def redundancy_map() -> None:
     of the last one with a result."""
     selected = [found for found in map(_joint_path, meant()) if found is not None]
     if not selected and job_named():
-        _say(tr("{} has no joint path to map; make one first, or select another job.").format(job_named()))
+        _say(
+            tr("{} has no joint path to map; make one first, or select another job.").format(
+                job_named()
+            )
+        )
         return
     made = [obj for obj in App.ActiveDocument.Objects if _joint_path(obj) is obj and obj.Key]
     if not selected and not made:

@@ -20,7 +20,9 @@ _PAD, _GAP = 4, 6
 class JointBars(QtGui.QWidget):
     """lower, upper: (axes,) in the units shown, infinite of endless axes, which have no bar but a turning mark."""
 
-    def __init__(self, names: Sequence[str], units: Sequence[str], lower: Array, upper: Array) -> None:
+    def __init__(
+        self, names: Sequence[str], units: Sequence[str], lower: Array, upper: Array
+    ) -> None:
         super().__init__()
         self.setObjectName("joints")
         self.names, self.units, self.lower, self.upper = names, units, lower, upper
@@ -30,8 +32,12 @@ class JointBars(QtGui.QWidget):
         self.bad = np.zeros(len(names), dtype=bool)
         self.row = self.fontMetrics().height() + 6
         self.setMinimumHeight(self.row * (len(names) + 1) + 2)
-        self.setToolTip(tr("Each joint in its range, how far it is from the nearer limit, and the share of its largest "
-                           "speed that is asked of it"))
+        self.setToolTip(
+            tr(
+                "Each joint in its range, how far it is from the nearer limit, and the share of its largest "
+                "speed that is asked of it"
+            )
+        )
 
     def set(self, values: Array, margins: Array, ratios: Array, bad: Mask) -> None:
         """(axes,) values and margins in the units shown, shares of the largest speeds, and which are to be red."""
@@ -44,7 +50,11 @@ class JointBars(QtGui.QWidget):
         if not np.isfinite(self.values[axis]):
             return "–", "–", "–"
         margin = f"{self.margins[axis]:.1f}{unit}" if np.isfinite(self.margins[axis]) else "∞"
-        return f"{round(float(self.values[axis]), 1) + 0.0:.1f}{unit}", margin, f"{100.0 * self.ratios[axis]:.0f} %"
+        return (
+            f"{round(float(self.values[axis]), 1) + 0.0:.1f}{unit}",
+            margin,
+            f"{100.0 * self.ratios[axis]:.0f} %",
+        )
 
     def paintEvent(self, event: Any) -> None:
         """Draw all rows."""
@@ -53,16 +63,25 @@ class JointBars(QtGui.QWidget):
         wide = self.fontMetrics().boundingRect
         most = "8888.8 mm" if "mm" in self.units else "8888.8°"
         name, value, margin, speed = (
-            wide(text).width() + _GAP for text in (max(self.names, key=len), f"-{most}", most, "88888 %")
+            wide(text).width() + _GAP
+            for text in (max(self.names, key=len), f"-{most}", most, "88888 %")
         )
         name = max(name, 22)
         left, right = _PAD + name + value, self.width() - _PAD - margin - speed
-        heads = ((left, right - left, tr("range")), (right, margin, tr("margin")),
-                 (right + margin, speed, tr("speed")))
-        ink, faint = self.palette().color(QtGui.QPalette.WindowText), self.palette().color(QtGui.QPalette.Mid)
+        heads = (
+            (left, right - left, tr("range")),
+            (right, margin, tr("margin")),
+            (right + margin, speed, tr("speed")),
+        )
+        ink, faint = (
+            self.palette().color(QtGui.QPalette.WindowText),
+            self.palette().color(QtGui.QPalette.Mid),
+        )
         painter.setPen(faint.darker(130))
         for at, width, text in heads:
-            flags = QtCore.Qt.AlignVCenter | (QtCore.Qt.AlignHCenter if text == heads[0][2] else QtCore.Qt.AlignRight)
+            flags = QtCore.Qt.AlignVCenter | (
+                QtCore.Qt.AlignHCenter if text == heads[0][2] else QtCore.Qt.AlignRight
+            )
             painter.drawText(QtCore.QRect(at, 0, width, self.row), int(flags), text)
         for axis, label in enumerate(self.names):
             top = (axis + 1) * self.row
@@ -78,7 +97,9 @@ class JointBars(QtGui.QWidget):
 
     def _bar(self, painter: Any, left: int, top: int, width: int, axis: int, faint: Any) -> None:
         high = self.row
-        groove = QtCore.QRectF(left + _GAP, top + 0.36 * high, max(width - 2 * _GAP, 8), 0.28 * high)
+        groove = QtCore.QRectF(
+            left + _GAP, top + 0.36 * high, max(width - 2 * _GAP, 8), 0.28 * high
+        )
         painter.setPen(QtCore.Qt.NoPen)
         painter.setBrush(faint.lighter(125))
         painter.drawRoundedRect(groove, 2, 2)
@@ -93,10 +114,16 @@ class JointBars(QtGui.QWidget):
         middle = groove.left() + 0.5 * groove.width()
         at = groove.left() + share * groove.width()
         painter.setBrush(colour.lighter(150))
-        painter.drawRect(QtCore.QRectF(min(middle, at), groove.top(), abs(at - middle), groove.height()))
+        painter.drawRect(
+            QtCore.QRectF(min(middle, at), groove.top(), abs(at - middle), groove.height())
+        )
         painter.setBrush(colour)
         painter.drawRoundedRect(QtCore.QRectF(at - 2.5, top + 0.18 * high, 5.0, 0.64 * high), 2, 2)
 
-    def _text(self, painter: Any, left: int, top: int, width: int, text: str, to_right: bool) -> None:
+    def _text(
+        self, painter: Any, left: int, top: int, width: int, text: str, to_right: bool
+    ) -> None:
         side = QtCore.Qt.AlignRight if to_right else QtCore.Qt.AlignLeft
-        painter.drawText(QtCore.QRect(left, top, width, self.row), int(side | QtCore.Qt.AlignVCenter), text)
+        painter.drawText(
+            QtCore.QRect(left, top, width, self.row), int(side | QtCore.Qt.AlignVCenter), text
+        )

@@ -49,13 +49,19 @@ class Simulation:
         watch.listen(self._preferences_changed)
         watch.listen_to_language(self._speak)
         self.show()
-        QtCore.QTimer.singleShot(FIT, self._fit)  # once the dock has its place and the view the rest
+        QtCore.QTimer.singleShot(
+            FIT, self._fit
+        )  # once the dock has its place and the view the rest
 
     # ---- the dock
 
     def _title(self) -> str:
         document = App.listDocuments().get(self.run.document)
-        of = self.run.title if document is None else tr("{} ({})").format(self.run.title, document.Label)
+        of = (
+            self.run.title
+            if document is None
+            else tr("{} ({})").format(self.run.title, document.Label)
+        )
         return tr("Simulation of {title}").format(title=of)
 
     def _speak(self) -> None:
@@ -68,9 +74,12 @@ class Simulation:
     def _build(self) -> None:
         """The fields, in the language of the window."""
         acts = {
-            "layer_back": lambda: self._step_layer(-1), "point_back": lambda: self._step(-1),
-            "play": lambda: self.play(not self.player.playing), "point_on": lambda: self._step(1),
-            "layer_on": lambda: self._step_layer(1), "next_finding": self._next_finding,
+            "layer_back": lambda: self._step_layer(-1),
+            "point_back": lambda: self._step(-1),
+            "play": lambda: self.play(not self.player.playing),
+            "point_on": lambda: self._step(1),
+            "layer_on": lambda: self._step_layer(1),
+            "next_finding": self._next_finding,
         }
         self.fields = Fields(self.run, self.player, self._slid, acts)
         self.scroll.setWidget(self.fields)  # what was there goes
@@ -135,7 +144,9 @@ class Simulation:
         moment = self.player.moment()
         state = moment.state
         try:
-            self.scene.show(moment.row, state.joints, state.position, not bool(state.standing), moment.links)
+            self.scene.show(
+                moment.row, state.joints, state.position, not bool(state.standing), moment.links
+            )
             redraw.with_fields(self.scene.view)
         except (RuntimeError, ReferenceError):  # the view was closed
             self.end(tr("its view was closed"))
@@ -149,7 +160,9 @@ class Simulation:
             self.show()
             self._reserve_width()
             findings = self.run.watch.findings
-            self.fields.tell_finding(None if self.player.finding is None else findings[self.player.finding])
+            self.fields.tell_finding(
+                None if self.player.finding is None else findings[self.player.finding]
+            )
 
     # ---- the end
 
@@ -171,7 +184,9 @@ class Simulation:
         """End it by itself, and say why."""
         if self.scene is not None:
             self.close(document_goes)
-            Gui.getMainWindow().statusBar().showMessage(tr("The simulation has ended: {why}.").format(why=why), 8000)
+            Gui.getMainWindow().statusBar().showMessage(
+                tr("The simulation has ended: {why}.").format(why=why), 8000
+            )
 
     def _changed_object(self, obj: Any, name: str) -> None:
         if name == "Key":

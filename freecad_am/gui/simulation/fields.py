@@ -27,16 +27,24 @@ class Fields(QtGui.QWidget):
     each button does, by its name."""
 
     def __init__(
-        self, run: Run, player: Player, slid: Callable[[float], None], acts: dict[str, Callable[[], None]],
+        self,
+        run: Run,
+        player: Player,
+        slid: Callable[[float], None],
+        acts: dict[str, Callable[[], None]],
     ) -> None:
         super().__init__()
         self.setObjectName("form")
         self.run, self.player, self.filling = run, player, False
         machine, limits = run.cell.machine, run.cell.limits
         units, axes = machine.unit_values, len(machine.axes)
-        self.bars = JointBars(machine.axes, machine.units, limits.lower[:axes] / units, limits.upper[:axes] / units)
+        self.bars = JointBars(
+            machine.axes, machine.units, limits.lower[:axes] / units, limits.upper[:axes] / units
+        )
         self.slider = self._slider(slid)
-        self.labels = {name: SteadyLabel(name) for name in ("clock", "place", "doing", "speed", "condition")}
+        self.labels = {
+            name: SteadyLabel(name) for name in ("clock", "place", "doing", "speed", "condition")
+        }
         self.finding = _label("finding")
         self.finding.setWordWrap(True)
         self.finding.setMinimumHeight(2 * self.finding.fontMetrics().height() + 4)
@@ -44,7 +52,9 @@ class Fields(QtGui.QWidget):
         column = QtGui.QVBoxLayout(self)
         column.setContentsMargins(8, 6, 8, 6)
         if run.stale:
-            stale = _label("stale", tr("This is an earlier plan; recompute the document for the present one."))
+            stale = _label(
+                "stale", tr("This is an earlier plan; recompute the document for the present one.")
+            )
             stale.setWordWrap(True)
             stale.setStyleSheet(_WRONG)
             column.addWidget(stale)
@@ -97,10 +107,14 @@ class Fields(QtGui.QWidget):
         self.factor.setToolTip(tr("How many seconds of the job pass in one"))
         self.factor.addItems([f"{factor:g} ×" for factor in FACTORS])
         self.factor.setCurrentIndex(FACTORS.index(self.player.factor))
-        self.factor.currentIndexChanged.connect(lambda index: setattr(self.player, "factor", FACTORS[index]))
+        self.factor.currentIndexChanged.connect(
+            lambda index: setattr(self.player, "factor", FACTORS[index])
+        )
         self.next = QtGui.QPushButton(tr("Next finding"))
         self.next.setObjectName("next_finding")
-        self.next.setToolTip(tr("To the next place where a limit, a singularity or a speed needs attention"))
+        self.next.setToolTip(
+            tr("To the next place where a limit, a singularity or a speed needs attention")
+        )
         self.next.clicked.connect(lambda *_: acts["next_finding"]())
         self.next.setEnabled(bool(self.run.watch.findings))
         line.addWidget(self.factor)
@@ -140,7 +154,12 @@ class Fields(QtGui.QWidget):
         self.bars.set(moment.values, moment.margins, moment.ratios, moment.bad)
         speed, kept = wording.speed(moment)
         for name, text, good in (
-            ("doing", wording.doing(self.run, moment), bool(np.isfinite(moment.state.joints).all())), ("speed", speed, kept),
+            (
+                "doing",
+                wording.doing(self.run, moment),
+                bool(np.isfinite(moment.state.joints).all()),
+            ),
+            ("speed", speed, kept),
             ("condition", wording.condition(moment), not moment.singular),
         ):
             label = self.labels[name]
@@ -153,10 +172,16 @@ class Fields(QtGui.QWidget):
         """Tell of a finding, or how many there are."""
         count = len(self.run.watch.findings)
         if found is None:
-            text = tr("{count} findings").format(count=count) if count else wording.nothing(self.run)
+            text = (
+                tr("{count} findings").format(count=count) if count else wording.nothing(self.run)
+            )
         else:
             limit = found.label in self.run.cell.machine.axes
-            unit = self.run.cell.machine.units[self.run.cell.machine.axes.index(found.label)] if limit else "deg"
+            unit = (
+                self.run.cell.machine.units[self.run.cell.machine.axes.index(found.label)]
+                if limit
+                else "deg"
+            )
             text = f"{(self.player.finding or 0) + 1}/{count}: {wording.finding(found, unit)}"
         self.finding.setText(text)
         self.finding.setStyleSheet(_WRONG if found is not None else "")

@@ -53,7 +53,11 @@ class Player:
 
     def go(self, time: float) -> None:
         """To a time."""
-        self.time, self.row, self.finding = float(np.clip(time, 0.0, self.run.times.total)), None, None
+        self.time, self.row, self.finding = (
+            float(np.clip(time, 0.0, self.run.times.total)),
+            None,
+            None,
+        )
 
     def go_to_row(self, row: int) -> None:
         """To where a row is reached."""
@@ -102,16 +106,29 @@ class Player:
         row = int(state.row) if self.row is None else self.row
         motion, machine = run.motion, run.cell.machine
         before = slice(max(row - 1, 0), row + 1)
-        ratios = speed_ratios(motion.joints[before], np.nan_to_num(motion.duration[before]), machine.max_speed)[-1]
+        ratios = speed_ratios(
+            motion.joints[before], np.nan_to_num(motion.duration[before]), machine.max_speed
+        )[-1]
         ratios = np.nan_to_num(ratios, posinf=0.0)
         margins = shown_margins(run.cell, state.joints)
         condition, threshold = float(run.watch.condition[row]), float(run.watch.threshold[row])
         singular, reachable = bool(run.watch.singular[row]), bool(np.isfinite(state.joints).all())
-        links = bad_links(run.cell, margins, ratios, singular, reachable, int(run.watch.touching[row]))
+        links = bad_links(
+            run.cell, margins, ratios, singular, reachable, int(run.watch.touching[row])
+        )
         alone = bad_links(run.cell, margins, ratios, False, True)
         axes = len(machine.axes)
         return Moment(
-            state=state, row=row, values=state.joints / machine.unit_values, margins=margins[:axes], ratios=ratios,
-            bad=alone[1:], links=links, asked=float(run.feed.asked[row]), achieved=float(run.feed.achieved[row]),
-            condition=condition, threshold=threshold, singular=singular,
+            state=state,
+            row=row,
+            values=state.joints / machine.unit_values,
+            margins=margins[:axes],
+            ratios=ratios,
+            bad=alone[1:],
+            links=links,
+            asked=float(run.feed.asked[row]),
+            achieved=float(run.feed.achieved[row]),
+            condition=condition,
+            threshold=threshold,
+            singular=singular,
         )

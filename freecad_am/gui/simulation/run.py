@@ -62,7 +62,9 @@ def prepared(obj: Any) -> Callable[[], Run]:
     InputError as `run_of`."""
     stage = stage_of(obj)
     if stage is None or stage.kind not in ("joint path", "program"):
-        raise InputError("NOT_TO_PLAY", obj.Label, "it is neither a joint path nor a program; select one of them")
+        raise InputError(
+            "NOT_TO_PLAY", obj.Label, "it is neither a joint path nor a program; select one of them"
+        )
     path = obj if stage.kind == "joint path" else obj.JointPath
     planned, toolpath, looks = planned_of(path, obj.Label)
     folders = user_machines.folders()
@@ -83,13 +85,28 @@ def prepared(obj: Any) -> Callable[[], Run]:
         times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
         kept = achievable_feed(motion, cell.machine.max_speed, cell.machine.max_acceleration)
         return Run(
-            document=document, title=label, objects=names, cell=cell, looks=looks, toolpath=toolpath,
-            width=process.bead_width, motion=motion, times=times, feed=kept,
+            document=document,
+            title=label,
+            objects=names,
+            cell=cell,
+            looks=looks,
+            toolpath=toolpath,
+            width=process.bead_width,
+            motion=motion,
+            times=times,
+            feed=kept,
             watch=watch(
-                motion, cell, kept, run.condition, run.threshold, run.issues,
+                motion,
+                cell,
+                kept,
+                run.condition,
+                run.threshold,
+                run.issues,
                 arm_of(motion, cell, toolpath, process, shapes),
             ),
-            totals=totals(motion, times, process, toolpath), stale=stale, deposit=deposited,
+            totals=totals(motion, times, process, toolpath),
+            stale=stale,
+            deposit=deposited,
         )
 
     return work
@@ -99,7 +116,12 @@ def _predicted(toolpath: Any) -> Array | None:
     """The deposit that the last inspection of a toolpath has predicted, where it fits that."""
     for obj in reversed(toolpath.InList):
         stage = stage_of(obj)
-        if stage is not None and stage.kind == "inspection" and obj.Key and obj.Status == UP_TO_DATE:
+        if (
+            stage is not None
+            and stage.kind == "inspection"
+            and obj.Key
+            and obj.Status == UP_TO_DATE
+        ):
             found: Array | None = stage.value(obj).laid
             if found is not None:
                 return found

@@ -23,7 +23,15 @@ from ...core.simulation.grown import heights
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
-from ..nodes.cell import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
+from ..nodes.cell import (
+    NOZZLE,
+    PLATFORM,
+    coloured,
+    holder_node,
+    nozzle_node,
+    platform_nodes,
+    resting_point,
+)
 from ..nodes.external_links import ExternalLinkNodes
 from ..nodes.lines import Lines, fill
 from ..nodes.machine_links import MachineNodes, move, plain_links
@@ -46,13 +54,17 @@ class Scene:
         self.to_view = frames.inverse(rest.part)
         looks = run.looks
         self.machine = MachineNodes(
-            cell.robot, plain_links(cell.robot, looks.platform_diameter, looks.nozzle.length))
+            cell.robot, plain_links(cell.robot, looks.platform_diameter, looks.nozzle.length)
+        )
         self.external_links = ExternalLinkNodes(cell.external_links)
         self.part, self.nozzle = coin.SoMatrixTransform(), coin.SoMatrixTransform()
         self.part_matrix, self.nozzle_matrix = self.part.matrix, self.nozzle.matrix
         self.deposit, self.to_come = PathNodes(), PathNodes()
         self.deposit.as_tubes, self.to_come.style.lineWidth = True, 1.0
-        self.last, self.growing = Lines(3.0, METAL), False  # the segment that is under way, and whether one is
+        self.last, self.growing = (
+            Lines(3.0, METAL),
+            False,
+        )  # the segment that is under way, and whether one is
         self.last.set(np.zeros((2, 3)), [2])
         self.last.show(False)
         self.last_points = self.last.coordinates.point
@@ -65,7 +77,12 @@ class Scene:
         platform = coin.SoSeparator()
         for child in platform_nodes(run.looks, mount):
             platform.addChild(child)
-        for child in (self.deposit.node, self.last.node, self.to_come.node, coloured(PLATFORM, platform)):
+        for child in (
+            self.deposit.node,
+            self.last.node,
+            self.to_come.node,
+            coloured(PLATFORM, platform),
+        ):
             part.addChild(child)
         for child in (self.machine.node, self.external_links.node, nozzle, part):
             self.root.addChild(child)
@@ -84,7 +101,9 @@ class Scene:
         deposit = motion.deposit
         self.rows_before = np.concatenate([[0], np.cumsum(deposit)])
         beads = _beads(self.run)
-        rows = Rows.of(beads, _layers(self.run), self.run.width, lambda: self.run.toolpath.layer_height)
+        rows = Rows.of(
+            beads, _layers(self.run), self.run.width, lambda: self.run.toolpath.layer_height
+        )
         colours = np.tile(METAL, (len(rows), 1))
         slowed, wrong = self.run.feed.slowed[deposit], _wrong(self.run)[deposit]
         colours[slowed], colours[wrong] = SLOW, WRONG
@@ -160,10 +179,16 @@ def _beads(run: Run) -> list[Bead]:
     rows = np.flatnonzero(motion.deposit)
     pieces = np.split(rows, np.flatnonzero(motion.point[rows] == 0)[1:])
     return [
-        Bead(points=motion.position[piece], build=motion.build[piece], tool=motion.tool[piece],
-             parameter=np.arange(len(piece)), speed=motion.speed[piece], closed=False,
-             width=None if np.isnan(motion.width[piece]).any() else motion.width[piece],
-             height=None if height is None or np.isnan(height[piece]).any() else height[piece])
+        Bead(
+            points=motion.position[piece],
+            build=motion.build[piece],
+            tool=motion.tool[piece],
+            parameter=np.arange(len(piece)),
+            speed=motion.speed[piece],
+            closed=False,
+            width=None if np.isnan(motion.width[piece]).any() else motion.width[piece],
+            height=None if height is None or np.isnan(height[piece]).any() else height[piece],
+        )
         for piece in pieces
     ]
 

@@ -25,7 +25,11 @@ def simulate() -> None:
     joint path of the document that has a result."""
     selected = [obj for obj in meant() if _kind(obj) in KINDS]
     if not selected and job_named():
-        _say(tr("{} has no joint path to simulate; make one first, or select another job.").format(job_named()))
+        _say(
+            tr("{} has no joint path to simulate; make one first, or select another job.").format(
+                job_named()
+            )
+        )
         return
     made = [obj for obj in App.ActiveDocument.Objects if _kind(obj) == "joint path" and obj.Key]
     if selected or made:

@@ -46,7 +46,9 @@ def finding(found: Finding, unit: str = "deg") -> str:
     }
     value = -found.value if found.kind == watch.LIMIT else found.value
     if found.kind == watch.SLOWED:
-        return texts[found.kind].format(label=found.label, value=_speed(value), than=_speed(found.than))
+        return texts[found.kind].format(
+            label=found.label, value=_speed(value), than=_speed(found.than)
+        )
     label = translated(found.label) if found.kind == watch.ISSUE else found.label
     return texts[found.kind].format(label=label, value=value, than=found.than, unit=unit)
 
@@ -54,7 +56,9 @@ def finding(found: Finding, unit: str = "deg") -> str:
 def nothing(run: Run) -> str:
     """That there are no findings, and among what."""
     if run.watch.arm_known:
-        return tr("No findings: no limit, singularity or speed comes near, and no link of the robot touches anything")
+        return tr(
+            "No findings: no limit, singularity or speed comes near, and no link of the robot touches anything"
+        )
     return tr("No findings: no limit, singularity or speed comes near")
 
 
@@ -66,7 +70,11 @@ def place(run: Run, moment: Moment) -> str:
 
 def _place(run: Run, layer: int, bead: int, point: int) -> str:
     return tr("Layer {layer} ({first} to {last}), bead {bead}, point {point}").format(
-        layer=layer, first=int(run.times.layers[0]), last=int(run.times.layers[-1]), bead=bead, point=point
+        layer=layer,
+        first=int(run.times.layers[0]),
+        last=int(run.times.layers[-1]),
+        bead=bead,
+        point=point,
     )
 
 
@@ -81,7 +89,13 @@ def doing(run: Run, moment: Moment) -> str:
 
 
 def _doings() -> tuple[str, str, str, str, str]:
-    return tr("out of reach"), tr("waits, deposit on"), tr("waits"), tr("deposits"), tr("rapid move")
+    return (
+        tr("out of reach"),
+        tr("waits, deposit on"),
+        tr("waits"),
+        tr("deposits"),
+        tr("rapid move"),
+    )
 
 
 def speed(moment: Moment) -> tuple[str, bool]:
@@ -115,7 +129,9 @@ def condition(moment: Moment) -> str:
 
 
 def _condition(condition: float, threshold: float) -> str:
-    return tr("{condition:.3f} (at least {threshold:.3f})").format(condition=condition, threshold=threshold)
+    return tr("{condition:.3f} (at least {threshold:.3f})").format(
+        condition=condition, threshold=threshold
+    )
 
 
 def times(run: Run, time: float) -> str:
@@ -130,14 +146,19 @@ def widest(run: Run) -> dict[str, tuple[str, ...]]:
     """Texts as wide as those that are told of a run, by the field that tells them."""
     motion, feed = run.motion, run.feed
     place = (_wide(int(column.max())) for column in (motion.layer, motion.bead, motion.point))
-    asked, slower = feed.asked, ~(feed.achieved >= feed.asked * (1.0 - 1e-6)) & np.isfinite(feed.asked)
+    asked, slower = (
+        feed.asked,
+        ~(feed.achieved >= feed.asked * (1.0 - 1e-6)) & np.isfinite(feed.asked),
+    )
     speeds = [_widest_speed(asked)]
     if slower.any():
         speeds.append(_instead(_widest_speed(feed.achieved[slower]), _widest_speed(asked[slower])))
     shorter = min(run.times.total, _HOUR - 1.0)  # has tenths of a second
     return {
         "clock": tuple(re.sub(r"\d", "8", times(run, time)) for time in (run.times.total, shorter)),
-        "place": (_place(run, *place),), "doing": _doings(), "speed": tuple(speeds),
+        "place": (_place(run, *place),),
+        "doing": _doings(),
+        "speed": tuple(speeds),
         "condition": (_condition(0.888, 0.888),),
     }
 
@@ -169,5 +190,11 @@ def totals(run: Run) -> list[tuple[str, str]]:
         (tr("Mass"), tr("{mass:.1f} g").format(mass=sums.mass)),
     ]
     if run.feed.lost > 0.05:
-        rows.insert(1, (tr("Longer by"), tr("{time} where speeds are not kept").format(time=clock(run.feed.lost))))
+        rows.insert(
+            1,
+            (
+                tr("Longer by"),
+                tr("{time} where speeds are not kept").format(time=clock(run.feed.lost)),
+            ),
+        )
     return rows

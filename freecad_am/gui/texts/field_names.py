@@ -17,11 +17,17 @@ from ...core.strategies.families import FAMILIES
 from ...objects.fields.rows import group_of, rows
 
 _SECTIONS = (
-    ("cell", CellParameters), *(("strategy", family.parameters) for family in FAMILIES),
-    ("build_direction", BuildDirectionParameters), ("process", ProcessParameters),
-    ("joints", JointParameters), ("program", ProgramParameters), ("inspection", InspectionParameters),
+    ("cell", CellParameters),
+    *(("strategy", family.parameters) for family in FAMILIES),
+    ("build_direction", BuildDirectionParameters),
+    ("process", ProcessParameters),
+    ("joints", JointParameters),
+    ("program", ProgramParameters),
+    ("inspection", InspectionParameters),
 )
-_KEY = re.compile(rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])")
+_KEY = re.compile(
+    rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])"
+)
 
 
 @lru_cache(maxsize=1)
@@ -34,7 +40,9 @@ def _known() -> dict[str, tuple[str, str]]:
             steps = [step for step in row.path if isinstance(step, str)]
             if len(steps) == len(row.path):
                 nested = len(steps) > 1
-                found.setdefault(".".join([section, *steps]), (group_of(row) if nested else "", row.label))
+                found.setdefault(
+                    ".".join([section, *steps]), (group_of(row) if nested else "", row.label)
+                )
                 if nested:
                     found.setdefault(f"{section}.{steps[0]}", ("", group_of(row)))
     return found

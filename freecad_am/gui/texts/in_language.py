@@ -13,7 +13,9 @@ KINDS = ("cell", "feature", "toolpath", "program", "inspection")  # stages, as m
 def in_language(text: str, translate: Callable[[str], str]) -> str:
     """A text in another language, `translate` giving that of a template; itself where there is none. Values are put in as
     they are written, those that are texts of ours in that language too."""
-    template = text.template if isinstance(text, Text) else text.replace("{", "{{").replace("}", "}}")
+    template = (
+        text.template if isinstance(text, Text) else text.replace("{", "{{").replace("}", "}}")
+    )
     key = template.strip()
     values = (_value(value, translate) for value in text.values) if isinstance(text, Text) else ()
     return template.replace(key, translate(key), 1).format(*values) if key else text
@@ -21,7 +23,11 @@ def in_language(text: str, translate: Callable[[str], str]) -> str:
 
 def _value(value: str, translate: Callable[[str], str]) -> str:
     """What is put into a text: one of ours, else a name or a number, which stay."""
-    return in_language(value, translate) if isinstance(value, Text) or " " in value or value in KINDS else value
+    return (
+        in_language(value, translate)
+        if isinstance(value, Text) or " " in value or value in KINDS
+        else value
+    )
 
 
 def names_first(text: str) -> bool:

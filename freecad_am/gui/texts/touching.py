@@ -10,10 +10,15 @@ from .translation import tr
 
 def link_touches(link: str, what: str) -> str:
     """link: as `ArmContact.links` has it; what: as `ArmContact.names` has it, a body by its own name."""
-    names = {NOZZLE: tr("the nozzle"), PLATFORM: tr("the platform"), DEPOSIT: tr("the deposit"), TORCH: tr("the torch")}
+    names = {
+        NOZZLE: tr("the nozzle"),
+        PLATFORM: tr("the platform"),
+        DEPOSIT: tr("the deposit"),
+        TORCH: tr("the torch"),
+    }
     names[BASE] = tr("the base")
     if what.startswith(OWN):
-        names[what] = tr("the link of {axis}").format(axis=what[len(OWN):])
+        names[what] = tr("the link of {axis}").format(axis=what[len(OWN) :])
     if " " in link:  # of positioner or track, by its own name
         return tr("{link} touches {what}").format(link=link, what=names.get(what, what))
     if link == BASE:

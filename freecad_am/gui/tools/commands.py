@@ -20,86 +20,163 @@ GROUPS = (
 )
 TOOLS = {
     "OpenPart": Tool(
-        "open_part", marked("Open Part…"),
-        marked("Opens a part or mesh from a file, which may be damaged: it is read in a process of its own"),
-        openers.open_part, needs.nothing,
+        "open_part",
+        marked("Open Part…"),
+        marked(
+            "Opens a part or mesh from a file, which may be damaged: it is read in a process of its own"
+        ),
+        openers.open_part,
+        needs.nothing,
     ),
     "NewJob": Tool(
-        "new_job", marked("New Job…"), marked("Makes all stages for the selected shape, from cell to program"),
-        openers.new_job, needs.part,
+        "new_job",
+        marked("New Job…"),
+        marked("Makes all stages for the selected shape, from cell to program"),
+        openers.new_job,
+        needs.part,
     ),
-    "Cell": Tool("cell", marked("Cell…"), marked("Adds a cell: machine, set-up, platform and nozzle"), openers.cell),
+    "Cell": Tool(
+        "cell",
+        marked("Cell…"),
+        marked("Adds a cell: machine, set-up, platform and nozzle"),
+        openers.cell,
+    ),
     "Feature": Tool(
-        "feature", marked("Feature…"), marked("Takes the selected shape of revolution to be deposited"), openers.feature,
+        "feature",
+        marked("Feature…"),
+        marked("Takes the selected shape of revolution to be deposited"),
+        openers.feature,
         needs.faces,
     ),
     "WallOnPart": Tool(
-        "wall_on_part", marked("Wall on Part…"),
-        marked("Takes the selected faces as a wall to be deposited on the other object that is selected"), openers.wall,
+        "wall_on_part",
+        marked("Wall on Part…"),
+        marked(
+            "Takes the selected faces as a wall to be deposited on the other object that is selected"
+        ),
+        openers.wall,
         needs.faces,
     ),
     "Solid": Tool(
-        "solid", marked("Solid…"), marked("Takes the selected solids to be deposited in plane layers"), openers.solid,
+        "solid",
+        marked("Solid…"),
+        marked("Takes the selected solids to be deposited in plane layers"),
+        openers.solid,
         needs.part,
     ),
     "SolidsOnHub": Tool(
-        "solids_on_hub", marked("Solids on Hub…"),
-        marked("Takes the selected solids to be deposited on the cylinder or cone that is selected last"), openers.hub,
+        "solids_on_hub",
+        marked("Solids on Hub…"),
+        marked(
+            "Takes the selected solids to be deposited on the cylinder or cone that is selected last"
+        ),
+        openers.hub,
         needs.part,
     ),
     "Curves": Tool(
-        "curves", marked("Curves…"), marked("Takes the selected edges, wires, sketches or tables to be laid as beads"),
-        openers.curves, needs.document,
+        "curves",
+        marked("Curves…"),
+        marked("Takes the selected edges, wires, sketches or tables to be laid as beads"),
+        openers.curves,
+        needs.document,
     ),
     "Cladding": Tool(
-        "cladding", marked("Cladding…"), marked("Takes the selected faces to be covered with layers of beads"),
-        openers.cladding, needs.faces,
+        "cladding",
+        marked("Cladding…"),
+        marked("Takes the selected faces to be covered with layers of beads"),
+        openers.cladding,
+        needs.faces,
     ),
     "Toolpath": Tool(
-        "toolpath", marked("Toolpath…"), marked("Cuts a feature into layers and beads"), openers.toolpath, needs.feature
+        "toolpath",
+        marked("Toolpath…"),
+        marked("Cuts a feature into layers and beads"),
+        openers.toolpath,
+        needs.feature,
     ),
     "JointPath": Tool(
-        "joint_path", marked("Joint Path…"), marked("Plans the joint values of a toolpath in a cell"), openers.joint_path,
+        "joint_path",
+        marked("Joint Path…"),
+        marked("Plans the joint values of a toolpath in a cell"),
+        openers.joint_path,
         needs.toolpath_and_cell,
     ),
     "SpinMap": Tool(
-        "spin_map", marked("Free Rotation Map…"),
-        marked("Shows the path against the rotation about the tool; the curve can be drawn by hand"), openers.redundancy_map,
-        needs.joint_path, True,
+        "spin_map",
+        marked("Free Rotation Map…"),
+        marked(
+            "Shows the path against the rotation about the tool; the curve can be drawn by hand"
+        ),
+        openers.redundancy_map,
+        needs.joint_path,
+        True,
     ),
     "Placement": Tool(
-        "placement", marked("Placement…"),
-        marked("Tries where the part, its positioner or the deposition point can stand, and shows the robot's reach"),
-        openers.placement, needs.toolpath_and_cell, True,
+        "placement",
+        marked("Placement…"),
+        marked(
+            "Tries where the part, its positioner or the deposition point can stand, and shows the robot's reach"
+        ),
+        openers.placement,
+        needs.toolpath_and_cell,
+        True,
     ),
     "Path": Tool(
-        "path", marked("Path"), marked("Shows a toolpath or joint path layer by layer and point by point"), openers.path,
-        needs.path, True,
+        "path",
+        marked("Path"),
+        marked("Shows a toolpath or joint path layer by layer and point by point"),
+        openers.path,
+        needs.path,
+        True,
     ),
     "Simulate": Tool(
-        "simulate", marked("Simulate…"), marked("Plays a joint path or program with its machine"), openers.simulate,
-        needs.joint_path, True,
+        "simulate",
+        marked("Simulate…"),
+        marked("Plays a joint path or program with its machine"),
+        openers.simulate,
+        needs.joint_path,
+        True,
     ),
     "ExportPath": Tool(
-        "export_path", marked("Export Path…"),
-        marked("Writes a path as STEP or DXF wires, a table or a report, or makes a CAM path or Robot trajectory of it"),
-        openers.export_path, needs.path,
+        "export_path",
+        marked("Export Path…"),
+        marked(
+            "Writes a path as STEP or DXF wires, a table or a report, or makes a CAM path or Robot trajectory of it"
+        ),
+        openers.export_path,
+        needs.path,
     ),
     "Program": Tool(
-        "program", marked("Program…"), marked("Writes the controller's program of a joint path"), openers.program,
+        "program",
+        marked("Program…"),
+        marked("Writes the controller's program of a joint path"),
+        openers.program,
         needs.feasible,
     ),
     "NewMachine": Tool(
-        "new_machine", marked("New Machine…"),
-        marked("Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses"),
-        openers.new_machine, needs.nothing, True,
+        "new_machine",
+        marked("New Machine…"),
+        marked(
+            "Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses"
+        ),
+        openers.new_machine,
+        needs.nothing,
+        True,
     ),
     "Inspect": Tool(
-        "inspect", marked("Inspect…"), marked("Compares measured points with what was planned"), openers.inspect, needs.part
+        "inspect",
+        marked("Inspect…"),
+        marked("Compares measured points with what was planned"),
+        openers.inspect,
+        needs.part,
     ),
     "Plots": Tool(
-        "plots", marked("Plots…"), marked("Plots joints against limits, distances between layers and deposit rates"),
-        openers.plots, needs.path, True,
+        "plots",
+        marked("Plots…"),
+        marked("Plots joints against limits, distances between layers and deposit rates"),
+        openers.plots,
+        needs.path,
+        True,
     ),
 }
 

@@ -49,7 +49,9 @@ def of_stage(menu: Any, obj: Any) -> None:
     if kind in ("toolpath", "joint path", "program"):
         _add(menu, "ExportReport", tr("Export report…"), lambda: _report(obj), bool(obj.Key))
     _add_inputs(menu, obj)
-    path = obj.JointPath if kind == "program" else obj if kind in ("toolpath", "joint path") else None
+    path = (
+        obj.JointPath if kind == "program" else obj if kind in ("toolpath", "joint path") else None
+    )
     if path is not None:
         _add(menu, "ShowPath", tr("Show path layer by layer"), lambda: _look_at(path))
 
@@ -57,15 +59,23 @@ def of_stage(menu: Any, obj: Any) -> None:
 def _next_tools(kind: str) -> list[tuple[str, str]]:
     """Tools of the toolbar that take a stage of this kind, in the order of the toolbar."""
     return {
-        "feature": [("Toolpath", tr("Cut into layers…")), ("Inspect", tr("Compare with measured points…"))],
+        "feature": [
+            ("Toolpath", tr("Cut into layers…")),
+            ("Inspect", tr("Compare with measured points…")),
+        ],
         "toolpath": [
-            ("JointPath", tr("Plan joint path…")), ("Placement", tr("Placement…")), ("Plots", tr("Plots…")),
+            ("JointPath", tr("Plan joint path…")),
+            ("Placement", tr("Placement…")),
+            ("Plots", tr("Plots…")),
             ("Inspect", tr("Compare with measured points…")),
             ("ExportPath", tr("Export path…")),
         ],
         "joint path": [
-            ("SpinMap", tr("Map of the free rotation…")), ("Placement", tr("Placement…")), ("Program", tr("Write program…")),
-            ("Plots", tr("Plots…")), ("ExportPath", tr("Export path…")),
+            ("SpinMap", tr("Map of the free rotation…")),
+            ("Placement", tr("Placement…")),
+            ("Program", tr("Write program…")),
+            ("Plots", tr("Plots…")),
+            ("ExportPath", tr("Export path…")),
         ],
         "program": [("Plots", tr("Plots…"))],
     }.get(kind, [])
@@ -74,7 +84,13 @@ def _next_tools(kind: str) -> list[tuple[str, str]]:
 def of_job(menu: Any, group: Any) -> None:
     """What can be done with a whole job."""
     stages = stages_in(group)
-    _add(menu, "RenewJob", tr("Renew"), lambda: _renew_all(stages), any(obj.Status != UP_TO_DATE for obj in stages))
+    _add(
+        menu,
+        "RenewJob",
+        tr("Renew"),
+        lambda: _renew_all(stages),
+        any(obj.Status != UP_TO_DATE for obj in stages),
+    )
     paths = [obj for obj in stages if obj.Proxy.kind == "joint path" and obj.Key]
     _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(paths[-1]), bool(paths))
     if paths:
@@ -121,13 +137,17 @@ def _add_inputs(menu: Any, obj: Any) -> None:
     found: dict[str, Any] = {}
     for link in obj.Proxy.links:
         value = getattr(obj, link.name)
-        for one in value if isinstance(value, list) else [value[0] if isinstance(value, tuple) else value]:
+        for one in (
+            value if isinstance(value, list) else [value[0] if isinstance(value, tuple) else value]
+        ):
             if one is not None:
                 found[one.Name] = one
     if found:
         menu.addSeparator()
     for one in found.values():
-        _add(menu, f"Input_{one.Name}", tr("Go to {}").format(one.Label), lambda one=one: go_to(one))
+        _add(
+            menu, f"Input_{one.Name}", tr("Go to {}").format(one.Label), lambda one=one: go_to(one)
+        )
 
 
 def go_to(obj: Any) -> None:
@@ -142,7 +162,13 @@ def go_to(obj: Any) -> None:
 def _of_tool(menu: Any, name: str, text: str, obj: Any, on: bool) -> None:
     """An entry that uses a tool of the toolbar on an object; of what needs no more than this, `on` tells."""
     command = Gui.Command.get(f"RoboticAM_{name}")
-    _add(menu, name, text, lambda: _tool(name, obj), on and command is not None and command.isActive())
+    _add(
+        menu,
+        name,
+        text,
+        lambda: _tool(name, obj),
+        on and command is not None and command.isActive(),
+    )
 
 
 def _tool(name: str, obj: Any) -> None:
@@ -176,7 +202,8 @@ def _save_cell(obj: Any) -> None:
     with contextlib.suppress(OSError):  # which is told where the file cannot be written
         os.makedirs(os.path.dirname(first), exist_ok=True)
     path, _ = QtGui.QFileDialog.getSaveFileName(
-        Gui.getMainWindow(), tr("Save cell"), first, f"{tr('Cells')} {saved_cells.PATTERN}")
+        Gui.getMainWindow(), tr("Save cell"), first, f"{tr('Cells')} {saved_cells.PATTERN}"
+    )
     if not path:
         return
     path = saved_cells.path_of(path)

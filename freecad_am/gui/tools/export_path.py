@@ -36,7 +36,9 @@ class ExportPanel:
     def __init__(self, kind: str = STEP) -> None:
         self.document = App.ActiveDocument
         self.proposed = ""  # the file, without its ending, that the panel itself has put in
-        self.paths = [obj for kind in _KINDS for obj in api.stages_of(self.document, kind) if obj.Key]
+        self.paths = [
+            obj for kind in _KINDS for obj in api.stages_of(self.document, kind) if obj.Key
+        ]
         self.form = QtGui.QWidget()
         self.form.setObjectName("RoboticAM_ExportPath")
         self.form.setWindowTitle(tr("Export path"))
@@ -51,9 +53,12 @@ class ExportPanel:
         self.path.setCurrentIndex(self._first())
         self.kind = self._combo("Kind", tr("What is made of the path"))
         for key, text in (
-            (STEP, tr("STEP file of wires")), (DXF, tr("DXF file of polylines")),
-            (CSV, tr("CSV table of waypoints")), (REPORT, tr("HTML page of the report")),
-            (CAM, tr("CAM path in this document")), (TRAJECTORY, tr("Robot trajectory in this document")),
+            (STEP, tr("STEP file of wires")),
+            (DXF, tr("DXF file of polylines")),
+            (CSV, tr("CSV table of waypoints")),
+            (REPORT, tr("HTML page of the report")),
+            (CAM, tr("CAM path in this document")),
+            (TRAJECTORY, tr("Robot trajectory in this document")),
         ):
             self.kind.addItem(text, key)
         self.kind.setCurrentIndex(self.kind.findData(kind))
@@ -67,13 +72,24 @@ class ExportPanel:
         self._help(self.browse, tr("Choose the file"))
         self.rapids = QtGui.QCheckBox(tr("Rapid moves too"))
         self.rapids.setObjectName("Rapids")
-        self._help(self.rapids, tr("Write the moves between beads as well, on a layer of their own; toolpaths have none"))
+        self._help(
+            self.rapids,
+            tr(
+                "Write the moves between beads as well, on a layer of their own; toolpaths have none"
+            ),
+        )
         self.tolerance = QuantityField(0.1, "mm", tr("Tolerance"))
         self.tolerance.box.setObjectName("Tolerance")
-        self._help(self.tolerance.box, tr("Points are left out as long as the path stays within this distance"))
+        self._help(
+            self.tolerance.box,
+            tr("Points are left out as long as the path stays within this distance"),
+        )
         self.turn = QuantityField(2.0, "deg", tr("Turn"))
         self.turn.box.setObjectName("Turn")
-        self._help(self.turn.box, tr("Points are left out as long as the tool axis stays within this angle"))
+        self._help(
+            self.turn.box,
+            tr("Points are left out as long as the tool axis stays within this angle"),
+        )
         self._lay_out()
         self._follow()
         self.kind.currentIndexChanged.connect(self._follow)
@@ -95,15 +111,23 @@ class ExportPanel:
         widget.setWhatsThis(help)
 
     def _lay_out(self) -> None:
-        column, self.grid, line = QtGui.QVBoxLayout(self.form), QtGui.QFormLayout(), QtGui.QHBoxLayout()
+        column, self.grid, line = (
+            QtGui.QVBoxLayout(self.form),
+            QtGui.QFormLayout(),
+            QtGui.QHBoxLayout(),
+        )
         line.addWidget(self.file, 1)
         line.addWidget(self.browse)
         self.file_row = QtGui.QWidget()
         self.file_row.setLayout(line)
         line.setContentsMargins(0, 0, 0, 0)
         for text, widget in (
-            (tr("Path"), self.path), (tr("Make"), self.kind), (tr("File"), self.file_row), ("", self.rapids),
-            (tr("Tolerance"), self.tolerance.box), (tr("Turn"), self.turn.box),
+            (tr("Path"), self.path),
+            (tr("Make"), self.kind),
+            (tr("File"), self.file_row),
+            ("", self.rapids),
+            (tr("Tolerance"), self.tolerance.box),
+            (tr("Turn"), self.turn.box),
         ):
             self.grid.addRow(text, widget)
         self.file_note = QtGui.QLabel()
@@ -124,7 +148,9 @@ class ExportPanel:
         kind = self.kind.currentData()
         self._tell_file("")
         for widget, wanted in (
-            (self.file_row, kind in _FILES), (self.rapids, kind in (STEP, DXF)), (self.tolerance.box, kind == TRAJECTORY),
+            (self.file_row, kind in _FILES),
+            (self.rapids, kind in (STEP, DXF)),
+            (self.tolerance.box, kind == TRAJECTORY),
             (self.turn.box, kind == TRAJECTORY),
         ):
             for shown in filter(None, (widget, self.grid.labelForField(widget))):
@@ -150,9 +176,13 @@ class ExportPanel:
 
     def _ask(self, *_: Any) -> None:
         ending = _FILES[self.kind.currentData()]
-        chosen = QtGui.QFileDialog.getSaveFileName(self.form, tr("Export path"), self.file.text(), f"*{ending}")[0]
+        chosen = QtGui.QFileDialog.getSaveFileName(
+            self.form, tr("Export path"), self.file.text(), f"*{ending}"
+        )[0]
         if chosen:
-            self.file.setText(chosen if os.path.splitext(chosen)[1].lower() == ending else chosen + ending)
+            self.file.setText(
+                chosen if os.path.splitext(chosen)[1].lower() == ending else chosen + ending
+            )
 
     def say(self, text: str) -> None:
         """Show what is wrong."""
@@ -199,10 +229,16 @@ class ExportPanel:
         if kind in whole:
             return whole[kind], {"path": repr(self.file.text().strip())}
         if kind in _FILES:
-            return "export_wires", {"path": repr(self.file.text().strip()), "rapids": repr(self.rapids.isChecked())}
+            return "export_wires", {
+                "path": repr(self.file.text().strip()),
+                "rapids": repr(self.rapids.isChecked()),
+            }
         if kind == CAM:
             return "make_cam_path", {}
-        return "make_trajectory", {"tolerance": repr(self.tolerance.read()), "turn": repr(self.turn.read())}
+        return "make_trajectory", {
+            "tolerance": repr(self.tolerance.read()),
+            "turn": repr(self.turn.read()),
+        }
 
     def reject(self) -> bool:
         """Nothing was done."""

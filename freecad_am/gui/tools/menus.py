@@ -30,4 +30,8 @@ def for_selection() -> list[str]:
     picks = picking.selected(document)
     if not picks:
         return []
-    return ["RoboticAM_NewJob", *[f"RoboticAM_{name}" for name in ("WallOnPart", "Solid", "SolidsOnHub")] * (len(picks) > 1)]
+    return [
+        "RoboticAM_NewJob",
+        *[f"RoboticAM_{name}" for name in ("WallOnPart", "Solid", "SolidsOnHub")]
+        * (len(picks) > 1),
+    ]

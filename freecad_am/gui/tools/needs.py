@@ -30,14 +30,20 @@ def document(doc: Any) -> str:
 
 def part(doc: Any) -> str:
     """Something with a shape or a mesh."""
-    return document(doc) or ("" if _any(doc, usable) else tr("First open a part, or import one into this document."))
+    return document(doc) or (
+        "" if _any(doc, usable) else tr("First open a part, or import one into this document.")
+    )
 
 
 def faces(doc: Any) -> str:
     """Something with a shape, which a mesh has not."""
     if document(doc) or _any(doc, lambda obj: usable(obj) and not is_mesh(obj)):
         return document(doc)
-    return tr("First open a part with faces, such as a STEP file; a mesh has none.") if _any(doc, usable) else part(doc)
+    return (
+        tr("First open a part with faces, such as a STEP file; a mesh has none.")
+        if _any(doc, usable)
+        else part(doc)
+    )
 
 
 def feature(doc: Any) -> str:

@@ -25,7 +25,9 @@ ENDINGS = (*READABLE, *MESHES, ".FCStd", *POINT_FILES)
 def ask() -> None:
     """Let a file be chosen, and open it."""
     document = App.ActiveDocument
-    folder = os.path.dirname(document.FileName) if document is not None and document.FileName else ""
+    folder = (
+        os.path.dirname(document.FileName) if document is not None and document.FileName else ""
+    )
     endings = " ".join(f"*{ending} *{ending.upper()}" for ending in ENDINGS)
     kinds = tr("Parts, meshes and tables of points ({})").format(endings)
     path, _ = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), tr("Open part"), folder, kinds)

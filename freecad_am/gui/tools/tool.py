@@ -24,7 +24,12 @@ class Tool:
     hint = ""  # in its tooltip now, below its name
 
     def __init__(
-        self, icon: str, text: str, help: str, action: Callable[[], None], need: needs.Need = needs.document,
+        self,
+        icon: str,
+        text: str,
+        help: str,
+        action: Callable[[], None],
+        need: needs.Need = needs.document,
         with_dialog: bool = False,
     ) -> None:
         # as written: FreeCAD translates them by the name of the command, and again when the language changes
@@ -37,8 +42,12 @@ class Tool:
         With ForEdit FreeCAD asks `IsActive` even while a task panel is open.
         """
         return {
-            "Pixmap": icons.path(self.icon), "MenuText": self.text, "ToolTip": self.help, "StatusTip": self.help,
-            "CmdType": "AlterDoc NoTransaction ForEdit", "WhatsThis": whats_this.url(self.name),
+            "Pixmap": icons.path(self.icon),
+            "MenuText": self.text,
+            "ToolTip": self.help,
+            "StatusTip": self.help,
+            "CmdType": "AlterDoc NoTransaction ForEdit",
+            "WhatsThis": whats_this.url(self.name),
         }
 
     def IsActive(self) -> bool:
@@ -53,7 +62,11 @@ class Tool:
     def missing(self) -> str:
         """What to do first, '' when it can act now."""
         try:
-            if App.ActiveDocument is not None and not self.with_dialog and Gui.Control.activeDialog():
+            if (
+                App.ActiveDocument is not None
+                and not self.with_dialog
+                and Gui.Control.activeDialog()
+            ):
                 return tr("First close the task panel that is open.")
             return self.need(App.ActiveDocument)
         except (ReferenceError, RuntimeError):  # the document is being closed

@@ -23,7 +23,10 @@ class _BarWidth(QtCore.QObject):
     def eventFilter(self, watched: Any, event: Any) -> bool:
         """Called by Qt; nothing is dealt with here."""
         # PySide may take an event for what lay at its address before
-        if isinstance(event, QtCore.QEvent) and event.type() in (QtCore.QEvent.Resize, QtCore.QEvent.Show):
+        if isinstance(event, QtCore.QEvent) and event.type() in (
+            QtCore.QEvent.Resize,
+            QtCore.QEvent.Show,
+        ):
             QtCore.QTimer.singleShot(0, self.give)  # once Qt is done with its layout
         return False
 

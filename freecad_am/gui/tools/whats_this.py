@@ -22,9 +22,16 @@ PAGES = Path(__file__).resolve().parents[3] / "docs" / "tools"
 NAME, INDEX, PREFIX = "RoboticAM_Help", "README.md", "RoboticAM_"
 # of panels and docks that are not called as their tool is
 _CALLED = {
-    "RevolutionFeature": "feature", "SurfaceFeature": "wall-on-part", "DevelopableFeature": "solids-on-hub",
-    "SolidFeature": "solid", "CurvesFeature": "curves", "CladdingFeature": "cladding",
-    "PathDock": "path", "Simulation": "simulate", "ProgramText": "program", "Inspection": "inspect",
+    "RevolutionFeature": "feature",
+    "SurfaceFeature": "wall-on-part",
+    "DevelopableFeature": "solids-on-hub",
+    "SolidFeature": "solid",
+    "CurvesFeature": "curves",
+    "CladdingFeature": "cladding",
+    "PathDock": "path",
+    "Simulation": "simulate",
+    "ProgramText": "program",
+    "Inspection": "inspect",
 }
 _SIZE = (900, 700)
 
@@ -32,7 +39,9 @@ _SIZE = (900, 700)
 def page_of(name: str) -> str:
     """The file of a tool, panel or dock by its name: `RoboticAM_SpinMap` gives `spin-map.md`, what is unknown the index."""
     bare = name.removeprefix(PREFIX)
-    words = "".join(f"-{letter.lower()}" if letter.isupper() else letter for letter in bare).lstrip("-")
+    words = "".join(f"-{letter.lower()}" if letter.isupper() else letter for letter in bare).lstrip(
+        "-"
+    )
     page = f"{_CALLED.get(bare, words)}.md"
     return page if (PAGES / page).is_file() else INDEX
 
@@ -48,7 +57,8 @@ class Help:
     def GetResources(self) -> dict[str, str]:
         """Texts, in the language that the window has when the workbench is opened."""
         return {
-            "MenuText": tr("Help on Robotic AM"), "ToolTip": tr("Opens the pages of the tools"),
+            "MenuText": tr("Help on Robotic AM"),
+            "ToolTip": tr("Opens the pages of the tools"),
             "WhatsThis": url(INDEX),
         }
 
@@ -74,7 +84,10 @@ class HelpWindow:
         self.text.setOpenExternalLinks(True)
         connect(self.text, "sourceChanged(QUrl)", self._without_empty_headings)
         row, column = QtGui.QHBoxLayout(), QtGui.QVBoxLayout(self.window)
-        for label, act in ((tr("All tools"), lambda: self.show(INDEX)), (tr("Back"), self.text.backward)):
+        for label, act in (
+            (tr("All tools"), lambda: self.show(INDEX)),
+            (tr("Back"), self.text.backward),
+        ):
             button = QtGui.QPushButton(label)
             button.setAutoDefault(False)
             button.clicked.connect(lambda *_, act=act: act())
@@ -111,11 +124,15 @@ class Watch(QtCore.QObject):
 
     def eventFilter(self, watched: Any, event: Any) -> bool:
         """Called by Qt; True for what is dealt with."""
-        if not isinstance(event, QtCore.QEvent):  # PySide may take it for what lay at its address before
+        if not isinstance(
+            event, QtCore.QEvent
+        ):  # PySide may take it for what lay at its address before
             return False
         kind = event.type()
         if kind == QtCore.QEvent.EnterWhatsThisMode and watched is self.window:
-            QtCore.QTimer.singleShot(0, self._take)  # after FreeCAD has begun to: who comes last is asked first
+            QtCore.QTimer.singleShot(
+                0, self._take
+            )  # after FreeCAD has begun to: who comes last is asked first
         elif kind == QtCore.QEvent.LeaveWhatsThisMode and watched is self.window:
             QtGui.QApplication.instance().removeEventFilter(self)
         elif kind == QtCore.QEvent.WhatsThis and isinstance(watched, QtGui.QWidget):

@@ -33,11 +33,17 @@ from .toolpath import ToolpathView
 __all__ = ("attach", "carry_out", "view_of")  # what `objects.hooks` calls, and what tests ask
 
 VIEWS: dict[str, type[StageView]] = {
-    "cell": CellView, "feature": FeatureView, "toolpath": ToolpathView, "joint path": JointPathView,
-    "program": ProgramView, "inspection": InspectionView,
+    "cell": CellView,
+    "feature": FeatureView,
+    "toolpath": ToolpathView,
+    "joint path": JointPathView,
+    "program": ProgramView,
+    "inspection": InspectionView,
 }
 OF_FAMILIES: dict[type[Stage], type[StageView]] = {
-    DevelopableFeature: HubView, SolidFeature: SolidView, CurvesFeature: CurvesView,
+    DevelopableFeature: HubView,
+    SolidFeature: SolidView,
+    CurvesFeature: CurvesView,
     CladdingFeature: CladdingView,
 }
 
@@ -65,7 +71,9 @@ def _fill_menu_of_job(menu: Any, group: Any) -> None:
     context_menu.of_job(menu, group)
 
 
-registry.register(edit=_edit, fill_menu_of_stage=_fill_menu_of_stage, fill_menu_of_job=_fill_menu_of_job)
+registry.register(
+    edit=_edit, fill_menu_of_stage=_fill_menu_of_stage, fill_menu_of_job=_fill_menu_of_job
+)
 
 
 # ---- what is shown

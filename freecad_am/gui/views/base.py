@@ -37,7 +37,10 @@ class StageView:
             if name not in have:
                 vobj.addProperty(type_name, name, "Drawing", help)
                 setattr(vobj, name, list(default) if isinstance(default, tuple) else default)
-            elif isinstance(default, tuple) and tuple(vobj.getEnumerationsOfProperty(name)) != default:
+            elif (
+                isinstance(default, tuple)
+                and tuple(vobj.getEnumerationsOfProperty(name)) != default
+            ):
                 chosen = getattr(vobj, name)  # of a document of an earlier version
                 setattr(vobj, name, list(default))
                 setattr(vobj, name, chosen if chosen in default else default[0])
@@ -88,7 +91,9 @@ class StageView:
             self.draw(obj, self.read(obj))
             self.drawn = obj.Key
         except InputError as error:
-            if not obj.Document.Transacting:  # within undo the parts of a result come back one by one
+            if (
+                not obj.Document.Transacting
+            ):  # within undo the parts of a result come back one by one
                 App.Console.PrintError(error_line(error))
             return
         self.style(obj.ViewObject)
@@ -105,7 +110,11 @@ class StageView:
 
     def onChanged(self, vobj: Any, name: str) -> None:
         """A view property has changed."""
-        if name in self.options and all(hasattr(vobj, option) for option in self.options) and self.root is not None:
+        if (
+            name in self.options
+            and all(hasattr(vobj, option) for option in self.options)
+            and self.root is not None
+        ):
             self.style(vobj)
 
     def getDisplayModes(self, vobj: Any) -> list[str]:

@@ -27,9 +27,16 @@ class CellView(StageView):
 
     icon = "cell"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
-        "ShowMachine": ("App::PropertyBool", False, "Show the machine at rest, the nozzle upright on the highest point."),
+        "ShowMachine": (
+            "App::PropertyBool",
+            False,
+            "Show the machine at rest, the nozzle upright on the highest point.",
+        ),
     }
-    end = np.zeros(3), np.array([0.0, 0.0, 1.0])  # the last point of the deposit, and the tool axis there
+    end = (
+        np.zeros(3),
+        np.array([0.0, 0.0, 1.0]),
+    )  # the last point of the deposit, and the tool axis there
     stands_on = ""  # the key of the toolpath that platform and nozzle were placed by, "" for none
 
     def scene(self, root: Any) -> None:
@@ -41,7 +48,9 @@ class CellView(StageView):
         self.stands_on = "" if standing is None else _key_of(toolpath_of(obj))
         if getattr(obj.ViewObject, "ShowMachine", False):
             found = _of_toolpath(obj, ())
-            self.nodes.set(with_machine(value, None if found is None else found[0], user_machines.folders()))
+            self.nodes.set(
+                with_machine(value, None if found is None else found[0], user_machines.folders())
+            )
             return
         tip, axis, mount = np.zeros(3), np.array([0.0, 0.0, 1.0]), np.eye(4)
         if standing is not None:
@@ -82,7 +91,9 @@ def toolpath_of(obj: Any) -> Any:
     """The toolpath object that is for a cell, or that a joint path is planned of in it; None without one."""
     for follower in obj.InList:
         kind = getattr(stage_of(follower), "kind", "")
-        toolpath = follower if kind == "toolpath" else follower.Toolpath if kind == "joint path" else None
+        toolpath = (
+            follower if kind == "toolpath" else follower.Toolpath if kind == "joint path" else None
+        )
         if toolpath is not None and toolpath.Key:
             return toolpath
     return None
@@ -98,7 +109,11 @@ def _reached(obj: Any) -> Any:
     """Where a stretch ends that is shown of a path for the cell, None where none is."""
     for follower in obj.InList:
         view = getattr(follower.ViewObject, "Proxy", None)
-        if isinstance(view, path_view.PathView) and follower.ViewObject.Visibility and view.shown is not None:
+        if (
+            isinstance(view, path_view.PathView)
+            and follower.ViewObject.Visibility
+            and view.shown is not None
+        ):
             return view.reached()
     return None
 

@@ -27,5 +27,7 @@ class CladdingView(StageView):
 def borders_of(value: Any) -> list[Any]:
     """The borders (k, 3) of each sheet of faces, the first point repeated."""
     return [
-        sheet.vertices[[*border, border[0]]] for sheet in value.sheets for border in borders(sheet.mesh)
+        sheet.vertices[[*border, border[0]]]
+        for sheet in value.sheets
+        for border in borders(sheet.mesh)
     ]

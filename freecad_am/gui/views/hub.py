@@ -27,7 +27,11 @@ class HubView(StageView):
 
     icon = "solids_on_hub"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
-        "ShowBases": ("App::PropertyBool", True, "Tint the cylinders and cones that solids stand on."),
+        "ShowBases": (
+            "App::PropertyBool",
+            True,
+            "Tint the cylinders and cones that solids stand on.",
+        ),
     }
 
     def scene(self, root: Any) -> None:

@@ -22,7 +22,17 @@ from ...core.simulation.margins import from_next, speed_ratios
 from ...objects import user_machines
 from ...objects.results.findings import issues_of
 from ..nodes.lines import DASHED, Lines, Points
-from ..path.colouring import CONDITION, JOINT_KINDS, MARGIN, RATIO, UNREACHABLE, Scale, by_machine, coloured, unknown
+from ..path.colouring import (
+    CONDITION,
+    JOINT_KINDS,
+    MARGIN,
+    RATIO,
+    UNREACHABLE,
+    Scale,
+    by_machine,
+    coloured,
+    unknown,
+)
 from ..path.path_view import OPTIONS, TUBES, PathView
 from ..path.rows import Rows
 from .toolpath import band_of, width_of
@@ -59,7 +69,12 @@ class JointPathView(PathView):
 
     icon = "joint_path"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
-        "Colouring": ("App::PropertyEnumeration", JOINT_KINDS, "What the colours of the beads show."), **OPTIONS,
+        "Colouring": (
+            "App::PropertyEnumeration",
+            JOINT_KINDS,
+            "What the colours of the beads show.",
+        ),
+        **OPTIONS,
         "ShowRapids": ("App::PropertyBool", True, "Show the rapid moves as thin dashed lines."),
     }
     source_hidden = True
@@ -84,19 +99,27 @@ class JointPathView(PathView):
 
     def rows_of(self, obj: Any, value: Seen) -> Rows:
         course, width = value.course, width_of(_linked(obj))
-        height = _layer_height(obj) if obj.ViewObject.Look == TUBES else None  # lines do without the toolpath
+        height = (
+            _layer_height(obj) if obj.ViewObject.Look == TUBES else None
+        )  # lines do without the toolpath
         starts = np.flatnonzero(course.point[self.at] == 0)
         known = course.width[self.at]
         return Rows(
-            course.position[self.at], np.append(starts, len(self.at)), course.layer[self.at[starts]],
-            np.where(np.isfinite(known), known, width), lambda: [path.bead for path in value.read().joint_path.beads],
+            course.position[self.at],
+            np.append(starts, len(self.at)),
+            course.layer[self.at[starts]],
+            np.where(np.isfinite(known), known, width),
+            lambda: [path.bead for path in value.read().joint_path.beads],
             lambda: _known_layer_height(obj) if height is None else height,
             lambda index: value.read(("joint_path", "beads", index, "bead"))[0],
         )
 
     def draw(self, obj: Any, value: Seen) -> None:
         self.seen, motion = value, value.course
-        self.motion, self.at = motion, np.flatnonzero(motion.deposit)  # the row of the motion of each point
+        self.motion, self.at = (
+            motion,
+            np.flatnonzero(motion.deposit),
+        )  # the row of the motion of each point
         self.reachable = np.logical_and.reduce([np.isfinite(column) for column in motion.joints.T])
         self.rapid = np.flatnonzero(~motion.deposit[1:]) + 1
         self.find_wrong(obj)
@@ -128,8 +151,10 @@ class JointPathView(PathView):
         low = 0 if first == 0 else int(self.at[first - 1]) + 1  # with what leads to the first bead
         high = len(self.motion) if end >= len(self.at) else int(self.at[max(end - 1, 0)]) + 1
         rapid = self.rapid[(self.rapid >= low) & (self.rapid < high)]
-        self.rapids.set(np.stack([self.motion.position[rapid - 1], self.motion.position[rapid]], axis=1),
-                        np.full(len(rapid), 2))
+        self.rapids.set(
+            np.stack([self.motion.position[rapid - 1], self.motion.position[rapid]], axis=1),
+            np.full(len(rapid), 2),
+        )
         self.wrong.set(self.motion.position[self.bad[(self.bad >= low) & (self.bad < high)]])
 
     def style(self, vobj: Any) -> None:
@@ -138,7 +163,9 @@ class JointPathView(PathView):
 
     def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
         if kind == CONDITION:
-            condition = np.concatenate([path.condition for path in self.seen.read().joint_path.beads])
+            condition = np.concatenate(
+                [path.condition for path in self.seen.read().joint_path.beads]
+            )
             return by_machine(np.where(self.reachable[self.at], condition, np.nan), kind)
         if kind in (MARGIN, RATIO):
             try:
@@ -155,7 +182,11 @@ class JointPathView(PathView):
 def _linked(obj: Any) -> Any:
     """The toolpath object of a joint path. InputError where it was deleted."""
     if obj.Toolpath is None:
-        raise InputError("NO_INPUT", obj.Label, "its toolpath is gone; choose another, or delete the joint path too")
+        raise InputError(
+            "NO_INPUT",
+            obj.Label,
+            "its toolpath is gone; choose another, or delete the joint path too",
+        )
     return obj.Toolpath
 
 
@@ -182,15 +213,30 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
     machine."""
     if obj.Cell is None:
         raise InputError("NO_INPUT", obj.Label, "its cell is gone; choose a cell for it")
-    folders, settings = tuple(user_machines.folders()), obj.Cell.Proxy.parameters(obj.Cell, CellParameters)
+    folders, settings = (
+        tuple(user_machines.folders()),
+        obj.Cell.Proxy.parameters(obj.Cell, CellParameters),
+    )
     machine = machines.load(settings.machine, folders)
-    joints, limits, mechanisms = seen.course.joints, machine.limits(seen.limits), externals(settings.external)
+    joints, limits, mechanisms = (
+        seen.course.joints,
+        machine.limits(seen.limits),
+        externals(settings.external),
+    )
     if mechanisms:
         machine, limits, _ = coupled(machine, limits, mechanisms, settings.upward(), folders)
     if joints.shape[1] != limits.axes:
-        raise InputError("BAD_INPUT", obj.Label, "{} has other axes than the joint path; recompute the joint path",
-                         machine.title)
+        raise InputError(
+            "BAD_INPUT",
+            obj.Label,
+            "{} has other axes than the joint path; recompute the joint path",
+            machine.title,
+        )
     if kind == MARGIN:
         return limits.smallest_share(joints)
     motion = seen.read().motion
-    return from_next(motion.deposit, motion.point, speed_ratios(joints, motion.duration, machine.max_speed).max(axis=1))
+    return from_next(
+        motion.deposit,
+        motion.point,
+        speed_ratios(joints, motion.duration, machine.max_speed).max(axis=1),
+    )

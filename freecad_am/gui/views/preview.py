@@ -26,7 +26,12 @@ class Draft:
     """
 
     def __init__(
-        self, proxy: type[Stage], document: Any, label: str, links: dict[str, Any], values: dict[str, Any]
+        self,
+        proxy: type[Stage],
+        document: Any,
+        label: str,
+        links: dict[str, Any],
+        values: dict[str, Any],
     ) -> None:
         self.stage = proxy.__new__(proxy)
         self.obj = SimpleNamespace(Label=label, Name=label, Document=document, **values, **links)
@@ -56,7 +61,9 @@ class Preview:
     def __init__(self, document: Any, node: Any) -> None:
         self.node = node
         self.node.setName(NAME)
-        self.scenes = [view.getSceneGraph() for view in Gui.getDocument(document.Name).mdiViewsOfType(_VIEW)]
+        self.scenes = [
+            view.getSceneGraph() for view in Gui.getDocument(document.Name).mdiViewsOfType(_VIEW)
+        ]
         for scene in self.scenes:
             scene.addChild(node)
 
@@ -77,7 +84,9 @@ class Aside:
     def put(self, *objects: Any) -> None:
         """Let these stand back, in place of those before; None is none."""
         wanted = [obj for obj in objects if obj is not None]
-        self._stand_back(False, [obj for obj in self.objects if not any(obj is one for one in wanted)])
+        self._stand_back(
+            False, [obj for obj in self.objects if not any(obj is one for one in wanted)]
+        )
         self._stand_back(True, wanted)
         self.objects = wanted
 

@@ -7,7 +7,13 @@ from typing import Any
 
 from .base import StageView
 
-_SHOWN = ("Key", "ResultLayout", "ResultData", "Status", "Message")  # undo brings them back in any order
+_SHOWN = (
+    "Key",
+    "ResultLayout",
+    "ResultData",
+    "Status",
+    "Message",
+)  # undo brings them back in any order
 
 
 class ProgramView(StageView):

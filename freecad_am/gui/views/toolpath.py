@@ -20,7 +20,8 @@ class ToolpathView(PathView):
 
     icon = "toolpath"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
-        "Colouring": ("App::PropertyEnumeration", KINDS, "What the colours of the beads show."), **OPTIONS,
+        "Colouring": ("App::PropertyEnumeration", KINDS, "What the colours of the beads show."),
+        **OPTIONS,
     }
     source_hidden = True
 
@@ -35,7 +36,9 @@ class ToolpathView(PathView):
 
     def draw(self, obj: Any, value: Any) -> None:
         super().draw(obj, value)
-        if not self.source_hidden:  # a new path lies in the surface of its shape, and its start in that of a wall
+        if (
+            not self.source_hidden
+        ):  # a new path lies in the surface of its shape, and its start in that of a wall
             self.source_hidden = True
             for feature in features_of(obj):
                 for source in (feature.Source[0], *getattr(feature, "Further", ())):
@@ -71,4 +74,7 @@ def band_of(obj: Any) -> float:
 def width_of(obj: Any) -> float:
     """The width, mm, of a toolpath's beads that know none: as far as neighbours are apart, else as it is reported."""
     spacing = getattr(obj.Feature, "BeadSpacing", None)
-    return float((obj.BeadWidth if spacing is None else spacing).Value) or ProcessParameters().bead_width
+    return (
+        float((obj.BeadWidth if spacing is None else spacing).Value)
+        or ProcessParameters().bead_width
+    )

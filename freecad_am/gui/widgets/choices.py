@@ -37,8 +37,14 @@ WORDS = {  # of keys that are not words by themselves; `tr` gives them in the la
     "limits-klein": marked("joint limits (Klein)"),
     "um": marked("µm"),
 }
-SIDES = {"front": marked("front"), "back": marked("back"), "up": marked("up"), "down": marked("down"),
-         "flip": marked("flip"), "noflip": marked("no flip")}
+SIDES = {
+    "front": marked("front"),
+    "back": marked("back"),
+    "up": marked("up"),
+    "down": marked("down"),
+    "flip": marked("flip"),
+    "noflip": marked("no flip"),
+}
 
 
 def worded(key: str) -> str:
@@ -54,7 +60,14 @@ def machines() -> list[tuple[str, str]]:
     known = machine.known(user_machines.folders())
     names = [name for _, name in known]
     return [
-        (one, one if name.startswith(machine.REFUSED) else f"{name} ({one})" if names.count(name) > 1 else name)
+        (
+            one,
+            one
+            if name.startswith(machine.REFUSED)
+            else f"{name} ({one})"
+            if names.count(name) > 1
+            else name,
+        )
         for one, name in known
     ]
 
@@ -69,7 +82,9 @@ def offer(combo: Any, pairs: Iterable[tuple[str, str]]) -> None:
         combo.completer().setFilterMode(QtCore.Qt.MatchContains)
         combo.completer().setCompletionMode(QtGui.QCompleter.PopupCompletion)
     shrink(combo)
-    combo.view().setMinimumWidth(combo.view().sizeHintForColumn(0) + combo.view().verticalScrollBar().sizeHint().width())
+    combo.view().setMinimumWidth(
+        combo.view().sizeHintForColumn(0) + combo.view().verticalScrollBar().sizeHint().width()
+    )
 
 
 def entered(combo: Any) -> str:

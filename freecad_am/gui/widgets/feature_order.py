@@ -39,10 +39,30 @@ class FeatureOrder(Input):
         column.addWidget(self.list)
         row = QtGui.QHBoxLayout()
         buttons = (
-            ("AddFeature", tr("Add"), tr("Adds the features selected, else the next one of the document"), self.add),
-            ("FeatureUp", tr("Up"), tr("Deposits the chosen feature earlier"), lambda: self.move(-1)),
-            ("FeatureDown", tr("Down"), tr("Deposits the chosen feature later"), lambda: self.move(1)),
-            ("RemoveFeature", tr("Remove"), tr("Takes the chosen feature out of this toolpath"), self.remove),
+            (
+                "AddFeature",
+                tr("Add"),
+                tr("Adds the features selected, else the next one of the document"),
+                self.add,
+            ),
+            (
+                "FeatureUp",
+                tr("Up"),
+                tr("Deposits the chosen feature earlier"),
+                lambda: self.move(-1),
+            ),
+            (
+                "FeatureDown",
+                tr("Down"),
+                tr("Deposits the chosen feature later"),
+                lambda: self.move(1),
+            ),
+            (
+                "RemoveFeature",
+                tr("Remove"),
+                tr("Takes the chosen feature out of this toolpath"),
+                self.remove,
+            ),
         )
         for name, text, tip, act in buttons:
             button = QtGui.QPushButton(text)
@@ -56,7 +76,9 @@ class FeatureOrder(Input):
         column.addLayout(row)
         self.sequence = QtGui.QComboBox()
         self.sequence.setObjectName("Sequence")
-        self.sequence.setToolTip(tr("Several features: one after the other, or of all layers the lowest first"))
+        self.sequence.setToolTip(
+            tr("Several features: one after the other, or of all layers the lowest first")
+        )
         for value, name in NAMES.items():
             self.sequence.addItem(translated(name), value)
         self.sequence.setCurrentIndex(self.sequence.findData(sequence))
@@ -72,11 +94,15 @@ class FeatureOrder(Input):
     def add(self) -> None:
         """Add the features selected, else the next of the document that is not in the list."""
         known = [self.first.widget.itemData(k) for k in range(self.first.widget.count())]
-        left = [name for name in known if name not in (*self.names(), self.first.widget.currentData())]
+        left = [
+            name for name in known if name not in (*self.names(), self.first.widget.currentData())
+        ]
         wanted = self._selected() or [self.document.getObject(name) for name in left[:1]]
         for obj in wanted:
             self._put(obj)
-        self.tell("" if wanted else tr("There is no other feature in this document; make it first."))
+        self.tell(
+            "" if wanted else tr("There is no other feature in this document; make it first.")
+        )
         self._show()
 
     def move(self, by: int) -> None:
@@ -123,7 +149,11 @@ class FeatureOrder(Input):
 
     def _selected(self) -> list[Any]:
         """The features selected, but for the first one."""
-        found = [obj for obj in selected(self.document.Name) if getattr(stage_of(obj), "kind", "") == "feature"]
+        found = [
+            obj
+            for obj in selected(self.document.Name)
+            if getattr(stage_of(obj), "kind", "") == "feature"
+        ]
         return [obj for obj in found if obj.Name != self.first.widget.currentData()]
 
     def _put(self, obj: Any) -> None:

@@ -101,7 +101,11 @@ def whats_this(row: Row, section: str) -> str:
     if row.form in FOLLOW:
         lines.append(tr("It may follow an expression: {}.").format("=Spreadsheet.height / 2"))
     if default:
-        lines.append(tr("By default: {}.").format(f"{default} {unit}".strip() if unit not in default else default))
+        lines.append(
+            tr("By default: {}.").format(
+                f"{default} {unit}".strip() if unit not in default else default
+            )
+        )
     job = ".".join(map(str, (section, *row.path))) if section else ""
     lines.append(tr("In a job file: {}; in macros: {}.").format(job, row.key))
     return "<b>{}</b><p>{}</p>".format(translated(row.label), "<br>".join(map(html.escape, lines)))
@@ -114,7 +118,9 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
     if row.form == f.SPEED:
         return _speed(row, shown, expression)
     if row.form in _QUANTITIES:
-        made = PlainQuantity if row.form == f.LENGTH and 0.0 < abs(shown) < LEAST_MM else QuantityField
+        made = (
+            PlainQuantity if row.form == f.LENGTH and 0.0 < abs(shown) < LEAST_MM else QuantityField
+        )
         quantity = made(shown, row.unit, row.label, expression)
         return Field(row, quantity.box, quantity.read, quantity.show)
     if row.form == f.CHOICE:
@@ -125,9 +131,15 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
         return Field(row, check, check.isChecked, check.setChecked)
     if row.form == f.COUNT:
         box = QtGui.QSpinBox()
-        box.setRange(-_LARGEST, _LARGEST)  # what is out of range is told by the core, not cut off here
+        box.setRange(
+            -_LARGEST, _LARGEST
+        )  # what is out of range is told by the core, not cut off here
         box.setValue(shown)
-        return Field(row, box, box.value, box.setValue) if not expression else _text(row, value, expression)
+        return (
+            Field(row, box, box.value, box.setValue)
+            if not expression
+            else _text(row, value, expression)
+        )
     if suggestions is not None:
         return _suggested(row, shown, suggestions())
     return _text(row, value, expression)
@@ -140,7 +152,9 @@ def _speed(row: Row, shown: float, expression: str) -> Field:
     made = QuantityField if factor == 1.0 else PlainQuantity
     quantity = made(round(shown * factor, 9), unit, row.label, expression)
     if isinstance(quantity.box, QtGui.QAbstractSpinBox):
-        quantity.box.setButtonSymbols(QtGui.QAbstractSpinBox.NoButtons)  # room for "100 mm/s" in a narrow panel
+        quantity.box.setButtonSymbols(
+            QtGui.QAbstractSpinBox.NoButtons
+        )  # room for "100 mm/s" in a narrow panel
 
     def read() -> float | str:
         value = quantity.read()
@@ -158,11 +172,18 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
 
     def show(shown: Any) -> None:
         text = _outer_text(row, shown)
-        edit.setText(_with_point(text, ".", _point(edit)) if numeric and not is_expression(text) else text)
+        edit.setText(
+            _with_point(text, ".", _point(edit)) if numeric and not is_expression(text) else text
+        )
 
     show(expression or row.outer(value))
     if row.form == TEXT_LIST:
-        return Field(row, edit, lambda: tuple(split(_with_point(str(edit.text()), _point(edit), "."), row.label)), show)
+        return Field(
+            row,
+            edit,
+            lambda: tuple(split(_with_point(str(edit.text()), _point(edit), "."), row.label)),
+            show,
+        )
     wanted = ([row.unit] if row.unit else []) + list(row.spec.words)
     if wanted or row.spec.optional:  # short enough for a narrow panel
         words = tr(" or ").join(wanted)
@@ -195,7 +216,11 @@ def _with_point(text: str, old: str, new: str) -> str:
     numbers = re.split(r"[ \t]+", text.strip())  # no-break blanks stand within a number
     if len(numbers) > 1 and all(_PLAIN.fullmatch(number.replace(old, ".")) for number in numbers):
         return " ".join(number.replace(old, new) for number in numbers)
-    return re.sub(rf"^([-+]?\d*){re.escape(old)}(\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s.,].*)?)$", rf"\g<1>{new}\2", text)
+    return re.sub(
+        rf"^([-+]?\d*){re.escape(old)}(\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s.,].*)?)$",
+        rf"\g<1>{new}\2",
+        text,
+    )
 
 
 def _number(text: str, name: str) -> float | str:
@@ -204,7 +229,9 @@ def _number(text: str, name: str) -> float | str:
     try:
         return float(text)
     except ValueError:
-        raise InputError("BAD_VALUE", name, "{!r} is not a number; give one such as 0.1", text) from None
+        raise InputError(
+            "BAD_VALUE", name, "{!r} is not a number; give one such as 0.1", text
+        ) from None
 
 
 def _choice(row: Row, shown: str) -> Field:
@@ -213,7 +240,12 @@ def _choice(row: Row, shown: str) -> Field:
         combo.addItem(choices.worded(choice), choice)
     choices.shrink(combo)
     combo.setCurrentIndex(row.spec.choices.index(shown))
-    return Field(row, combo, combo.currentData, lambda value: combo.setCurrentIndex(row.spec.choices.index(value)))
+    return Field(
+        row,
+        combo,
+        combo.currentData,
+        lambda value: combo.setCurrentIndex(row.spec.choices.index(value)),
+    )
 
 
 def _suggested(row: Row, shown: str, texts: list[tuple[str, str]]) -> Field:
@@ -221,7 +253,9 @@ def _suggested(row: Row, shown: str, texts: list[tuple[str, str]]) -> Field:
     combo.setEditable(True)
     choices.offer(combo, texts)
     choices.enter(combo, shown)
-    return Field(row, combo, lambda: choices.entered(combo), lambda value: choices.enter(combo, value))
+    return Field(
+        row, combo, lambda: choices.entered(combo), lambda value: choices.enter(combo, value)
+    )
 
 
 def _pose(row: Row, shown: tuple[float, ...]) -> Field:

@@ -47,7 +47,12 @@ def fits_text(measured: Measured, model: BeadModel) -> str:
     slow, fast = (MINUTE * speed for speed in model.speeds)
     lines.append(
         tr("{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min").format(
-            len(measured.width), slow, fast, model.radii[0], model.radii[1], MINUTE * model.wire_feed / 1000.0
+            len(measured.width),
+            slow,
+            fast,
+            model.radii[0],
+            model.radii[1],
+            MINUTE * model.wire_feed / 1000.0,
         )
     )
     return "\n".join(lines)
@@ -58,10 +63,16 @@ def speeds_text(model: BeadModel, width: float) -> str:
     asked = model.speed_for(width, np.array([model.radii[0], np.inf]))
     ends = np.select(
         [asked.too_slow, asked.too_fast],
-        [tr("{} mm/min (the slowest of the table)"), tr("{} mm/min (the fastest of the table)")], "{} mm/min",
+        [tr("{} mm/min (the slowest of the table)"), tr("{} mm/min (the fastest of the table)")],
+        "{} mm/min",
     )
-    tight, straight = (str(end).format(f"{MINUTE * speed:.0f}") for speed, end in zip(asked.speed, ends, strict=True))
-    return tr("{:g} mm wide: {} where straight, {} where r is {:g} mm").format(width, straight, tight, model.radii[0])
+    tight, straight = (
+        str(end).format(f"{MINUTE * speed:.0f}")
+        for speed, end in zip(asked.speed, ends, strict=True)
+    )
+    return tr("{:g} mm wide: {} where straight, {} where r is {:g} mm").format(
+        width, straight, tight, model.radii[0]
+    )
 
 
 def _signed(number: float) -> str:

@@ -44,9 +44,15 @@ class Note(QtGui.QLabel):
     def resizeEvent(self, event: Any) -> None:
         """Called by Qt: another width may take more lines, or fewer."""
         super().resizeEvent(event)
-        self.tallest = max(self.tallest, event.size().height()) if event.oldSize().width() == event.size().width() else 0
+        self.tallest = (
+            max(self.tallest, event.size().height())
+            if event.oldSize().width() == event.size().width()
+            else 0
+        )
         if event.oldSize().width() != event.size().width():
-            QtCore.QTimer.singleShot(0, self._renew)  # the layout that gives it the width would overlook it
+            QtCore.QTimer.singleShot(
+                0, self._renew
+            )  # the layout that gives it the width would overlook it
 
     def _renew(self) -> None:
         with contextlib.suppress(RuntimeError):  # the panel is closed
@@ -74,7 +80,9 @@ class Fold:
         self.form.setContentsMargins(4, 0, 0, 4)
         self.form.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.form.setRowWrapPolicy(QtGui.QFormLayout.DontWrapRows)
-        self.rows: dict[str, tuple[Any, Any]] = {}  # label, and what holds the field and its note, by the field's name
+        self.rows: dict[
+            str, tuple[Any, Any]
+        ] = {}  # label, and what holds the field and its note, by the field's name
         column.addWidget(self.heading)
         column.addWidget(self.body)
         self.heading.toggled.connect(self._show)
@@ -124,8 +132,13 @@ class Fold:
     def add_below(self, widget: Any, more: Any) -> None:
         """A row of the whole width right below that of a field."""
         both = self.rows[widget.objectName()][1]
-        items = ((row, self.form.itemAt(row, QtGui.QFormLayout.FieldRole)) for row in range(self.form.rowCount()))
-        self.form.insertRow(next(row for row, item in items if item is not None and item.widget() is both) + 1, more)
+        items = (
+            (row, self.form.itemAt(row, QtGui.QFormLayout.FieldRole))
+            for row in range(self.form.rowCount())
+        )
+        self.form.insertRow(
+            next(row for row, item in items if item is not None and item.widget() is both) + 1, more
+        )
 
     def _show(self, unfolded: bool) -> None:
         self.body.setVisible(unfolded)
@@ -136,5 +149,7 @@ def _is_long(widget: Any) -> bool:
     """Whether a field needs the width of the panel to be read: of several fields, or a choice of long texts."""
     if isinstance(widget, QtGui.QComboBox):
         measure = widget.fontMetrics().boundingRect
-        return any(measure(widget.itemText(row)).width() > WIDEST_CHOICE for row in range(widget.count()))
+        return any(
+            measure(widget.itemText(row)).width() > WIDEST_CHOICE for row in range(widget.count())
+        )
     return widget.layout() is not None and widget.layout().count() > LONGEST_ROW

@@ -8,7 +8,10 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 MARGIN = 2  # pixels
-NARROW, MAX_LINES = 30, 12  # letters of a line in a panel as FreeCAD opens it, and lines that are held
+NARROW, MAX_LINES = (
+    30,
+    12,
+)  # letters of a line in a panel as FreeCAD opens it, and lines that are held
 
 
 class Messages(QtGui.QScrollArea):

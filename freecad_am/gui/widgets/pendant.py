@@ -19,7 +19,12 @@ from ..texts.translation import tr, translated
 class PendantLine:
     """Pendants to choose from, and the line. `read` and `show` are of the fields above: x y z RX RY RZ in mm and deg."""
 
-    def __init__(self, name: str, read: Callable[[], tuple[Any, ...]], show: Callable[[tuple[float, ...]], None]) -> None:
+    def __init__(
+        self,
+        name: str,
+        read: Callable[[], tuple[Any, ...]],
+        show: Callable[[tuple[float, ...]], None],
+    ) -> None:
         self.name, self.read, self.show = name, read, show
         self.put = ""  # what the line shows by itself
         self.choice, self.line = QtGui.QComboBox(), QtGui.QLineEdit()
@@ -28,7 +33,9 @@ class PendantLine:
         self.choice.addItem(tr("as on the pendant of"), "")
         for controller, pendant in pendants.pendants().items():
             self.choice.addItem(pendant.maker, controller)
-        self.choice.setToolTip(tr("Type the pose as this controller's pendant shows it, X Y Z in mm first"))
+        self.choice.setToolTip(
+            tr("Type the pose as this controller's pendant shows it, X Y Z in mm first")
+        )
         self.line.hide()
         self.choice.currentIndexChanged.connect(lambda *_: self.tell())
         self.line.editingFinished.connect(self.enter)
@@ -43,11 +50,15 @@ class PendantLine:
         pendant = pendants.pendants()[controller]
         self.line.setPlaceholderText(" ".join(("X", "Y", "Z", *pendant.letters)))
         self.line.clear()
-        with contextlib.suppress(InputError, TypeError, ValueError):  # a field holds an expression, or nothing
+        with contextlib.suppress(
+            InputError, TypeError, ValueError
+        ):  # a field holds an expression, or nothing
             x, y, z, *angles = self.read()
             numbers = pendants.shown(controller, (x, y, z, *map(math.radians, angles)))
             text = " ".join(
-                f"{number + 0.0:.{3 if k < 3 else pendant.digits}f}" for k, number in enumerate(numbers))
+                f"{number + 0.0:.{3 if k < 3 else pendant.digits}f}"
+                for k, number in enumerate(numbers)
+            )
             self.line.setText(text.replace(".", str(self.line.locale().decimalPoint())))
         self.put = self.line.text()
         self.line.setCursorPosition(0)

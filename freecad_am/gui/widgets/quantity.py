@@ -83,7 +83,9 @@ class QuantityField:
         quantity.Format = {"NumberFormat": "g", "Precision": _DIGITS, "Denominator": 8}
         self.box.setProperty("value", quantity)
         self.line.setCursorPosition(0)
-        self.first_text = self.plain = self.line.text()  # plain: what the field goes back to by itself
+        self.first_text = self.plain = (
+            self.line.text()
+        )  # plain: what the field goes back to by itself
 
     def _put(self, text: str) -> None:
         self.line.setText(text)
@@ -92,7 +94,9 @@ class QuantityField:
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
-        self.mark.setToolTip(tr("Let it follow an expression, such as {}Spreadsheet.height / 2").format(MARK))
+        self.mark.setToolTip(
+            tr("Let it follow an expression, such as {}Spreadsheet.height / 2").format(MARK)
+        )
         connect(self.mark, "triggered(bool)", self._begin)
         self._show_mark()
         connect(self.line, "textChanged(QString)", self._show_mark)
@@ -112,21 +116,33 @@ class QuantityField:
         point, group = str(locale.decimalPoint()), str(locale.groupSeparator())
         if (group.strip() and group in text) or re.search(r"\d[\s’]+\d", text):
             example = Text("1{}5 {}", point, self.unit)
-            raise self._wrong(text, Text("write decimals with '{}', as in {}, and do not group digits", point,
-                                         Word(example)))
+            raise self._wrong(
+                text,
+                Text(
+                    "write decimals with '{}', as in {}, and do not group digits",
+                    point,
+                    Word(example),
+                ),
+            )
         if not text.strip():
-            raise InputError("BAD_VALUE", self.name, "it is empty; give a quantity in {}", self.unit)
+            raise InputError(
+                "BAD_VALUE", self.name, "it is empty; give a quantity in {}", self.unit
+            )
         try:
             quantity = quantity_of(text.replace(point, "."))
         except (ValueError, TypeError, ArithmeticError):
             raise self._wrong(text, Text("give a quantity in {}", self.unit)) from None
-        if quantity.Unit not in (self.dimension, App.Units.Unit()) or not math.isfinite(quantity.Value):
+        if quantity.Unit not in (self.dimension, App.Units.Unit()) or not math.isfinite(
+            quantity.Value
+        ):
             raise self._wrong(text, Text("give a quantity in {}", self.unit))
         plain = quantity.Unit == App.Units.Unit()
         return float(quantity.Value if plain else quantity.getValueAs(self.unit))
 
     def _wrong(self, text: str, remedy: str) -> InputError:
-        return InputError("BAD_VALUE", self.name, "{!r} is not understood; {}", plain_blanks(text), remedy)
+        return InputError(
+            "BAD_VALUE", self.name, "{!r} is not understood; {}", plain_blanks(text), remedy
+        )
 
     # ---- the field changes its own text when it is left
 
@@ -154,7 +170,9 @@ class QuantityField:
                     return
             except InputError:
                 pass
-            self.line.setText(self.typed)  # an expression, a unit of ours, or what is refused, stays to be seen
+            self.line.setText(
+                self.typed
+            )  # an expression, a unit of ours, or what is refused, stays to be seen
             self.line.setCursorPosition(0)
 
     # ---- expressions

@@ -41,7 +41,9 @@ def _texts_of(section: str, key: str) -> Callable[[], list[str]] | None:
 
 
 def _branches() -> list[str]:
-    sides = [(a, b, c) for a in ("front", "back") for b in ("up", "down") for c in ("flip", "noflip")]
+    sides = [
+        (a, b, c) for a in ("front", "back") for b in ("up", "down") for c in ("flip", "noflip")
+    ]
     return ["auto", *(" ".join(words) for words in sides)]
 
 
@@ -64,16 +66,24 @@ def no_post(name: str, setup: str = "") -> str:
     if posts is None or writers(loaded, posts, setup):
         return ""
     if posts and any(writers(loaded, posts, each.setup) for each in loaded.arrangements):
-        return tr("Programs for this machine's controller need the tool on the robot. With the part on it all is planned, "
-                  "checked and simulated, but no program is written.")
+        return tr(
+            "Programs for this machine's controller need the tool on the robot. With the part on it all is planned, "
+            "checked and simulated, but no program is written."
+        )
     if posts:
-        return tr("Programs for this machine's controller are of positions, and what it calls the configurations of this "
-                  "wrist is not known: all is planned, checked and simulated, but no program is written.")
+        return tr(
+            "Programs for this machine's controller are of positions, and what it calls the configurations of this "
+            "wrist is not known: all is planned, checked and simulated, but no program is written."
+        )
     if loaded.posts:
-        return tr("Programs for this machine need what only its controller knows, its pulses per degree, in a machine file "
-                  "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.")
-    return tr("There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "
-              "written. Export Path… writes its points as a table.")
+        return tr(
+            "Programs for this machine need what only its controller knows, its pulses per degree, in a machine file "
+            "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table."
+        )
+    return tr(
+        "There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "
+        "written. Export Path… writes its points as a table."
+    )
 
 
 def post_of_job(name: str, setup: str = "") -> str:
@@ -84,7 +94,9 @@ def post_of_job(name: str, setup: str = "") -> str:
             cell = api.read_cell(name)
         else:
             loaded = machine.load(name or CellParameters().machine, user_machines.folders())
-            cell = replace(CellParameters(machine=loaded.id), setup=setup or loaded.arrangements[0].setup)
+            cell = replace(
+                CellParameters(machine=loaded.id), setup=setup or loaded.arrangements[0].setup
+            )
         return post_of(cell, preferences.post(), user_machines.folders())[0]
     except (InputError, OSError):
         return ""
@@ -98,8 +110,15 @@ def setup_for(name: str) -> str:
     except InputError:
         return ""
     posts = written_by(loaded)
-    written = [] if posts is None else [
-        one.setup for one in loaded.arrangements if one.planned and writers(loaded, posts, one.setup)]
+    written = (
+        []
+        if posts is None
+        else [
+            one.setup
+            for one in loaded.arrangements
+            if one.planned and writers(loaded, posts, one.setup)
+        ]
+    )
     return [*written, loaded.arrangements[0].setup][0]
 
 
@@ -115,7 +134,9 @@ def post_for(path: Any) -> tuple[str, str]:
         return "", ""
     usual, wanted = ProgramParameters(), usual_post()
     try:
-        post, motion = post_of(path.Cell.Proxy.parameters(path.Cell, CellParameters), wanted, user_machines.folders())
+        post, motion = post_of(
+            path.Cell.Proxy.parameters(path.Cell, CellParameters), wanted, user_machines.folders()
+        )
     except InputError:
         return "", ""
     if not post:

@@ -24,7 +24,11 @@ class _Upright(QtCore.QObject):
                 if event.type() == QtCore.QEvent.Show and widget is self.parent():
                     for area in around(widget):
                         area.widget().installEventFilter(self)
-                elif event.type() == QtCore.QEvent.Move and widget is not self.parent() and widget.x() < 0:
+                elif (
+                    event.type() == QtCore.QEvent.Move
+                    and widget is not self.parent()
+                    and widget.x() < 0
+                ):
                     for area in around(self.parent()):
                         area.horizontalScrollBar().setValue(0)
         return False
@@ -37,4 +41,6 @@ def upright(form: Any) -> None:
 
 def around(form: Any) -> list[Any]:
     """The areas that a panel is scrolled in."""
-    return [area for area in present(Gui.getMainWindow(), QtGui.QScrollArea) if area.isAncestorOf(form)]
+    return [
+        area for area in present(Gui.getMainWindow(), QtGui.QScrollArea) if area.isAncestorOf(form)
+    ]

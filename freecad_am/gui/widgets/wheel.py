@@ -16,7 +16,11 @@ class _Guard(QtCore.QObject):
     def eventFilter(self, widget: Any, event: Any) -> bool:
         """Called by Qt."""
         # PySide may take an event for what lay at its address before
-        if isinstance(event, QtCore.QEvent) and event.type() == QtCore.QEvent.Wheel and not widget.hasFocus():
+        if (
+            isinstance(event, QtCore.QEvent)
+            and event.type() == QtCore.QEvent.Wheel
+            and not widget.hasFocus()
+        ):
             event.ignore()
             return True
         return False

@@ -32,12 +32,26 @@ def check_controller(machine: Machine, post: str) -> None:
     if machine.posts is None or post in machine.posts:
         return
     if machine.controller_remark == UNKNOWN_REMARK:
-        raise InputError("WRONG_CONTROLLER", "program.post", "{} is a URDF, which does not say what the controller shows; "
-                         "plan without a program, or make a machine file of it with New Machine…", machine.title)
-    known = Text("use one of {}", ", ".join(machine.posts)) if machine.posts else (
-        "there is no post for it yet: plan without a program; waypoints.csv has its axes")
-    raise InputError("WRONG_CONTROLLER", "program.post", "the controller of {} does not read {}; {}", machine.title, post,
-                     Word(known))
+        raise InputError(
+            "WRONG_CONTROLLER",
+            "program.post",
+            "{} is a URDF, which does not say what the controller shows; "
+            "plan without a program, or make a machine file of it with New Machine…",
+            machine.title,
+        )
+    known = (
+        Text("use one of {}", ", ".join(machine.posts))
+        if machine.posts
+        else ("there is no post for it yet: plan without a program; waypoints.csv has its axes")
+    )
+    raise InputError(
+        "WRONG_CONTROLLER",
+        "program.post",
+        "the controller of {} does not read {}; {}",
+        machine.title,
+        post,
+        Word(known),
+    )
 
 
 def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
@@ -45,12 +59,19 @@ def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
     points of beads."""
     if not controller(post).whole_beads:
         return
-    points, layer, index = max(((len(bead), layer, index) for layer, index, bead in toolpath), default=(0, 0, 0))
+    points, layer, index = max(
+        ((len(bead), layer, index) for layer, index, bead in toolpath), default=(0, 0, 0)
+    )
     if points > max_points:
         raise InputError(
-            "BEAD_TOO_LONG", "program.max_points", "layer {} bead {} has {} points, and loading another part within a bead "
-            "would stop the robot while it deposits; use at least {}, or a larger strategy.chord_error", layer, index,
-            points, points + APPROACH_POINTS,
+            "BEAD_TOO_LONG",
+            "program.max_points",
+            "layer {} bead {} has {} points, and loading another part within a bead "
+            "would stop the robot while it deposits; use at least {}, or a larger strategy.chord_error",
+            layer,
+            index,
+            points,
+            points + APPROACH_POINTS,
         )
 
 
@@ -59,19 +80,40 @@ def check_external(cell: Cell, post: str) -> None:
     written = readers(cell)
     if cell.external is None or written is None or post in written:
         return
-    external = "a positioner" if cell.external.slides is None else (
-        "a track and a positioner together" if cell.external.turning else "a track")
-    known = Text("use one of {}", ", ".join(written)) if written else "plan without a program; waypoints.csv has all axes"
-    raise InputError("UNSUPPORTED_AXES", "program.post", "programs of {} are not written with {}; {}", post, Word(external),
-                     Word(known))
+    external = (
+        "a positioner"
+        if cell.external.slides is None
+        else ("a track and a positioner together" if cell.external.turning else "a track")
+    )
+    known = (
+        Text("use one of {}", ", ".join(written))
+        if written
+        else "plan without a program; waypoints.csv has all axes"
+    )
+    raise InputError(
+        "UNSUPPORTED_AXES",
+        "program.post",
+        "programs of {} are not written with {}; {}",
+        post,
+        Word(external),
+        Word(known),
+    )
 
 
 def check_wrist(machine: Machine, motion: str, post: str) -> None:
     """InputError NOT_FOR_WRIST: Cartesian programs of robots without a spherical wrist by posts that name configurations."""
-    if motion == "cartesian" and machine.arm is not None and machine.opw is None and controller(post).configurations:
+    if (
+        motion == "cartesian"
+        and machine.arm is not None
+        and machine.opw is None
+        and controller(post).configurations
+    ):
         raise InputError(
-            "NOT_FOR_WRIST", "program.motion", "{} has no spherical wrist, and what its controller calls the configurations "
-            "of cartesian positions is not known; use joint", machine.title,
+            "NOT_FOR_WRIST",
+            "program.motion",
+            "{} has no spherical wrist, and what its controller calls the configurations "
+            "of cartesian positions is not known; use joint",
+            machine.title,
         )
 
 
@@ -79,14 +121,20 @@ def check_pulses(machine: Machine, motion: str, post: str) -> None:
     """InputError NO_PULSES, NO_SPEED_UNIT where a post needs what only the controller of that very robot tells."""
     if controller(post).pulses and not machine.pulses_per_degree:
         raise InputError(
-            "NO_PULSES", "cell.machine", "how many pulses {} counts to a degree of each axis is not known, and no two "
+            "NO_PULSES",
+            "cell.machine",
+            "how many pulses {} counts to a degree of each axis is not known, and no two "
             "models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant "
-            "shows them (a position in pulses over the same in degrees), or plan without a program", machine.title,
+            "shows them (a position in pulses over the same in degrees), or plan without a program",
+            machine.title,
         )
     if controller(post).pulses and motion == "cartesian" and not machine.speed_unit:
         raise InputError(
-            "NO_SPEED_UNIT", "cell.machine", "the unit of V is a setting of the controller of {}, and another one is "
-            "another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`", machine.title,
+            "NO_SPEED_UNIT",
+            "cell.machine",
+            "the unit of V is a setting of the controller of {}, and another one is "
+            "another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`",
+            machine.title,
         )
 
 
@@ -103,7 +151,10 @@ def writers(machine: Machine, posts: Sequence[str], setup: str) -> list[tuple[st
     usual = ProgramParameters().motion
     found = [(post, usual) for post in fitting(posts, usual, setup)]
     return found + [
-        (post, motion) for motion in MOTIONS if motion != usual for post in fitting(posts, motion, setup)
+        (post, motion)
+        for motion in MOTIONS
+        if motion != usual
+        for post in fitting(posts, motion, setup)
         if (post, usual) not in found and _is_written(machine, motion, post)
     ]
 
@@ -140,4 +191,6 @@ def readers(cell: Cell) -> tuple[str, ...] | None:
 
 def _with_external(posts: Sequence[str] | None) -> tuple[str, ...]:
     """Those of the posts, of all for None, that write external axes."""
-    return tuple(post for post in sorted(NAMES if posts is None else posts) if controller(post).external)
+    return tuple(
+        post for post in sorted(NAMES if posts is None else posts) if controller(post).external
+    )

@@ -29,26 +29,52 @@ def cylinders_of(cell: Cell) -> arm_kept.Cylinders:
 
 
 def arm_of(
-    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, shapes: tuple[Mesh | None, ...],
-    most: int | None = None, clearance: float = 0.0,
+    motion: Motion,
+    cell: Cell,
+    toolpath: Toolpath,
+    process: ProcessParameters,
+    shapes: tuple[Mesh | None, ...],
+    most: int | None = None,
+    clearance: float = 0.0,
 ) -> ArmTouches | None:
     """What the links of a robot touch, or come nearer to than `clearance` mm, looked at in so many places at most; None for
     machines with rotary axes, of whose links no file tells enough."""
     if not cell.arrangement.links_known:
         return None
-    return _touches(motion, cell, toolpath, process, link_cylinders.of_robot(cell.robot.chain, shapes), most, clearance)
+    return _touches(
+        motion,
+        cell,
+        toolpath,
+        process,
+        link_cylinders.of_robot(cell.robot.chain, shapes),
+        most,
+        clearance,
+    )
 
 
 def _touches(
-    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, cylinders: arm_kept.Cylinders,
-    most: int | None, clearance: float,
+    motion: Motion,
+    cell: Cell,
+    toolpath: Toolpath,
+    process: ProcessParameters,
+    cylinders: arm_kept.Cylinders,
+    most: int | None,
+    clearance: float,
 ) -> ArmTouches:
-    deposited = deposit_obstacles(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
-    return arm_touches(motion, ArmContact(cell, cylinders, toolpath.surroundings, deposited, clearance), most)
+    deposited = deposit_obstacles(
+        motion, toolpath.bead_width or process.bead_width, toolpath.layer_height
+    )
+    return arm_touches(
+        motion, ArmContact(cell, cylinders, toolpath.surroundings, deposited, clearance), most
+    )
 
 
 def arm_issues(
-    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, cylinders: arm_kept.Cylinders,
+    motion: Motion,
+    cell: Cell,
+    toolpath: Toolpath,
+    process: ProcessParameters,
+    cylinders: arm_kept.Cylinders,
     known: Sequence[Issue],
 ) -> tuple[Issue, ...]:
     """An error for each bead that nothing known is told of, on which or on the way to which one of the links, which are
@@ -63,5 +89,7 @@ def arm_issues(
             done.add(place)
             what = touches.names[touches.what[row]]
             link = touches.links[touches.link[row]]
-            found.append(arm_kept.clearance_issue(cell, link, what, *place, on_way=not motion.deposit[row]))
+            found.append(
+                arm_kept.clearance_issue(cell, link, what, *place, on_way=not motion.deposit[row])
+            )
     return tuple(found)

@@ -30,7 +30,9 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
         return _on_edges(toolpath, of, sources[0], places)
     if kind == "cladding":
         return _on_faces(toolpath, of, sources[0], places)
-    if hasattr(of.strategy, "share_of_cut"):  # where the part was cut, above the surface that beads of the layer lie on
+    if hasattr(
+        of.strategy, "share_of_cut"
+    ):  # where the part was cut, above the surface that beads of the layer lie on
         up = of.strategy.share_of_cut * of.strategy.layer_height * places.build
         places = places._replace(points=places.points + up)
     limit = on_part.allowed(toolpath, getattr(of.strategy, "margin", 0.0))
@@ -41,17 +43,23 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
         off = np.min([_off_solid(source, places.points, limit) for source in sources], axis=0)
     elif sources[0].shape is None:
         body = sources[0].body()
-        off = np.maximum(off_facets(body.vertices, body.triangles, places.points) - of.wall.smoothing, 0.0)
+        off = np.maximum(
+            off_facets(body.vertices, body.triangles, places.points) - of.wall.smoothing, 0.0
+        )
     else:
         off = off_faces(sources[0].shape, of.wall.faces, places.points, limit)
-    if toolpath.fitted is not None:  # those layers lie on what was scanned, no farther off than they were moved
+    if (
+        toolpath.fitted is not None
+    ):  # those layers lie on what was scanned, no farther off than they were moved
         from ...core.inspection.fit_layers import moved_most  # jobs without a scan need none of it
 
         off = np.maximum(off - moved_most(toolpath.fitted, places.layer), 0.0)
     return on_part.judged(toolpath, places, off, limit)
 
 
-def _on_faces(toolpath: CoreToolpath, of: Given, source: Taken, places: on_part.Places) -> CoreToolpath:
+def _on_faces(
+    toolpath: CoreToolpath, of: Given, source: Taken, places: on_part.Places
+) -> CoreToolpath:
     """The toolpath with whether its layers lie as many layer heights above the faces as they should."""
     up = (places.layer % of.strategy.layers) * of.strategy.layer_height
     limit = toolpath.chord_error + on_part.ROUNDED
@@ -64,7 +72,9 @@ def _on_faces(toolpath: CoreToolpath, of: Given, source: Taken, places: on_part.
     return on_part.judged(toolpath, places, off, limit)
 
 
-def _on_edges(toolpath: CoreToolpath, of: Given, source: Taken, places: on_part.Places) -> CoreToolpath:
+def _on_edges(
+    toolpath: CoreToolpath, of: Given, source: Taken, places: on_part.Places
+) -> CoreToolpath:
     """The toolpath with whether its layers lie as many layer heights above the edges as they should."""
     up = places.layer // (len(toolpath.layers) // of.strategy.repeat) * of.strategy.layer_height
     limit = toolpath.chord_error + on_part.ROUNDED

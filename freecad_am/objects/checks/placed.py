@@ -52,13 +52,20 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
     carried = cell if cell is not None else path.Cell
     for one, what in ((toolpath, "toolpath"), (carried, "cell")):
         if one is None or not one.Key:
-            raise InputError("NO_INPUT", path.Label, "its {} is missing; choose one and recompute", what)
+            raise InputError(
+                "NO_INPUT", path.Label, "its {} is missing; choose one and recompute", what
+            )
     read, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
-    own = stage.parameters(path, JointParameters) if stage.kind == "joint path" else JointParameters()
+    own = (
+        stage.parameters(path, JointParameters) if stage.kind == "joint path" else JointParameters()
+    )
     names = tuple(dict.fromkeys((path.Name, toolpath.Name, carried.Name)))
     return Placing(
-        carried.Proxy.value(carried), lambda: _job(read(), folders, process, joints or own), carried, names,
+        carried.Proxy.value(carried),
+        lambda: _job(read(), folders, process, joints or own),
+        carried,
+        names,
         path.Document.Name,
     )
 
@@ -66,23 +73,42 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
 def given(parameters: PlaceParameters | None, values: dict[str, Any]) -> PlaceParameters:
     """Parameters with single ones changed, in outer units by row key. InputError UNKNOWN_PARAMETER, BAD_VALUE."""
     if not isinstance(parameters or PlaceParameters(), PlaceParameters):
-        raise InputError("BAD_INPUT", "parameters", "{} is none of the parameters that it takes; give {}",
-                         type(parameters).__name__, PlaceParameters.__name__)
+        raise InputError(
+            "BAD_INPUT",
+            "parameters",
+            "{} is none of the parameters that it takes; give {}",
+            type(parameters).__name__,
+            PlaceParameters.__name__,
+        )
     known = {row.key: row for row in rows.rows(PlaceParameters)}
     unknown = sorted(set(values) - set(known))
     if unknown:
-        raise InputError("UNKNOWN_PARAMETER", "place", "{} is not known; use one of {}", ", ".join(unknown),
-                         ", ".join(sorted(known)))
+        raise InputError(
+            "UNKNOWN_PARAMETER",
+            "place",
+            "{} is not known; use one of {}",
+            ", ".join(unknown),
+            ", ".join(sorted(known)),
+        )
     inner = rows.flat(parameters or PlaceParameters())
     try:
-        inner.update({name: known[name].inner(value, f"place.{name}") for name, value in values.items()})
+        inner.update(
+            {name: known[name].inner(value, f"place.{name}") for name, value in values.items()}
+        )
         found: PlaceParameters = rows.build(PlaceParameters, inner)
     except ReferenceError:
-        raise InputError("BAD_INPUT", "place", "a value is an object that was deleted; give a number or a text") from None
+        raise InputError(
+            "BAD_INPUT", "place", "a value is an object that was deleted; give a number or a text"
+        ) from None
     return found
 
 
-def _job(toolpath: Toolpath, folders: tuple[str, ...], process: ProcessParameters, joints: JointParameters) -> Job:
+def _job(
+    toolpath: Toolpath,
+    folders: tuple[str, ...],
+    process: ProcessParameters,
+    joints: JointParameters,
+) -> Job:
     def cell(settings: CellParameters) -> Cell:
         return cell_obstacles.resolved(settings, toolpath, folders)
 

@@ -30,7 +30,9 @@ from ..work import progress
 DEFLECTION = 0.05  # mm, of the triangles that stand for faces
 NOTHING = "NO_PREDICTION"
 _OF_SOLIDS = "Give strategy.margin {} mm more than it has, or wider beads"
-_OF_WALLS = "Use beads {} mm wider on either side, by process.bead_width, or leave less of it to machine"
+_OF_WALLS = (
+    "Use beads {} mm wider on either side, by process.bead_width, or leave less of it to machine"
+)
 _OF_CLADDING = "Lay one more layer, or leave less of it to machine"
 
 Report = Callable[[float, str], None]
@@ -51,20 +53,29 @@ class Target:
         return family_of(self.given.strategy).kind
 
 
-def with_shape_issues(toolpath: CoreToolpath, targets: Sequence[Target], allowance: float) -> CoreToolpath:
+def with_shape_issues(
+    toolpath: CoreToolpath, targets: Sequence[Target], allowance: float
+) -> CoreToolpath:
     """The toolpath with what its predicted deposit comes to, and a warning where the part is not inside of it by the
     allowance, mm, or where nobody can know."""
     try:
         deposit, found = predicted(toolpath, targets, progress.report)
     except InputError as error:
-        return dataclasses.replace(toolpath, issues=(*toolpath.issues, Issue(WARNING, NOTHING, error.message)))
+        return dataclasses.replace(
+            toolpath, issues=(*toolpath.issues, Issue(WARNING, NOTHING, error.message))
+        )
     shape = dataclasses.replace(
-        compare.figures(deposit, found, allowance), deviation=deviation_map(deposit, found, len(toolpath.layers)),
+        compare.figures(deposit, found, allowance),
+        deviation=deviation_map(deposit, found, len(toolpath.layers)),
     )
-    return dataclasses.replace(toolpath, predicted=shape, issues=(*toolpath.issues, *issues(toolpath, targets, shape)))
+    return dataclasses.replace(
+        toolpath, predicted=shape, issues=(*toolpath.issues, *issues(toolpath, targets, shape))
+    )
 
 
-def issues(toolpath: CoreToolpath, targets: Sequence[Target], shape: PredictedShape) -> tuple[Issue, ...]:
+def issues(
+    toolpath: CoreToolpath, targets: Sequence[Target], shape: PredictedShape
+) -> tuple[Issue, ...]:
     """What is to be told of a predicted deposit."""
     first = np.zeros(len(toolpath.layers), dtype=bool)
     for _, numbers in toolpath.parts:
@@ -73,26 +84,45 @@ def issues(toolpath: CoreToolpath, targets: Sequence[Target], shape: PredictedSh
     return compare.issues(shape, toolpath.layer_heights, first, remedy(targets))
 
 
-def predicted(toolpath: CoreToolpath, targets: Sequence[Target], report: Report) -> tuple[PredictedDeposit, Compared]:
+def predicted(
+    toolpath: CoreToolpath, targets: Sequence[Target], report: Report
+) -> tuple[PredictedDeposit, Compared]:
     """The deposit of a toolpath, and the faces of its features against it. InputError NO_PREDICTION."""
     processes: list[ProcessParameters] = [target.given.process for target in targets]
     parts = parts_of(toolpath, processes)
     if any(part.toolpath.bead_width is None for part in parts):
-        raise InputError(NOTHING, "toolpath", "it is not known how wide its beads count; plan it again")
+        raise InputError(
+            NOTHING, "toolpath", "it is not known how wide its beads count; plan it again"
+        )
     asked = [_faces(target) for target in targets if target.kind != "curves"]
     if not asked:
-        raise InputError(NOTHING, "toolpath", "curves have no faces that a deposit could be held against; leave out "
-                         "process.machining_allowance")
-    deposit = predicted_deposit(parts, lambda share, text: report(0.8 * share, Text("predicting the deposit, {}", text)))
+        raise InputError(
+            NOTHING,
+            "toolpath",
+            "curves have no faces that a deposit could be held against; leave out "
+            "process.machining_allowance",
+        )
+    deposit = predicted_deposit(
+        parts, lambda share, text: report(0.8 * share, Text("predicting the deposit, {}", text))
+    )
     report(0.8, "comparing the predicted deposit with the part")
     found = compare.compared(deposit, uncovered(asked))
     if not len(found.faces):
-        raise InputError(NOTHING, "toolpath", "the part has no faces above where the deposit begins; choose another part")
+        raise InputError(
+            NOTHING,
+            "toolpath",
+            "the part has no faces above where the deposit begins; choose another part",
+        )
     return deposit, found
 
 
 def inspected(
-    toolpath: CoreToolpath, targets: Sequence[Target], allowance: float, tolerance: float, label: str, report: Report
+    toolpath: CoreToolpath,
+    targets: Sequence[Target],
+    allowance: float,
+    tolerance: float,
+    label: str,
+    report: Report,
 ) -> Inspected:
     """The predicted deposit of a toolpath as if it had been measured: its surface outside of the part, or the part where
     that sticks out of it, at places all over the part's faces. InputError NO_PREDICTION."""
@@ -102,8 +132,20 @@ def inspected(
     every = np.ones(count, dtype=np.bool_)
     outside = np.maximum(found.deviation, 0.0)[:, None] * found.faces.normals
     return Inspected(
-        found.faces.points + outside, found.deviation, every, every, np.eye(4), (), tolerance, PREDICTED, label,
-        figures.spread(found.deviation, tolerance), None, (), None, issues(toolpath, targets, shape),
+        found.faces.points + outside,
+        found.deviation,
+        every,
+        every,
+        np.eye(4),
+        (),
+        tolerance,
+        PREDICTED,
+        label,
+        figures.spread(found.deviation, tolerance),
+        None,
+        (),
+        None,
+        issues(toolpath, targets, shape),
         laid=np.column_stack([pieces.middle, pieces.layer, deposit.level]),
     )
 
@@ -111,7 +153,9 @@ def inspected(
 def remedy(targets: Sequence[Target]) -> str:
     """What to do where a deposit is too small, with {} for by how much."""
     filled = family_of(targets[0].given.strategy).filled
-    return _OF_WALLS if not filled else _OF_CLADDING if targets[0].kind == "cladding" else _OF_SOLIDS
+    return (
+        _OF_WALLS if not filled else _OF_CLADDING if targets[0].kind == "cladding" else _OF_SOLIDS
+    )
 
 
 def _faces(target: Target) -> Faces:
@@ -120,7 +164,11 @@ def _faces(target: Target) -> Faces:
         bodies = [body for group in target.given.wall.groups for body in group.bodies]
         return thinned(together([faces(body.vertices, body.triangles) for body in bodies]))
     names = target.given.wall.faces if target.kind == "cladding" else target.chosen
-    return thinned(together([_of_source(source, names if k == 0 else ()) for k, source in enumerate(target.sources)]))
+    return thinned(
+        together(
+            [_of_source(source, names if k == 0 else ()) for k, source in enumerate(target.sources)]
+        )
+    )
 
 
 def _of_source(source: Taken, names: Sequence[str]) -> Faces:
@@ -131,15 +179,22 @@ def _of_source(source: Taken, names: Sequence[str]) -> Faces:
     known = {f"Face{number}": face for number, face in enumerate(shape.Faces, start=1)}
     chosen: list[Any] = [known[name] for name in dict.fromkeys(names) if name in known]
     if not chosen and not known:
-        raise InputError(NOTHING, "toolpath", "{} has no faces that a deposit could be held against; choose another object",
-                         source.label)
+        raise InputError(
+            NOTHING,
+            "toolpath",
+            "{} has no faces that a deposit could be held against; choose another object",
+            source.label,
+        )
     side = OUTSIDE if shape.Solids else BOTH
-    return together([faces(*triangles_of(face, DEFLECTION), side) for face in chosen or known.values()])
+    return together(
+        [faces(*triangles_of(face, DEFLECTION), side) for face in chosen or known.values()]
+    )
 
 
 def _closed(triangles: Any) -> bool:
     """Whether every edge of triangles (m, 3) has one that runs the other way."""
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
+    edges = np.concatenate(
+        [triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]
+    ).astype(np.int64)
     size = int(edges.max(initial=0)) + 1
     return bool(np.array_equal(np.sort(edges @ [size, 1]), np.sort(edges @ [1, size])))
-

@@ -63,13 +63,17 @@ Survey = Callable[[], Surveyed]
 What = tuple[Toolpath, Planned, Cell, tuple[Mesh | None, ...]]
 
 
-def of_stages(toolpath: Any, path: Any = None, program: Any = None, surveyed: Survey | None = None) -> tuple[Promise, ...]:
+def of_stages(
+    toolpath: Any, path: Any = None, program: Any = None, surveyed: Survey | None = None
+) -> tuple[Promise, ...]:
     """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). surveyed:
     as `survey_of` gives it, where it was begun already. Raises InputError 'NO_RESULT' where one has no result."""
     if program is None:
         return prepared(toolpath, path, surveyed=surveyed)()
     settings = program.Proxy.parameters(program, ProgramParameters)
-    return prepared(toolpath, path, settings, read_back_of(program), tuple(issues_of(program)), surveyed)()
+    return prepared(
+        toolpath, path, settings, read_back_of(program), tuple(issues_of(program)), surveyed
+    )()
 
 
 def read_back_of(program: Any) -> Verification | None:
@@ -79,15 +83,24 @@ def read_back_of(program: Any) -> Verification | None:
 
 
 def prepared(
-    toolpath: Any, path: Any = None, settings: ProgramParameters | None = None, read: Verification | None = None,
-    more: tuple[Issue, ...] = (), surveyed: Survey | None = None,
+    toolpath: Any,
+    path: Any = None,
+    settings: ProgramParameters | None = None,
+    read: Verification | None = None,
+    more: tuple[Issue, ...] = (),
+    surveyed: Survey | None = None,
 ) -> Work:
     """What makes the preflight of a toolpath and of its joint path (document objects), without the document, from which all
     is read now. settings: of the program that is written of it; read: how that was read back; more: its findings;
     surveyed: as `survey_of` gives it. Raises InputError 'NO_RESULT' where one has no result."""
     stages = [stage for stage in (*features_of(toolpath), toolpath, path) if stage is not None]
-    issues = tuple(dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more)))
-    planned, process = toolpath.Proxy.reader(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
+    issues = tuple(
+        dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more))
+    )
+    planned, process = (
+        toolpath.Proxy.reader(toolpath),
+        toolpath.Proxy.parameters(toolpath, ProcessParameters),
+    )
     run = None if path is None else _Run(path, settings)
     survey = surveyed or _survey(toolpath, run)
 
@@ -95,15 +108,27 @@ def prepared(
         as_it_runs = None if run is None else run.how(issues)
         seen = survey()  # last: it may be waited for
         known = Evidence(
-            planned(), process, issues, distances=seen.distances, balance=seen.balance, looked=seen.looked,
-            rapids=seen.rapids, arm=seen.arm,
+            planned(),
+            process,
+            issues,
+            distances=seen.distances,
+            balance=seen.balance,
+            looked=seen.looked,
+            rapids=seen.rapids,
+            arm=seen.arm,
         )
-        return promises(known if run is None or as_it_runs is None else _with_motion(known, run, as_it_runs, read))
+        return promises(
+            known
+            if run is None or as_it_runs is None
+            else _with_motion(known, run, as_it_runs, read)
+        )
 
     return preflight
 
 
-def survey_of(toolpath: Any, path: Any, settings: ProgramParameters | None, at_once: bool = False) -> Survey:
+def survey_of(
+    toolpath: Any, path: Any, settings: ProgramParameters | None, at_once: bool = False
+) -> Survey:
     """What finds of a toolpath and its joint path (document objects), run as a program with `settings`, what takes long,
     without the document, from which all is read now. at_once: so are the files that the cell names, and FreeCAD is not
     asked for anything later. Raises InputError 'NO_RESULT' where one has no result."""
@@ -111,18 +136,26 @@ def survey_of(toolpath: Any, path: Any, settings: ProgramParameters | None, at_o
 
 
 def _survey(toolpath: Any, run: _Run | None) -> Survey:
-    features, process = features_of(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
+    features, process = (
+        features_of(toolpath),
+        toolpath.Proxy.parameters(toolpath, ProcessParameters),
+    )
     builds = [feature.Proxy.parameters(feature, BuildDirectionParameters) for feature in features]
-    planned, shapes = toolpath.Proxy.reader(toolpath), [feature.Proxy.reader(feature) for feature in features]
+    planned, shapes = (
+        toolpath.Proxy.reader(toolpath),
+        [feature.Proxy.reader(feature) for feature in features],
+    )
     widths = [one.bead_width for one in toolpath.Proxy.processes(toolpath)]
     cell = None if toolpath.Cell is None else toolpath.Cell.Proxy.value(toolpath.Cell)
 
     def survey() -> Surveyed:
         made = planned()
-        balance = deposit_balance.together([
-            deposit_balance.of_toolpath(shape(), part, width)
-            for shape, width, (part, _) in zip(shapes, widths, made.parts, strict=True)
-        ])
+        balance = deposit_balance.together(
+            [
+                deposit_balance.of_toolpath(shape(), part, width)
+                for shape, width, (part, _) in zip(shapes, widths, made.parts, strict=True)
+            ]
+        )
         looked = _nozzle_looked(made, cell, [build.clearance != "none" for build in builds])
         if run is None:
             return Surveyed(tuple(spacing.between_layers(made)), balance, looked)
@@ -131,36 +164,66 @@ def _survey(toolpath: Any, run: _Run | None) -> Survey:
     return survey
 
 
-def _nozzle_looked(toolpath: Toolpath, cell: CellParameters | None, asked: list[bool]) -> Looked | None:
+def _nozzle_looked(
+    toolpath: Toolpath, cell: CellParameters | None, asked: list[bool]
+) -> Looked | None:
     """What the nozzle touches on the features that ask for clearance."""
     bodies = (*toolpath.surroundings, *platforms(cell, toolpath)) if any(asked) else ()
     nozzle = NozzleParameters() if cell is None else cell.nozzle
-    return clearance_look.together([
-        clearance_look.looked_at(toolpath, bodies, nozzle, NOZZLE_PLACES // len(asked), number)
-        for number, clear in enumerate(asked) if clear
-    ])
+    return clearance_look.together(
+        [
+            clearance_look.looked_at(toolpath, bodies, nozzle, NOZZLE_PLACES // len(asked), number)
+            for number, clear in enumerate(asked)
+            if clear
+        ]
+    )
 
 
 def _of_motion(
-    of_deposit: Surveyed, process: ProcessParameters, toolpath: Toolpath, planned: Planned, cell: Cell,
-    shapes: tuple[Mesh | None, ...], as_it_runs: AsRun,
+    of_deposit: Surveyed,
+    process: ProcessParameters,
+    toolpath: Toolpath,
+    planned: Planned,
+    cell: Cell,
+    shapes: tuple[Mesh | None, ...],
+    as_it_runs: AsRun,
 ) -> Surveyed:
     """What was found of the deposit, at the distances that it is run at, with what is found of the motion."""
     path = planned.joint_path
     rapids = rapid_look.looked_at(
-        planned.motion, [one.bead for one in path.beads], cell, toolpath.surroundings,
-        toolpath.bead_width or process.bead_width, toolpath.layer_height, RAPID_PLACES,
+        planned.motion,
+        [one.bead for one in path.beads],
+        cell,
+        toolpath.surroundings,
+        toolpath.bead_width or process.bead_width,
+        toolpath.layer_height,
+        RAPID_PLACES,
     )
-    arm = arm_of(as_it_runs.motion, cell, toolpath, process, shapes, ARM_PLACES, cell.arm_clearance or 0.0)
-    return replace(of_deposit, distances=tuple(spacing.between_layers(path.toolpath(toolpath))), rapids=rapids, arm=arm)
+    arm = arm_of(
+        as_it_runs.motion, cell, toolpath, process, shapes, ARM_PLACES, cell.arm_clearance or 0.0
+    )
+    return replace(
+        of_deposit,
+        distances=tuple(spacing.between_layers(path.toolpath(toolpath))),
+        rapids=rapids,
+        arm=arm,
+    )
 
 
 class _Run:
     """How a joint path (document object) is run, by a program with `settings` where there are any, without the document."""
 
-    def __init__(self, path: Any, settings: ProgramParameters | None, at_once: bool = False) -> None:
-        self._toolpath, self._planned = path.Toolpath.Proxy.reader(path.Toolpath), path.Proxy.reader(path)
-        self._looks, self._folders = path.Cell.Proxy.value(path.Cell), tuple(user_machines.folders())
+    def __init__(
+        self, path: Any, settings: ProgramParameters | None, at_once: bool = False
+    ) -> None:
+        self._toolpath, self._planned = (
+            path.Toolpath.Proxy.reader(path.Toolpath),
+            path.Proxy.reader(path),
+        )
+        self._looks, self._folders = (
+            path.Cell.Proxy.value(path.Cell),
+            tuple(user_machines.folders()),
+        )
         self.settings = None if settings is None or settings.post == "none" else settings
         self._kept = self._read() if at_once else None
 
@@ -182,20 +245,34 @@ class _Run:
         return as_run(planned, cell, toolpath.chord_error, self.settings, issues)
 
 
-def _with_motion(known: Evidence, run: _Run, as_it_runs: AsRun, read: Verification | None) -> Evidence:
+def _with_motion(
+    known: Evidence, run: _Run, as_it_runs: AsRun, read: Verification | None
+) -> Evidence:
     """What is known of a joint path, or of the program that is written of it; known: of its toolpath, and what was surveyed.
     read: None where that was not read back."""
     toolpath, planned, cell, shapes = run.what
     return replace(
-        known, toolpath=planned.joint_path.toolpath(toolpath), issues=as_it_runs.issues, cell=cell, motion=as_it_runs.motion,
-        condition=as_it_runs.condition, threshold=as_it_runs.threshold, true_shapes=bool(shapes) and None not in shapes,
+        known,
+        toolpath=planned.joint_path.toolpath(toolpath),
+        issues=as_it_runs.issues,
+        cell=cell,
+        motion=as_it_runs.motion,
+        condition=as_it_runs.condition,
+        threshold=as_it_runs.threshold,
+        true_shapes=bool(shapes) and None not in shapes,
         read=None if read is None else _read_back(read, toolpath.chord_error),
-        on_controller=() if run.settings is None else catalogue.load(run.settings.post).ON_CONTROLLER,
+        on_controller=()
+        if run.settings is None
+        else catalogue.load(run.settings.post).ON_CONTROLLER,
     )
 
 
 def _read_back(read: Verification, chord_error: float) -> ReadBack:
     return ReadBack(
-        not has_errors(read.issues), read.at_points_mm, read.between_mm, read.bound_mm,
-        chord_error + read.bound_mm if math.isfinite(read.bound_mm) else math.inf, len(read.solvers),
+        not has_errors(read.issues),
+        read.at_points_mm,
+        read.between_mm,
+        read.bound_mm,
+        chord_error + read.bound_mm if math.isfinite(read.bound_mm) else math.inf,
+        len(read.solvers),
     )

@@ -10,7 +10,16 @@ from ...core.parameters import field as f
 from .rows import Row
 
 MARK = "="
-FOLLOW = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME, f.RATIO, f.NUMBER, f.TURN_RATE, f.COUNT)  # forms of rows that can
+FOLLOW = (
+    f.LENGTH,
+    f.ANGLE,
+    f.SPEED,
+    f.TIME,
+    f.RATIO,
+    f.NUMBER,
+    f.TURN_RATE,
+    f.COUNT,
+)  # forms of rows that can
 
 
 def is_expression(value: Any) -> bool:
@@ -25,8 +34,13 @@ def evaluated(value: str, obj: Any, where: str) -> Any:
     except Exception as error:  # FreeCAD's own errors share no base
         raise _wrong(value, where, error) from None
     if isinstance(found, bool) or not (isinstance(found, (int, float)) or hasattr(found, "Unit")):
-        raise InputError("BAD_EXPRESSION", where, "{!r} gives {!r}, which is not a number; write one that gives a number",
-                         value, found)
+        raise InputError(
+            "BAD_EXPRESSION",
+            where,
+            "{!r} gives {!r}, which is not a number; write one that gives a number",
+            value,
+            found,
+        )
     return found
 
 
@@ -55,8 +69,12 @@ def broken(obj: Any) -> str:
         try:
             obj.evalExpression(text)
         except Exception:  # FreeCAD's own errors share no base
-            return Text("{} follows the expression {}, which gives nothing any more; give {} a value or another one", name,
-                        text, name)
+            return Text(
+                "{} follows the expression {}, which gives nothing any more; give {} a value or another one",
+                name,
+                text,
+                name,
+            )
     return ""
 
 
@@ -68,5 +86,10 @@ def _wrong(value: str, where: str, error: Exception) -> InputError:
     cause = error.args[0] if error.args else error
     reason = str(cause.get("sErrMsg", "") if isinstance(cause, dict) else cause).strip().rstrip(".")
     return InputError(
-        "BAD_EXPRESSION", where, "{!r} is not understood ({}); write it as in {}Spreadsheet.height / 2", value, reason, MARK
+        "BAD_EXPRESSION",
+        where,
+        "{!r} is not understood ({}); write it as in {}Spreadsheet.height / 2",
+        value,
+        reason,
+        MARK,
     )

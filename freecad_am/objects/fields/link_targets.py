@@ -10,7 +10,10 @@ def broken_link(value: Any) -> str:
     """The label of a FreeCAD link whose object is gone, '' when all is well."""
     for one in value if isinstance(value, list) else [value]:
         linked = one[0] if isinstance(one, tuple) else one
-        if getattr(linked, "TypeId", "") == "App::Link" and linked.getLinkedObject() in (None, linked):
+        if getattr(linked, "TypeId", "") == "App::Link" and linked.getLinkedObject() in (
+            None,
+            linked,
+        ):
             return str(linked.Label)
     return ""
 

@@ -27,13 +27,17 @@ Pose = tuple[float, float, float, float, float, float]
 def pendants() -> dict[str, Pendant]:
     """The pendants that show frames otherwise than we do, by controller, in the order of their makers."""
     found = {name: catalogue.load(name).PENDANT for name in catalogue.NAMES}
-    return dict(sorted(((name, one) for name, one in found.items() if one), key=lambda pair: pair[1].maker))
+    return dict(
+        sorted(((name, one) for name, one in found.items() if one), key=lambda pair: pair[1].maker)
+    )
 
 
 def named(words: Sequence[str]) -> str:
     """The controller that one of the words of a pose names, '' where none does."""
     found = next((word.lower() for word in words if word.lower() in catalogue.NAMES), "")
-    return found if found and catalogue.load(found).PENDANT else ""  # all of them take long to import
+    return (
+        found if found and catalogue.load(found).PENDANT else ""
+    )  # all of them take long to import
 
 
 def six(words: Sequence[str], where: str) -> Pose:
@@ -59,11 +63,20 @@ def _rotation(pendant: Pendant, numbers: Array, where: str) -> Array:
     """(3, 3) of what a pendant shows after X Y Z."""
     size = float(np.linalg.norm(numbers))
     if pendant.orientation is QUATERNION and abs(size - 1.0) > UNIT:
-        raise InputError("BAD_VALUE", where, "q1 to q4 are together {:.4g} long, a quaternion is 1; look at the digits",
-                         size)
+        raise InputError(
+            "BAD_VALUE",
+            where,
+            "q1 to q4 are together {:.4g} long, a quaternion is 1; look at the digits",
+            size,
+        )
     if pendant.orientation is ROTATION_VECTOR and size > WHOLE:
-        raise InputError("BAD_VALUE", where, "the rotation vector is {:.4g} rad long, more than a turn; give RX RY RZ in "
-                         "rad, as the pendant shows them", size)
+        raise InputError(
+            "BAD_VALUE",
+            where,
+            "the rotation vector is {:.4g} rad long, more than a turn; give RX RY RZ in "
+            "rad, as the pendant shows them",
+            size,
+        )
     numbers = np.radians(numbers) if pendant.orientation.degrees else numbers
     return np.asarray(pendant.orientation.rotations(numbers[None])[0])
 
@@ -72,7 +85,9 @@ def shown(controller: str, pose: Sequence[float]) -> tuple[float, ...]:
     """What a pendant shows of a pose x y z RX RY RZ, mm and rad: X Y Z, and degrees, a quaternion, or rad."""
     orientation = pendants()[controller].orientation
     numbers = orientation.numbers(frames.bryant(pose)[None, :3, :3])[0]
-    return *map(float, pose[:3]), *(np.degrees(numbers) if orientation.degrees else numbers).tolist()
+    return *map(float, pose[:3]), *(
+        np.degrees(numbers) if orientation.degrees else numbers
+    ).tolist()
 
 
 def plain(text: str, where: str) -> str:

@@ -10,7 +10,11 @@ from ...core.issues import InputError, Text
 
 def is_text(value: Any) -> bool:
     """Whether a value is a text that FreeCAD takes: it falls over halves of characters, and ends texts at a zero."""
-    return isinstance(value, str) and "\0" not in value and not any("\ud800" <= sign <= "\udfff" for sign in value)
+    return (
+        isinstance(value, str)
+        and "\0" not in value
+        and not any("\ud800" <= sign <= "\udfff" for sign in value)
+    )
 
 
 def checked_words(words: Any, where: str) -> list[str]:

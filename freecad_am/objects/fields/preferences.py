@@ -24,7 +24,14 @@ RAMPS = ("blue to yellow", "violet to orange", "grey")
 MACHINE_COLOUR = (0.86, 0.87, 0.88)
 # parameters of the process that are proposed for new toolpaths, by row key
 PROCESS = (
-    "travel_speed", "bead_width", "wire_diameter", "wire_feed", "density", "lead_on", "lead_off", "between_layers_wait",
+    "travel_speed",
+    "bead_width",
+    "wire_diameter",
+    "wire_feed",
+    "density",
+    "lead_on",
+    "lead_off",
+    "between_layers_wait",
 )
 
 
@@ -84,7 +91,9 @@ def process() -> dict[str, Any]:
     found: dict[str, Any] = {}
     for row in process_rows() if App.GuiUp else ():
         number = App.ParamGet(GROUP).GetFloat(row.name, math.nan)
-        value = text(row.name) or number if row.form == rows.MIXED else number  # those that take words were numbers once
+        value = (
+            text(row.name) or number if row.form == rows.MIXED else number
+        )  # those that take words were numbers once
         if value != row.outer(row.default) and value == value:
             found[row.key] = value
     return found
@@ -121,6 +130,7 @@ def proposed(section: str, row: rows.Row) -> Any:
 
 # ---- what is shown
 
+
 def speed_unit() -> str:
     """The unit of speeds in fields and read-outs."""
     unit = text("SpeedUnit", "mm/s")
@@ -142,7 +152,7 @@ def machine_colour() -> tuple[float, float, float]:
     """The colour of machines that are drawn plain, 0..1 each."""
     packed = text("MachineColour")
     try:
-        red, green, blue = (int(packed[start:start + 2], 16) / 255.0 for start in (1, 3, 5))
+        red, green, blue = (int(packed[start : start + 2], 16) / 255.0 for start in (1, 3, 5))
     except ValueError:
         return MACHINE_COLOUR
     return red, green, blue

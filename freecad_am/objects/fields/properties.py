@@ -18,11 +18,19 @@ from .rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, build, flat, property_n
 READ_ONLY, HIDDEN, OUTPUT = 1, 4, 8
 
 _TYPES = {
-    f.ANGLE: "App::PropertyAngle", f.SPEED: "App::PropertySpeed", f.RATIO: "App::PropertyFloat",
-    f.NUMBER: "App::PropertyFloat", f.TURN_RATE: "App::PropertyFloat", f.COUNT: "App::PropertyInteger",
+    f.ANGLE: "App::PropertyAngle",
+    f.SPEED: "App::PropertySpeed",
+    f.RATIO: "App::PropertyFloat",
+    f.NUMBER: "App::PropertyFloat",
+    f.TURN_RATE: "App::PropertyFloat",
+    f.COUNT: "App::PropertyInteger",
     f.FLAG: "App::PropertyBool",
-    f.CHOICE: "App::PropertyEnumeration", f.TEXT: "App::PropertyString", f.POSE: "App::PropertyPlacement",
-    TEXT_LIST: "App::PropertyStringList", MIXED: "App::PropertyString", LENGTH_OR_POSE: "App::PropertyString",
+    f.CHOICE: "App::PropertyEnumeration",
+    f.TEXT: "App::PropertyString",
+    f.POSE: "App::PropertyPlacement",
+    TEXT_LIST: "App::PropertyStringList",
+    MIXED: "App::PropertyString",
+    LENGTH_OR_POSE: "App::PropertyString",
 }
 
 
@@ -52,7 +60,10 @@ def add(obj: Any, cls: type, group: str) -> None:
             if row.form == f.CHOICE:
                 setattr(obj, row.name, list(row.spec.choices))
             _set(obj, row, row.default)
-        elif row.form == f.CHOICE and tuple(obj.getEnumerationsOfProperty(row.name) or ()) != row.spec.choices:
+        elif (
+            row.form == f.CHOICE
+            and tuple(obj.getEnumerationsOfProperty(row.name) or ()) != row.spec.choices
+        ):
             chosen = getattr(obj, row.name)
             setattr(obj, row.name, list(row.spec.choices))
             _set(obj, row, chosen if chosen in row.spec.choices else row.default)
@@ -71,11 +82,17 @@ def read(obj: Any, cls: type, section: str) -> Any:
 
     `section` is the prefix of the dataclass's own errors. Raises InputError naming the object's Label and property.
     """
-    values = {row.key: row.inner(getattr(obj, row.name), f"{obj.Label}.{row.name}") for row in rows(cls)}
+    values = {
+        row.key: row.inner(getattr(obj, row.name), f"{obj.Label}.{row.name}") for row in rows(cls)
+    }
     try:
         return build(cls, values)
     except InputError as error:
-        key = error.where[len(section) + 1:] if error.where.startswith(f"{section}.") else error.where
+        key = (
+            error.where[len(section) + 1 :]
+            if error.where.startswith(f"{section}.")
+            else error.where
+        )
         raise InputError(error.code, f"{obj.Label}.{property_name(key)}", error.message) from None
 
 
@@ -115,7 +132,12 @@ def _set(obj: Any, row: Row, value: Any) -> None:
         if row.form == f.ANGLE and abs(row.inner(getattr(obj, row.name), row.name) - value) > 1e-9:
             # FreeCAD keeps angles within a turn and says nothing
             shown = f.outer_text(row.spec, value)
-            raise InputError("BAD_VALUE", f"{obj.Label}.{row.name}", "{} is out of range; give -360 to 360 deg", shown)
+            raise InputError(
+                "BAD_VALUE",
+                f"{obj.Label}.{row.name}",
+                "{} is out of range; give -360 to 360 deg",
+                shown,
+            )
 
 
 def _retype(obj: Any, row: Row) -> None:

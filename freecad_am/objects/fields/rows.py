@@ -37,10 +37,17 @@ _MILLISECONDS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*ms
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s,].*)?", re.ASCII)
 _ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
 _LABELS = {  # of parameters whose keys do not say it in words
-    "given": "Given polynomials", "degree": "Degree of the polynomials", "parameter": "Polynomials give",
-    "min_condition": "Least condition", "lock": "Axis that stands still", "lock_at": "It stands at",
-    "max_residual": "Largest direction error", "own_branch": "Branch of this path", "compare": "Compare with",
-    "rx": "RX", "ry": "RY",
+    "given": "Given polynomials",
+    "degree": "Degree of the polynomials",
+    "parameter": "Polynomials give",
+    "min_condition": "Least condition",
+    "lock": "Axis that stands still",
+    "lock_at": "It stands at",
+    "max_residual": "Largest direction error",
+    "own_branch": "Branch of this path",
+    "compare": "Compare with",
+    "rx": "RX",
+    "ry": "RY",
 }
 
 
@@ -89,8 +96,12 @@ class Row:
         if self.form == f.POSE:
             return _pose(value, where)
         if self.form == TEXT_LIST:
-            return tuple(split(value, where) if isinstance(value, str) else checked_words(value, where))
-        if self.form == LENGTH_OR_POSE and (_is_list(value) or (isinstance(value, str) and len(split(value, where)) > 2)):
+            return tuple(
+                split(value, where) if isinstance(value, str) else checked_words(value, where)
+            )
+        if self.form == LENGTH_OR_POSE and (
+            _is_list(value) or (isinstance(value, str) and len(split(value, where)) > 2)
+        ):
             return _pose(value, where)
         if self.form == MIXED and (value is None or (isinstance(value, str) and not value.strip())):
             return None
@@ -99,7 +110,11 @@ class Row:
         if self.spec.kind == f.TEXT and not isinstance(value, str):
             return " ".join(checked_words(value, where))
         if self.spec.kind in (f.TEXT, f.CHOICE, f.FLAG):
-            return pendants.plain(value, where) if self.spec.poses and isinstance(value, str) else value
+            return (
+                pendants.plain(value, where)
+                if self.spec.poses and isinstance(value, str)
+                else value
+            )
         if self.spec.kind == f.POSE:
             return _pose(value, where)
         return _number(self.spec, value, where)
@@ -107,12 +122,18 @@ class Row:
     def outer(self, value: Any) -> Any:
         """The value in outer units as a Python literal, such as a panel shows and a macro passes."""
         if _is_list(value) and (self.spec.kind == f.POSE or self.form == LENGTH_OR_POSE):
-            return tuple(float(number) for number in value[:3]) + tuple(degrees(angle) for angle in value[3:])
+            return tuple(float(number) for number in value[:3]) + tuple(
+                degrees(angle) for angle in value[3:]
+            )
         if self.form == TEXT_LIST:
             return tuple(value)
         if isinstance(value, tuple):
             return " ".join(value)
-        if self.spec.kind in (f.ANGLE, f.TURN_RATE, f.RATIO) and not isinstance(value, str) and value is not None:
+        if (
+            self.spec.kind in (f.ANGLE, f.TURN_RATE, f.RATIO)
+            and not isinstance(value, str)
+            and value is not None
+        ):
             return value / f.TO_INNER[f.RATIO] if self.spec.kind == f.RATIO else degrees(value)
         return value
 
@@ -153,7 +174,9 @@ def rows(cls: type) -> tuple[Row, ...]:
         spec = f.spec_of(field)
         if spec.kind == f.GROUP:
             factory: Any = field.default_factory
-            found += [dataclasses.replace(row, path=(field.name, *row.path)) for row in rows(factory)]
+            found += [
+                dataclasses.replace(row, path=(field.name, *row.path)) for row in rows(factory)
+            ]
         elif spec.kind in f.END_OF:
             end = dataclasses.replace(spec, kind=f.END_OF[spec.kind])
             found += [Row((field.name, i), end, end.kind, field.default[i]) for i in (0, 1)]
@@ -222,7 +245,9 @@ def split(text: str, where: str) -> list[str]:
     comma may begin decimals ('10,5 20,5' is two numbers, or four), and for digits that are grouped by no-break blanks."""
     if _TWO_WAYS.search(text.strip()):
         remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
-        raise InputError("BAD_VALUE", where, "{!r} may be read in two ways; {}", plain_blanks(text), Word(remedy))
+        raise InputError(
+            "BAD_VALUE", where, "{!r} may be read in two ways; {}", plain_blanks(text), Word(remedy)
+        )
     return text.replace(",", " ").split()
 
 
@@ -249,7 +274,9 @@ def _number(spec: f.Spec, value: Any, where: str) -> Any:
         try:
             number = float(value)
         except (TypeError, ValueError):
-            raise InputError("BAD_VALUE", where, "{!r} is not a number; give one such as 2{}", value, also) from None
+            raise InputError(
+                "BAD_VALUE", where, "{!r} is not a number; give one such as 2{}", value, also
+            ) from None
         if spec.kind == f.COUNT:
             return int(number) if number.is_integer() else number
         return number * f.TO_INNER.get(spec.kind, 1.0)
@@ -273,9 +300,16 @@ def _quantity(value: Any, where: str, example: str) -> Any:
     except (ValueError, TypeError, ArithmeticError, OSError):
         plain = plain_blanks(value) if isinstance(value, str) else value
         if isinstance(plain, str) and _DECIMAL_COMMA.fullmatch(plain):
-            raise InputError("BAD_VALUE", where, "{} has a comma; write decimals with a point, such as {}", repr(plain),
-                             plain.replace(",", ".")) from None
-        raise InputError("BAD_VALUE", where, "{!r} is not understood; give {}", plain, example) from None
+            raise InputError(
+                "BAD_VALUE",
+                where,
+                "{} has a comma; write decimals with a point, such as {}",
+                repr(plain),
+                plain.replace(",", "."),
+            ) from None
+        raise InputError(
+            "BAD_VALUE", where, "{!r} is not understood; give {}", plain, example
+        ) from None
 
 
 def _pose(value: Any, where: str) -> tuple[float, ...]:
@@ -294,6 +328,8 @@ def _pose(value: Any, where: str) -> tuple[float, ...]:
     except (TypeError, ValueError):
         floats = []
     if len(floats) not in (3, 6):
-        raise InputError("BAD_VALUE", where, "{!r} is not a pose; give x y z in mm and RX RY RZ in deg", value)
+        raise InputError(
+            "BAD_VALUE", where, "{!r} is not a pose; give x y z in mm and RX RY RZ in deg", value
+        )
     floats += [0.0] * (6 - len(floats))
     return (*floats[:3], *(math.radians(angle) for angle in floats[3:]))

@@ -14,7 +14,9 @@ ENDINGS = (".yaml", ".yml")
 PATTERN = "(*.yaml *.yml)"  # of these files in a file dialog
 START = 20_000  # characters of a file that are looked at
 MACHINE = re.compile(r"^machine\s*:", re.MULTILINE)
-OF_JOBS = re.compile(r"^(part|cell|features|version)\s*:", re.MULTILINE)  # a job file beside it is none
+OF_JOBS = re.compile(
+    r"^(part|cell|features|version)\s*:", re.MULTILINE
+)  # a job file beside it is none
 
 
 def own_folder() -> str:
@@ -35,7 +37,10 @@ def path_of(name: str) -> str:
 def known(doc: Any) -> list[tuple[str, str]]:
     """Path and name of the cell files in the user's folder and beside a document, by name; two of one name are told apart by
     their folders. Files that cannot be read, and those of jobs, are none."""
-    folders = [own_folder(), *([os.path.dirname(doc.FileName)] if doc is not None and doc.FileName else [])]
+    folders = [
+        own_folder(),
+        *([os.path.dirname(doc.FileName)] if doc is not None and doc.FileName else []),
+    ]
     paths = [path for folder in dict.fromkeys(folders) for path in _files(folder)]
     names = [os.path.splitext(os.path.basename(path))[0] for path in paths]
     found = [

@@ -21,16 +21,28 @@ def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, 
     unknown = sorted(set(values) - set(known))
     if unknown:
         raise InputError(
-            "UNKNOWN_PARAMETER", obj.Label, "{} is not known; use one of {}", ", ".join(unknown), ", ".join(sorted(known))
+            "UNKNOWN_PARAMETER",
+            obj.Label,
+            "{} is not known; use one of {}",
+            ", ".join(unknown),
+            ", ".join(sorted(known)),
         )
     whole = {type(entry): entry for entry in dataclasses if entry is not None}
     for cls in whole.keys() - {section.cls for section in stage.sections}:
         wanted = ", ".join(section.cls.__name__ for section in stage.sections)
-        raise InputError("BAD_INPUT", obj.Label, "{} is none of the parameters that it takes; give {}", cls.__name__, wanted)
+        raise InputError(
+            "BAD_INPUT",
+            obj.Label,
+            "{} is none of the parameters that it takes; give {}",
+            cls.__name__,
+            wanted,
+        )
     try:
         checked = _checked(obj, stage, whole, values)
     except ReferenceError:  # an object that is gone cannot even be named
-        raise InputError("BAD_INPUT", obj.Label, "a value is an object that was deleted; give a number or a text") from None
+        raise InputError(
+            "BAD_INPUT", obj.Label, "a value is an object that was deleted; give a number or a text"
+        ) from None
     for parameters in checked:
         properties.write(obj, parameters)
     for key, value in values.items():
@@ -47,7 +59,9 @@ def _checked(obj: Any, stage: Stage, whole: dict[type, Any], values: dict[str, A
         base = whole.get(section.cls)
         inner = rows.flat(base if base is not None else stage.parameters(obj, section.cls))
         for key, row in mine.items():
-            inner[key] = row.inner(_plain(obj, row, values[key], f"{section.prefix}.{key}"), f"{section.prefix}.{key}")
+            inner[key] = row.inner(
+                _plain(obj, row, values[key], f"{section.prefix}.{key}"), f"{section.prefix}.{key}"
+            )
         checked.append(rows.build(section.cls, inner))
     return checked
 
@@ -57,5 +71,7 @@ def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
     if not expressions.is_expression(value):
         return value
     if row.form not in expressions.FOLLOW:
-        raise InputError("BAD_EXPRESSION", where, "it cannot follow an expression; give a plain value")
+        raise InputError(
+            "BAD_EXPRESSION", where, "it cannot follow an expression; give a plain value"
+        )
     return expressions.evaluated(value, obj, where)

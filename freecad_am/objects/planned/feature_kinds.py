@@ -23,7 +23,13 @@ _PROXIES = {
 def proxy_of(kind: str) -> type[Any]:
     """The class of the features of a family. InputError BAD_VALUE for a kind that there is not."""
     if kind not in KINDS:
-        raise InputError("BAD_VALUE", "kind", "{!r} is none of {}; use one of these", kind, Text.joined(", ", KINDS))
+        raise InputError(
+            "BAD_VALUE",
+            "kind",
+            "{!r} is none of {}; use one of these",
+            kind,
+            Text.joined(", ", KINDS),
+        )
     module, name = _PROXIES[kind]
     found: type[Any] = getattr(importlib.import_module(f"freecad_am.objects.{module}"), name)
     return found

@@ -66,7 +66,10 @@ def member(feature: Any, given: Given, all_features: Sequence[Any]) -> Member:
     """A feature object as one of several."""
     own = (feature.Source[0], *getattr(feature, "Further", ()))
     others = [
-        source for one in all_features if one is not feature for source in (one.Source[0], *getattr(one, "Further", ()))
+        source
+        for one in all_features
+        if one is not feature
+        for source in (one.Source[0], *getattr(one, "Further", ()))
     ]
     substrate = getattr(feature, "Substrate", None)
     stands_on = [] if substrate is None else _leaves(substrate)
@@ -119,7 +122,8 @@ def planned_in_sequence(
     on_parts = [part.on_part for part in parts if part.on_part is not None]
     worst = max(on_parts, key=lambda one: one[1] / one[2], default=None)
     return dataclasses.replace(
-        toolpath, unsupported=math.fsum(part.unsupported or 0.0 for part in parts),
+        toolpath,
+        unsupported=math.fsum(part.unsupported or 0.0 for part in parts),
         on_part=None if worst is None else (sum(one[0] for one in on_parts), *worst[1:]),
     )
 
@@ -150,24 +154,40 @@ def _judged(
 def _lowest(toolpath: CoreToolpath, part: CoreToolpath) -> bool:
     """Whether nothing of the other features lies lower along the feature's own vertical."""
     up = part.frame[:3, 2]
-    low, lowest = (min(float((bead.points @ up).min()) for _, _, bead in one) for one in (part, toolpath))
+    low, lowest = (
+        min(float((bead.points @ up).min()) for _, _, bead in one) for one in (part, toolpath)
+    )
     return low <= lowest + part.layer_height
 
 
 def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]) -> None:
     """InputError OVERLAP for parts that are within one another; what grows on another begins at its surface."""
     for k, one in enumerate(members):
-        cut = family_of(one.given.strategy).substrate != NONE and family_of(one.given.strategy).kind != "solid"
+        cut = (
+            family_of(one.given.strategy).substrate != NONE
+            and family_of(one.given.strategy).kind != "solid"
+        )
         for j, other in enumerate(members[:k]):
             if not (one.whole and other.whole) or (cut and set(names[j]) & set(one.on)):
                 continue
-            pairs = [(a.shape, b.shape) for a in one.sources for b in other.sources if a.shape and b.shape]
+            pairs = [
+                (a.shape, b.shape)
+                for a in one.sources
+                for b in other.sources
+                if a.shape and b.shape
+            ]
             shared = sum(common_volume(a, b) for a, b in pairs)
-            smaller = min((volume(shape) for pair in pairs for shape in pair if shape.Solids), default=0.0)
+            smaller = min(
+                (volume(shape) for pair in pairs for shape in pair if shape.Solids), default=0.0
+            )
             if shared > OVERLAP * smaller > 0.0:
                 raise InputError(
-                    "OVERLAP", one.label, "{:.4g} cm3 of it are within {} and would be deposited twice; cut one from the "
-                    "other", shared / MM3, other.label
+                    "OVERLAP",
+                    one.label,
+                    "{:.4g} cm3 of it are within {} and would be deposited twice; cut one from the "
+                    "other",
+                    shared / MM3,
+                    other.label,
                 )
 
 
@@ -176,7 +196,8 @@ def _distinct(all_bodies: Sequence[Body]) -> tuple[Body, ...]:
     kept: list[Body] = []
     for body in all_bodies:
         if not any(
-            body.vertices.shape == other.vertices.shape and np.abs(body.vertices - other.vertices).max() <= TOLERANCE_MM
+            body.vertices.shape == other.vertices.shape
+            and np.abs(body.vertices - other.vertices).max() <= TOLERANCE_MM
             for other in kept
         ):
             kept.append(body)

@@ -15,7 +15,11 @@ from ..shapes.bodies import Taken
 def on_bend(part: Taken, ground: Taken) -> bool:
     """Whether a part lies on a face of the ground that is not flat; False of meshes, and where the kernel cannot tell."""
     with contextlib.suppress(*kernel.FAULTS):
-        return part.shape is not None and ground.shape is not None and lies_on_bend(part.shape, ground.shape)
+        return (
+            part.shape is not None
+            and ground.shape is not None
+            and lies_on_bend(part.shape, ground.shape)
+        )
     return False
 
 
@@ -23,5 +27,8 @@ def carried(shape: Any) -> str:
     """What is told of several solids where most stand on the bend of another one; '' of others."""
     with contextlib.suppress(*kernel.FAULTS):
         if name := carrier(shape.Solids):
-            return Text(" (others stand on the bend of {}: as the substrate it gives them layers of its shape)", name)
+            return Text(
+                " (others stand on the bend of {}: as the substrate it gives them layers of its shape)",
+                name,
+            )
     return ""

@@ -75,8 +75,16 @@ class _Planes(NamedTuple):
 
 
 def proposed(
-    part: Taken, names: Sequence[str], substrate: Taken | None, edges: bool, width: float, tilts: bool, *,
-    base: Sequence[str] = (), clicked: Sequence[str] = (), direction: Sequence[float] | None = UP,
+    part: Taken,
+    names: Sequence[str],
+    substrate: Taken | None,
+    edges: bool,
+    width: float,
+    tilts: bool,
+    *,
+    base: Sequence[str] = (),
+    clicked: Sequence[str] = (),
+    direction: Sequence[float] | None = UP,
     layer_height: float = SolidParameters.layer_height,
 ) -> Proposal:
     """What suits a part, or faces or edges of it. edges: it names edges to start from; width: mm of a bead; tilts: a machine
@@ -86,63 +94,121 @@ def proposed(
     planes = _Planes(direction, layer_height, substrate)
     shape = part.shape
     if shape is not None and (not shape.Faces or any(name.startswith("Edge") for name in names)):
-        what = Text("edges of {} are chosen", part.label) if names else Text("{} has edges and no faces", part.label)
+        what = (
+            Text("edges of {} are chosen", part.label)
+            if names
+            else Text("{} has edges and no faces", part.label)
+        )
         return Proposal("curves", "", Text("{}, which are laid as beads", Word(what)))
     if not names and substrate is not None and stands_on_hub(part, substrate, base):
-        return Proposal("developable", "", Text("{} stands on a cylinder or cone of {}", part.label, substrate.label))
+        return Proposal(
+            "developable",
+            "",
+            Text("{} stands on a cylinder or cone of {}", part.label, substrate.label),
+        )
     if shape is None:
         return _of_mesh(part, substrate, edges, tilts, planes)
     if edges:
         return Proposal("surface", "", Text("{} names the edges that it starts from", part.label))
     if substrate is not None and (names or not shape.Solids):
-        return Proposal("surface", "", Text("{} is a thin wall that grows on {}", part.label, substrate.label))
+        return Proposal(
+            "surface", "", Text("{} is a thin wall that grows on {}", part.label, substrate.label)
+        )
     if len(shape.Solids) > 1 and not names:
         if _own_hub(part):
-            why = Text("most solids of {} stand on a cylinder or cone of another of them", part.label)
+            why = Text(
+                "most solids of {} stand on a cylinder or cone of another of them", part.label
+            )
             return Proposal("developable", "", why)
-        return _solid(part, Text("{} holds {} solids{}", part.label, len(shape.Solids), carried(shape)), tilts, planes)
+        return _solid(
+            part,
+            Text("{} holds {} solids{}", part.label, len(shape.Solids), carried(shape)),
+            tilts,
+            planes,
+        )
     left = ""
     wall = _turned(part, names) if substrate is None else None
     if wall is not None:
         if names:
-            return Proposal("revolution", "", Text("the faces chosen of {} turn about one axis", part.label))
+            return Proposal(
+                "revolution", "", Text("the faces chosen of {} turn about one axis", part.label)
+            )
         if not shape.Solids:
-            return Proposal("revolution", "", Text("{} is a skin that turns about one axis", part.label))
+            return Proposal(
+                "revolution", "", Text("{} is a skin that turns about one axis", part.label)
+            )
         deep = part_depths.of_revolved(shape, wall, part.label)
         balance = None if deep is None else of_wall(deep, width)
         out = 0.0 if balance is None else balance.left_out or 0.0
         if balance is None or out <= NEGLIGIBLE * (balance.part or 0.0):
-            why = Text("{} turns about one axis, and its wall is one bead of {:.4g} mm", part.label, width)
+            why = Text(
+                "{} turns about one axis, and its wall is one bead of {:.4g} mm", part.label, width
+            )
             return Proposal("revolution", "", why)
-        left = Text("; it turns about one axis, but a wall of one bead would leave out {:.3g} of its {:.3g} cm3", out / MM3,
-                    (balance.part or 0.0) / MM3)
+        left = Text(
+            "; it turns about one axis, but a wall of one bead would leave out {:.3g} of its {:.3g} cm3",
+            out / MM3,
+            (balance.part or 0.0) / MM3,
+        )
     if names and shape.Solids and not _thin(part, width, names):
         return Proposal(
-            "cladding", "", Text("faces of {} are chosen, which do not turn about one axis, and it is thicker there than a "
-                "bead of {:.4g} mm, so they are covered", part.label, width),
+            "cladding",
+            "",
+            Text(
+                "faces of {} are chosen, which do not turn about one axis, and it is thicker there than a "
+                "bead of {:.4g} mm, so they are covered",
+                part.label,
+                width,
+            ),
         )
     if names and stand([shape.getElement(name) for name in names]):
         return Proposal(
-            "surface", "", Text("faces of {} are chosen, which do not turn about one axis, so they are a wall that starts "
-                "on the platform where nothing carries it", part.label), stands=True,
+            "surface",
+            "",
+            Text(
+                "faces of {} are chosen, which do not turn about one axis, so they are a wall that starts "
+                "on the platform where nothing carries it",
+                part.label,
+            ),
+            stands=True,
         )
     if names:
         return Proposal(
-            "surface", "", Text("faces of {} are chosen, which do not turn about one axis, so they are a wall; it needs a "
-                "substrate, or edges to start from", part.label),
+            "surface",
+            "",
+            Text(
+                "faces of {} are chosen, which do not turn about one axis, so they are a wall; it needs a "
+                "substrate, or edges to start from",
+                part.label,
+            ),
         )
     if not shape.Solids:
         return _of_skin(part)
     if clicked and not left and substrate is None and _own_hub(part, clicked):
-        return Proposal("developable", "", Text("{} of {} is chosen, which the rest of it stands on", ", ".join(clicked),
-                                                part.label))
+        return Proposal(
+            "developable",
+            "",
+            Text(
+                "{} of {} is chosen, which the rest of it stands on", ", ".join(clicked), part.label
+            ),
+        )
     if substrate is not None and _thin(part, width):
-        return Proposal("surface", "", Text("{} is a thin shell, one bead of {:.4g} mm, on {}", part.label, width,
-                                            substrate.label))
+        return Proposal(
+            "surface",
+            "",
+            Text(
+                "{} is a thin shell, one bead of {:.4g} mm, on {}",
+                part.label,
+                width,
+                substrate.label,
+            ),
+        )
     return _solid(part, Text("{} is a solid{}", part.label, Word(left)), tilts, planes)
 
 
-def _of_mesh(part: Taken, substrate: Taken | None, edges: bool, tilts: bool, planes: _Planes) -> Proposal:
+def _of_mesh(
+    part: Taken, substrate: Taken | None, edges: bool, tilts: bool, planes: _Planes
+) -> Proposal:
     """A wall where it is wide open, else filled; so is what cuts itself, as pieces of a model for display that are pushed
     into one another do: no wall of one bead is that."""
     body = part.body()
@@ -153,22 +219,41 @@ def _of_mesh(part: Taken, substrate: Taken | None, edges: bool, tilts: bool, pla
         return _solid(part, Text("{} is a mesh, which is filled", part.label), tilts, planes)
     crossed = crossings(found.vertices, found.triangles, WELDS[-1])
     sheet = found.vertices, found.triangles
-    if len(crossed.pairs) and not edges and uncrossed(*sheet, crossed.pairs, SurfaceParameters.mend, WELDS[-1]) is None:
+    if (
+        len(crossed.pairs)
+        and not edges
+        and uncrossed(*sheet, crossed.pairs, SurfaceParameters.mend, WELDS[-1]) is None
+    ):
         at = place(crossed.places[crossed.length.argmax()])
         size = at_least(opening)
         why = Text(
             "{} is an open mesh that cuts itself at {} pairs of its triangles, as at {}, so it is not a wall of one bead: "
-            "it is filled, with its {} holes of up to {:.4g} mm closed", part.label, len(crossed.pairs), at, len(open_), size
+            "it is filled, with its {} holes of up to {:.4g} mm closed",
+            part.label,
+            len(crossed.pairs),
+            at,
+            len(open_),
+            size,
         )
         return replace(_solid(part, why, tilts, planes), mend=min(size, WIDEST))
     lies = _lying(found.vertices[found.triangles])
     if substrate is None and not edges and lies >= LYING:
         return Proposal(
-            "cladding", "", Text("{} is an open mesh that lies rather than stands, {:.0%} of it at less than 45 deg to the "
-                "platform, so it is a face that is covered", part.label, lies),
+            "cladding",
+            "",
+            Text(
+                "{} is an open mesh that lies rather than stands, {:.0%} of it at less than 45 deg to the "
+                "platform, so it is a face that is covered",
+                part.label,
+                lies,
+            ),
         )
     where = "starts on the platform" if substrate is None else Text("grows on {}", substrate.label)
-    return Proposal("surface", "", Text("{} is an open mesh, so it is a thin wall that {}", part.label, Word(where)))
+    return Proposal(
+        "surface",
+        "",
+        Text("{} is an open mesh, so it is a thin wall that {}", part.label, Word(where)),
+    )
 
 
 def _of_skin(part: Taken) -> Proposal:
@@ -177,17 +262,34 @@ def _of_skin(part: Taken) -> Proposal:
     lies = _lying(body.vertices[body.triangles])
     if lies >= LYING:
         return Proposal(
-            "cladding", "", Text("{} is an open skin that lies rather than stands, {:.0%} of it at less than 45 deg to the "
-                "platform, so it is a face that is covered", part.label, lies),
+            "cladding",
+            "",
+            Text(
+                "{} is an open skin that lies rather than stands, {:.0%} of it at less than 45 deg to the "
+                "platform, so it is a face that is covered",
+                part.label,
+                lies,
+            ),
         )
     if stand(part.shape.Faces):
         return Proposal(
-            "surface", "", Text("{} is an open skin and not of revolution, so it is a thin wall, which starts on the "
-                "platform where nothing carries it", part.label), stands=True,
+            "surface",
+            "",
+            Text(
+                "{} is an open skin and not of revolution, so it is a thin wall, which starts on the "
+                "platform where nothing carries it",
+                part.label,
+            ),
+            stands=True,
         )
     return Proposal(
-        "surface", "", Text("{} is an open skin and not of revolution, and nothing else serves it; it needs a substrate, or "
-            "edges to start from, and what does not grow from there is left out", part.label)
+        "surface",
+        "",
+        Text(
+            "{} is an open skin and not of revolution, and nothing else serves it; it needs a substrate, or "
+            "edges to start from, and what does not grow from there is left out",
+            part.label,
+        ),
     )
 
 
@@ -195,32 +297,61 @@ def _lying(corners: Array) -> float:
     """The share of triangles (m, 3, 3), by their area, that are less than STEEP from level."""
     normals = np.cross(*np.diff(corners, axis=1).swapaxes(0, 1))
     areas = np.linalg.norm(normals, axis=1)
-    return float(areas[np.abs(normals[:, 2]) > np.cos(STEEP) * areas].sum()) / max(float(areas.sum()), 1e-300)
+    return float(areas[np.abs(normals[:, 2]) > np.cos(STEEP) * areas].sum()) / max(
+        float(areas.sum()), 1e-300
+    )
 
 
 def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
     """In planes, or in layers without support where the machine can tilt and much hangs over, or it stands on a bend."""
     if tilts and planes.ground is not None and on_bend(part, planes.ground):
-        return Proposal("solid", GEODESIC, Text("{}, and layers have the bend of {} where it stands", reason,
-                                                planes.ground.label))
+        return Proposal(
+            "solid",
+            GEODESIC,
+            Text("{}, and layers have the bend of {} where it stands", reason, planes.ground.label),
+        )
     bodies = [part.body()]
     least = best(bodies, SolidParameters(max_overhang=STEEP, layer_height=planes.apart))[0].way
     way = least if planes.way is None else np.array(planes.way) / np.linalg.norm(planes.way)
     over = _overhang(bodies[0], way)
     along = "" if np.array_equal(way, UP) else Text(", stacked along {}", _direction_text(way))
     if over < ROUNDED_OFF:
-        return Proposal("solid", PLANES, Text("{}, and less than 1% of its surface hangs over by more than 45 deg{}", reason,
-                                              Word(along)))
-    why = Text("{}, and {:.0%} of its surface hangs over by more than 45 deg{}", reason, over, Word(along))
+        return Proposal(
+            "solid",
+            PLANES,
+            Text(
+                "{}, and less than 1% of its surface hangs over by more than 45 deg{}",
+                reason,
+                Word(along),
+            ),
+        )
+    why = Text(
+        "{}, and {:.0%} of its surface hangs over by more than 45 deg{}", reason, over, Word(along)
+    )
     if over <= OVER:
         return Proposal("solid", PLANES, why)
     other = _overhang(bodies[0], least)
-    hint = Text("; stacked along {} it would be {:.0%}", _direction_text(least), other) if other <= OVER else ""
+    hint = (
+        Text("; stacked along {} it would be {:.0%}", _direction_text(least), other)
+        if other <= OVER
+        else ""
+    )
     if not _stands(bodies[0], way, planes.apart):
-        return Proposal("solid", PLANES, Text("{}; curved layers need a flat face that it stands on, which it has not{}",
-                                              Word(why), Word(hint)))
+        return Proposal(
+            "solid",
+            PLANES,
+            Text(
+                "{}; curved layers need a flat face that it stands on, which it has not{}",
+                Word(why),
+                Word(hint),
+            ),
+        )
     if tilts:
-        return Proposal("solid", GEODESIC, Text("{}, which layers along the way through it carry{}", Word(why), Word(hint)))
+        return Proposal(
+            "solid",
+            GEODESIC,
+            Text("{}, which layers along the way through it carry{}", Word(why), Word(hint)),
+        )
     what = Text("a machine that tilts could lay layers: {}, which need no support", GEODESIC)
     return Proposal("solid", PLANES, Text("{}; {}{}", Word(why), Word(what), Word(hint)))
 
@@ -230,7 +361,9 @@ def _overhang(body: Body, way: Array) -> float:
     stands on."""
     corners, normals, areas = facets([body], None)
     heights = corners @ way
-    found = judged(way, corners, normals, areas, float(np.sin(STEEP)), FLAT * float(np.ptp(heights)))
+    found = judged(
+        way, corners, normals, areas, float(np.sin(STEEP)), FLAT * float(np.ptp(heights))
+    )
     return found.area / max(float(areas.sum()), 1e-300)
 
 
@@ -239,7 +372,9 @@ def _stands(body: Body, way: Array, layer_height: float) -> bool:
     layers begin on, but for those that a round bottom is made of."""
     corners, normals, _ = facets([body], None)
     heights = corners @ way
-    low: Mask = (heights.max(axis=1) < heights.min() + STANDING * layer_height) & (normals @ way < -LEVEL)
+    low: Mask = (heights.max(axis=1) < heights.min() + STANDING * layer_height) & (
+        normals @ way < -LEVEL
+    )
     return bool(low.any())
 
 
@@ -267,8 +402,14 @@ def _thin(part: Taken, width: float, chosen: Sequence[str] = ()) -> bool:
     except (InputError, *kernel.FAULTS):
         return False
     balance = None if deep is None else of_wall(deep, width)
-    return balance is not None and (balance.left_out or 0.0) <= NEGLIGIBLE * (balance.part or 0.0) and (
-        bool(chosen) or (balance.beads or 0.0) - (balance.outside or 0.0) <= TWOFOLD * (balance.part or 0.0))
+    return (
+        balance is not None
+        and (balance.left_out or 0.0) <= NEGLIGIBLE * (balance.part or 0.0)
+        and (
+            bool(chosen)
+            or (balance.beads or 0.0) - (balance.outside or 0.0) <= TWOFOLD * (balance.part or 0.0)
+        )
+    )
 
 
 def _own_hub(part: Taken, faces: Sequence[str] = ()) -> bool:
@@ -288,9 +429,14 @@ def stands_on_hub(part: Taken, substrate: Taken, faces: Sequence[str] = ()) -> b
     """Whether a solid or mesh has corners on a cylinder or cone of the substrate, on the faces chosen of it or any."""
     if substrate.shape is None or (part.shape is not None and not part.shape.Solids):
         return False  # a surface is not a solid to be filled
-    corners = part.body().vertices if part.shape is None else np.array(
-        [tuple(vertex.Point) for vertex in part.shape.Vertexes]).reshape(-1, 3)
+    corners = (
+        part.body().vertices
+        if part.shape is None
+        else np.array([tuple(vertex.Point) for vertex in part.shape.Vertexes]).reshape(-1, 3)
+    )
     named = [(f"Face{number}", face) for number, face in enumerate(substrate.shape.Faces, start=1)]
     seats = hubs.seats([(name, face) for name, face in named if not faces or name in faces], False)
-    near = [np.abs(seat.base.surface.distance(seat.base.inside(corners))) < TOUCHING for seat in seats]
+    near = [
+        np.abs(seat.base.surface.distance(seat.base.inside(corners))) < TOUCHING for seat in seats
+    ]
     return any(int(some.sum()) >= LEAST for some in near)

@@ -19,7 +19,10 @@ from ...core.toolpath import Toolpath
 from ..shapes.bodies import taken
 from ..stage import stage_of
 
-UNDERSTANDING = ("POINTS_READ", "FREE_MOTION")  # of what an inspection finds: how the scan was understood
+UNDERSTANDING = (
+    "POINTS_READ",
+    "FREE_MOTION",
+)  # of what an inspection finds: how the scan was understood
 Fit = Callable[[Toolpath], Toolpath]
 
 
@@ -32,14 +35,20 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
     where = f"{obj.Label}.Scan"
     if stage_of(scan.Planned) is not None:
         raise InputError(
-            "BAD_INPUT", where, "{} compares with {}; choose an inspection of the part that is deposited on", scan.Label,
-            scan.Planned.Label
+            "BAD_INPUT",
+            where,
+            "{} compares with {}; choose an inspection of the part that is deposited on",
+            scan.Label,
+            scan.Planned.Label,
         )
     how = scan.Proxy.parameters(scan, InspectionParameters).fit
     if parameters.after_layer is not None and how != NONE:
         raise InputError(
-            "BAD_VALUE", f"{scan.Label}.Fit", "{}: only a scan in the part's own coordinates shows how far a part has "
-            "grown; give none", how
+            "BAD_VALUE",
+            f"{scan.Label}.Fit",
+            "{}: only a scan in the part's own coordinates shows how far a part has "
+            "grown; give none",
+            how,
         )
     inspected = scan.Proxy.value(scan)
     ground = getattr(obj.Feature, "Substrate", None)
@@ -55,7 +64,9 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
     return fit
 
 
-def fitted(toolpath: Toolpath, inspected: Inspected, body: Any, parameters: ScanParameters) -> Toolpath:
+def fitted(
+    toolpath: Toolpath, inspected: Inspected, body: Any, parameters: ScanParameters
+) -> Toolpath:
     """The toolpath on the surface that was scanned, and kept clear of that in place of the body. InputError."""
     first = toolpath.layers[min(parameters.first, len(toolpath.layers) - 1)]
     ways = np.concatenate([fit_layers.ways_of(toolpath)(bead) for bead in first.beads])
@@ -63,10 +74,15 @@ def fitted(toolpath: Toolpath, inspected: Inspected, body: Any, parameters: Scan
     if body is not None:
         points = points[scanned_body.facing(points, body, ways)]
     scan = Scan(points, inspected.file, parameters.scan_within)
-    made = fit_layers.fitted(toolpath, scan, parameters, len(inspected.points) - len(points), inspected.motion)
+    made = fit_layers.fitted(
+        toolpath, scan, parameters, len(inspected.points) - len(points), inspected.motion
+    )
     notes = [issue for issue in inspected.issues if issue.code in UNDERSTANDING]
     made = dataclasses.replace(made, issues=(*notes, *made.issues))
     if body is None:
         return made
-    around = tuple(scanned_body.scanned(one, scan, ways) if one.name == body.name else one for one in made.surroundings)
+    around = tuple(
+        scanned_body.scanned(one, scan, ways) if one.name == body.name else one
+        for one in made.surroundings
+    )
     return dataclasses.replace(made, surroundings=around)

@@ -28,8 +28,16 @@ def of_toolpath(toolpath: Any) -> Callable[[CellParameters], CellParameters]:
         if not of_setup(settings.setup).planned:
             return settings
         cell = cell_obstacles.resolved(settings, planned, folders)
-        job = Tried(lambda: planned, settings, folders, process, JointParameters(), obstacles=cell.obstacles,
-                    torch=cell.torch, external_links=cell.external_links)
+        job = Tried(
+            lambda: planned,
+            settings,
+            folders,
+            process,
+            JointParameters(),
+            obstacles=cell.obstacles,
+            torch=cell.torch,
+            external_links=cell.external_links,
+        )
         return suited(job, progress.report)
 
     return of

@@ -68,10 +68,14 @@ class Given:
 def seen_of(cell: CellParameters) -> CellParameters:
     """What a toolpath is planned by of a cell: nozzle, platform and which frame sits on that. All else is left as it usually
     is, so that nothing of a toolpath can depend on it, and a change of it leaves layers as they are."""
-    return CellParameters(nozzle=cell.nozzle, platform_diameter=cell.platform_diameter, mount=cell.mount)
+    return CellParameters(
+        nozzle=cell.nozzle, platform_diameter=cell.platform_diameter, mount=cell.mount
+    )
 
 
-def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made: made) -> CoreToolpath:
+def planned(
+    of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made: made
+) -> CoreToolpath:
     """The toolpath of a feature that is deposited alone, layers changed by `fit`; what of it lies over nothing is told."""
     made = fit(layers_of(of))
     if of.build.clearance != "none":
@@ -81,11 +85,17 @@ def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made
     progress.report(CHECKED, "looking for beads over nothing")
     plates = platforms(of.cell, made)
     if made.family == "revolution":
-        stands = mounted(of.cell, made.frame, made.family) if of.cell is not None and plates else made.frame
+        stands = (
+            mounted(of.cell, made.frame, made.family)
+            if of.cell is not None and plates
+            else made.frame
+        )
         return support.with_support(made, (stands,), made.surroundings, ())
     aloft = above_platform(made, of)
     made = dataclasses.replace(made, issues=(*made.issues, *aloft))
-    made = support.with_support(made, (), (*made.surroundings, *plates), () if aloft else bases_of(of))
+    made = support.with_support(
+        made, (), (*made.surroundings, *plates), () if aloft else bases_of(of)
+    )
     return over_edge(made, of)
 
 
@@ -93,8 +103,12 @@ def over_edge(made: CoreToolpath, of: Given) -> CoreToolpath:
     """The toolpath with a warning where it begins beyond the edge of the platform."""
     if of.cell is None or of.cell.platform_diameter <= 0.0:
         return made
-    feature = made.frame if of.stands is None else None  # of several the first one's frame counts for all
-    found = support.over_edge(made, _stands(made, of, of.cell), of.cell.platform_diameter, made.surroundings, feature)
+    feature = (
+        made.frame if of.stands is None else None
+    )  # of several the first one's frame counts for all
+    found = support.over_edge(
+        made, _stands(made, of, of.cell), of.cell.platform_diameter, made.surroundings, feature
+    )
     return dataclasses.replace(made, issues=(*made.issues, *found))
 
 
@@ -115,8 +129,10 @@ def layers_of(of: Given) -> CoreToolpath:
     process = of.process
     if process.bead_model == "none" and process.wire.feed_mode != "constant" and not process.ramped:
         raise InputError(
-            "NOT_FOR_FAMILY", "process.wire.feed_mode", "without a bead model or a ramp the travel speed does not vary, and "
-            "the wire has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp"
+            "NOT_FOR_FAMILY",
+            "process.wire.feed_mode",
+            "without a bead model or a ramp the travel speed does not vary, and "
+            "the wire has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp",
         )
     classes.refuse_speeds(process)
     family = family_of(of.strategy)
@@ -127,7 +143,9 @@ def layers_of(of: Given) -> CoreToolpath:
     if not family.filled:
         made = no_shorter(made, getattr(of.strategy, "min_layer_time", 0.0), process.rapid_speed)
     twice = made.twice if family.filled else deposited_twice(made)
-    return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical, twice=twice, retreat=process.retreat)
+    return dataclasses.replace(
+        made, max_from_vertical=of.build.max_from_vertical, twice=twice, retreat=process.retreat
+    )
 
 
 def kept_clear(
@@ -159,7 +177,13 @@ def _of_revolution(of: Given) -> CoreToolpath:
     if stands is None and of.cell is not None and of.cell.mount == "part":
         stands = np.eye(4)
     made = revolution.plan(
-        of.wall, of.strategy, of.build, of.process, of.nozzle, 0.0 if of.cell is None else of.cell.platform_diameter, stands,
+        of.wall,
+        of.strategy,
+        of.build,
+        of.process,
+        of.nozzle,
+        0.0 if of.cell is None else of.cell.platform_diameter,
+        stands,
         _share,
     )
     return dataclasses.replace(made, surroundings=of.wall.surroundings)
@@ -174,7 +198,11 @@ def _of_wall(of: Given) -> CoreToolpath:
         from ...core.strategies.walls import plan as family
     on_another = getattr(of.wall, "ground", None) is None or of.stands is not None
     remedy = platform.MOVE if on_another else platform.MOUNT
-    if isinstance(of.wall, PatchWall) and of.cell is not None and (of.stands is not None or of.cell.mount != "feature"):
+    if (
+        isinstance(of.wall, PatchWall)
+        and of.cell is not None
+        and (of.stands is not None or of.cell.mount != "feature")
+    ):
         # the first layer is where the wall begins: before the others are looked for, which may take minutes
         begins = np.vstack([first.curve().points for first in of.wall.first])
         stands = np.eye(4) if of.stands is None else of.stands
@@ -192,7 +220,9 @@ def _of_solids(of: Given) -> CoreToolpath:
 
     if of.stands is not None and of.cell is not None:
         platform.refuse_solids_below(of.wall, of.stands, of.cell.platform_diameter)
-    elif of.cell is not None and of.cell.mount != "feature":  # the feature's own frame is at its lowest end
+    elif (
+        of.cell is not None and of.cell.mount != "feature"
+    ):  # the feature's own frame is at its lowest end
         platform.refuse_solids_below(of.wall, np.eye(4), of.cell.platform_diameter)
     return solids_plan.plan(of.wall, of.strategy, of.build, of.process, of.model, _share)
 
@@ -219,15 +249,21 @@ def _of_cladding(of: Given) -> CoreToolpath:
     return made
 
 
-def _cladding_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+def _cladding_cleared(
+    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+) -> CoreToolpath:
     """The machine turns the part so that its faces look up: no vertical bounds the tool axes."""
     free = dataclasses.replace(of.build, max_tilt=np.pi)
     return _tilted_clear(toolpath, of, bodies, feature, free)
 
 
 def _tilted_clear(
-    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None,
-    build: BuildDirectionParameters | None = None, plane: Array | None = None,
+    toolpath: CoreToolpath,
+    of: Given,
+    bodies: Sequence[Body],
+    feature: int | None,
+    build: BuildDirectionParameters | None = None,
+    plane: Array | None = None,
 ) -> CoreToolpath:
     """As `tilt_back.kept_clear`; how far it is is told, and once that it takes long. build: in place of the feature's."""
     from ...core.strategies import size
@@ -244,14 +280,20 @@ def _tilted_clear(
     def share(done: float) -> None:
         progress.report(STRATEGY + done * (CHECKED - STRATEGY), CLEARING)
 
-    return tilt_back.kept_clear(toolpath, bodies, of.nozzle, build or of.build, plane, feature, Watch(tell, share))
+    return tilt_back.kept_clear(
+        toolpath, bodies, of.nozzle, build or of.build, plane, feature, Watch(tell, share)
+    )
 
 
-def _curves_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+def _curves_cleared(
+    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+) -> CoreToolpath:
     return _tilted_clear(toolpath, of, bodies, feature)
 
 
-def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+def _revolution_cleared(
+    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+) -> CoreToolpath:
     """It is looked at what stands around; the rest was settled with the layers, but for what is deposited of others."""
     if feature is None:
         found = clearance_look.touched_at(toolpath, of.wall.surroundings, of.nozzle)
@@ -265,18 +307,24 @@ def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body
     return _tilted_clear(toolpath, of, bodies, feature)
 
 
-def _wall_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+def _wall_cleared(
+    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+) -> CoreToolpath:
     from ...core.strategies.walls.directions import symmetry_plane
 
     return _tilted_clear(toolpath, of, bodies, feature, plane=symmetry_plane(of.wall, of.build))
 
 
-def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+def _solids_cleared(
+    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None
+) -> CoreToolpath:
     """On a hub the machine turns them, so that no vertical bounds the tool axes."""
     from ...core.strategies.solids import plan as solids_plan
 
     if not of.wall.on_planes():
-        return _tilted_clear(toolpath, of, bodies, feature, solids_plan.without_axis_limits(of.build))
+        return _tilted_clear(
+            toolpath, of, bodies, feature, solids_plan.without_axis_limits(of.build)
+        )
     if feature is None and solids_plan.clear_by_itself(toolpath, of.wall):
         return toolpath
     return _tilted_clear(toolpath, of, bodies, feature)
@@ -290,7 +338,10 @@ class _Planner:
 
 _SOLIDS = _Planner(_of_solids, _solids_cleared)
 _PLANNERS = {
-    "revolution": _Planner(_of_revolution, _revolution_cleared), "surface": _Planner(_of_wall, _wall_cleared),
-    "developable": _SOLIDS, "solid": _SOLIDS, "curves": _Planner(_of_curves, _curves_cleared),
+    "revolution": _Planner(_of_revolution, _revolution_cleared),
+    "surface": _Planner(_of_wall, _wall_cleared),
+    "developable": _SOLIDS,
+    "solid": _SOLIDS,
+    "curves": _Planner(_of_curves, _curves_cleared),
     "cladding": _Planner(_of_cladding, _cladding_cleared),
 }

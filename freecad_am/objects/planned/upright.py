@@ -28,7 +28,9 @@ def in_planes(given: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed
     from ...core.planning.tried import Fixed
 
     flat = dataclasses.replace(given, strategy=dataclasses.replace(given.strategy, layers=PLANES))
-    return Fixed("`strategy.layers: planes`", lambda: planned(flat) if fit is None else planned(flat, fit))
+    return Fixed(
+        "`strategy.layers: planes`", lambda: planned(flat) if fit is None else planned(flat, fit)
+    )
 
 
 def with_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
@@ -44,7 +46,20 @@ def with_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
         clear = not has_errors(list(fixed.make().issues))
     except AmError:  # what cannot be asked for is not a remedy
         clear = False
-    note = Issue(NOTE, REMEDY, Text("with {} the nozzle is clear; the toolpath was planned so, joints were not",
-                                    fixed.remedy)) if (
-        clear) else Issue(NOTE, NO_REMEDY, Text("the nozzle is not clear with {} either, which was tried", fixed.remedy))
+    note = (
+        Issue(
+            NOTE,
+            REMEDY,
+            Text(
+                "with {} the nozzle is clear; the toolpath was planned so, joints were not",
+                fixed.remedy,
+            ),
+        )
+        if (clear)
+        else Issue(
+            NOTE,
+            NO_REMEDY,
+            Text("the nozzle is not clear with {} either, which was tried", fixed.remedy),
+        )
+    )
     return dataclasses.replace(toolpath, issues=(note, *toolpath.issues))

@@ -31,12 +31,18 @@ class AsRun:
 
 
 def as_run(
-    planned: Planned, cell: Cell, chord_error: float, settings: ProgramParameters | None, issues: tuple[Issue, ...]
+    planned: Planned,
+    cell: Cell,
+    chord_error: float,
+    settings: ProgramParameters | None,
+    issues: tuple[Issue, ...],
 ) -> AsRun:
     """All of a joint path without `settings`; of a program with the points that moves in a line get, without those too
     soon after others for its controller, and only from where it starts."""
     motion = planned.motion
-    condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
+    condition, threshold = (
+        on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion)
+    )
     if settings is None:
         return AsRun(motion, condition, threshold, issues)
     controller = catalogue.controller(settings.post)
@@ -59,7 +65,12 @@ def as_run(
 
 def _renumbered(issue: Issue, before: Motion, after: Motion, origin: Integers) -> Issue:
     """A finding by the number that its point has among added ones, or of the last one before it where it is left out."""
-    here = before.deposit & (before.layer == issue.layer) & (before.bead == issue.bead) & (before.point == issue.point)
+    here = (
+        before.deposit
+        & (before.layer == issue.layer)
+        & (before.bead == issue.bead)
+        & (before.point == issue.point)
+    )
     if issue.point is None or not here.any():
         return issue
     row = int(np.searchsorted(origin, int(np.argmax(here)), side="right")) - 1

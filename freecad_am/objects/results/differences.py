@@ -21,13 +21,18 @@ HIGHEST = 8  # order; another one would double what is left of rounding, and for
 SHARE, MANY = 8, 100
 _BUT_SIGN = np.int64(0x7FFFFFFFFFFFFFFF)
 _ONE = np.uint64(1)
-_MANTISSA, _BIAS = 52, 1022  # of a float64: bits after the exponent, and its exponent of numbers from a half to one
+_MANTISSA, _BIAS = (
+    52,
+    1022,
+)  # of a float64: bits after the exponent, and its exponent of numbers from a half to one
 
 
 def packed(numbers: Array) -> list[bytes]:
     """Numbers (n,) in pieces of PIECE."""
     share = SHARE if len(numbers) > MANY * PIECE else 1
-    return [_packed(numbers[start : start + PIECE], share) for start in range(0, len(numbers), PIECE)]
+    return [
+        _packed(numbers[start : start + PIECE], share) for start in range(0, len(numbers), PIECE)
+    ]
 
 
 class Unpacked:
@@ -73,7 +78,9 @@ def _order_of(differences: Integers) -> int:
     """How many times differences are to be taken."""
     sizes = []
     for k in range(HIGHEST + 1):
-        sizes.append(_bits_of(differences) + k * len(differences))  # to sum once more takes as long as to read a bit
+        sizes.append(
+            _bits_of(differences) + k * len(differences)
+        )  # to sum once more takes as long as to read a bit
         differences = _once_more(differences)
     return sizes.index(min(sizes))
 
@@ -88,7 +95,9 @@ def _once_more(differences: Integers) -> Integers:
 
 def _unpack(piece: bytes, bits: Integers) -> None:
     """Fill the bits of the numbers of a piece."""
-    planes = np.frombuffer(zlib.decompress(memoryview(piece)[1:], bufsize=8 * len(bits)), dtype=np.uint8)
+    planes = np.frombuffer(
+        zlib.decompress(memoryview(piece)[1:], bufsize=8 * len(bits)), dtype=np.uint8
+    )
     if len(planes) != 8 * len(bits) or piece[0] > HIGHEST:
         raise ValueError("it is damaged")
     planes = planes.reshape(8, -1)
@@ -99,7 +108,9 @@ def _unpack(piece: bytes, bits: Integers) -> None:
     for k in range(used):
         places[:, k] = planes[k]
     differences = folded.astype(np.uint64, copy=False)
-    sums = np.empty((len(bits), 2), dtype=np.int64)[:, 0]  # numpy sums up what stands apart in a fourth of the time
+    sums = np.empty((len(bits), 2), dtype=np.int64)[
+        :, 0
+    ]  # numpy sums up what stands apart in a fourth of the time
     np.negative((differences & _ONE).view(np.int64), out=sums)
     differences >>= _ONE
     sums ^= differences.view(np.int64)

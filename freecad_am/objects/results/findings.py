@@ -14,7 +14,10 @@ def issues_of(obj: Any) -> tuple[Issue, ...]:
     """The findings stored with the object."""
     known = _texts(obj)
     entries = json.loads(obj.Issues or "[]")
-    return tuple(Issue(**{**entry, "message": known.get(entry["message"], entry["message"])}) for entry in entries)
+    return tuple(
+        Issue(**{**entry, "message": known.get(entry["message"], entry["message"])})
+        for entry in entries
+    )
 
 
 def message_of(obj: Any) -> str:
@@ -25,7 +28,11 @@ def message_of(obj: Any) -> str:
 def reason_of(obj: Any) -> str:
     """What the object says without its own name before it, for a sentence that has named it."""
     message = message_of(obj)
-    if isinstance(message, Text) and message.template == "{0}: {1}" and message.values[0] == obj.Label:
+    if (
+        isinstance(message, Text)
+        and message.template == "{0}: {1}"
+        and message.values[0] == obj.Label
+    ):
         return message.values[1]
     return message.removeprefix(f"{obj.Label}: ")
 
@@ -50,7 +57,9 @@ def say(obj: Any, status: str, message: str) -> None:
     """Set status and message, each only where it is another: views and panels follow every change."""
     if obj.Message != message:
         obj.Message = message
-    _remember(obj, [message], {message, *(entry["message"] for entry in json.loads(obj.Issues or "[]"))})
+    _remember(
+        obj, [message], {message, *(entry["message"] for entry in json.loads(obj.Issues or "[]"))}
+    )
     if obj.Status != status:
         obj.Status = status
 
@@ -58,7 +67,10 @@ def say(obj: Any, status: str, message: str) -> None:
 def _remember(obj: Any, messages: Sequence[str], said: set[str]) -> None:
     """Keep how these messages were made, beside what they say in English, of all that the object says now. One from a
     document that had no such property is shown in English until its stage is computed again."""
-    known = {**_texts(obj), **{str(one): one for one in messages if isinstance(one, Text) and one.values}}
+    known = {
+        **_texts(obj),
+        **{str(one): one for one in messages if isinstance(one, Text) and one.values},
+    }
     kept = json.dumps([_parts(text) for sentence, text in known.items() if sentence in said])
     if kept != (obj.Texts or "[]"):
         obj.Texts = kept
@@ -72,7 +84,11 @@ def _texts(obj: Any) -> dict[str, Text]:
 
 def _parts(text: str) -> Any:
     """A text for JSON: its template and values; one without is itself."""
-    return [text.template, *map(_parts, text.values)] if isinstance(text, Text) and text.values else str(text)
+    return (
+        [text.template, *map(_parts, text.values)]
+        if isinstance(text, Text) and text.values
+        else str(text)
+    )
 
 
 def _text(parts: Any) -> Any:

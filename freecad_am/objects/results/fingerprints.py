@@ -19,20 +19,31 @@ from ..shapes.bodies import body_of, global_shape, outer_placement, shape_of
 
 MOST_KEPT = 64  # shapes, and meshes
 
-_shapes: list[tuple[Any, tuple[Any, ...], str]] = []  # of an object, what else decides, text; the last asked for first
+_shapes: list[
+    tuple[Any, tuple[Any, ...], str]
+] = []  # of an object, what else decides, text; the last asked for first
 _meshes: dict[str, str] = {}
 
 
 def fingerprint(source: Any) -> str:
     """The text of an object's solid or mesh, where it stands in the document. InputError NO_SHAPE, NO_FACES."""
-    return shape_fingerprint(source) if getattr(source, "Mesh", None) is None else _mesh_fingerprint(source)
+    return (
+        shape_fingerprint(source)
+        if getattr(source, "Mesh", None) is None
+        else _mesh_fingerprint(source)
+    )
 
 
 def shape_fingerprint(source: Any) -> str:
     """The text of an object's shape, where it stands in the document. InputError NO_SHAPE."""
     shape = shape_of(source)
     parts = tuple(part.hashCode() for part in shape.Faces or shape.Edges or shape.Vertexes)
-    rest = (parts, shape.Orientation, shape.Placement.toMatrix().A, outer_placement(source).toMatrix().A)
+    rest = (
+        parts,
+        shape.Orientation,
+        shape.Placement.toMatrix().A,
+        outer_placement(source).toMatrix().A,
+    )
     for k, (kept, decided, text) in enumerate(_shapes):
         if kept.isPartner(shape) and decided == rest:
             _shapes.insert(0, _shapes.pop(k))
@@ -48,7 +59,9 @@ def _of_shape(shape: Any) -> str:
     for face in shape.Faces:
         inertia = face.MatrixOfInertia
         kind = f"{face.Surface.TypeId} {face.Orientation}"
-        lines.append(f"{kind} {face.Area:.8g} {digits(face.CenterOfMass)} {inertia.A11:.6g} {inertia.A33:.6g}")
+        lines.append(
+            f"{kind} {face.Area:.8g} {digits(face.CenterOfMass)} {inertia.A11:.6g} {inertia.A33:.6g}"
+        )
     lines += [f"{edge.Length:.8g}" for edge in shape.Edges]
     lines += [digits(vertex.Point) for vertex in shape.Vertexes]
     return "\n".join(lines)
@@ -72,7 +85,9 @@ def _digest(mesh: Any) -> str:
     try:
         mesh.write(path)
         with open(path, "rb") as file:
-            return hashlib.sha256(file.read() + repr(mesh.Placement.toMatrix().A).encode()).hexdigest()
+            return hashlib.sha256(
+                file.read() + repr(mesh.Placement.toMatrix().A).encode()
+            ).hexdigest()
     finally:
         os.remove(path)
 

@@ -24,7 +24,10 @@ EVERY = 32  # numbers from one place that may be found again to the next: half o
 _DOUBLED = (1, 2, 4, 8, 16)  # steps that make the least of two numbers the least of EVERY
 MOST_TRIED = 300_000
 PIECE = 1 << 14  # places that are looked at together: as many as stay near the processor
-FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0xD6E8FEB86659FD93], dtype=np.uint64)
+FACTORS = np.array(
+    [0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0xD6E8FEB86659FD93],
+    dtype=np.uint64,
+)
 
 
 def without_runs(numbers: Array) -> tuple[Array, Index]:
@@ -40,7 +43,9 @@ def without_runs(numbers: Array) -> tuple[Array, Index]:
     for first, size in zip(start.tolist(), count.tolist()):
         keep[first + 1 : first + size] = False
     place = start - np.cumsum(count - 1) + count - 1
-    return (numbers[keep] if len(start) else numbers), np.column_stack([place, count]).astype(np.int64)
+    return (numbers[keep] if len(start) else numbers), np.column_stack([place, count]).astype(
+        np.int64
+    )
 
 
 def folded(numbers: Array) -> tuple[Array, Index]:
@@ -53,7 +58,10 @@ def folded(numbers: Array) -> tuple[Array, Index]:
     while j < len(places) and tried < MOST_TRIED:
         tried += 1
         place, source = int(places[j]), int(sources[j])
-        back = _alike(words[max(end, place - EVERY) : place][::-1], words[max(0, source - EVERY) : source][::-1])
+        back = _alike(
+            words[max(end, place - EVERY) : place][::-1],
+            words[max(0, source - EVERY) : source][::-1],
+        )
         place, source = place - back, source - back
         length = _length(words, source, place)
         j += 1
@@ -182,7 +190,9 @@ def _ranked(marks: Words) -> Index:
     numpy sorts in half the time."""
     halves = (marks >> np.uint64(32)).astype(np.uint32)
     order = np.argsort(halves.astype(np.uint16), kind="stable")
-    found: Index = order[np.argsort((halves >> np.uint32(16)).astype(np.uint16)[order], kind="stable")]
+    found: Index = order[
+        np.argsort((halves >> np.uint32(16)).astype(np.uint16)[order], kind="stable")
+    ]
     return found
 
 
@@ -204,7 +214,9 @@ def _landmarks(words: Words) -> Index:
         found.append(start + np.flatnonzero(scrambled[around:-around] == most))
     places = np.concatenate(found)
     places = places[places <= len(words) - len(FACTORS)]
-    chosen: Index = places[(words[places] != words[places + 1]) | (words[places + 1] != words[places + 2])]
+    chosen: Index = places[
+        (words[places] != words[places + 1]) | (words[places + 1] != words[places + 2])
+    ]
     return chosen
 
 
@@ -224,7 +236,10 @@ def _length(words: Words, source: int, place: int) -> int:
     length, step = 0, 2 * SHORTEST
     while length < most:
         step = min(step, most - length)
-        same = _alike(words[source + length : source + length + step], words[place + length : place + length + step])
+        same = _alike(
+            words[source + length : source + length + step],
+            words[place + length : place + length + step],
+        )
         length += same
         if same < step:
             break

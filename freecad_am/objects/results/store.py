@@ -36,10 +36,17 @@ Place = tuple[str | int, ...]
 _DTYPES = (np.dtype("float64"), np.dtype("int64"), np.dtype("bool"))
 # of files that are much alike: hash chains of which but the first place is looked at find them in half the time that the
 # library's own presets take, and better
-_FILTERS = [{
-    "id": lzma.FILTER_LZMA2, "preset": 1, "dict_size": 1 << 20, "mode": lzma.MODE_FAST, "mf": lzma.MF_HC3, "depth": 1,
-    "nice_len": 32,
-}]
+_FILTERS = [
+    {
+        "id": lzma.FILTER_LZMA2,
+        "preset": 1,
+        "dict_size": 1 << 20,
+        "mode": lzma.MODE_FAST,
+        "mf": lzma.MF_HC3,
+        "depth": 1,
+        "nice_len": 32,
+    }
+]
 _WHOLE = 2**53  # up to here floats know all whole numbers
 
 
@@ -54,7 +61,12 @@ def pack(value: Any, key: str) -> tuple[list[float], str]:
     indices = np.concatenate([copies.ravel(), runs.ravel()]).astype(np.float64)
     pieces, where = differences.packed(rest), differences.packed(indices)
     data = packer.bytes()
-    layout = {"n": sizes, "p": [len(data), [*map(len, pieces)], [*map(len, where)]], "t": packer.table_shapes(), "v": tree}
+    layout = {
+        "n": sizes,
+        "p": [len(data), [*map(len, pieces)], [*map(len, where)]],
+        "t": packer.table_shapes(),
+        "v": tree,
+    }
     floats = np.concatenate([[_mark(key)], floats_of(b"".join([data, *pieces, *where]))])
     return floats.tolist(), f"{key} {json.dumps(layout, separators=(',', ':'))}"
 
@@ -80,13 +92,23 @@ def picked(
     try:
         if not text.startswith(f"{key} ") or not len(floats) or floats[0] != _mark(key):
             raise ValueError("it belongs to other inputs")
-        layout, numbers = json.loads(text[len(key):]), np.asarray(floats)
+        layout, numbers = json.loads(text[len(key) :]), np.asarray(floats)
         newer = isinstance(layout, dict) and "n" in layout
         tree, reader = _newer(layout, numbers, () in places) if newer else _older(layout, numbers)
         return tuple(reader.value(_within(tree, place), not place) for place in places)
-    except (KeyError, ValueError, TypeError, AttributeError, ImportError, IndexError, zlib.error,
-            lzma.LZMAError) as error:
-        raise InputError("BAD_RESULT", where, "the stored result cannot be read ({}); recompute it", error) from None
+    except (
+        KeyError,
+        ValueError,
+        TypeError,
+        AttributeError,
+        ImportError,
+        IndexError,
+        zlib.error,
+        lzma.LZMAError,
+    ) as error:
+        raise InputError(
+            "BAD_RESULT", where, "the stored result cannot be read ({}); recompute it", error
+        ) from None
 
 
 def _within(tree: Any, place: Place) -> Any:
@@ -181,15 +203,24 @@ class _Packer:
             return {"d": [[key, self.tree(entry, (*place, ""))] for key, entry in value.items()]}
         if dataclasses.is_dataclass(value) and not isinstance(value, type):
             kind, names = _kind_of(type(value))
-            return {"c": kind, "v": {name: self.tree(getattr(value, name), (*place, name)) for name in names}}
+            return {
+                "c": kind,
+                "v": {name: self.tree(getattr(value, name), (*place, name)) for name in names},
+            }
         raise TypeError(f"{type(value).__name__} cannot be stored")
 
     def put(self, value: NDArray[Any], place: Place) -> list[int]:
         """The table that an array becomes part of, from which row on, and how many rows. TypeError for what is none, and
         for whole numbers that a float cannot tell apart."""
         if not value.ndim or value.dtype not in _DTYPES:
-            raise TypeError(f"an array of {value.dtype} with {value.ndim} dimensions cannot be stored")
-        if value.dtype == np.int64 and value.size and not -_WHOLE <= value.min() <= value.max() <= _WHOLE:
+            raise TypeError(
+                f"an array of {value.dtype} with {value.ndim} dimensions cannot be stored"
+            )
+        if (
+            value.dtype == np.int64
+            and value.size
+            and not -_WHOLE <= value.min() <= value.max() <= _WHOLE
+        ):
             raise TypeError(f"whole numbers beyond {_WHOLE} cannot be stored")
         kind = (place, _DTYPES.index(value.dtype), value.shape[1:])
         number = self.kinds.setdefault(kind, len(self.tables))
@@ -203,7 +234,10 @@ class _Packer:
 
     def table_shapes(self) -> list[list[int]]:
         """Of each table dtype, rows, and the shape of a row."""
-        return [[dtype, rows, *shape] for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)]
+        return [
+            [dtype, rows, *shape]
+            for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)
+        ]
 
     def columns(self) -> Array:
         """All tables column by column."""
@@ -219,7 +253,12 @@ class _Packer:
 
 
 class _Reader:
-    def __init__(self, numbers: repeats.Unfolded, packed: Callable[[], bytes], tables: Sequence[Sequence[int]]) -> None:
+    def __init__(
+        self,
+        numbers: repeats.Unfolded,
+        packed: Callable[[], bytes],
+        tables: Sequence[Sequence[int]],
+    ) -> None:
         self.numbers, self.packed, self.tables = numbers, packed, tables
         sizes = [int(np.prod(rest)) for _, *rest in tables]
         self.starts = [0, *np.cumsum(sizes, dtype=np.int64).tolist()]
@@ -246,7 +285,9 @@ class _Reader:
             return tuple(self.value(entry, all_of_it) for entry in tree["t"])
         if "d" in tree:
             return {key: self.value(entry, all_of_it) for key, entry in tree["d"]}
-        return _class(tree["c"])(**{name: self.value(entry, all_of_it) for name, entry in tree["v"].items()})
+        return _class(tree["c"])(
+            **{name: self.value(entry, all_of_it) for name, entry in tree["v"].items()}
+        )
 
     def array(self, number: int, first: int, rows: int, all_of_it: bool) -> NDArray[Any]:
         """Rows of a table, which they share where it is read at once."""
@@ -288,7 +329,11 @@ def _class(name: str) -> Any:
     # only our own dataclasses: a document must not name what is called when it is opened
     module, _, qualified = name.partition(":")
     ours = module.startswith((".core.", ".objects.", ".verify"))
-    kind = getattr(importlib.import_module(_PACKAGE + MOVED.get(module, module)), qualified) if ours else None
+    kind = (
+        getattr(importlib.import_module(_PACKAGE + MOVED.get(module, module)), qualified)
+        if ours
+        else None
+    )
     if not (isinstance(kind, type) and dataclasses.is_dataclass(kind)):
         raise ValueError(f"{name} is not a result")
     return kind

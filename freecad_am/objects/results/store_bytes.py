@@ -24,11 +24,18 @@ def floats_of(data: bytes) -> Array:
 
 
 def bytes_of(floats: Array, length: int) -> bytes:
-    whole = floats[: -(-length // _BYTES_PER_FLOAT)].astype("<f8", copy=False).view(np.uint8).reshape(-1, 8)
+    whole = (
+        floats[: -(-length // _BYTES_PER_FLOAT)]
+        .astype("<f8", copy=False)
+        .view(np.uint8)
+        .reshape(-1, 8)
+    )
     return np.ascontiguousarray(whole[:, :_BYTES_PER_FLOAT]).ravel()[:length].tobytes()
 
 
 def older_bytes(numbers: repeats.Unfolded, length: int, start: int) -> bytes:
     """Bytes that stand among the numbers, six to a whole number."""
-    whole = numbers.part(start, -(-length // _OLDER_BYTES)).astype("<u8").view(np.uint8).reshape(-1, 8)
+    whole = (
+        numbers.part(start, -(-length // _OLDER_BYTES)).astype("<u8").view(np.uint8).reshape(-1, 8)
+    )
     return whole[:, :_OLDER_BYTES].tobytes()[:length]

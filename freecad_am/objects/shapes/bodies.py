@@ -19,7 +19,10 @@ from ..stage_parts import Link
 
 GROUPS = ("App::Part", "App::DocumentObjectGroup")
 FIXTURES = Link(
-    "Fixtures", "", "Clamps and other bodies around the part, which the nozzle is kept clear of.", required=False,
+    "Fixtures",
+    "",
+    "Clamps and other bodies around the part, which the nozzle is kept clear of.",
+    required=False,
     type_name="App::PropertyLinkList",
 )
 
@@ -69,14 +72,18 @@ def _leaves(shape: Any) -> list[Any]:
 
 def _kept(leaves: list[Any]) -> list[int]:
     """The numbers of shapes that no earlier one is the same as."""
-    return [k for k, one in enumerate(leaves) if not any(_is_same(one, other) for other in leaves[:k])]
+    return [
+        k for k, one in enumerate(leaves) if not any(_is_same(one, other) for other in leaves[:k])
+    ]
 
 
 def _is_same(one: Any, other: Any) -> bool:
     """Whether two shapes are one in the same place, however they came there."""
     if not one.isPartner(other):  # of most pairs, whose placements would take twenty times as long
         return False
-    return np.allclose(one.Placement.toMatrix().A, other.Placement.toMatrix().A, rtol=0.0, atol=1e-9)
+    return np.allclose(
+        one.Placement.toMatrix().A, other.Placement.toMatrix().A, rtol=0.0, atol=1e-9
+    )
 
 
 def outer_placement(source: Any) -> Any:
@@ -107,7 +114,9 @@ class Taken:
             # of a copy: the window draws the triangles of the original, maybe at this very moment
             return tessellate.body(self.shape.copy(False), self.label)
         found = tessellate.body(self.mesh, self.label)
-        return dataclasses.replace(found, vertices=found.vertices @ self.frame[:3, :3].T + self.frame[:3, 3])
+        return dataclasses.replace(
+            found, vertices=found.vertices @ self.frame[:3, :3].T + self.frame[:3, 3]
+        )
 
 
 def taken(source: Any) -> Taken:

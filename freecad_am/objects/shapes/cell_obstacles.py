@@ -43,7 +43,11 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
     if not cell.arrangement.links_known:
         return cell
     cell = dataclasses.replace(
-        cell, obstacles=bodies, torch=torch_of(settings), external_links=external_links(cell.external, readable_mesh))
+        cell,
+        obstacles=bodies,
+        torch=torch_of(settings),
+        external_links=external_links(cell.external, readable_mesh),
+    )
     if bodies:
         _refuse_at_start(cell, toolpath)
     return cell
@@ -123,9 +127,15 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
         point, axis, bodies = to_world[None, :3, 3], to_world[None, :3, 2], cell.obstacles
     else:
         bodies = cell.in_part()
-    nozzle = depositing(0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length, 0.0)
+    nozzle = depositing(
+        0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length, 0.0
+    )
     for one in bodies:
         if scene((one,), point, nozzle.reach).touched(nozzle, point, axis).any():
-            raise InputError(CODE, f"{WHERE} {one.name}", "it touches the nozzle at the first point of the job already, "
-                             "however the arm stands; its pose is that in the maker's base frame, and files are in mm: "
-                             "move it, or the deposition point")
+            raise InputError(
+                CODE,
+                f"{WHERE} {one.name}",
+                "it touches the nozzle at the first point of the job already, "
+                "however the arm stands; its pose is that in the maker's base frame, and files are in mm: "
+                "move it, or the deposition point",
+            )

@@ -25,9 +25,14 @@ CODES = {FACE: "FACES_CHANGED", EDGE: "EDGES_CHANGED"}
 LOST = "?"  # what the names of those that FreeCAD has lost begin with
 SOURCE, OF = "Source", "/"  # the link whose marks are stored without its name and this
 FORMS = {
-    PLANE: Text("a plane"), "Part::GeomCylinder": Text("a cylinder"), "Part::GeomCone": Text("a cone"),
-    "Part::GeomSphere": Text("a sphere"), "Part::GeomToroid": Text("a torus"), LINE: Text("a straight line"),
-    "Part::GeomCircle": Text("a circle"), "Part::GeomEllipse": Text("an ellipse"),
+    PLANE: Text("a plane"),
+    "Part::GeomCylinder": Text("a cylinder"),
+    "Part::GeomCone": Text("a cone"),
+    "Part::GeomSphere": Text("a sphere"),
+    "Part::GeomToroid": Text("a torus"),
+    LINE: Text("a straight line"),
+    "Part::GeomCircle": Text("a circle"),
+    "Part::GeomEllipse": Text("an ellipse"),
 }
 FREE_FORM = {FACE: Text("a free-form surface"), EDGE: Text("a free-form curve")}
 
@@ -35,7 +40,9 @@ FREE_FORM = {FACE: Text("a free-form surface"), EDGE: Text("a free-form curve")}
 class FeatureStage(Stage):
     """Base of the features: what is deposited, and the faces and edges that say where and how, as links to parts."""
 
-    _owners: dict[str, Any] | None = None  # the names of the objects that links have, by link, once that is known
+    _owners: dict[str, Any] | None = (
+        None  # the names of the objects that links have, by link, once that is known
+    )
 
     def complete(self, obj: Any) -> None:
         """With the marks of the faces and edges as they were when they were chosen."""
@@ -43,21 +50,31 @@ class FeatureStage(Stage):
         self._owners = {link: _owner(obj, link) for link in self.chosen}
         if "ChosenFaces" not in obj.PropertiesList:
             help = "The faces and edges as they were chosen."
-            obj.addProperty("App::PropertyStringList", "ChosenFaces", "Result", help, HIDDEN | OUTPUT)
+            obj.addProperty(
+                "App::PropertyStringList", "ChosenFaces", "Result", help, HIDDEN | OUTPUT
+            )
         self._learn(obj)  # in a document from before these were kept
 
     def linked(self, obj: Any) -> dict[str, Any]:
         """As of any stage. InputError BAD_FACES, BAD_EDGES for what FreeCAD, 1.0 or later, knows to be lost."""
         for link in self.chosen:
-            lost = [name.lstrip(LOST) for name in names_of(getattr(obj, link)) if name.startswith(LOST)]
+            lost = [
+                name.lstrip(LOST) for name in names_of(getattr(obj, link)) if name.startswith(LOST)
+            ]
             place, names = f"{obj.Label}.{link}", ", ".join(lost)
             if any(_kind(name) == EDGE for name in lost):
                 raise InputError(
-                    "BAD_EDGES", place, "{} is not there any more since the part changed; choose the edges again", names
+                    "BAD_EDGES",
+                    place,
+                    "{} is not there any more since the part changed; choose the edges again",
+                    names,
                 )
             if lost:
                 raise InputError(
-                    "BAD_FACES", place, "{} is not there any more since the part changed; choose the faces again", names
+                    "BAD_FACES",
+                    place,
+                    "{} is not there any more since the part changed; choose the faces again",
+                    names,
                 )
         return super().linked(obj)
 
@@ -78,7 +95,9 @@ class FeatureStage(Stage):
         """Other faces and edges, and those of another part, are what they are when they are chosen. FreeCAD 1.0 and later
         tell of a change also where the part was changed and the names stay."""
         document = obj.Document
-        by_hand = not (document is None or document.Restoring or document.Transacting or document.Recomputing)
+        by_hand = not (
+            document is None or document.Restoring or document.Transacting or document.Recomputing
+        )
         if name in self.chosen and by_hand and "ChosenFaces" in obj.PropertiesList:
             named = _named(obj, name)
             others = named is not None and named != _stored(obj, name).keys() - {WHOLE}
@@ -101,11 +120,19 @@ class FeatureStage(Stage):
             issues = self._others(obj)
             if not issues:
                 raise
-            both = InputError(error.code, error.where, "{}. Besides, {}", error.message, issues[0].message,
-                              mended_by=error.mended_by)
+            both = InputError(
+                error.code,
+                error.where,
+                "{}. Besides, {}",
+                error.message,
+                issues[0].message,
+                mended_by=error.mended_by,
+            )
             self.say_failed(obj, both)
             raise both from None
-        self._learn(obj)  # where it fits once more what it was made from, after something else was refused
+        self._learn(
+            obj
+        )  # where it fits once more what it was made from, after something else was refused
         return found
 
     def _store(self, obj: Any, outcome: Outcome, *packed: Any) -> None:
@@ -139,8 +166,14 @@ class FeatureStage(Stage):
         """Store the marks of links, with those of the wholes; nothing of a link that has none."""
         texts = [text for text in obj.ChosenFaces if _link_of(text) not in marks]
         for link, own in marks.items():
-            whole = [whole_of(shape_of(getattr(obj, link)[0]), {_kind(mark.name) for mark in own})] if own else []
-            texts += [("" if link == SOURCE else f"{link}{OF}") + mark.text() for mark in (*own, *whole)]
+            whole = (
+                [whole_of(shape_of(getattr(obj, link)[0]), {_kind(mark.name) for mark in own})]
+                if own
+                else []
+            )
+            texts += [
+                ("" if link == SOURCE else f"{link}{OF}") + mark.text() for mark in (*own, *whole)
+            ]
         if texts != obj.ChosenFaces:
             obj.ChosenFaces = texts
 
@@ -178,7 +211,11 @@ def _link_of(text: str) -> str:
 
 def _stored(obj: Any, link: str) -> dict[str, Mark]:
     """What is stored of the faces and edges of a link, and of the whole, by name."""
-    own = [text.partition(OF)[2] if OF in text else text for text in obj.ChosenFaces if _link_of(text) == link]
+    own = [
+        text.partition(OF)[2] if OF in text else text
+        for text in obj.ChosenFaces
+        if _link_of(text) == link
+    ]
     return {mark.name: mark for mark in map(read, own) if mark is not None}
 
 
@@ -190,7 +227,11 @@ def _marks(obj: Any, link: str) -> list[Mark]:
     except AmError:
         return []
     kinds = {_kind(name) for name in names or ()}
-    return [] if shape is None else [mark for kind in sorted(kinds) for mark in marks_of(shape, kind, names or ())]
+    return (
+        []
+        if shape is None
+        else [mark for kind in sorted(kinds) for mark in marks_of(shape, kind, names or ())]
+    )
 
 
 def _compared(obj: Any, link: str, marks: Sequence[Mark]) -> tuple[Issue, ...]:
@@ -215,7 +256,9 @@ def _compared(obj: Any, link: str, marks: Sequence[Mark]) -> tuple[Issue, ...]:
         every = marks_of(shape, kind) if moved else []
         middles = np.array([mark.middle for mark in every])
         for mark in moved:
-            near = np.flatnonzero(np.abs(middles - mark.middle).max(axis=1) <= TOLERANCE * size).tolist()
+            near = np.flatnonzero(
+                np.abs(middles - mark.middle).max(axis=1) <= TOLERANCE * size
+            ).tolist()
             same = [one.name for one in (every[k] for k in near) if mark.is_same(one, size, flat)]
             if not same and whole.form != was.form and not mark.is_along(now[mark.name], size):
                 same = [one.name for one in every if mark.is_along(one, size)]
@@ -238,37 +281,66 @@ def _is_turned(mark: Mark, now: Mark, shape: Any) -> bool:
 
 
 def _elsewhere(name: str, label: str, there: str) -> Issue:
-    return _issue(name, Text(
-        "{} of {} is not the face that was chosen: that face is {} now, as FreeCAD renumbers faces when a part changes; "
-        "choose the faces again, or confirm them: OK in the panel with nothing else entered", name, label, there,
-    ) if _kind(name) == FACE else Text(
-        "{} of {} is not the edge that was chosen: that edge is {} now, as FreeCAD renumbers edges when a part changes; "
-        "choose the edges again, or confirm them: OK in the panel with nothing else entered", name, label, there,
-    ))
+    return _issue(
+        name,
+        Text(
+            "{} of {} is not the face that was chosen: that face is {} now, as FreeCAD renumbers faces when a part changes; "
+            "choose the faces again, or confirm them: OK in the panel with nothing else entered",
+            name,
+            label,
+            there,
+        )
+        if _kind(name) == FACE
+        else Text(
+            "{} of {} is not the edge that was chosen: that edge is {} now, as FreeCAD renumbers edges when a part changes; "
+            "choose the edges again, or confirm them: OK in the panel with nothing else entered",
+            name,
+            label,
+            there,
+        ),
+    )
 
 
 def _changed(mark: Mark, now: Mark, label: str) -> Issue:
     if mark.form == now.form:
-        return _issue(mark.name, Text(
-            "{} of {} lies another way than when it was chosen, so it may be another face, as FreeCAD renumbers faces "
-            "when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered",
-            mark.name, label,
-        ) if _kind(mark.name) == FACE else Text(
-            "{} of {} lies another way than when it was chosen, so it may be another edge, as FreeCAD renumbers edges "
-            "when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered",
-            mark.name, label,
-        ))
+        return _issue(
+            mark.name,
+            Text(
+                "{} of {} lies another way than when it was chosen, so it may be another face, as FreeCAD renumbers faces "
+                "when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered",
+                mark.name,
+                label,
+            )
+            if _kind(mark.name) == FACE
+            else Text(
+                "{} of {} lies another way than when it was chosen, so it may be another edge, as FreeCAD renumbers edges "
+                "when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered",
+                mark.name,
+                label,
+            ),
+        )
     kind = _kind(mark.name)
     was, is_ = (FORMS.get(one.form, FREE_FORM[kind]) for one in (mark, now))
-    return _issue(mark.name, Text(
-        "{} of {} was {} when it was chosen and is {} now, so it may be another face, as FreeCAD renumbers faces when a "
-        "part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered", mark.name, label,
-        was, is_,
-    ) if kind == FACE else Text(
-        "{} of {} was {} when it was chosen and is {} now, so it may be another edge, as FreeCAD renumbers edges when a "
-        "part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered", mark.name, label,
-        was, is_,
-    ))
+    return _issue(
+        mark.name,
+        Text(
+            "{} of {} was {} when it was chosen and is {} now, so it may be another face, as FreeCAD renumbers faces when a "
+            "part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered",
+            mark.name,
+            label,
+            was,
+            is_,
+        )
+        if kind == FACE
+        else Text(
+            "{} of {} was {} when it was chosen and is {} now, so it may be another edge, as FreeCAD renumbers edges when a "
+            "part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered",
+            mark.name,
+            label,
+            was,
+            is_,
+        ),
+    )
 
 
 def _issue(name: str, message: str) -> Issue:
@@ -283,9 +355,20 @@ def names_of(link: Any) -> tuple[str, ...]:
 def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:
     """The object of a feature's Source and the names of the faces chosen. InputError 'NO_INPUT', 'BAD_FACES'."""
     if not obj.Source:
-        raise InputError("NO_INPUT", obj.Label, "Source is missing; choose the shape to deposit, or some of its faces")
+        raise InputError(
+            "NO_INPUT",
+            obj.Label,
+            "Source is missing; choose the shape to deposit, or some of its faces",
+        )
     source, names = obj.Source
-    wrong = ", ".join(name for name in names if name and not name.rsplit(".", maxsplit=1)[-1].startswith(FACE))
+    wrong = ", ".join(
+        name for name in names if name and not name.rsplit(".", maxsplit=1)[-1].startswith(FACE)
+    )
     if wrong:
-        raise InputError("BAD_FACES", f"{obj.Label}.Source", "{} is not a face; choose faces or the whole shape", wrong)
+        raise InputError(
+            "BAD_FACES",
+            f"{obj.Label}.Source",
+            "{} is not a face; choose faces or the whole shape",
+            wrong,
+        )
     return source, names_of(obj.Source)

@@ -33,7 +33,9 @@ def open_here(path: str, where: str) -> Any:
     try:
         return App.openDocument(path, True)
     except (OSError, RuntimeError, ValueError, AttributeError):
-        raise InputError("BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again") from None
+        raise InputError(
+            "BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again"
+        ) from None
 
 
 def _try(path: str, where: str) -> None:
@@ -47,12 +49,24 @@ def refuse(path: str, where: str) -> None:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
             if "Document.xml" not in names:
-                raise InputError("BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again")
+                raise InputError(
+                    "BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again"
+                )
             for name in names:
                 if name.lower().endswith(".xml"):
                     _refuse_doctype(archive, name, where)
-    except (OSError, ValueError, zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
-        raise InputError("BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again") from None
+    except (
+        OSError,
+        ValueError,
+        zipfile.BadZipFile,
+        zlib.error,
+        EOFError,
+        NotImplementedError,
+        RuntimeError,
+    ):
+        raise InputError(
+            "BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again"
+        ) from None
 
 
 class _Begun(Exception):
@@ -66,8 +80,10 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
         raise _Begun
 
     def refused(*_: object) -> None:
-        message = Text("{} in it has a document type, which no document of FreeCAD has, and is not read; save it again",
-                       name)
+        message = Text(
+            "{} in it has a document type, which no document of FreeCAD has, and is not read; save it again",
+            name,
+        )
         raise InputError("BAD_FILE", where, message)
 
     parser.StartElementHandler, parser.StartDoctypeDeclHandler = begun, refused

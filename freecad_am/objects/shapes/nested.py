@@ -24,7 +24,9 @@ def owner_of(top: Any, path: str) -> tuple[Any, str]:
     feature where it is not the body's tip. What a link shows belongs to the link.
     """
     *steps, element = path.split(".")
-    steps = [step for step in steps if step[:1] not in (";", "?")]  # names of FreeCAD 1.0 that outlive changes
+    steps = [
+        step for step in steps if step[:1] not in (";", "?")
+    ]  # names of FreeCAD 1.0 that outlive changes
     obj, own = top, not steps
     while steps and any(obj.isDerivedFrom(kind) for kind in GROUPS):
         held = obj.getSubObject(f"{steps.pop(0)}.", retType=1)
@@ -61,27 +63,48 @@ def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]
     found = [_found(obj, name, where) for name in names]
     others = [one.Label for one, _ in found if one != found[0][0]]
     if others:
-        raise InputError(_code(names[0]), where, "{} names faces or edges of several objects ({}, {}); choose those of one",
-                         ", ".join(names), found[0][0].Label, others[0])
+        raise InputError(
+            _code(names[0]),
+            where,
+            "{} names faces or edges of several objects ({}, {}); choose those of one",
+            ", ".join(names),
+            found[0][0].Label,
+            others[0],
+        )
     return found[0][0], [name for _, name in found]
 
 
 def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
     """Refuse paths to faces and edges of other objects than the one that is linked: the same names are others on it. And
     names of a part that has something twice. InputError as `resolved`."""
-    there = [name for name in names if not name.rsplit(".", maxsplit=1)[-1].startswith("?")]  # FreeCAD knows the others lost
+    there = [
+        name for name in names if not name.rsplit(".", maxsplit=1)[-1].startswith("?")
+    ]  # FreeCAD knows the others lost
     plain = [name for name in there if "." not in name]
     if plain and renumbers(obj):
-        raise InputError(_code(plain[0]), where, "{} of {} is not certain: FreeCAD has what is in a group of it "
-                         "twice, and numbers both; choose it of the object that it belongs to", plain[0], obj.Label)
+        raise InputError(
+            _code(plain[0]),
+            where,
+            "{} of {} is not certain: FreeCAD has what is in a group of it "
+            "twice, and numbers both; choose it of the object that it belongs to",
+            plain[0],
+            obj.Label,
+        )
     for name in there:
         if name in plain:
             continue
         element = name.rsplit(".", maxsplit=1)[-1]
         owner, own = _found(obj, name, where)
         if owner != obj or own != element:
-            raise InputError(_code(name), where, "{} of {} is {} of {}; choose it of that object", name, obj.Label,
-                             own or element, owner.Label)
+            raise InputError(
+                _code(name),
+                where,
+                "{} of {} is {} of {}; choose it of that object",
+                name,
+                obj.Label,
+                own or element,
+                owner.Label,
+            )
 
 
 def _found(obj: Any, name: str, where: str) -> tuple[Any, str]:
@@ -94,8 +117,13 @@ def _found(obj: Any, name: str, where: str) -> tuple[Any, str]:
     owner, own = (owner_of if element.startswith(FACE) else line_of)(obj, name)
     gapped = "" in name.split(".")[:-1]  # which FreeCAD 1.0 takes for a path without the gap
     if gapped or obj.getSubObject(name, retType=1) is None or (element and not own):
-        raise InputError(_code(name), where, "{} is not there in {}; choose it in the 3D view, or by the object that it "
-                         "belongs to", name, obj.Label)
+        raise InputError(
+            _code(name),
+            where,
+            "{} is not there in {}; choose it in the 3D view, or by the object that it belongs to",
+            name,
+            obj.Label,
+        )
     return owner, own
 
 
@@ -130,7 +158,10 @@ def _own_name(obj: Any, seen: Any, element: str) -> str:
         return ""
     if seen is None or seen.isNull():
         return ""
-    elements = {f"{kind}{k}": one for k, one in enumerate(shape.Faces if kind == FACE else shape.Edges, start=1)}
+    elements = {
+        f"{kind}{k}": one
+        for k, one in enumerate(shape.Faces if kind == FACE else shape.Edges, start=1)
+    }
     same = [name for name, one in elements.items() if _is_same(one, seen)]
     return element if element in same else next(iter(same), "")
 
@@ -141,4 +172,6 @@ def _is_same(one: Any, other: Any) -> bool:
         return False
     if one.ShapeType != FACE or one.Surface.TypeId != PLANE or other.Surface.TypeId != PLANE:
         return True
-    return bool(one.normalAt(0.0, 0.0).dot(other.normalAt(0.0, 0.0)) > 0.0)  # of two that touch, the one that was meant
+    return bool(
+        one.normalAt(0.0, 0.0).dot(other.normalAt(0.0, 0.0)) > 0.0
+    )  # of two that touch, the one that was meant

@@ -38,8 +38,12 @@ def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[An
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     for document in App.listDocuments().values():
         if document.FileName and os.path.realpath(document.FileName) == os.path.realpath(path):
-            return _shape_in(document, path, object_name)  # open already: it is the user's, and stays open
-    return hooks.carry_out(lambda: apart(_shape_of_file, str(located(path)), object_name), stem, READING)
+            return _shape_in(
+                document, path, object_name
+            )  # open already: it is the user's, and stays open
+    return hooks.carry_out(
+        lambda: apart(_shape_of_file, str(located(path)), object_name), stem, READING
+    )
 
 
 def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:
@@ -56,20 +60,39 @@ def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:
 def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
     """The shape of the object asked for, or of the only one; of a document of meshes alone, or by its name, a mesh."""
     placed = [obj for obj in document.Objects if obj.TypeId not in ORIGIN]
-    shapes = [obj for obj in placed if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()]
-    meshes = [obj for obj in document.Objects if getattr(getattr(obj, "Mesh", None), "CountFacets", 0)]
+    shapes = [
+        obj for obj in placed if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()
+    ]
+    meshes = [
+        obj for obj in document.Objects if getattr(getattr(obj, "Mesh", None), "CountFacets", 0)
+    ]
     known = [*shapes, *meshes]
     if object_name:
         found = [obj for obj in known if object_name in (obj.Name, obj.Label)]
     else:
-        found = [obj for obj in shapes or meshes if not any(other in known for other in obj.InListRecursive)]
+        found = [
+            obj
+            for obj in shapes or meshes
+            if not any(other in known for other in obj.InListRecursive)
+        ]
     if len(found) != 1:
         names = ", ".join(obj.Label for obj in known) or "none"
         asked = repr(object_name) if object_name else "one object that nothing else is made from"
-        raise InputError("NO_OBJECT", path, "{} is not found among the objects with a shape ({}); name one", asked, names)
+        raise InputError(
+            "NO_OBJECT",
+            path,
+            "{} is not found among the objects with a shape ({}); name one",
+            asked,
+            names,
+        )
     if found[0] in shapes:
         if renumbers(found[0]):
-            raise InputError("NO_OBJECT", path, "{} has what is in a group of it twice, so that numbers of its faces are "
-                             "not certain; name an object in it, or take that out of the group", found[0].Label)
+            raise InputError(
+                "NO_OBJECT",
+                path,
+                "{} has what is in a group of it twice, so that numbers of its faces are "
+                "not certain; name an object in it, or take that out of the group",
+                found[0].Label,
+            )
         return global_shape(found[0]).copy(), found[0].Label
     return placed_mesh(found[0].Mesh, outer_placement(found[0])), found[0].Label

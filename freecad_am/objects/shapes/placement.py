@@ -14,7 +14,11 @@ _X, _Y, _Z = App.Vector(1, 0, 0), App.Vector(0, 1, 0), App.Vector(0, 0, 1)
 def placement_of(pose: Any) -> App.Placement:
     """The placement of a pose."""
     x, y, z, rx, ry, rz = (float(number) for number in pose)
-    turns = [App.Rotation(axis, math.degrees(angle)) for axis, angle in ((_X, rx), (_Y, ry), (_Z, rz)) if angle]
+    turns = [
+        App.Rotation(axis, math.degrees(angle))
+        for axis, angle in ((_X, rx), (_Y, ry), (_Z, rz))
+        if angle
+    ]
     rotation = App.Rotation()
     for turn in turns:
         rotation = rotation.multiply(turn)

@@ -18,8 +18,10 @@ def memory(label: str) -> Iterator[None]:
         yield
     except MemoryError:
         raise InputError(
-            "NO_MEMORY", label, "there is not enough memory to compute it; give larger steps, such as layer height "
-            "and chord error, or a smaller part"
+            "NO_MEMORY",
+            label,
+            "there is not enough memory to compute it; give larger steps, such as layer height "
+            "and chord error, or a smaller part",
         ) from None
 
 

@@ -88,12 +88,20 @@ class Run:
         """Whether the last move passes through its end."""
         return bool(self.time_or_speed) and not np.isnan(self.rounding[-1])
 
-    def happens(self, kind: str, *value: float | str, digits: float = 0.0, before: float | None = None) -> None:
+    def happens(
+        self, kind: str, *value: float | str, digits: float = 0.0, before: float | None = None
+    ) -> None:
         """Something happens before the next move, or so far before the end of the last one."""
         self.events.append(Event(len(self.time_or_speed), kind, value, digits, before=before))
 
     def keep_switch(
-        self, output: str, on: bool, word: str, where: str, digits: float = 0.0, before: float | None = None
+        self,
+        output: str,
+        on: bool,
+        word: str,
+        where: str,
+        digits: float = 0.0,
+        before: float | None = None,
     ) -> None:
         """The deposit is switched by an output, or by a seam of the arc where it is ARC."""
         if self.output not in ("", output if word != ARC else ARC):
@@ -104,14 +112,18 @@ class Run:
     def keep_move(self, module: Module, move: Move, where: str) -> None:
         """Keep a move."""
         if move.linear and not self.nearest:
-            raise unreadable(where, "the configurations that its positions name are supervised, and are none")
+            raise unreadable(
+                where, "the configurations that its positions name are supervised, and are none"
+            )
         if move.zone != "fine" and move.zone not in module.zones:
             raise unreadable(where, Text("{} is not a zone of the module", move.zone))
         if self.feeding and np.isnan(move.wire):
             raise unreadable(where, "the wire goes on after its bead")
         self._framed(move.frames, where)
         self._external_axes(move.axes.split(","), move.frames, where)
-        for column, value in zip((self.places, self.turns) if move.linear else (self.joints,), move.values, strict=True):
+        for column, value in zip(
+            (self.places, self.turns) if move.linear else (self.joints,), move.values, strict=True
+        ):
             column.append(value)
         self.lines.add(where)
         self.linear.append(move.linear)
@@ -151,13 +163,23 @@ class Run:
         """Keep the values of the external axes: of the same ones in all moves, those of the unit that the work
         object is on, which is active, and the track. Where the work object stands, the track is the only one."""
         used = tuple(number for number, text in enumerate(texts, 1) if text != "9E9")
-        if used != tuple(range(used[0], used[0] + len(used)) if used else ()) or self.used not in (None, used):
-            raise unreadable(where, "other external axes have values than in moves before, or not all in a row")
+        if used != tuple(range(used[0], used[0] + len(used)) if used else ()) or self.used not in (
+            None,
+            used,
+        ):
+            raise unreadable(
+                where, "other external axes have values than in moves before, or not all in a row"
+            )
         if len(self.slides) > 1 or not {*self.slides} <= {*used}:
             raise unreadable(where, "more than one axis is called the track, or it has no value")
         turned_ones = set(used) - set(self.slides)
-        if bool(turned_ones) != bool(frames.unit) or (self.active != frames.unit and (turned_ones or not used)):
-            raise unreadable(where, "external axes have no value, or their unit is not active, or not the object's")
+        if bool(turned_ones) != bool(frames.unit) or (
+            self.active != frames.unit and (turned_ones or not used)
+        ):
+            raise unreadable(
+                where,
+                "external axes have no value, or their unit is not active, or not the object's",
+            )
         if self.used is not None and self.unit != self.active:
             raise unreadable(where, "another unit is active than in moves before")
         self.used, self.unit = used, self.active
@@ -167,7 +189,11 @@ class Run:
 def all_moves(run: Run) -> ReadMoves:
     """The moves of all routines. Raises InputError UNREADABLE_PROGRAM."""
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
-    time_or_speed, half, rounding = np.array(run.time_or_speed), np.array(run.half), np.array(run.rounding)
+    time_or_speed, half, rounding = (
+        np.array(run.time_or_speed),
+        np.array(run.half),
+        np.array(run.rounding),
+    )
     used = run.used or ()
     joints = np.full((len(time_or_speed), 6 + len(used)), np.nan)
     joints[~linear, :6] = np.radians(_numbers(run.joints, 6))
@@ -176,16 +202,29 @@ def all_moves(run: Run) -> ReadMoves:
         joints[:, 6:] = np.where(np.isin(used, run.slides), external, np.radians(external))
     turning = run.joints if used == run.slides else run.joints + run.external
     read_moves = ReadMoves(
-        None if np.isnan(joints).all() else joints, float(np.radians(_half_digit(turning))),
+        None if np.isnan(joints).all() else joints,
+        float(np.radians(_half_digit(turning))),
         np.where(linear, np.nan, time_or_speed),
-        deposit, linear, np.isnan(rounding), tuple(run.events), speed=np.where(linear, time_or_speed, np.nan),
-        speed_digits=float(half[linear].max(initial=0.0)), duration_digits=half, rounding=rounding,
-        unit=run.unit if used else "", first_external=used[0] if used else 1,
-        linear_digits=_half_digit(run.external) if run.slides else 0.0, lines=run.lines.read(),
+        deposit,
+        linear,
+        np.isnan(rounding),
+        tuple(run.events),
+        speed=np.where(linear, time_or_speed, np.nan),
+        speed_digits=float(half[linear].max(initial=0.0)),
+        duration_digits=half,
+        rounding=rounding,
+        unit=run.unit if used else "",
+        first_external=used[0] if used else 1,
+        linear_digits=_half_digit(run.external) if run.slides else 0.0,
+        lines=run.lines.read(),
     )
     if run.analogue is not None:
         read_moves = dataclasses.replace(
-            read_moves, wire=np.array(run.wire), wire_digits=np.array(run.wire_half), wire_output=run.analogue)
+            read_moves,
+            wire=np.array(run.wire),
+            wire_digits=np.array(run.wire_half),
+            wire_output=run.analogue,
+        )
     return _seen(read_moves, run) if linear.any() else read_moves
 
 
@@ -197,7 +236,9 @@ def _seen(read_moves: ReadMoves, run: Run) -> ReadMoves:
     turns = _numbers(run.turns, 4)
     length = np.linalg.norm(turns, axis=1)
     if (np.abs(length - 1.0) > 1e-5).any():
-        raise unreadable("program", "the four numbers of an orientation are not those of a unit quaternion")
+        raise unreadable(
+            "program", "the four numbers of an orientation are not those of a unit quaternion"
+        )
     place, rotation = np.full((len(placed), 3), np.nan), np.full((len(placed), 3, 3), np.nan)
     place[placed], rotation[placed] = _numbers(run.places, 3), turned(turns / length[:, None])
     if used.held:
@@ -205,16 +246,23 @@ def _seen(read_moves: ReadMoves, run: Run) -> ReadMoves:
         place = -np.einsum("nij,nj->ni", rotation, place)
     stands, carried = (used.tool, used.work_object) if used.held else (used.work_object, used.tool)
     return dataclasses.replace(
-        read_moves, position=place, rotation=rotation, position_digits=_half_digit(run.places),
+        read_moves,
+        position=place,
+        rotation=rotation,
+        position_digits=_half_digit(run.places),
         # four numbers, each off by half a digit, turn by at most four of these: as much as three angles of so much
-        rotation_digits=4.0 / 3.0 * _half_digit(run.turns), frame=stands,
-        tool=np.broadcast_to(carried, (len(placed), 4, 4)), held=used.held,
+        rotation_digits=4.0 / 3.0 * _half_digit(run.turns),
+        frame=stands,
+        tool=np.broadcast_to(carried, (len(placed), 4, 4)),
+        held=used.held,
     )
 
 
 def _numbers(texts: list[str], columns: int) -> Array:
     """(n, columns) of the numbers of texts."""
-    return np.array(",".join(texts).split(",") if texts else [], dtype=np.float64).reshape(-1, columns)
+    return np.array(",".join(texts).split(",") if texts else [], dtype=np.float64).reshape(
+        -1, columns
+    )
 
 
 def _half_digit(texts: list[str]) -> float:

@@ -14,11 +14,16 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError, Text
 
-_DECLARED = re.compile(r"LOCAL (?:PERS (tooldata|wobjdata|welddata)|CONST (speeddata|zonedata)) (\w+):=(\[.*\]);$")
+_DECLARED = re.compile(
+    r"LOCAL (?:PERS (tooldata|wobjdata|welddata)|CONST (speeddata|zonedata)) (\w+):=(\[.*\]);$"
+)
 _TRIGGER = re.compile(r"LOCAL VAR triggdata (\w+);$")
 _TIP = re.compile(r"\[\d+(?:\.(\d+))?,")
 _TRACK = re.compile(r"! eax_([a-f]) is the track in mm\b")
-_MODULE_LINE, _PROC_LINE = re.compile(r"MODULE ([A-Za-z]\w*)$"), re.compile(r"PROC ([A-Za-z]\w*)\(\)$")
+_MODULE_LINE, _PROC_LINE = (
+    re.compile(r"MODULE ([A-Za-z]\w*)$"),
+    re.compile(r"PROC ([A-Za-z]\w*)\(\)$"),
+)
 # deg/s of the tool, mm/s and deg/s of external axes: moves that need more would be slowed down, as by RAPID's v1000
 _FAST = 500.0, 5000.0, 1000.0
 _NO_ARC = [0] * 9
@@ -36,7 +41,9 @@ class Frames:
 
     def same(self, other: Frames) -> bool:
         """Whether they are those of another module, number by number."""
-        alike = np.array_equal(self.tool, other.tool) and np.array_equal(self.work_object, other.work_object)
+        alike = np.array_equal(self.tool, other.tool) and np.array_equal(
+            self.work_object, other.work_object
+        )
         return alike and (self.held, self.unit) == (other.held, other.unit)
 
 
@@ -65,7 +72,10 @@ class Module:
         """The frames of a tool and a work object, of which the robot carries one."""
         if (tool, work_object) not in self._paired:
             if tool not in self.tools or work_object not in self.objects:
-                raise unreadable(where, Text("{} is not a tool of the module, or {} no work object", tool, work_object))
+                raise unreadable(
+                    where,
+                    Text("{} is not a tool of the module, or {} no work object", tool, work_object),
+                )
             (on_robot, at), (held, seen) = self.tools[tool], self.objects[work_object]
             if on_robot == held:
                 raise unreadable(where, "the robot has to carry either the tool or the work object")
@@ -79,7 +89,13 @@ def modules(files: dict[str, bytes]) -> dict[str, Module]:
     for file in sorted(files):
         module = _module(file, files[file].decode("latin-1").replace("\r\n", "\n").split("\n"))
         if module.name in found or f"{module.name}.mod" != file.lower():
-            raise unreadable(file, Text("its module is called {}, and the file is not, or another one is too", module.name))
+            raise unreadable(
+                file,
+                Text(
+                    "its module is called {}, and the file is not, or another one is too",
+                    module.name,
+                ),
+            )
         found[module.name] = module
     return found
 
@@ -88,7 +104,11 @@ def _module(file: str, lines: list[str]) -> Module:
     numbered = [(number, line.strip()) for number, line in enumerate(lines, 1) if line.strip()]
     routines = [k for k, (_, line) in enumerate(numbered) if _PROC_LINE.match(line)]
     title = _MODULE_LINE.match(numbered[0][1]) if numbered else None
-    if title is None or len(routines) != 1 or [line for _, line in numbered[-2:]] != ["ENDPROC", "ENDMODULE"]:
+    if (
+        title is None
+        or len(routines) != 1
+        or [line for _, line in numbered[-2:]] != ["ENDPROC", "ENDMODULE"]
+    ):
         raise unreadable(file, "it is not a module with one routine")
     routine = _PROC_LINE.match(numbered[routines[0]][1])
     assert routine is not None
@@ -103,7 +123,14 @@ def _module(file: str, lines: list[str]) -> Module:
 
 def _declare(module: Module, line: str, where: str) -> None:
     declared, trigger = _DECLARED.match(line), _TRIGGER.match(line)
-    names = {*module.tools, *module.objects, *module.speeds, *module.zones, *module.welds, *module.triggers}
+    names = {
+        *module.tools,
+        *module.objects,
+        *module.speeds,
+        *module.zones,
+        *module.welds,
+        *module.triggers,
+    }
     if trigger and trigger[1] not in names:
         module.triggers.add(trigger[1])
         return
@@ -125,7 +152,9 @@ def _keep(module: Module, kind: str, name: str, value: Any) -> None:
         module.tools[name] = _truth(held), _pose(at)
     elif kind == "wobjdata":
         held, fixed, unit, user, inside = value
-        moved = _truth(fixed) is False  # by the unit, whose own frame goes before what is written for the user's
+        moved = (
+            _truth(fixed) is False
+        )  # by the unit, whose own frame goes before what is written for the user's
         written = moved and not np.array_equal(_pose(user), np.eye(4))
         if moved != bool(unit) or not isinstance(unit, str) or written:
             raise ValueError
@@ -142,7 +171,11 @@ def _keep(module: Module, kind: str, name: str, value: Any) -> None:
         module.welds[name] = float(speed)
     else:
         stops, tip, orientation, axes, turn, along, about = value
-        if stops is not False or not tip == orientation == axes == along > 0.0 or not 0.0 < turn == about <= 0.2 * tip:
+        if (
+            stops is not False
+            or not tip == orientation == axes == along > 0.0
+            or not 0.0 < turn == about <= 0.2 * tip
+        ):
             raise ValueError
         module.zones[name] = float(tip)
 

@@ -63,7 +63,9 @@ def pose(six: Six | None) -> Pose:
     """A frame given as X Y Z mm, RX RY RZ rad, of which R = Rx Ry Rz; none is that of all zeros."""
     x, y, z, rx, ry, rz = (0.0,) * 6 if six is None else six
     rotation = MOVING_XYZ.rotations(np.array([[rx, ry, rz]]))
-    return Pose(tuple(positions(np.array([x, y, z])).tolist()), tuple(quaternions(rotation)[0].tolist()))
+    return Pose(
+        tuple(positions(np.array([x, y, z])).tolist()), tuple(quaternions(rotation)[0].tolist())
+    )
 
 
 class Words:
@@ -76,15 +78,25 @@ class Words:
     def __call__(self, moves: Moves) -> Sequence[str]:
         """`v\\T:=time,zone`, or `v\\V:=speed,zone`, of each move. Raises InputError MOVE_SPEED or MOVE_TIME."""
         straight = moves.interpolation == LINEAR_MOVE
-        letter, values = ("V", [f"{v:.3f}" for v in speeds_within(moves, *SPEEDS).tolist()]) if straight else (
-            "T", [f"{t:.5f}" for t in _times(moves).tolist()])
+        letter, values = (
+            ("V", [f"{v:.3f}" for v in speeds_within(moves, *SPEEDS).tolist()])
+            if straight
+            else ("T", [f"{t:.5f}" for t in _times(moves).tolist()])
+        )
         rounded = self._rounded(moves)
         corners = [STOP if stops else rounded for stops in moves.stops.tolist()]
-        return [f"{self._speed}\\{letter}:={value},{corner}" for value, corner in zip(values, corners, strict=True)]
+        return [
+            f"{self._speed}\\{letter}:={value},{corner}"
+            for value, corner in zip(values, corners, strict=True)
+        ]
 
     def _rounded(self, moves: Moves) -> str:
         """How corners are passed: never farther from one than half the shortest move of the bead."""
-        shortest = float(np.nan_to_num(moves.speed * moves.duration).min()) if moves.kind == DEPOSIT else 0.0
+        shortest = (
+            float(np.nan_to_num(moves.speed * moves.duration).min())
+            if moves.kind == DEPOSIT
+            else 0.0
+        )
         size = math.floor(1000.0 * min(0.005 * self._blend * shortest, LARGEST_ZONE)) / 1000.0
         if size <= 0.0:
             return STOP
@@ -95,8 +107,10 @@ def _times(moves: Moves) -> Array:
     seconds = np.where(np.isfinite(moves.duration), moves.duration, 0.0)
     if moves.kind == DEPOSIT and seconds.min() < SHORTEST:
         raise InputError(
-            "MOVE_TIME", place(moves),
+            "MOVE_TIME",
+            place(moves),
             "a move takes {:.3g} s, less than the {:g} s that can be written; use a larger chord error or a lower speed",
-            seconds.min(), SHORTEST,
+            seconds.min(),
+            SHORTEST,
         )
     return np.maximum(seconds, SHORTEST if moves.kind == DEPOSIT else SHORTEST_RAPID)

@@ -54,7 +54,9 @@ from .read import read
 __all__ = ["read", "write"]
 
 LAST_ANALOGUE = 4096
-CONTROLLER = Controller(external=True, positioner="STN1", whole_beads=True, straight_in_part=True, linear_triggers=True)
+CONTROLLER = Controller(
+    external=True, positioner="STN1", whole_beads=True, straight_in_part=True, linear_triggers=True
+)
 PENDANT = Pendant("ABB", ("q1", "q2", "q3", "q4"), QUATERNION, 7)
 NO_WIRE = NO_WEAVE = NO_TRIGGER = ""  # what of it is not told together: refuse_process
 NO_SCHEDULE: dict[str, str] = {}
@@ -74,16 +76,91 @@ SETUPS = ("part-on-robot", "tool-on-robot")
 FOLDER = "HOME:/"  # where parts are loaded from
 
 _RESERVED = frozenset(
-    ("ALIAS", "AND", "BACKWARD", "CASE", "CONNECT", "CONST", "DEFAULT", "DIV", "DO", "ELSE", "ELSEIF", "ENDFOR", "ENDFUNC")
-    + ("ENDIF", "ENDMODULE", "ENDPROC", "ENDRECORD", "ENDTEST", "ENDTRAP", "ENDWHILE", "ERROR", "EXIT", "FALSE", "FOR")
-    + ("FROM", "FUNC", "GOTO", "IF", "INOUT", "LOCAL", "MOD", "MODULE", "NOSTEPIN", "NOT", "NOVIEW", "OR", "PERS", "PROC")
-    + ("RAISE", "READONLY", "RECORD", "RETRY", "RETURN", "STEP", "SYSMODULE", "TASK", "TEST", "THEN", "TO", "TRAP", "TRUE")
-    + ("TRYNEXT", "UNDO", "VAR", "VIEWONLY", "WHILE", "WITH", "XOR", "USER", "BASE", text.MAIN.upper())
-    + tuple(name.upper() for name in (text.TOOL, text.WORK_OBJECT, text.SPEED, *process.TRIGGER_NAMES))
+    (
+        "ALIAS",
+        "AND",
+        "BACKWARD",
+        "CASE",
+        "CONNECT",
+        "CONST",
+        "DEFAULT",
+        "DIV",
+        "DO",
+        "ELSE",
+        "ELSEIF",
+        "ENDFOR",
+        "ENDFUNC",
+    )
+    + (
+        "ENDIF",
+        "ENDMODULE",
+        "ENDPROC",
+        "ENDRECORD",
+        "ENDTEST",
+        "ENDTRAP",
+        "ENDWHILE",
+        "ERROR",
+        "EXIT",
+        "FALSE",
+        "FOR",
+    )
+    + (
+        "FROM",
+        "FUNC",
+        "GOTO",
+        "IF",
+        "INOUT",
+        "LOCAL",
+        "MOD",
+        "MODULE",
+        "NOSTEPIN",
+        "NOT",
+        "NOVIEW",
+        "OR",
+        "PERS",
+        "PROC",
+    )
+    + (
+        "RAISE",
+        "READONLY",
+        "RECORD",
+        "RETRY",
+        "RETURN",
+        "STEP",
+        "SYSMODULE",
+        "TASK",
+        "TEST",
+        "THEN",
+        "TO",
+        "TRAP",
+        "TRUE",
+    )
+    + (
+        "TRYNEXT",
+        "UNDO",
+        "VAR",
+        "VIEWONLY",
+        "WHILE",
+        "WITH",
+        "XOR",
+        "USER",
+        "BASE",
+        text.MAIN.upper(),
+    )
+    + tuple(
+        name.upper() for name in (text.TOOL, text.WORK_OBJECT, text.SPEED, *process.TRIGGER_NAMES)
+    )
 )
 # 16 characters on older controllers, of which the routine of a part takes two more than its name
 NAMING = Naming(
-    str, "[A-Za-z]", "a letter", longest=14, spare=4, prefix="am_", reserved=_RESERVED, what="a module's name"
+    str,
+    "[A-Za-z]",
+    "a letter",
+    longest=14,
+    spare=4,
+    prefix="am_",
+    reserved=_RESERVED,
+    what="a module's name",
 )
 _NO_END = 10**9  # how many lines a module may have is not known: it is cut by its points
 
@@ -99,11 +176,19 @@ def write(program: Program) -> dict[str, bytes]:
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [line for said in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(said)]
+    remarks = [
+        line
+        for said in ("Robotic AM", *program.remarks, *_own_remarks(program))
+        for line in text.remark(said)
+    ]
     zones = numbers.Words(program, text.SPEED, text.ZONE)
     words = process.Process(program, zones)
     groups = list(grouped(program, words, lambda block: _instructions(program, words, block)))
-    remarks += text.remark(f"declare on the controller {' '.join(words.declared)}") if words.declared else []
+    remarks += (
+        text.remark(f"declare on the controller {' '.join(words.declared)}")
+        if words.declared
+        else []
+    )
     refuse_names_of_data(program, {name}, _names_used(program, words, zones))
     module = _Module(program, words, zones)
     if size([piece for group in groups for piece in group])[0] <= program.max_points:
@@ -120,7 +205,9 @@ def write(program: Program) -> dict[str, bytes]:
         head = text.remark(f"part {number} of {len(parts)}")
         files[f"{part}.mod"] = module.as_bytes(part, text.routine_of(part), head, pieces)
     total = sum(map(len, files.values()))
-    remarks += text.remark(f"{len(parts)} parts of {total} bytes in all, loaded from {FOLDER} one after the other")
+    remarks += text.remark(
+        f"{len(parts)} parts of {total} bytes in all, loaded from {FOLDER} one after the other"
+    )
     load = [line for part in names for line in text.load(FOLDER, part)]
     return {f"{name}.mod": text.module(name, text.MAIN, remarks, (), load), **files}
 
@@ -131,18 +218,31 @@ def program_name(name: str, where: str) -> str:
 
 
 def refuse_setup(
-    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    motion: str,
+    setup: str,
+    external: tuple[str, ...] = (),
+    carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
     if setup not in SETUPS:
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post abb cannot write {} ({} motion); use another post",
-                         setup, motion)
+        raise InputError(
+            "UNSUPPORTED_SETUP",
+            "cell.setup",
+            "the post abb cannot write {} ({} motion); use another post",
+            setup,
+            motion,
+        )
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     refuse_incomplete(program, "abb", AXES + len(program.external_kinds))
-    refuse_external(program, text.MOST_AXES, r"[A-Za-z]\w{0,31}", "the name of its mechanical unit, such as STN1")
+    refuse_external(
+        program,
+        text.MOST_AXES,
+        r"[A-Za-z]\w{0,31}",
+        "the name of its mechanical unit, such as STN1",
+    )
     refuse_process(_asked(program))
     refuse_weave(program, process.LAST_WEAVE)
     refuse_triggers(program, NO_TRIGGER)
@@ -156,10 +256,17 @@ def _refuse(program: Program) -> None:
 
 
 def _asked(program: Program) -> Asked:
-    arc = any(isinstance(block, DepositOn) and block.schedule is not None for block in program.blocks)
+    arc = any(
+        isinstance(block, DepositOn) and block.schedule is not None for block in program.blocks
+    )
     return Asked(
-        program.motion, program.holds_part, program.on_positioner, process.ARC if arc else "",
-        any(run.wire is not None for run in program.moves), bool(program.woven), program.dry_run,
+        program.motion,
+        program.holds_part,
+        program.on_positioner,
+        process.ARC if arc else "",
+        any(run.wire is not None for run in program.moves),
+        bool(program.woven),
+        program.dry_run,
     )
 
 
@@ -178,9 +285,17 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 def _instructions(program: Program, words: process.Process, block: Block) -> list[str]:
     if isinstance(block, DepositOn):
-        return [] if program.dry_run else [*_switched(program, words, block, True), *text.wait(block.lead)]
+        return (
+            []
+            if program.dry_run
+            else [*_switched(program, words, block, True), *text.wait(block.lead)]
+        )
     if isinstance(block, DepositOff):
-        return [] if program.dry_run else [*text.wait(block.lead), *_switched(program, words, block, False)]
+        return (
+            []
+            if program.dry_run
+            else [*text.wait(block.lead), *_switched(program, words, block, False)]
+        )
     if isinstance(block, Weave):
         return []  # an argument of the moves
     if isinstance(block, Schedule):
@@ -198,7 +313,9 @@ def _instructions(program: Program, words: process.Process, block: Block) -> lis
     raise TypeError(f"no instruction for {block!r}")
 
 
-def _switched(program: Program, words: process.Process, block: DepositOn | DepositOff, on: bool) -> list[str]:
+def _switched(
+    program: Program, words: process.Process, block: DepositOn | DepositOff, on: bool
+) -> list[str]:
     """What switches the deposit where the robot stands; nothing where the moves themselves do."""
     if block.schedule is not None:
         if not on and not block.lead:
@@ -212,8 +329,18 @@ def _switched(program: Program, words: process.Process, block: DepositOn | Depos
 def _names_used(program: Program, words: process.Process, zones: numbers.Words) -> list[str]:
     """Names of the data and signals in the text, but for those that no program may have."""
     kinds = {WaitInput: "di", WaitBelow: "ai"}
-    inputs = [f"{kinds[type(one)]}{one.number}" for one in program.blocks if isinstance(one, (WaitInput, WaitBelow))]
-    return [*words.names, *words.declared, *zones.zones.values(), f"do{program.deposit_output}", *inputs]
+    inputs = [
+        f"{kinds[type(one)]}{one.number}"
+        for one in program.blocks
+        if isinstance(one, (WaitInput, WaitBelow))
+    ]
+    return [
+        *words.names,
+        *words.declared,
+        *zones.zones.values(),
+        f"do{program.deposit_output}",
+        *inputs,
+    ]
 
 
 @dataclass(frozen=True)
@@ -224,7 +351,9 @@ class _Module:
     words: process.Process
     zones: numbers.Words
 
-    def as_bytes(self, name: str, routine: str, remarks: list[str], pieces: Sequence[Piece]) -> bytes:
+    def as_bytes(
+        self, name: str, routine: str, remarks: list[str], pieces: Sequence[Piece]
+    ) -> bytes:
         """One module with what of the data its moves use."""
         program, held = self.program, self.program.holds_part
         station, carried = numbers.pose(program.station), numbers.pose(program.carried)
@@ -235,25 +364,39 @@ class _Module:
                 rows = slice(piece.start, piece.stop)
                 lines += _motion(piece.moves, rows, piece.words[rows], program)
                 for word in piece.words[rows]:
-                    used.update(re.findall(r"\w+", word) if " " in word else (word.rpartition(",")[2],))
+                    used.update(
+                        re.findall(r"\w+", word) if " " in word else (word.rpartition(",")[2],)
+                    )
             else:
                 lines += piece
         zones = [(zone, size_mm) for size_mm, zone in self.zones.zones.items() if zone in used]
         tool, work_object = (station, carried) if held else (carried, station)
         moved_by = program.unit if program.on_positioner else ""
         data = [*text.data(tool, work_object, held, zones, moved_by), *self.words.data(used)]
-        first = ["    ConfL\\Off;", "    SingArea\\Off;", *text.activated(program.unit), *self.words.setup(used)]
+        first = [
+            "    ConfL\\Off;",
+            "    SingArea\\Off;",
+            *text.activated(program.unit),
+            *self.words.setup(used),
+        ]
         return text.module(name, routine, remarks, data, [*first, *lines])
 
 
-def _motion(moves: Moves, rows: slice, words: Sequence[str], program: Program, straight: bool = False) -> list[str]:
+def _motion(
+    moves: Moves, rows: slice, words: Sequence[str], program: Program, straight: bool = False
+) -> list[str]:
     """Lines through some points of moves; straight: as positions, whatever the moves are."""
     first, slides = program.first_external, program.slides
     if moves.interpolation != LINEAR_MOVE and not straight:
         return text.joint_moves(numbers.shown(moves.joints[rows], slides), words, first)
     if moves.position is None or moves.rotation is None:
-        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+        raise InputError(
+            "NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`"
+        )
     return text.linear_moves(
-        numbers.positions(moves.position[rows]), numbers.quaternions(moves.rotation[rows]),
-        numbers.shown(moves.joints[rows, AXES:], slides[AXES:]), words, first,
+        numbers.positions(moves.position[rows]),
+        numbers.quaternions(moves.rotation[rows]),
+        numbers.shown(moves.joints[rows, AXES:], slides[AXES:]),
+        words,
+        first,
     )

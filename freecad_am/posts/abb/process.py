@@ -22,7 +22,9 @@ from . import text
 # names of a module's own data, by number but for FEED_END: speeds, weld data, triggers of the wire, switching on and off
 SPEED, WELD, FEED, FEED_END, ON, OFF = "v_am", "d_am", "s_am", "s_off", "g_on", "g_off"
 TRIGGER_NAMES = (FEED_END, ON, OFF)
-MOST_NAMES = 500  # of speeds, or data of one kind, in a module: each is a line that the controller keeps
+MOST_NAMES = (
+    500  # of speeds, or data of one kind, in a module: each is a line that the controller keeps
+)
 ARC, CARTESIAN = "arc", "cartesian"
 LAST_WEAVE, LAST_SEAM = 255, 9999
 WAY_DECIMALS = 4  # of the mm before the end of a move at which an output is switched
@@ -35,22 +37,33 @@ def refuse(asked: Asked) -> None:
     """Raises InputError SCHEDULE, WEAVE or NO_WIRE_OUTPUT for what of the process cannot be told with the rest."""
     arc = asked.by == ARC
     if arc and asked.motion != CARTESIAN:
-        raise schedule_refused(ARC, "ArcL is a linear move, and these are joint moves, which motion: cartesian replaces")
+        raise schedule_refused(
+            ARC,
+            "ArcL is a linear move, and these are joint moves, which motion: cartesian replaces",
+        )
     if asked.weave and asked.dry_run:
-        raise weave_refused("a weave is an argument of ArcL, which a dry run does not have; block weld and weave on the "
-                            "controller instead")
+        raise weave_refused(
+            "a weave is an argument of ArcL, which a dry run does not have; block weld and weave on the "
+            "controller instead"
+        )
     if asked.weave and not arc:
         raise weave_refused("a weave is an argument of ArcL, which program.schedule.by: arc writes")
     if asked.weave and asked.held:
-        raise weave_refused("that a robot swings the part under a torch that stands was not confirmed")
+        raise weave_refused(
+            "that a robot swings the part under a torch that stands was not confirmed"
+        )
     if not asked.wire:
         return
     if arc:
         raise wire_refused("the wire feed of ArcL is set by its welddata")
     if asked.motion != CARTESIAN:
-        raise wire_refused("TriggSpeed follows the speed of linear moves, and these are joint moves")
+        raise wire_refused(
+            "TriggSpeed follows the speed of linear moves, and these are joint moves"
+        )
     if asked.held or asked.turned:
-        raise wire_refused("whether TriggSpeed follows the speed over a part that moves was not confirmed")
+        raise wire_refused(
+            "whether TriggSpeed follows the speed over a part that moves was not confirmed"
+        )
 
 
 @dataclass(frozen=True)
@@ -88,7 +101,8 @@ def aboard(blocks: Iterable[Block]) -> list[Aboard]:
         elif isinstance(block, DepositOff):
             arc = None
             found[-1:] = [
-                dataclasses.replace(one, off=block.ahead, ends=True, stands=block.lead > 0.0) for one in found[-1:]
+                dataclasses.replace(one, off=block.ahead, ends=True, stands=block.lead > 0.0)
+                for one in found[-1:]
             ]
     return found
 
@@ -115,7 +129,11 @@ class Process:
         self._at += 1
         if own.arc is not None:
             return self._welded(words, own, own.arc)
-        fed = [] if moves.wire is None else [self._feed(ratio) for ratio in (moves.wire / moves.speed).tolist()]
+        fed = (
+            []
+            if moves.wire is None
+            else [self._feed(ratio) for ratio in (moves.wire / moves.speed).tolist()]
+        )
         if not fed and own.lead is None:
             return words
         last = len(words) - 1
@@ -123,7 +141,9 @@ class Process:
         rows = range(len(words)) if fed else (last,)
         words = list(words)
         for row in rows:
-            words[row] = self._triggered(words[row], [*fed[row : row + 1], *(at_end if row == last else [])])
+            words[row] = self._triggered(
+                words[row], [*fed[row : row + 1], *(at_end if row == last else [])]
+            )
         return words
 
     def _triggered(self, word: str, triggers: Sequence[str]) -> str:
@@ -138,7 +158,9 @@ class Process:
         for row, word in enumerate(words, 1):
             speed, _, corner = word.partition(",")
             name = "ArcLEnd" if own.ends and not own.stands and row == len(words) else "ArcL"
-            welded.append(f"{name} {self._speed(speed)},{self._arc(own, schedule, _speed_in(speed))},{corner}")
+            welded.append(
+                f"{name} {self._speed(speed)},{self._arc(own, schedule, _speed_in(speed))},{corner}"
+            )
         return welded
 
     def _arc(self, own: Aboard, schedule: int, speed: str) -> str:
@@ -165,17 +187,21 @@ class Process:
         speed = float(_speed_in(said)) if "\\V:=" in said else float(own.moves.speed[-1])
         if not speed >= SLOWEST:
             raise InputError(
-                "TRIGGER", place(own.moves),
+                "TRIGGER",
+                place(own.moves),
                 "the tip moves at {:.2g} mm/s on the move at the end of which the deposit is switched, and the lead is "
                 "programmed as a distance before that place; give a retract distance, or leave program.trigger.lead "
-                "out", speed,
+                "out",
+                speed,
             )
         return [_numbered(self._switches[kind], kind, f"{own.lead * speed:.{WAY_DECIMALS}f}")]
 
     def arc_start(self, schedule: int) -> str:
         """The word of the instruction that strikes the arc where the next bead starts."""
         own = self._aboard[self._at]
-        return f"ArcLStart {text.SPEED},{self._arc(own, schedule, f'{own.moves.speed[0]:.3f}')},fine"
+        return (
+            f"ArcLStart {text.SPEED},{self._arc(own, schedule, f'{own.moves.speed[0]:.3f}')},fine"
+        )
 
     def arc_end(self, schedule: int) -> str:
         """The word of the instruction that ends it where the last bead did."""
@@ -192,13 +218,22 @@ class Process:
         for all_names in self._all_names:
             if len(set(all_names) & set(used)) > MOST_NAMES:
                 raise InputError(
-                    "MOVE_SPEED", "program.max_points", "a module would have more than {} speeds, each of which is data of "
-                    "its own here; use fewer speeds, or a smaller program.max_points", MOST_NAMES,
+                    "MOVE_SPEED",
+                    "program.max_points",
+                    "a module would have more than {} speeds, each of which is data of "
+                    "its own here; use fewer speeds, or a smaller program.max_points",
+                    MOST_NAMES,
                 )
-        speeds = [f"LOCAL CONST speeddata {name}:={text.speed(speed)};"
-                  for speed, name in self._speeds.items() if name in used]
-        welds = [f"LOCAL PERS welddata {name}:=[{speed},{speed},{_NO_ARC},{_NO_ARC}];"
-                 for (_, speed), name in self._welds.items() if name in used]
+        speeds = [
+            f"LOCAL CONST speeddata {name}:={text.speed(speed)};"
+            for speed, name in self._speeds.items()
+            if name in used
+        ]
+        welds = [
+            f"LOCAL PERS welddata {name}:=[{speed},{speed},{_NO_ARC},{_NO_ARC}];"
+            for (_, speed), name in self._welds.items()
+            if name in used
+        ]
         switches = [name for names in self._switches.values() for name in names.values()]
         names = [name for name in (*self._feeds.values(), FEED_END, *switches) if name in used]
         return [*speeds, *welds, *(f"LOCAL VAR triggdata {name};" for name in names)]
@@ -208,15 +243,25 @@ class Process:
         lines = []
         for (schedule, speed), name in self._welds.items():
             if name in used:
-                lines += [f"    {name}:=weld{schedule};", f"    {name}.weld_speed:={speed};",
-                          f"    {name}.org_weld_speed:={speed};"]
+                lines += [
+                    f"    {name}:=weld{schedule};",
+                    f"    {name}.weld_speed:={speed};",
+                    f"    {name}.org_weld_speed:={speed};",
+                ]
         analogue = f"ao{self._program.nc.wire_output}"
-        lines += [f"    TriggSpeed {name},0\\Start,0,{analogue},{scale};"
-                  for scale, name in self._feeds.items() if name in used]
+        lines += [
+            f"    TriggSpeed {name},0\\Start,0,{analogue},{scale};"
+            for scale, name in self._feeds.items()
+            if name in used
+        ]
         lines += [f"    TriggSpeed {FEED_END},0,0,{analogue},0;"] if FEED_END in used else []
         output = f"do{self._program.deposit_output}"
-        switches = [f"    TriggIO {name},{way}\\DOp:={output},{int(kind == ON)};"
-                    for kind, names in self._switches.items() for way, name in names.items() if name in used]
+        switches = [
+            f"    TriggIO {name},{way}\\DOp:={output},{int(kind == ON)};"
+            for kind, names in self._switches.items()
+            for way, name in names.items()
+            if name in used
+        ]
         return lines + switches
 
     @property
@@ -228,14 +273,19 @@ class Process:
     def _all_names(self) -> list[list[str]]:
         """The same, each kind by itself."""
         kinds = [self._speeds.values(), self._welds.values(), self._feeds.values()]
-        return [list(names) for names in (*kinds, *(switches.values() for switches in self._switches.values()))]
+        return [
+            list(names)
+            for names in (*kinds, *(switches.values() for switches in self._switches.values()))
+        ]
 
     @property
     def declared(self) -> list[str]:
         """Names of data that the controller has to have, as far as words were given."""
         schedules = sorted({schedule for schedule, _ in self._welds})
         weaves = sorted({one.weave for one in self._aboard if one.weave and one.arc is not None})
-        return [f"{kind}{number}" for number in schedules for kind in ("seam", "weld")] + [f"weave{n}" for n in weaves]
+        return [f"{kind}{number}" for number in schedules for kind in ("seam", "weld")] + [
+            f"weave{n}" for n in weaves
+        ]
 
 
 def _speed_in(word: str) -> str:

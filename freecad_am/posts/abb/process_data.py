@@ -56,7 +56,10 @@ class ProcessData:
         """Whether the line says something of it, which then is kept. Raises InputError UNREADABLE_PROGRAM."""
         if taken := _TAKEN.match(line):
             if taken[1] not in module.welds or taken[1] in self.welds:
-                raise unreadable(where, "what is taken of the controller is not weld data of the module, or taken twice")
+                raise unreadable(
+                    where,
+                    "what is taken of the controller is not weld data of the module, or taken twice",
+                )
             self.welds[taken[1]] = Weld(int(taken[2]))
         elif speed := _SPEED.match(line):
             self._keep_speed(speed, module, where)
@@ -67,7 +70,9 @@ class ProcessData:
         elif feed := _FEED.match(line):
             power = 10.0 ** int(feed[5] or 0)
             digits = 0.5 * 10.0 ** -len(feed[4] or "") * power
-            self._keep_trigger(feed[1], Feed(int(feed[2]), float(feed[3]) * power, digits), module, where)
+            self._keep_trigger(
+                feed[1], Feed(int(feed[2]), float(feed[3]) * power, digits), module, where
+            )
         elif end := _FEED_END.match(line):
             self._keep_trigger(end[1], Feed(int(end[2]), 0.0, 0.0), module, where)
         else:
@@ -76,8 +81,15 @@ class ProcessData:
 
     def _keep_speed(self, speed: re.Match[str], module: Module, where: str) -> None:
         weld, value = self.welds.get(speed[1]), float(speed[3])
-        if weld is None or value != module.welds[speed[1]] or (weld.original if speed[2] else weld.speed) is not None:
-            raise unreadable(where, "weld data is not taken of the controller yet, has two speeds or another than declared")
+        if (
+            weld is None
+            or value != module.welds[speed[1]]
+            or (weld.original if speed[2] else weld.speed) is not None
+        ):
+            raise unreadable(
+                where,
+                "weld data is not taken of the controller yet, has two speeds or another than declared",
+            )
         if speed[2]:
             weld.original = value
         else:

@@ -40,7 +40,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     found = modules(files)
     first = [module for module in found.values() if module.routine.lower() == _ROUTINE]
     if len(first) != 1:
-        raise unreadable("program", Text("{} modules have a routine main, expected one", len(first)))
+        raise unreadable(
+            "program", Text("{} modules have a routine main, expected one", len(first))
+        )
     run = Run(found, slides=first[0].slides)
     _follow(first[0], run)
     if not run.time_or_speed:
@@ -55,7 +57,11 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 def _follow(module: Module, run: Run) -> None:
     """Carry out the statements of a routine in order, and of those of the parts that it loads."""
     run.followed.append(module.name)
-    run.nearest, run.active, run.given = False, "", ProcessData()  # each says it for itself: it may be run alone
+    run.nearest, run.active, run.given = (
+        False,
+        "",
+        ProcessData(),
+    )  # each says it for itself: it may be run alone
     lines = iter(module.statements)
     for number, line in lines:
         where = f"{module.file} line {number}"
@@ -86,9 +92,20 @@ def _load(module: Module, part: str, called: str, gone: str, run: Run, where: st
     name, loaded = _RUN.match(called), run.found.get(part.lower())
     if name is None or gone != f'UnLoad "HOME:/{part}.mod";':
         raise unreadable(where, Text("{} is loaded without being run and removed", part))
-    if loaded is None or loaded.routine.lower() != name[1].lower() or loaded.name in run.followed or run.on:
-        raise unreadable(where, Text("{} is not there, has no routine {}, is run already, or loaded while depositing", part,
-                                     name[1]))
+    if (
+        loaded is None
+        or loaded.routine.lower() != name[1].lower()
+        or loaded.name in run.followed
+        or run.on
+    ):
+        raise unreadable(
+            where,
+            Text(
+                "{} is not there, has no routine {}, is run already, or loaded while depositing",
+                part,
+                name[1],
+            ),
+        )
     _follow(loaded, run)
 
 
@@ -105,8 +122,14 @@ def _other(line: str, run: Run, where: str) -> None:
     elif cool := _COOL.match(line):
         run.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
     elif call := _CALL.match(line):
-        if any(call[1].lower() in (module.routine.lower(), module.name) for module in run.found.values()):
-            raise unreadable(where, Text("{} is a module or a routine of this program and is not loaded", call[1]))
+        if any(
+            call[1].lower() in (module.routine.lower(), module.name)
+            for module in run.found.values()
+        ):
+            raise unreadable(
+                where,
+                Text("{} is a module or a routine of this program and is not loaded", call[1]),
+            )
         run.happens("call", call[1].upper())
     else:
         raise unreadable(where, Text("the instruction {!r} is not understood", line))
@@ -116,10 +139,17 @@ def _move(module: Module, move: re.Match[str], run: Run, where: str) -> None:
     linear = move.re is _LINEAR
     *values, axes, speed, letter, amount, decimals, zone, tool, work_object = move.groups()
     if speed not in module.speeds or (letter == "V") != linear:
-        raise unreadable(where, Text("{} is not a speed of the module, or the speed is given otherwise than by \\T or \\V",
-                                     speed))
+        raise unreadable(
+            where,
+            Text(
+                "{} is not a speed of the module, or the speed is given otherwise than by \\T or \\V",
+                speed,
+            ),
+        )
     if run.on and run.output == ARC:
         raise unreadable(where, "the arc burns on a move of another kind")
     frames = module.tool_and_object(tool, work_object, where)
     half = 0.5 * 10.0 ** -len(decimals)
-    run.keep_move(module, Move(linear, tuple(values), axes, float(amount), half, zone, frames), where)
+    run.keep_move(
+        module, Move(linear, tuple(values), axes, float(amount), half, zone, frames), where
+    )

@@ -22,7 +22,9 @@ _TAIL = r",(\w+),(\w+)\\WObj:=(\w+);$"
 _TRIGGERS = r",(\w+)((?:\\T[2-8]:=\w+)*)"
 _TRIGG_J = re.compile(rf"TriggAbsJ {JOINTS},(\w+)\\T:=(\d+\.(\d+)){_TRIGGERS}{_TAIL}")
 _TRIGG_L = re.compile(rf"TriggL {POSITION},(\w+){_TRIGGERS}{_TAIL}")
-_ARC = re.compile(rf"ArcL(Start|End|) {POSITION},(\w+),seam([1-9]\d*),(\w+)(?:\\Weave:=weave([1-9]\d*))?{_TAIL}")
+_ARC = re.compile(
+    rf"ArcL(Start|End|) {POSITION},(\w+),seam([1-9]\d*),(\w+)(?:\\Weave:=weave([1-9]\d*))?{_TAIL}"
+)
 _MORE = re.compile(r"\\T(\d):=(\w+)")
 
 
@@ -31,10 +33,14 @@ def process_move(line: str, module: Module, run: Run, where: str) -> bool:
     if arc := _ARC.match(line):
         _arc_move(arc, module, run, where)
     elif trigg := _TRIGG_J.match(line):
-        *values, axes, speed, amount, decimals, first, more, zone, tool, work_object = trigg.groups()
+        *values, axes, speed, amount, decimals, first, more, zone, tool, work_object = (
+            trigg.groups()
+        )
         _speed_of(module, speed, where)
         frames = module.tool_and_object(tool, work_object, where)
-        move = Move(False, tuple(values), axes, float(amount), 0.5 * 10.0 ** -len(decimals), zone, frames)
+        move = Move(
+            False, tuple(values), axes, float(amount), 0.5 * 10.0 ** -len(decimals), zone, frames
+        )
         _triggered(move, _trigger_names(first, more, where), module, run, where)
     elif trigg := _TRIGG_L.match(line):
         place, turn, axes, speed, first, more, zone, tool, work_object = trigg.groups()
@@ -68,21 +74,41 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
         raise unreadable(where, "a trigger is not set, or named twice, or the arc burns on")
     for feed in feeds:
         if run.analogue not in (None, feed.output) or not move.linear or not run.on:
-            raise unreadable(where, "a second analogue output follows the speed, or a joint move, or without a deposit")
+            raise unreadable(
+                where,
+                "a second analogue output follows the speed, or a joint move, or without a deposit",
+            )
         run.analogue = feed.output
-    starts, ends = [feed for feed in feeds if feed.scale], [feed for feed in feeds if not feed.scale]
+    starts, ends = (
+        [feed for feed in feeds if feed.scale],
+        [feed for feed in feeds if not feed.scale],
+    )
     if len(starts) > 1 or len(ends) > 1 or (ends and not starts) or (starts and run.fed):
-        raise unreadable(where, "the wire is fed by two scales at once, or ends where it was not fed, or within a bead")
+        raise unreadable(
+            where,
+            "the wire is fed by two scales at once, or ends where it was not fed, or within a bead",
+        )
     for feed in starts:
         digits = feed.scale * move.half + feed.digits * (move.amount + move.half)
-        move = Move(move.linear, move.values, move.axes, move.amount, move.half, move.zone, move.frames,
-                    feed.scale * move.amount, digits)
+        move = Move(
+            move.linear,
+            move.values,
+            move.axes,
+            move.amount,
+            move.half,
+            move.zone,
+            move.frames,
+            feed.scale * move.amount,
+            digits,
+        )
     run.keep_move(module, move, where)
     run.feeding, run.fed = bool(starts) and not ends, bool(ends)
     for trigger in triggers:
         if isinstance(trigger, Switch):
             if run.moving:
-                raise unreadable(where, "a corner has no end from which the time of a trigger counts")
+                raise unreadable(
+                    where, "a corner has no end from which the time of a trigger counts"
+                )
             run.keep_switch(trigger.output, trigger.on, "do", where, trigger.digits, trigger.before)
 
 
@@ -90,14 +116,21 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
     """The arc is struck where the robot stands, burns along a move, or ends with it, or where the robot stands after it."""
     kind, place, turn, axes, speed, seam, weld_name, weave, zone, tool, work_object = arc.groups()
     weld, woven = run.given.welds.get(weld_name), int(weave or 0)
-    if weld is None or weld.speed is None or weld.original != weld.speed or weld.schedule != int(seam):
+    if (
+        weld is None
+        or weld.speed is None
+        or weld.original != weld.speed
+        or weld.schedule != int(seam)
+    ):
         raise unreadable(where, "its weld data has no speed, or is of another seam")
     frames = module.tool_and_object(tool, work_object, where)
     dry = _speed_of(module, speed, where)
     move = Move(True, (place, turn), axes, weld.speed, weld.half, zone, frames)
     if kind == "Start":
         if run.on or not run.nearest or not run.stands_at(move, where):
-            raise unreadable(where, "the arc burns already, or is struck where the robot does not stand")
+            raise unreadable(
+                where, "the arc burns already, or is struck where the robot does not stand"
+            )
         run.keep_switch(seam, True, ARC, where)
         run.seam, run.weave, run.struck, run.last = int(seam), 0, woven, (weld_name, woven)
         return

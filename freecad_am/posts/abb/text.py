@@ -34,22 +34,33 @@ _POSE = f"[{','.join([f'%.{LENGTH_DECIMALS}f'] * 3)}],[{','.join([f'%.{TURN_DECI
 _POSITION = f"    %s [{_POSE},[0,0,0,0],<axes>],%s,{TOOL}\\WObj:={WORK_OBJECT};"
 
 
-def module(name: str, routine: str, remarks: Iterable[str], data: Iterable[str], lines: Iterable[str]) -> bytes:
+def module(
+    name: str, routine: str, remarks: Iterable[str], data: Iterable[str], lines: Iterable[str]
+) -> bytes:
     """One file: a module with one routine. remarks: what it is; data, lines: as they stand, the lines indented."""
     text = [
-        f"MODULE {name}", *(f"  {line}" for line in remarks), *(f"  {line}" for line in data),
-        f"  PROC {routine}()", *lines, "  ENDPROC", "ENDMODULE",
+        f"MODULE {name}",
+        *(f"  {line}" for line in remarks),
+        *(f"  {line}" for line in data),
+        f"  PROC {routine}()",
+        *lines,
+        "  ENDPROC",
+        "ENDMODULE",
     ]
     return (END_OF_LINE.join(text) + END_OF_LINE).encode("ascii")
 
 
-def data(tool: Pose, work_object: Pose, held: bool, zones: Sequence[tuple[str, float]], unit: str = "") -> list[str]:
+def data(
+    tool: Pose, work_object: Pose, held: bool, zones: Sequence[tuple[str, float]], unit: str = ""
+) -> list[str]:
     """Declarations of tool, work object, speed and zones. held: the robot carries the work object, and the tool stands.
     unit: the mechanical unit whose face the work object is on and moves with, '' where it stands."""
     tool_held, object_held = ("FALSE", "TRUE") if held else ("TRUE", "FALSE")
     at, seen = (_POSE % (*pose.position, *pose.quaternion) for pose in (tool, work_object))
     # the user frame of what a unit moves is the unit's own, whatever is written: the object frame is seen from there
-    fixed, user, inside = ("FALSE", _NOWHERE, f"[{seen}]") if unit else ("TRUE", f"[{seen}]", _NOWHERE)
+    fixed, user, inside = (
+        ("FALSE", _NOWHERE, f"[{seen}]") if unit else ("TRUE", f"[{seen}]", _NOWHERE)
+    )
     return [
         f"LOCAL PERS tooldata {TOOL}:=[{tool_held},[{at}],{_LOAD}];",
         f'LOCAL PERS wobjdata {WORK_OBJECT}:=[{object_held},{fixed},"{unit}",{user},{inside}];',
@@ -76,7 +87,9 @@ def joint_moves(degrees: Array, words: Sequence[str], first: int = 1) -> list[st
     return _move_lines(line, "MoveAbsJ", degrees, words)
 
 
-def linear_moves(position: Array, quaternion: Array, external: Array, words: Sequence[str], first: int = 1) -> list[str]:
+def linear_moves(
+    position: Array, quaternion: Array, external: Array, words: Sequence[str], first: int = 1
+) -> list[str]:
     """Moves straight in space to positions (n, 3), quaternions (n, 4) and external axes (n, k), rounded already."""
     line = _POSITION.replace("<axes>", _axes(external.shape[1], first))
     return _move_lines(line, "MoveL", np.hstack((position, quaternion, external)), words)

@@ -52,7 +52,9 @@ class Run:
     on: bool = False
     lines: Lines = field(default_factory=Lines)
 
-    def happens(self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None) -> None:
+    def happens(
+        self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None
+    ) -> None:
         """Something happens before the next move, or ahead of the end of the last one."""
         self.events.append(Event(len(self.duration), kind, value, digits, ahead))
 
@@ -60,14 +62,19 @@ class Run:
         """Look at the groups of a listing; one without moves may name none."""
         groups = listing.records.moved
         if groups and self.moved not in (None, groups):
-            raise unreadable(listing.file, "its header names other motion groups than programs before")
+            raise unreadable(
+                listing.file, "its header names other motion groups than programs before"
+            )
         self.moved = groups or self.moved
 
     def take(self, listing: Listing) -> None:
         """Take over the records that are pending."""
         if self.pending:
             rows, records = np.concatenate(self.pending), listing.records
-            if self.values and (self.group, self.values[0].shape[1]) != (records.group, records.values.shape[1]):
+            if self.values and (self.group, self.values[0].shape[1]) != (
+                records.group,
+                records.values.shape[1],
+            ):
                 raise unreadable(listing.file, "it moves other groups than those before")
             self.group, self.track = records.group, (self.track[0], records.track)
             self.values.append(records.values[rows])
@@ -80,23 +87,43 @@ class Run:
 def read_moves(run: Run) -> ReadMoves:
     """All moves, as what a reader finds. InputError UNREADABLE_PROGRAM where a track is not told as one."""
     cartesian, values, digits = run.cartesian, np.concatenate(run.values), run.digits
-    joints, half_turn = (None, 0.0) if cartesian else (_joints(run, values), float(np.radians(digits)))
+    joints, half_turn = (
+        (None, 0.0) if cartesian else (_joints(run, values), float(np.radians(digits)))
+    )
     deposit, linear = (np.array(column, dtype=np.bool_) for column in (run.deposit, run.linear))
     blend = np.array(run.blend)
     found = ReadMoves(
-        joints, half_turn, np.array(run.duration), deposit, linear, np.isnan(blend), tuple(run.events),
-        speed=np.array(run.speed), share=np.array(run.share), share_digits=0.005, blend=blend,
-        user_frame=np.array(run.user_frame), tool_frame=np.array(run.tool_frame), unit=run.group or "",
-        linear_digits=digits if run.track[1] else 0.0, lines=run.lines.read(),
+        joints,
+        half_turn,
+        np.array(run.duration),
+        deposit,
+        linear,
+        np.isnan(blend),
+        tuple(run.events),
+        speed=np.array(run.speed),
+        share=np.array(run.share),
+        share_digits=0.005,
+        blend=blend,
+        user_frame=np.array(run.user_frame),
+        tool_frame=np.array(run.tool_frame),
+        unit=run.group or "",
+        linear_digits=digits if run.track[1] else 0.0,
+        lines=run.lines.read(),
     )
     if not cartesian:
         return found
     words = np.array(run.configuration)
     return dataclasses.replace(
-        found, position=values[:, :3], rotation=_rotation(np.radians(values[:, 3:])), position_digits=digits,
+        found,
+        position=values[:, :3],
+        rotation=_rotation(np.radians(values[:, 3:])),
+        position_digits=digits,
         rotation_digits=float(np.radians(digits)),
         configuration=Configuration(
-            words[:, 0] == "F", words[:, 1] == "U", words[:, 2] == "T", words[:, 3:].astype(np.float64)
+            words[:, 0] == "F",
+            words[:, 1] == "U",
+            words[:, 2] == "T",
+            words[:, 3:].astype(np.float64),
         ),
     )
 
@@ -105,7 +132,10 @@ def _joints(run: Run, values: Array) -> Array:
     """(n, axes) rad and mm of the values of records, the track where a remark says that it is among the external axes."""
     number, track = run.track
     if track != bool(number) or number > values.shape[1] - _OWN:
-        raise unreadable("program", "positions have a track and no remark says which axis it is, or the other way round")
+        raise unreadable(
+            "program",
+            "positions have a track and no remark says which axis it is, or the other way round",
+        )
     if not track:
         return np.asarray(np.radians(values))
     rest = np.radians(np.delete(values, _OWN, axis=1))

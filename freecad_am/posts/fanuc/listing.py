@@ -67,12 +67,16 @@ _POSE_RECORD = (
 )
 
 
-def listing(name: str, comment: str, instructions: Sequence[str], records: str, group: int = 1) -> bytes:
+def listing(
+    name: str, comment: str, instructions: Sequence[str], records: str, group: int = 1
+) -> bytes:
     """One whole file. instructions: what follows the colon of each line, with its semicolon; records: the text
     of joint_records or pose_records, '' when there are none. group: the motion group that moves beside the first one."""
     groups = ",".join("1" if number in (1, group) else "*" for number in range(1, GROUPS + 1))
     comment = plain(comment)[:COMMENT_WIDTH]
-    head = _HEADER.format(name=name, comment=comment, date=_DATE, lines=len(instructions), groups=groups)
+    head = _HEADER.format(
+        name=name, comment=comment, date=_DATE, lines=len(instructions), groups=groups
+    )
     numbered = [f"{number:4d}:{line}" for number, line in enumerate(instructions, 1)]
     text = head.replace("\n", END_OF_LINE) + END_OF_LINE.join(numbered) + END_OF_LINE
     return (text + "/POS" + END_OF_LINE + records + "/END" + END_OF_LINE).encode("ascii")
@@ -116,7 +120,9 @@ def weave(number: int) -> str:
     return f"  Weave Sine[{number}] ;" if number else "  Weave End ;"
 
 
-def joint_records(degrees: Array, track: Array, external: Array, user_frame: int, tool_frame: int, group: int = 1) -> str:
+def joint_records(
+    degrees: Array, track: Array, external: Array, user_frame: int, tool_frame: int, group: int = 1
+) -> str:
     """Records P[1].. of joint values (n, 6), of the track (n, 0 or 1) and of another group (n, k), degrees and mm already
     rounded to 3 decimals."""
     values = ",".join(f"\tJ{axis}=%10.3f deg" for axis in range(1, external.shape[1] + 1))
@@ -126,12 +132,16 @@ def joint_records(degrees: Array, track: Array, external: Array, user_frame: int
     return _records(record, user_frame, tool_frame, [], np.hstack([degrees, track, external]))
 
 
-def pose_records(pose: Array, configuration: Sequence[str], user_frame: int, tool_frame: int) -> str:
+def pose_records(
+    pose: Array, configuration: Sequence[str], user_frame: int, tool_frame: int
+) -> str:
     """Records P[1].. of positions (n, 6) X Y Z mm, W P R deg, already rounded to 3 decimals, with their CONFIG."""
     return _records(_POSE_RECORD, user_frame, tool_frame, [configuration], pose)
 
 
-def _records(template: str, user_frame: int, tool_frame: int, words: Sequence[Sequence[str]], values: Array) -> str:
+def _records(
+    template: str, user_frame: int, tool_frame: int, words: Sequence[Sequence[str]], values: Array
+) -> str:
     """Positions 1.. by their template: its fields are the number, columns (n,) of words, and values (n, k)."""
     n, count = values.shape
     one = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
@@ -140,4 +150,6 @@ def _records(template: str, user_frame: int, tool_frame: int, words: Sequence[Se
     columns = [np.array(column, dtype="S").view(np.uint8).reshape(n, -1).T for column in words]
     texts = [digits.plain(np.arange(1, n + 1), 0), *columns, *shown.transpose(1, 0, 2)]
     fixed = [text.encode("ascii") for text in _FIELD.split(one)]
-    return digits.joined([part for pair in zip(fixed, texts, strict=False) for part in pair] + fixed[-1:], n)
+    return digits.joined(
+        [part for pair in zip(fixed, texts, strict=False) for part in pair] + fixed[-1:], n
+    )

@@ -35,25 +35,34 @@ def time_words(moves: Moves) -> list[str]:
     seconds = np.where(np.isfinite(moves.duration), np.maximum(moves.duration, 0.0), 0.0)
     if seconds.max() > LONGEST_SEC:
         raise InputError(
-            "MOVE_TIME", place(moves),
-            "a move of {:.0f} s is longer than {:.0f} s; raise the speed or add points", seconds.max(), LONGEST_SEC,
+            "MOVE_TIME",
+            place(moves),
+            "a move of {:.0f} s is longer than {:.0f} s; raise the speed or add points",
+            seconds.max(),
+            LONGEST_SEC,
         )
     long = np.rint(seconds * 1000.0) > LONGEST_MSEC
     n = len(seconds)
     ends = np.rint(np.cumsum(np.where(long, 0.001, seconds)) * 1000.0).astype(np.int64)
     if ends[-1] < n and moves.kind != RAPID:
         raise InputError(
-            "MOVE_TIME", place(moves),
+            "MOVE_TIME",
+            place(moves),
             "{} moves take {:.4g} s in all and cannot be shorter than 1 ms each; use a larger chord error or a lower speed",
-            n, seconds.sum(),
+            n,
+            seconds.sum(),
         )
     # beyond the 1 ms that each move takes at least: what has accrued, never falling, never more than the whole
-    spare = np.minimum(np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0))
+    spare = np.minimum(
+        np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0)
+    )
     milliseconds = 1 + spare
     milliseconds[1:] -= spare[:-1]
     return [
         f"{second:.1f}sec" if is_long else f"{whole}msec"
-        for second, is_long, whole in zip(seconds.tolist(), long.tolist(), milliseconds.tolist(), strict=True)
+        for second, is_long, whole in zip(
+            seconds.tolist(), long.tolist(), milliseconds.tolist(), strict=True
+        )
     ]
 
 
@@ -78,26 +87,38 @@ def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
     turn, where both readings agree. What U and D mean of an arm bent over backwards (B) was not confirmed.
     """
     if moves.configuration is None:
-        raise InputError("NO_POSITIONS", place(moves), "the program has no arm configurations; use `motion: joint`")
+        raise InputError(
+            "NO_POSITIONS",
+            place(moves),
+            "the program has no arm configurations; use `motion: joint`",
+        )
     if any(shoulder != "front" for shoulder, _, _ in moves.configuration):
         raise InputError(
-            "ARM_BACKWARDS", place(moves),
+            "ARM_BACKWARDS",
+            place(moves),
             "Cartesian positions are written only of an arm reaching forwards; use `branch: [front, ...]` or"
             " `motion: joint`",
         )
     degrees = np.degrees(moves.joints)
     turns = np.sign(degrees) * np.floor((np.abs(degrees) + 180.0 + _TURN_TOLERANCE) / 360.0)
     turns[:, np.array(continuous)] = 0.0
-    untold = (turns != 0.0) & np.array([True, False, False, True, True, False]) | (np.abs(turns) > 9.0)
+    untold = (turns != 0.0) & np.array([True, False, False, True, True, False]) | (
+        np.abs(turns) > 9.0
+    )
     if untold.any():
         point, axis = np.argwhere(untold)[0]
         raise InputError(
-            "TURN_NUMBER", place(moves),
+            "TURN_NUMBER",
+            place(moves),
             "axis {} stands at {:.1f} deg and its turn number cannot be given reliably in a Cartesian position; use "
             "`motion: joint`",
-            axis + 1, degrees[point, axis],
+            axis + 1,
+            degrees[point, axis],
         )
     wrists = np.where(moves.joints[:, 4] > 0.0, "F", "N").tolist()
     elbows = ["D" if elbow == "down" else "U" for _, elbow, _ in moves.configuration]
     last = (turns[:, 5] + 0.0).tolist()
-    return [f"{wrist} {elbow} T, 0, 0, {turn:.0f}" for wrist, elbow, turn in zip(wrists, elbows, last, strict=True)]
+    return [
+        f"{wrist} {elbow} T, 0, 0, {turn:.0f}"
+        for wrist, elbow, turn in zip(wrists, elbows, last, strict=True)
+    ]

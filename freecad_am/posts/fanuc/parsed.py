@@ -104,8 +104,12 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
     """The instructions of lines, of which the first has a number, and all moves among them."""
     count = len(lines)
     moves = _Moves(
-        np.arange(number, number + count), np.zeros(count, dtype=np.intp), np.zeros(count), np.zeros(count, dtype=np.intp),
-        np.zeros(count, dtype=bool), np.full(count, np.nan),
+        np.arange(number, number + count),
+        np.zeros(count, dtype=np.intp),
+        np.zeros(count),
+        np.zeros(count, dtype=np.intp),
+        np.zeros(count, dtype=bool),
+        np.full(count, np.nan),
     )
     moving, others = np.zeros(count, dtype=bool), []
     options: dict[int, str] = {}  # of moves, by their rows
@@ -135,6 +139,11 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
         if row < count and not option:
             statement = _LINE.match(lines[row])
             if statement is None:
-                raise unreadable(f"{file} line {number + row}", Text("{!r} is not an instruction", lines[row].strip()))
+                raise unreadable(
+                    f"{file} line {number + row}",
+                    Text("{!r} is not an instruction", lines[row].strip()),
+                )
             instructions.append(_Instruction(number + row, statement[1].strip()))
-    return instructions, _Moves(*(getattr(moves, entry.name)[moving] for entry in dataclasses.fields(moves)))
+    return instructions, _Moves(
+        *(getattr(moves, entry.name)[moving] for entry in dataclasses.fields(moves))
+    )

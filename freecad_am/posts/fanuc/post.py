@@ -83,11 +83,28 @@ _FIRST_MOVE = f"{100.0 * FIRST_SHARE:.0f}%"
 
 # words of the listing's own language
 _RESERVED = frozenset(
-    ("ABORT", "CALL", "DI", "DO", "ELSE", "END", "ENDFOR", "ENDIF", "FOR", "IF", "JMP", "LBL", "MESSAGE", "MONITOR")
+    (
+        "ABORT",
+        "CALL",
+        "DI",
+        "DO",
+        "ELSE",
+        "END",
+        "ENDFOR",
+        "ENDIF",
+        "FOR",
+        "IF",
+        "JMP",
+        "LBL",
+        "MESSAGE",
+        "MONITOR",
+    )
     + ("PAUSE", "RUN", "SELECT", "THEN", "WAIT", "WHEN")
 )
 # names of 8 characters at most on older controllers
-NAMING = Naming(str.upper, "[A-Z]", "a letter", longest=36, spare=4, prefix="AM_", reserved=_RESERVED)
+NAMING = Naming(
+    str.upper, "[A-Z]", "a letter", longest=36, spare=4, prefix="AM_", reserved=_RESERVED
+)
 
 
 def write(program: Program) -> dict[str, bytes]:
@@ -101,10 +118,17 @@ def write(program: Program) -> dict[str, bytes]:
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
+    remarks = [
+        line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)
+    ]
     head = [f"  UFRAME_NUM={program.user_frame} ;", f"  UTOOL_NUM={program.tool_frame} ;"]
     groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, MOST_LINES - len(head) - len(remarks), continued(text.remark, program.woven))
+    parts = packed(
+        groups,
+        program.max_points,
+        MOST_LINES - len(head) - len(remarks),
+        continued(text.remark, program.woven),
+    )
     if len(parts) == 1:
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
@@ -124,17 +148,26 @@ def program_name(name: str, where: str) -> str:
 
 
 def refuse_setup(
-    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    motion: str,
+    setup: str,
+    external: tuple[str, ...] = (),
+    carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
-            "REMOTE_TCP", "program.motion",
+            "REMOTE_TCP",
+            "program.motion",
             "Cartesian motion with the part on the robot means remote TCP, and what the position records of such moves"
             " (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post fanuc cannot write {}; use another post", setup)
+        raise InputError(
+            "UNSUPPORTED_SETUP",
+            "cell.setup",
+            "the post fanuc cannot write {}; use another post",
+            setup,
+        )
     if external:
         _refuse_coordinated(motion, external)
 
@@ -143,19 +176,34 @@ def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
     """Raises InputError COORDINATED_MOTION for what cannot be said with external axes of these kinds."""
     if motion != "cartesian":
         return
-    why = ("linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions"
-           " are then seen from was not confirmed") if ROTARY in external else (
-        "whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up,"
-        " and was not confirmed")
-    raise InputError("COORDINATED_MOTION", "program.motion", "{}; use `motion: joint`, whose times hold the speed",
-                     Word(why))
+    why = (
+        (
+            "linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions"
+            " are then seen from was not confirmed"
+        )
+        if ROTARY in external
+        else (
+            "whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up,"
+            " and was not confirmed"
+        )
+    )
+    raise InputError(
+        "COORDINATED_MOTION",
+        "program.motion",
+        "{}; use `motion: joint`, whose times hold the speed",
+        Word(why),
+    )
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     refuse_incomplete(program, "fanuc", AXES + len(program.external_kinds))
-    refuse_external(program, len(program.external_kinds), f"[2-{text.GROUPS}]",
-                    Text("its motion group, 2 to {}", text.GROUPS))
+    refuse_external(
+        program,
+        len(program.external_kinds),
+        f"[2-{text.GROUPS}]",
+        Text("its motion group, 2 to {}", text.GROUPS),
+    )
     if program.external_kinds:
         _refuse_coordinated(program.motion, program.external_kinds)
     refuse_named_track(program, "E1 of the robot's own motion group")
@@ -169,8 +217,10 @@ def _refuse(program: Program) -> None:
             program_name(block.program, block.where)
         if isinstance(block, WaitBelow) and block.below != round(block.below):
             raise InputError(
-                "ANALOGUE_INPUT", "process.cooling",
-                "analogue inputs are whole numbers, not {:.9g}; change below, gain or zero so that it is one", block.below,
+                "ANALOGUE_INPUT",
+                "process.cooling",
+                "analogue inputs are whole numbers, not {:.9g}; change below, gain or zero so that it is one",
+                block.below,
             )
     _refuse_continuous_steps(program)
 
@@ -186,9 +236,12 @@ def _refuse_continuous_steps(program: Program) -> None:
         run = program.moves[places[move + 1]]
         turn = math.degrees(joints[move + 1, axis] - joints[move, axis])
         raise InputError(
-            "ENDLESS_STEP", Text("layer {} bead {}", run.layer, run.bead),
+            "ENDLESS_STEP",
+            Text("layer {} bead {}", run.layer, run.bead),
             "axis {} turns {:.1f} deg in one move; an axis of continuous turn goes less than 180 deg per move: add points, "
-            "or limit the axis", axes[axis] + 1, turn,
+            "or limit the axis",
+            axes[axis] + 1,
+            turn,
         )
 
 
@@ -207,7 +260,11 @@ def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
 
     def words(moves: Moves) -> Sequence[str]:
         nonlocal first
-        speeds = numbers.speed_words(moves) if moves.interpolation == LINEAR_MOVE else numbers.time_words(moves)
+        speeds = (
+            numbers.speed_words(moves)
+            if moves.interpolation == LINEAR_MOVE
+            else numbers.time_words(moves)
+        )
         if first:
             speeds[0], first = _FIRST_MOVE, False
         corners = ["FINE" if stops else f"CNT{program.blend}" for stops in moves.stops.tolist()]
@@ -245,7 +302,9 @@ def _instructions(program: Program, block: Block) -> list[str]:
     raise TypeError(f"no instruction for {block!r}")
 
 
-def _file(program: Program, name: str, comment: str, head: list[str], pieces: Sequence[Piece]) -> bytes:
+def _file(
+    program: Program, name: str, comment: str, head: list[str], pieces: Sequence[Piece]
+) -> bytes:
     lines, point = list(head), 0
     runs = [piece for piece in pieces if isinstance(piece, Run)]
     for piece in pieces:
@@ -279,14 +338,24 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
         shown[:, continuous] = numbers.within_half_turn(shown[:, continuous])
         shown += 0.0
         return text.joint_records(
-            shown[:, :AXES], shown[:, slides], shown[:, AXES:][:, ~slides[AXES:]], program.user_frame, program.tool_frame,
+            shown[:, :AXES],
+            shown[:, slides],
+            shown[:, AXES:][:, ~slides[AXES:]],
+            program.user_frame,
+            program.tool_frame,
             _group(program),
         )
     poses, configuration = [], []
     for run in runs:
         moves, part = run.moves, slice(run.start, run.stop)
         if moves.position is None or moves.rotation is None:
-            raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+            raise InputError(
+                "NO_POSITIONS",
+                "program.motion",
+                "the program has no positions; use `motion: joint`",
+            )
         poses.append(numbers.poses(moves.position[part], moves.rotation[part]))
         configuration += numbers.configurations(moves, program.continuous)[part]
-    return text.pose_records(np.concatenate(poses), configuration, program.user_frame, program.tool_frame)
+    return text.pose_records(
+        np.concatenate(poses), configuration, program.user_frame, program.tool_frame
+    )

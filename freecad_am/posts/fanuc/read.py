@@ -17,7 +17,9 @@ from .found import Run, read_moves
 from .parsed import UNITS, Listing, listing_of, name_of
 from .records import unreadable
 
-_FACTORS = np.array([(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, np.nan), (np.nan, np.nan, 0.01)])
+_FACTORS = np.array(
+    [(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, np.nan), (np.nan, np.nan, 0.01)]
+)
 _SPEED, _SHARE = UNITS.index("mm/sec"), UNITS.index("%")
 _MOST_CNT = 100.0
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
@@ -48,7 +50,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     called = {call.upper() for content in calling for call in _CALLS.findall(content)}
     main = [name for name in named if name not in called]
     if len(main) != 1:
-        raise unreadable("program", Text("{} programs are called by none of the others, expected one", len(main)))
+        raise unreadable(
+            "program", Text("{} programs are called by none of the others, expected one", len(main))
+        )
     run = Run()
     _follow(main[0], {name: (file, files[file]) for name, file in named.items()}, run, ())
     if not run.duration:
@@ -56,7 +60,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     return read_moves(run)
 
 
-def _follow(name: str, files: dict[str, tuple[str, bytes]], run: Run, callers: tuple[str, ...]) -> None:
+def _follow(
+    name: str, files: dict[str, tuple[str, bytes]], run: Run, callers: tuple[str, ...]
+) -> None:
     """Carry out the instructions of a program in order, and of those it calls. A listing is there while it is followed."""
     if name in callers:
         raise unreadable(files[name][0], "it calls itself")
@@ -94,11 +100,16 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: Run, callers: t
         elif statement == "END" and position == len(listing.instructions) - 1:
             break
         elif not _HARMLESS.match(statement):
-            raise unreadable(f"{listing.file} line {number}", Text("the instruction {!r} is not understood", statement))
+            raise unreadable(
+                f"{listing.file} line {number}",
+                Text("the instruction {!r} is not understood", statement),
+            )
     run.take(listing)
 
 
-def _switch(output: re.Match[str], where: str, run: Run, digits: float = 0.0, ahead: float | None = None) -> None:
+def _switch(
+    output: re.Match[str], where: str, run: Run, digits: float = 0.0, ahead: float | None = None
+) -> None:
     """The deposit goes on or off."""
     if run.output not in ("", output[1]):
         raise unreadable(where, "a second output is switched")
@@ -137,7 +148,12 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
     moves, cartesian = listing.moves, listing.records.cartesian
     unit, straight, corner = moves.unit[some], moves.straight[some], moves.corner[some]
     rows = listing.rows(moves.point[some])
-    wrong = (rows < 0) | (straight & (not cartesian)) | (unit == np.where(straight, _SHARE, _SPEED)) | (corner > _MOST_CNT)
+    wrong = (
+        (rows < 0)
+        | (straight & (not cartesian))
+        | (unit == np.where(straight, _SHARE, _SPEED))
+        | (corner > _MOST_CNT)
+    )
     if run.cartesian != cartesian and run.duration:
         wrong[:] = True
     if wrong.any():
@@ -146,7 +162,9 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
     frames = listing.records.frames
     alike = listing.same_frames
     selected = frames if alike else [frames[row] for row in rows]
-    changes = [0] if alike else [k for k in range(len(rows)) if k == 0 or selected[k] != selected[k - 1]]
+    changes = (
+        [0] if alike else [k for k in range(len(rows)) if k == 0 or selected[k] != selected[k - 1]]
+    )
     for first, end in zip(changes, [*changes[1:], len(rows)]):
         if selected[first] != run.recorded:
             _select(listing, int(rows[first]), run, int(moves.line[some][first]))
@@ -155,7 +173,9 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
     run.pending.append(rows)
     run.lines.extend(listing.file, moves.line[some])
     value = moves.value[some, None] * _FACTORS[unit]
-    for column, numbered in zip((run.duration, run.speed, run.share, run.blend), (*value.T, corner)):
+    for column, numbered in zip(
+        (run.duration, run.speed, run.share, run.blend), (*value.T, corner)
+    ):
         column.frombytes(numbered.tobytes())
     run.deposit += bytes([run.on]) * len(rows)
     run.linear += straight.tobytes()
@@ -166,14 +186,25 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
 def _refuse(listing: Listing, move: int, run: Run) -> None:
     """InputError for what cannot be understood of a move."""
     moves, records = listing.moves, listing.records
-    where, unit, corner = _at(listing, int(moves.line[move])), int(moves.unit[move]), moves.corner[move]
+    where, unit, corner = (
+        _at(listing, int(moves.line[move])),
+        int(moves.unit[move]),
+        moves.corner[move],
+    )
     if moves.point[move] not in records.point:
         raise unreadable(where, Text("P[{}] is not recorded", moves.point[move]))
     if run.cartesian != records.cartesian and run.duration:
         raise unreadable(where, "joint and Cartesian positions are mixed")
     if moves.straight[move] and not records.cartesian:
         raise unreadable(where, "a position is moved to in another way than it is recorded")
-    raise unreadable(where, Text("{} or CNT{} is not understood here", UNITS[unit], "" if np.isnan(corner) else int(corner)))
+    raise unreadable(
+        where,
+        Text(
+            "{} or CNT{} is not understood here",
+            UNITS[unit],
+            "" if np.isnan(corner) else int(corner),
+        ),
+    )
 
 
 def _select(listing: Listing, row: int, run: Run, number: int) -> None:
@@ -183,7 +214,11 @@ def _select(listing: Listing, row: int, run: Run, number: int) -> None:
         if frame not in ("F", run.frame.get(word)):
             raise unreadable(
                 _at(listing, number),
-                Text("P[{}] is recorded in another U{} than the one selected", listing.records.point[row], word),
+                Text(
+                    "P[{}] is recorded in another U{} than the one selected",
+                    listing.records.point[row],
+                    word,
+                ),
             )
     run.recorded = recorded
     run.numbers = float(run.frame.get("FRAME", "nan")), float(run.frame.get("TOOL", "nan"))

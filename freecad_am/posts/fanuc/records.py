@@ -21,13 +21,17 @@ _NUMBER = r" *(-?\d*\.\d+) *"
 
 
 def _values(names: str, units: str) -> str:
-    return r",\s*".join(f"{name} ?={_NUMBER}{unit}" for name, unit in zip(names.split(), units.split(), strict=True))
+    return r",\s*".join(
+        f"{name} ?={_NUMBER}{unit}" for name, unit in zip(names.split(), units.split(), strict=True)
+    )
 
 
 _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
 # one of them, from the end of the line before to its own end, with the digits of its names as numbers too
 _ONE = re.compile(
-    r"\s*\n" + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)") + r"\s*"
+    r"\s*\n"
+    + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)")
+    + r"\s*"
 )
 _NUMBERED, _GROUP, _FRAMES_OF, _NAMES, _VALUES = 1, 2, (3, 4), range(5, 17, 2), range(6, 17, 2)
 # the same with a track, and the axes of another motion group, in the same frames
@@ -37,7 +41,9 @@ _MORE = re.compile(
 )
 _AXIS = re.compile(r"J(\d) ?= *(-?\d*\.\d+) *deg(,?)")
 _CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s*"
-_POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
+_POSE = re.compile(
+    _FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};"
+)
 
 
 class Records(NamedTuple):
@@ -60,9 +66,15 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     """The positions, by number, that stand in the text after the first lines of a file, the line that begins them numbered
     from 0. InputError UNREADABLE_PROGRAM for what is not understood, or recorded twice."""
     # counting is many times as fast as looking at every line
-    several = text.count("GP") > text.count("GP1:") and re.search(r"^ *GP[2-8]:", text, re.MULTILINE)
+    several = text.count("GP") > text.count("GP1:") and re.search(
+        r"^ *GP[2-8]:", text, re.MULTILINE
+    )
     more = several or "E1" in text
-    found = _with_more(file, text) if more else _joint_records(text) or _any_records(file, text, positions)
+    found = (
+        _with_more(file, text)
+        if more
+        else _joint_records(text) or _any_records(file, text, positions)
+    )
     _check_groups(file, lines, found)
     if (np.diff(found.point) > 0).all():
         return found._replace(moved=_groups_of(lines))
@@ -71,14 +83,21 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
         raise unreadable(file, "a position is recorded twice")
     some = order.tolist()
     return found._replace(
-        point=found.point[order], values=found.values[order], frames=[found.frames[row] for row in some],
-        configuration=[found.configuration[row] for row in some], moved=_groups_of(lines),
+        point=found.point[order],
+        values=found.values[order],
+        frames=[found.frames[row] for row in some],
+        configuration=[found.configuration[row] for row in some],
+        moved=_groups_of(lines),
     )
 
 
 def _groups_of(lines: list[str]) -> frozenset[str]:
     """The motion groups that a program moves, by its header."""
-    given = (line.partition("=")[2].strip(" ;").split(",") for line in lines if line.startswith("DEFAULT_GROUP"))
+    given = (
+        line.partition("=")[2].strip(" ;").split(",")
+        for line in lines
+        if line.startswith("DEFAULT_GROUP")
+    )
     flags = next(given, ["1"])
     return frozenset(str(number) for number, word in enumerate(flags, 1) if word == "1")
 
@@ -87,7 +106,9 @@ def _check_groups(file: str, lines: list[str], found: Records) -> None:
     """The groups that a program moves are those that it has positions of."""
     moved = _groups_of(lines)
     if len(found.point) and moved != {"1", found.group or "1"}:
-        raise unreadable(file, Text("it moves groups {}, and has positions of others", ", ".join(sorted(moved))))
+        raise unreadable(
+            file, Text("it moves groups {}, and has positions of others", ", ".join(sorted(moved)))
+        )
 
 
 def _with_more(file: str, text: str) -> Records:
@@ -98,7 +119,9 @@ def _with_more(file: str, text: str) -> Records:
         external = _AXIS.findall(rest or "")
         count = len(external)
         due = [(str(axis), "," if axis < count else "") for axis in range(1, count + 1)]
-        if [(axis, comma) for axis, _, comma in external] != due or (group and (user, tool) != (other_user, other_tool)):
+        if [(axis, comma) for axis, _, comma in external] != due or (
+            group and (user, tool) != (other_user, other_tool)
+        ):
             raise unreadable(file, Text("the second group of P[{}] is not understood", point))
         texts = [*own, *([track] if track else []), *(value for _, value, _ in external)]
         points.append(int(point))
@@ -107,10 +130,19 @@ def _with_more(file: str, text: str) -> Records:
         groups.add((group or "", count, bool(track)))
         decimals = min(decimals, *(len(value.partition(".")[2]) for value in texts))
     if len(points) != len(_RECORD_START.findall(text)) or len(groups) != 1:
-        raise unreadable(file, "its positions are not all of the same motion groups, or one is not understood")
+        raise unreadable(
+            file, "its positions are not all of the same motion groups, or one is not understood"
+        )
     (number, _, track_values), half = groups.pop(), 0.5 * 10.0**-decimals
     return Records(
-        np.array(points, dtype=np.intp), np.array(values), [()] * len(points), frames, half, False, number, track_values,
+        np.array(points, dtype=np.intp),
+        np.array(values),
+        [()] * len(points),
+        frames,
+        half,
+        False,
+        number,
+        track_values,
     )
 
 
@@ -150,13 +182,23 @@ def _any_records(file: str, text: str, positions: int) -> Records:
     if [record[0] for record in found] != starts:
         understood = {record[0] for record in found}
         bad = next((point for point in starts if point not in understood), starts[-1])
-        number = next(n for n, line in enumerate(text.split("\n"), positions + 2) if re.match(rf"P\[{bad}\b", line))
-        raise unreadable(f"{file} line {number}", Text("the record of P[{}] is not understood", bad))
+        number = next(
+            n
+            for n, line in enumerate(text.split("\n"), positions + 2)
+            if re.match(rf"P\[{bad}\b", line)
+        )
+        raise unreadable(
+            f"{file} line {number}", Text("the record of P[{}] is not understood", bad)
+        )
     texts = " ".join(chain.from_iterable([record[-6:] for record in found]))
     decimals = min(map(len, _DECIMALS.findall(texts)), default=0)
     return Records(
-        np.array([int(record[0]) for record in found], dtype=np.intp), np.fromstring(texts, sep=" ").reshape(-1, 6),
-        [record[3:-6] for record in found], [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals, cartesian,
+        np.array([int(record[0]) for record in found], dtype=np.intp),
+        np.fromstring(texts, sep=" ").reshape(-1, 6),
+        [record[3:-6] for record in found],
+        [(record[1], record[2]) for record in found],
+        0.5 * 10.0**-decimals,
+        cartesian,
     )
 
 

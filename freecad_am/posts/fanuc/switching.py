@@ -21,15 +21,21 @@ def at_ends(program: Program) -> dict[int, str]:
         return {}
     output = program.deposit_output
     return {
-        id(moves): f" {_ahead(block.ahead)},DO[{output}]={'ON' if isinstance(block, DepositOn) else 'OFF'}"
-        for moves, block in switching(program) if block.ahead is not None
+        id(
+            moves
+        ): f" {_ahead(block.ahead)},DO[{output}]={'ON' if isinstance(block, DepositOn) else 'OFF'}"
+        for moves, block in switching(program)
+        if block.ahead is not None
     }
 
 
 def as_written(program: Program) -> list[Ahead]:
     """All that is switched ahead, each as long before the end as the listing says: up to 5 ms longer than asked."""
     steps = 10**DECIMALS
-    return [dataclasses.replace(one, lead=round(one.lead, DECIMALS), steps=steps) for one in switched_ahead(program)]
+    return [
+        dataclasses.replace(one, lead=round(one.lead, DECIMALS), steps=steps)
+        for one in switched_ahead(program)
+    ]
 
 
 def _ahead(seconds: float) -> str:

@@ -28,7 +28,11 @@ def after(block: DepositOn | DepositOff) -> str:
 
 def names(program: Program) -> list[str]:
     """Names of the data and procedures of ArcTech that a program uses."""
-    schedules = {block.schedule for block in program.blocks if isinstance(block, DepositOn) and block.schedule is not None}
+    schedules = {
+        block.schedule
+        for block in program.blocks
+        if isinstance(block, DepositOn) and block.schedule is not None
+    }
     own = ["ArcMainNG", "ArcGetPath", "ArcGetDelay", SEAM] if schedules else []
     return own + [f"{kind}{number}" for number in sorted(schedules) for kind in (ON, OFF)]
 
@@ -38,9 +42,12 @@ def refuse_post_flow(program: Program) -> None:
     for block in program.blocks:
         if isinstance(block, DepositOff) and block.schedule is not None and block.lead > 0.0:
             raise InputError(
-                "SCHEDULE", "process.lead_off", "ArcTech ends the arc with the last move of a bead and stays there for the "
+                "SCHEDULE",
+                "process.lead_off",
+                "ArcTech ends the arc with the last move of a bead and stays there for the "
                 "crater time of its weld data; use lead_off 0 and set the crater time of {}, or another "
-                "program.schedule.by", f"{OFF}{block.schedule}",
+                "program.schedule.by",
+                f"{OFF}{block.schedule}",
             )
 
 
@@ -52,7 +59,9 @@ def remarks(program: Program) -> Iterator[str]:
         if isinstance(block, DepositOn):
             number = block.schedule
         elif isinstance(block, Moves) and number is not None:
-            speeds.setdefault(number, []).extend((float(np.min(block.speed)), float(np.max(block.speed))))
+            speeds.setdefault(number, []).extend(
+                (float(np.min(block.speed)), float(np.max(block.speed)))
+            )
         elif isinstance(block, DepositOff):
             number = None
     if speeds:

@@ -52,7 +52,9 @@ class Run:
     trigger: tuple[float, str, bool] | None = None
     lines: Lines = field(default_factory=Lines)
 
-    def happens(self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None) -> None:
+    def happens(
+        self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None
+    ) -> None:
         """Something happens before the next move, or so many s before the end of the last one."""
         self.events.append(Event(len(self.speed), kind, value, digits, ahead))
 
@@ -73,15 +75,28 @@ def read_moves(run: Run) -> ReadMoves:
     joints = np.radians(np.hstack((np.where(seen, np.nan, values), external)))
     joints[:, 6:] = np.where(np.isin(run.numbers, run.slides), external, joints[:, 6:])
     return ReadMoves(
-        None if np.isnan(joints).all() else joints, float(np.radians(half.get("joints", 0.0))),
-        np.full(len(linear), np.nan), deposit, linear, np.isnan(rounding), tuple(run.events),
+        None if np.isnan(joints).all() else joints,
+        float(np.radians(half.get("joints", 0.0))),
+        np.full(len(linear), np.nan),
+        deposit,
+        linear,
+        np.isnan(rounding),
+        tuple(run.events),
         position=np.where(seen, values[:, :3], np.nan) if any_line else None,
         rotation=_about(2, a) @ _about(1, b) @ _about(0, c) if any_line else None,
-        position_digits=half.get("places", 0.0), rotation_digits=float(np.radians(half.get("turns", 0.0))),
-        speed=np.array(run.speed), speed_digits=half.get("speed", 0.0), share=np.array(run.share), share_digits=0.005,
-        linear_digits=half.get("slides", 0.0), rounding=rounding,
-        user_frame=np.array(run.base), tool_frame=np.array(run.tool),
-        unit=run.unit or "", first_external=run.numbers[0] if run.numbers else 1, lines=run.lines.read(),
+        position_digits=half.get("places", 0.0),
+        rotation_digits=float(np.radians(half.get("turns", 0.0))),
+        speed=np.array(run.speed),
+        speed_digits=half.get("speed", 0.0),
+        share=np.array(run.share),
+        share_digits=0.005,
+        linear_digits=half.get("slides", 0.0),
+        rounding=rounding,
+        user_frame=np.array(run.base),
+        tool_frame=np.array(run.tool),
+        unit=run.unit or "",
+        first_external=run.numbers[0] if run.numbers else 1,
+        lines=run.lines.read(),
     )
 
 

@@ -15,7 +15,17 @@ import numpy as np
 from ...core.controller import Controller
 from ...core.issues import InputError
 from ...core.orientation import MOVING_XYZ, MOVING_ZYX, Pendant
-from ...core.program import Block, Call, DepositOff, DepositOn, LayerStart, Program, Schedule, Wait, WaitInput
+from ...core.program import (
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Program,
+    Schedule,
+    Wait,
+    WaitInput,
+)
 from ..names import Naming
 from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, packed, whole
@@ -61,12 +71,95 @@ AXES = 6
 LAST_TOOL, LAST_BASE, LAST_EXTERNAL = 16, 32, 6
 
 _RESERVED = frozenset(
-    ("AND", "ANIN", "ANOUT", "BAS", "BOOL", "BRAKE", "CASE", "CHANNEL", "CHAR", "CIRC", "CONFIRM", "CONST", "CONTINUE")
-    + ("DECL", "DEF", "DEFAULT", "DEFDAT", "DEFFCT", "DELAY", "DIGIN", "DISTANCE", "DO", "ELSE", "END", "ENDDAT")
-    + ("ENDFCT", "ENDFOR", "ENDIF", "ENDLOOP", "ENDSPLINE", "ENDSWITCH", "ENDWHILE", "ENUM", "EXIT", "EXT", "EXTFCT")
-    + ("FALSE", "FOR", "FRAME", "GLOBAL", "GOTO", "HALT", "IF", "IMPORT", "INT", "INTERRUPT", "IS", "LIN", "LOOP", "NOT")
-    + ("OFF", "ON", "OR", "PATH", "POS", "PTP", "PUBLIC", "PULSE", "REAL", "REPEAT", "RESUME", "RETURN", "SEC", "SIGNAL")
-    + ("SLIN", "SPLINE", "SPTP", "STEP", "STRUC", "SWITCH", "THEN", "TO", "TRIGGER", "TRUE", "UNTIL", "WAIT", "WHEN")
+    (
+        "AND",
+        "ANIN",
+        "ANOUT",
+        "BAS",
+        "BOOL",
+        "BRAKE",
+        "CASE",
+        "CHANNEL",
+        "CHAR",
+        "CIRC",
+        "CONFIRM",
+        "CONST",
+        "CONTINUE",
+    )
+    + (
+        "DECL",
+        "DEF",
+        "DEFAULT",
+        "DEFDAT",
+        "DEFFCT",
+        "DELAY",
+        "DIGIN",
+        "DISTANCE",
+        "DO",
+        "ELSE",
+        "END",
+        "ENDDAT",
+    )
+    + (
+        "ENDFCT",
+        "ENDFOR",
+        "ENDIF",
+        "ENDLOOP",
+        "ENDSPLINE",
+        "ENDSWITCH",
+        "ENDWHILE",
+        "ENUM",
+        "EXIT",
+        "EXT",
+        "EXTFCT",
+    )
+    + (
+        "FALSE",
+        "FOR",
+        "FRAME",
+        "GLOBAL",
+        "GOTO",
+        "HALT",
+        "IF",
+        "IMPORT",
+        "INT",
+        "INTERRUPT",
+        "IS",
+        "LIN",
+        "LOOP",
+        "NOT",
+    )
+    + (
+        "OFF",
+        "ON",
+        "OR",
+        "PATH",
+        "POS",
+        "PTP",
+        "PUBLIC",
+        "PULSE",
+        "REAL",
+        "REPEAT",
+        "RESUME",
+        "RETURN",
+        "SEC",
+        "SIGNAL",
+    )
+    + (
+        "SLIN",
+        "SPLINE",
+        "SPTP",
+        "STEP",
+        "STRUC",
+        "SWITCH",
+        "THEN",
+        "TO",
+        "TRIGGER",
+        "TRUE",
+        "UNTIL",
+        "WAIT",
+        "WHEN",
+    )
     + ("WHILE", "WITH", "CELL", "SPS", "IR_STOPM")
 )
 # 24 characters from memory: fewer are taken
@@ -86,7 +179,11 @@ def write(program: Program) -> dict[str, bytes]:
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [line for words in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(words)]
+    remarks = [
+        line
+        for words in ("Robotic AM", *program.remarks, *_own_remarks(program))
+        for line in text.remark(words)
+    ]
     moved = text.Lines(program)
     groups = list(grouped(program, moved, lambda block: _instructions(program, block)))
     refuse_leads([*switched_ahead(program), *moved.ahead])
@@ -113,20 +210,30 @@ def program_name(name: str, where: str) -> str:
 
 
 def refuse_setup(
-    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    motion: str,
+    setup: str,
+    external: tuple[str, ...] = (),
+    carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT for what cannot be said to this controller."""
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post kuka cannot write {}; use another post", setup)
+        raise InputError(
+            "UNSUPPORTED_SETUP",
+            "cell.setup",
+            "the post kuka cannot write {}; use another post",
+            setup,
+        )
     if setup == "part-on-robot":
         raise InputError(
-            "REMOTE_TCP", "cell.setup",
+            "REMOTE_TCP",
+            "cell.setup",
             "with the part on the robot linear moves of KRL have a fixed tool ($IPO_MODE #TCP), and whether points are then"
             " the nozzle seen from the part or the part seen from the nozzle was not confirmed; use `setup: tool-on-robot`",
         )
     if motion == "joint":
         raise InputError(
-            "JOINT_DEPOSIT", "program.motion",
+            "JOINT_DEPOSIT",
+            "program.motion",
             "joint moves of KRL run at whole percents of the axes' speeds, so the speed along a bead would not be the one"
             " asked for; use `motion: cartesian`",
         )
@@ -136,16 +243,24 @@ def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     axes = AXES + len(program.external_kinds)
     refuse_incomplete(program, "kuka", axes)
-    refuse_external(program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16")
+    refuse_external(
+        program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16"
+    )
     refuse_named_track(program, "what the robot's own base is on, which no MACHINE_DEF gives")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     _refuse_schedules(program)
-    for what, number, last in (("tool_frame", program.tool_frame, LAST_TOOL), ("user_frame", program.user_frame, LAST_BASE)):
+    for what, number, last in (
+        ("tool_frame", program.tool_frame, LAST_TOOL),
+        ("user_frame", program.user_frame, LAST_BASE),
+    ):
         if number > last:
             raise InputError(
-                "UNSUPPORTED_FRAME", f"program.{what}",
-                "the controller has numbers up to {}, not {}; use one of these", last, number,
+                "UNSUPPORTED_FRAME",
+                f"program.{what}",
+                "the controller has numbers up to {}, not {}; use one of these",
+                last,
+                number,
             )
     refuse_continuous(program)
     refuse_without_speeds(program, axes)
@@ -161,8 +276,12 @@ def _refuse_schedules(program: Program) -> None:
     own = range(program.schedule_output, program.schedule_output + text.BITS)
     if _scheduled(program) and program.deposit_output in own:
         raise InputError(
-            "SCHEDULE", "program.schedule.output", "$OUT[{}] to $OUT[{}] carry the schedule, and one of them switches the "
-            "deposit; use other ones, or another program.deposit_output", own[0], own[-1],
+            "SCHEDULE",
+            "program.schedule.output",
+            "$OUT[{}] to $OUT[{}] carry the schedule, and one of them switches the "
+            "deposit; use other ones, or another program.deposit_output",
+            own[0],
+            own[-1],
         )
 
 
@@ -172,16 +291,25 @@ def _scheduled(program: Program) -> bool:
 
 def _own_remarks(program: Program) -> Iterator[str]:
     seen = f", seen from the face of MACHINE_DEF[{program.unit}]" if program.on_positioner else ""
-    yield (f"BASE_DATA[{program.user_frame}] is the program origin{seen}, TOOL_DATA[{program.tool_frame}] the tip of the"
-           " nozzle:")
+    yield (
+        f"BASE_DATA[{program.user_frame}] is the program origin{seen}, TOOL_DATA[{program.tool_frame}] the tip of the"
+        " nozzle:"
+    )
     for what, six in (("BASE", program.station), ("TOOL", program.carried)):
         if six is not None:
             values = text.frames(np.array([six[:3]]), MOVING_XYZ.rotations(np.array([six[3:]])))[0]
-            yield what + "".join(f" {axis} {value:.3f}" for axis, value in zip("XYZABC", values.tolist(), strict=True))
+            yield what + "".join(
+                f" {axis} {value:.3f}"
+                for axis, value in zip("XYZABC", values.tolist(), strict=True)
+            )
     for axis in np.flatnonzero(program.slides).tolist():
-        stands = f"the base of MACHINE_DEF[{program.unit}]" if program.on_positioner else "BASE_DATA"
-        yield (f"E{program.first_external + axis - AXES} is the track in mm, which carries $ROBROOT; {stands} stands in the"
-               " world")
+        stands = (
+            f"the base of MACHINE_DEF[{program.unit}]" if program.on_positioner else "BASE_DATA"
+        )
+        yield (
+            f"E{program.first_external + axis - AXES} is the track in mm, which carries $ROBROOT; {stands} stands in the"
+            " world"
+        )
     yield from arc.remarks(program)
     if program.dry_run:
         yield "dry run: no deposit"
@@ -219,12 +347,20 @@ def _body(program: Program, pieces: Sequence[Piece]) -> list[str]:
     coupled = [f"$BASE=EK({unit}.ROOT,{unit}.MECH_TYPE,{base})"] if program.on_positioner else []
     lines = [
         *(text.signal(program.schedule_output) if _scheduled(program) else []),
-        "BAS(#INITMOV,0)", f"BAS(#BASE,{program.user_frame})", *coupled, f"BAS(#TOOL,{program.tool_frame})",
-        "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR",
+        "BAS(#INITMOV,0)",
+        f"BAS(#BASE,{program.user_frame})",
+        *coupled,
+        f"BAS(#TOOL,{program.tool_frame})",
+        "$IPO_MODE=#BASE",
+        "$ORI_TYPE=#VAR",
     ]
     said: dict[str, str] = {}
     for piece in pieces:
-        lines += text.spoken(piece.words[piece.start : piece.stop], said) if isinstance(piece, Run) else piece
+        lines += (
+            text.spoken(piece.words[piece.start : piece.stop], said)
+            if isinstance(piece, Run)
+            else piece
+        )
         if isinstance(piece, list) and any(line.startswith(arc.CALL) for line in piece):
             said.clear()  # what ArcTech sets is not known
     return [*lines, _STAND]

@@ -17,22 +17,37 @@ from .found import Run, not_read, read_moves
 from .read_arc import of_arc
 
 _N = r"(-?\d+\.\d+)"
-_AXES, _PLACES = (",".join(f"{name} {_N}" for name in names.split()) for names in ("A1 A2 A3 A4 A5 A6", "X Y Z A B C"))
+_AXES, _PLACES = (
+    ",".join(f"{name} {_N}" for name in names.split())
+    for names in ("A1 A2 A3 A4 A5 A6", "X Y Z A B C")
+)
 _EXTERNAL_WORDS = rf"((?:,E[1-6] {_N[1:-1]})*)"  # external axes
 _TO_AXES = re.compile(rf"PTP \{{{_AXES}{_EXTERNAL_WORDS}\}}$")
 _STRAIGHT = re.compile(rf"LIN \{{{_PLACES}{_EXTERNAL_WORDS}\}}( C_DIS)?$")
 _EXTERNAL, _SHARED = re.compile(rf",E(\d) {_N}"), re.compile(r"\$VEL_EXTAX\[([1-6])\]=(\d+)$")
-_COUPLED = re.compile(r"\$BASE=EK\(MACHINE_DEF\[(\d+)\]\.ROOT,MACHINE_DEF\[(\d+)\]\.MECH_TYPE,BASE_DATA\[(\d+)\]\)$")
+_COUPLED = re.compile(
+    r"\$BASE=EK\(MACHINE_DEF\[(\d+)\]\.ROOT,MACHINE_DEF\[(\d+)\]\.MECH_TYPE,BASE_DATA\[(\d+)\]\)$"
+)
 _PERCENT = re.compile(r"BAS\(#VEL_PTP,(\d+)\)$")
 _METRES, _ROUNDING = re.compile(r"\$VEL\.CP=(\d+\.(\d+))$"), re.compile(r"\$APO\.CDIS=(\d+\.\d+)$")
 _SELECTED = re.compile(r"BAS\(#(BASE|TOOL),(\d+)\)$")
-_SWITCHED, _PAUSE = re.compile(r"\$OUT\[(\d+)\]=(TRUE|FALSE)$"), re.compile(r"WAIT SEC (\d+(?:\.(\d+))?)$")
-_DECLARED, _NUMBERED = re.compile(r"SIGNAL (\w+) \$OUT\[(\d+)\] TO \$OUT\[(\d+)\]$"), re.compile(r"(\w+)=(\d+)$")
+_SWITCHED, _PAUSE = (
+    re.compile(r"\$OUT\[(\d+)\]=(TRUE|FALSE)$"),
+    re.compile(r"WAIT SEC (\d+(?:\.(\d+))?)$"),
+)
+_DECLARED, _NUMBERED = (
+    re.compile(r"SIGNAL (\w+) \$OUT\[(\d+)\] TO \$OUT\[(\d+)\]$"),
+    re.compile(r"(\w+)=(\d+)$"),
+)
 _AWAITED, _LAYERED = re.compile(r"WAIT FOR \$IN\[(\d+)\]==TRUE$"), re.compile(r"; layer (\d+)$")
 _CALLED, _HEADED = re.compile(r"([A-Za-z]\w*)\(\)$"), re.compile(r"DEF ([A-Za-z]\w*)\(\)$")
-_ANY_HEAD = re.compile(r"\s*((?:GLOBAL\s+)?DEF(?:FCT)?\s[^;]*[^;\s])", re.IGNORECASE)  # as others write it, too
+_ANY_HEAD = re.compile(
+    r"\s*((?:GLOBAL\s+)?DEF(?:FCT)?\s[^;]*[^;\s])", re.IGNORECASE
+)  # as others write it, too
 # counted in whole milliseconds from the end of the next move
-_TRIGGER = re.compile(r"TRIGGER WHEN DISTANCE=1 DELAY=(0|-[1-9]\d*) DO \$OUT\[(\d+)\]=(TRUE|FALSE)$")
+_TRIGGER = re.compile(
+    r"TRIGGER WHEN DISTANCE=1 DELAY=(0|-[1-9]\d*) DO \$OUT\[(\d+)\]=(TRUE|FALSE)$"
+)
 _TRACK = re.compile(r"; E([1-6]) is the track in mm\b")
 _INITIAL, _ON_FLANGE, _TURNING = "BAS(#INITMOV,0)", "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR"
 
@@ -46,10 +61,17 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     for file in sorted(files):
         lines = files[file].decode("latin-1").replace("\r\n", "\n").rstrip("\n").split("\n")
         found[_routine(file, lines).lower()] = (file, lines)
-    called = {call[1].lower() for _, lines in found.values() for line in lines if (call := _CALLED.match(line))}
+    called = {
+        call[1].lower()
+        for _, lines in found.values()
+        for line in lines
+        if (call := _CALLED.match(line))
+    }
     main = [name for name in found if name not in called]
     if len(main) != 1:
-        raise not_read("program", Text("{} programs are called by none of the others, expected one", len(main)))
+        raise not_read(
+            "program", Text("{} programs are called by none of the others, expected one", len(main))
+        )
     run = Run(found)
     _go(main[0], run)
     if not run.speed:
@@ -61,16 +83,27 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 def _routine(file: str, lines: list[str]) -> str:
     """The name of the one routine of a module, which is the file's."""
-    title = _HEADED.match(lines[2]) if len(lines) > 3 and lines[:2] == ["&ACCESS RVP", "&REL 1"] else None
+    title = (
+        _HEADED.match(lines[2])
+        if len(lines) > 3 and lines[:2] == ["&ACCESS RVP", "&REL 1"]
+        else None
+    )
     heads = [head[1] for line in lines if (head := _ANY_HEAD.match(line))]
     if title is None or lines[-1] != "END" or len(heads) != 1:
         had = Text("it has {}", ", ".join(heads)) if heads else "it has no DEF"
-        raise not_read(file, Text(
-            "it is not a module with one routine of the file's name, that begins with &ACCESS RVP, &REL 1 and DEF and ends "
-            "with END: {}", had,
-        ))
+        raise not_read(
+            file,
+            Text(
+                "it is not a module with one routine of the file's name, that begins with &ACCESS RVP, &REL 1 and DEF and ends "
+                "with END: {}",
+                had,
+            ),
+        )
     if f"{title[1]}.src".lower() != file.lower():
-        raise not_read(file, Text("its routine is {}, which is not the file's name; rename one of them", heads[0]))
+        raise not_read(
+            file,
+            Text("its routine is {}, which is not the file's name; rename one of them", heads[0]),
+        )
     return title[1]
 
 
@@ -111,7 +144,9 @@ def _setting(line: str, run: Run) -> bool:
         run.state["percent"] = float(setting[1])
     elif setting := _METRES.match(line):
         run.state["speed"] = 1000.0 * float(setting[1])
-        run.half_digits["speed"] = max(run.half_digits.get("speed", 0.0), 500.0 * 10.0 ** -len(setting[2]))
+        run.half_digits["speed"] = max(
+            run.half_digits.get("speed", 0.0), 500.0 * 10.0 ** -len(setting[2])
+        )
     elif setting := _ROUNDING.match(line):
         run.state["rounding"] = float(setting[1])
     elif setting := _SELECTED.match(line):
@@ -132,7 +167,9 @@ def _setting(line: str, run: Run) -> bool:
 def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
     """The base is carried by a mechanism."""
     if coupled[1] != coupled[2] or run.state.get("BASE") != float(coupled[3]):
-        raise not_read(where, "root and type are of two mechanisms, or the base is not the one selected")
+        raise not_read(
+            where, "root and type are of two mechanisms, or the base is not the one selected"
+        )
     run.state["EK"] = float(coupled[1])
 
 
@@ -146,7 +183,9 @@ def _declare(declared: re.Match[str], before: list[str], run: Run, where: str) -
 def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
     """A group of outputs, the first and the last, is set to a number."""
     if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
-        raise not_read(where, "it is set ahead of the motion, or its outputs cannot carry such a number")
+        raise not_read(
+            where, "it is set ahead of the motion, or its outputs cannot carry such a number"
+        )
     if run.output and outputs[0] <= int(run.output) <= outputs[1]:
         raise not_read(where, "one of its outputs switches the deposit")
     run.happens("schedule", float(outputs[0]), float(number))
@@ -158,12 +197,17 @@ def _arc(line: str, run: Run, where: str) -> None:
         raise not_read(where, "it stands among the lines of another instruction")
     switched = run.arc.called(line)
     if switched is None:
-        raise not_read(where, "it is none of the lines that ArcTech has here, or names other data than the ones before it")
+        raise not_read(
+            where,
+            "it is none of the lines that ArcTech has here, or names other data than the ones before it",
+        )
     for name in ("speed", "rounding", "percent", *(f"E{number}" for number in range(1, 7))):
         run.state.pop(name, None)
     if switched:
         if run.output or run.on == (switched == "on"):
-            raise not_read(where, "an output switches the deposit too, or the arc is lit or ended twice")
+            raise not_read(
+                where, "an output switches the deposit too, or the arc is lit or ended twice"
+            )
         run.on = switched == "on"
         run.happens(switched, float(run.arc.number), ARC)
 
@@ -189,12 +233,16 @@ def _done(line: str, run: Run, where: str) -> None:
         raise not_read(where, Text("{!r} stands among the lines of another instruction", line))
     if pause := _PAUSE.match(line):
         run.standing = _stopped(run, where)
-        run.happens("wait", float(pause[1]), digits=0.5 * 10.0 ** -len(pause[2] or "") if pause[2] else 0.0)
+        run.happens(
+            "wait", float(pause[1]), digits=0.5 * 10.0 ** -len(pause[2] or "") if pause[2] else 0.0
+        )
     elif awaited := _AWAITED.match(line):
         run.standing = _stopped(run, where)
         run.happens("input", float(awaited[1]))
     elif not run.standing:
-        raise not_read(where, Text("{!r} is read ahead of the motion: no wait stands before it", line))
+        raise not_read(
+            where, Text("{!r} is read ahead of the motion: no wait stands before it", line)
+        )
     elif switched := _SWITCHED.match(line):
         _one_output(switched[1], run, where)
         run.on = switched[2] == "TRUE"
@@ -220,20 +268,32 @@ def _stopped(run: Run, where: str) -> bool:
 def _moved(line: str, run: Run, where: str) -> None:
     straight, state = _STRAIGHT.match(line), run.state
     if not run.arc.moved(straight is not None, bool(straight and straight[8])):
-        raise not_read(where, "a move of ArcTech is a linear one that stops, behind all the lines that belong to it")
-    needed = {_INITIAL, _ON_FLANGE, _TURNING, "BASE", "TOOL"} | ({"speed"} if straight else {"percent"})
+        raise not_read(
+            where,
+            "a move of ArcTech is a linear one that stops, behind all the lines that belong to it",
+        )
+    needed = {_INITIAL, _ON_FLANGE, _TURNING, "BASE", "TOOL"} | (
+        {"speed"} if straight else {"percent"}
+    )
     if straight and straight[8]:
         needed |= {"rounding"}
     if not needed <= set(state):
         raise not_read(where, "the module does not set all that the move counts on")
     if not straight and not 1.0 <= state["percent"] <= 100.0:
-        raise not_read(where, Text("{:.0f} % of the joint speeds is none of 1 to 100", state["percent"]))
+        raise not_read(
+            where, Text("{:.0f} % of the joint speeds is none of 1 to 100", state["percent"])
+        )
     match = straight or _TO_AXES.match(line)
     assert match is not None
     texts = match.groups()[:6]
     run.values.append(np.array(texts, dtype=np.float64))
     external = _EXTERNAL.findall(match[7])
-    _external_axes(tuple(int(number) for number, _ in external), 100.0 if straight else state["percent"], run, where)
+    _external_axes(
+        tuple(int(number) for number, _ in external),
+        100.0 if straight else state["percent"],
+        run,
+        where,
+    )
     run.external.append(np.array([value for _, value in external], dtype=np.float64))
     for number, value in external:
         run.note_digits("slides" if int(number) in run.slides else "joints", (value,))
@@ -271,8 +331,16 @@ def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str)
         raise not_read(where, "moves with other external axes are mixed")
     moved = set(numbers) - set(run.slides)
     in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
-    if not in_order or bool(moved) != bool(unit) or len(run.slides) > 1 or not {*run.slides} <= {*numbers}:
-        raise not_read(where, "the external axes are not given in order, or BASE is not coupled to what they move")
+    if (
+        not in_order
+        or bool(moved) != bool(unit)
+        or len(run.slides) > 1
+        or not {*run.slides} <= {*numbers}
+    ):
+        raise not_read(
+            where,
+            "the external axes are not given in order, or BASE is not coupled to what they move",
+        )
     if any(run.state.get(f"E{number}") != share for number in numbers):
         raise not_read(where, Text("external axes do not run at {:.0f} % of their speeds", share))
     run.unit, run.numbers = unit, numbers

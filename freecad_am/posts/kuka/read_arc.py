@@ -14,12 +14,16 @@ _ON = (
     "TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,WDAT@) DELAY=ArcGetDelay(#GasPreflow,WDAT@)"
     " DO ArcMainNG(#GasPreflow,WDAT@,WSEAM) PRIO=-1",
     "TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,WDAT@) DELAY=0 DO ArcMainNG(#ArcOnMoveStd,WDAT@,WSEAM) PRIO=-1",
-    "ArcMainNG(#ArcOnBeforeMoveStd,WDAT@,WSEAM)", _MOVE, "ArcMainNG(#ArcOnAfterMoveStd,WDAT@,WSEAM)",
+    "ArcMainNG(#ArcOnBeforeMoveStd,WDAT@,WSEAM)",
+    _MOVE,
+    "ArcMainNG(#ArcOnAfterMoveStd,WDAT@,WSEAM)",
 )
 _OFF = (
     "TRIGGER WHEN PATH=ArcGetPath(#ArcOffBefore,WDATOFF@) DELAY=0 DO ArcMainNG(#ArcOffBeforeOffStd,WDATOFF@,WSEAM) PRIO=-1",
     "TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOff,WDATOFF@) DELAY=0 DO ArcMainNG(#ArcOffMoveStd,WDATOFF@,WSEAM) PRIO=-1",
-    "ArcMainNG(#ArcOffBeforeMoveStd,WDATOFF@,WSEAM)", _MOVE, "ArcMainNG(#ArcOffAfterMoveStd,WDATOFF@,WSEAM)",
+    "ArcMainNG(#ArcOffBeforeMoveStd,WDATOFF@,WSEAM)",
+    _MOVE,
+    "ArcMainNG(#ArcOffAfterMoveStd,WDATOFF@,WSEAM)",
 )
 
 
@@ -49,7 +53,11 @@ class ArcMove:
         has here, or that names other data than the ones before it."""
         numbers, template = {number for _, number in _DATA.findall(line)}, _DATA.sub(_OF, line)
         if not self.begun:
-            self.lines, self.read, self.number = (_ON if template == _ON[0] else _OFF), 0, next(iter(numbers), "")
+            self.lines, self.read, self.number = (
+                (_ON if template == _ON[0] else _OFF),
+                0,
+                next(iter(numbers), ""),
+            )
         if numbers != {self.number} or template != self.lines[self.read]:
             return None
         self.read += 1

@@ -14,14 +14,20 @@ def ahead_of_moves(program: Program) -> dict[int, str]:
     """The lines in front of the last one of runs of moves, by the identity of these runs."""
     if program.dry_run:
         return {}
-    return {id(moves): "\n".join(lines) for moves, block in switching(program) if (lines := _lines(program, block))}
+    return {
+        id(moves): "\n".join(lines)
+        for moves, block in switching(program)
+        if (lines := _lines(program, block))
+    }
 
 
 def leads(program: Program) -> dict[int, float]:
     """s ahead of its end at which the last one of runs of moves switches an output, by the identity of these runs."""
     if program.dry_run:
         return {}
-    return {id(moves): block.ahead for moves, block in switching(program) if block.ahead is not None}
+    return {
+        id(moves): block.ahead for moves, block in switching(program) if block.ahead is not None
+    }
 
 
 def in_front(lines: str, word: str) -> str:
@@ -35,8 +41,15 @@ def in_front(lines: str, word: str) -> str:
 
 def _lines(program: Program, block: DepositOn | DepositOff) -> list[str]:
     if block.schedule is not None:
-        return arc.lighting(block.schedule) if isinstance(block, DepositOn) else arc.ending(block.schedule)
+        return (
+            arc.lighting(block.schedule)
+            if isinstance(block, DepositOn)
+            else arc.ending(block.schedule)
+        )
     if block.ahead is None:
         return []
-    early, switched = -round(1000.0 * block.ahead), "TRUE" if isinstance(block, DepositOn) else "FALSE"
+    early, switched = (
+        -round(1000.0 * block.ahead),
+        "TRUE" if isinstance(block, DepositOn) else "FALSE",
+    )
     return [f"{TRIGGER}WHEN DISTANCE=1 DELAY={early} DO $OUT[{program.deposit_output}]={switched}"]

@@ -29,7 +29,9 @@ MILLISECOND = 0.001  # s: the step of a delay
 # percent: the least share of the axes' speeds that a controller is told, in whole numbers; half of that is rounded up to it
 LEAST_PERCENT = 1
 _AXES = [f"A{axis} %.{ANGLE_DECIMALS}f" for axis in range(1, 7)]
-_PLACE = [f"{axis} %.{LENGTH_DECIMALS}f" for axis in "XYZ"] + [f"{axis} %.{ANGLE_DECIMALS}f" for axis in "ABC"]
+_PLACE = [f"{axis} %.{LENGTH_DECIMALS}f" for axis in "XYZ"] + [
+    f"{axis} %.{ANGLE_DECIMALS}f" for axis in "ABC"
+]
 # of how a move is approached: it stops, or the corner is rounded
 _STOPS, _ROUNDED = "", " C_DIS"
 
@@ -79,15 +81,19 @@ class Lines:
     def __init__(self, program: Program) -> None:
         self._blend = program.blend
         self._slides = program.slides
-        self._nominal = np.where(self._slides, program.max_speed, np.degrees(np.array(program.max_speed)))
+        self._nominal = np.where(
+            self._slides, program.max_speed, np.degrees(np.array(program.max_speed))
+        )
         self._before: Array | None = None
         self.ahead: list[Ahead] = []
         self._own = program.own_axes
         self._switching, self._leads = switching.ahead_of_moves(program), switching.leads(program)
         numbers = [program.first_external + k for k in range(len(program.external_kinds))]
         external = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
-        self._ptp, self._lin = (f"{word} {{{','.join([*values, *external])}}}" for word, values in (
-            ("PTP", _AXES), ("LIN", _PLACE)))
+        self._ptp, self._lin = (
+            f"{word} {{{','.join([*values, *external])}}}"
+            for word, values in (("PTP", _AXES), ("LIN", _PLACE))
+        )
         # shares of the speeds of external axes hold for linear moves too, which they must not slow down
         self._shares = "".join(f"$VEL_EXTAX[{number}]=%d|" for number in numbers)
         self._unhindered = self._external_speeds(100)
@@ -98,22 +104,35 @@ class Lines:
         if moves.interpolation == LINEAR_MOVE:
             assert moves.position is not None and moves.rotation is not None
             size = self._rounding(moves)
-            corners = [_STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()]
+            corners = [
+                _STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()
+            ]
             if _ROUNDED in corners[-2:-1]:
                 # a delay does not reach farther than where the corner ends
-                self._switched(moves, float(moves.duration[-1] - size / moves.speed[-1]), corner=True)
-            speeds = [f"$VEL.CP={0.001 * speed:.6f}" for speed in speeds_within(moves, *SPEEDS).tolist()]
-            rows = np.hstack((frames(moves.position, moves.rotation), values[:, self._own :])).tolist()
-            lines = [f"{self._unhindered}{speed}|{self._lin % tuple(row)}{corner}"
-                     for speed, row, corner in zip(speeds, rows, corners, strict=True)]
+                self._switched(
+                    moves, float(moves.duration[-1] - size / moves.speed[-1]), corner=True
+                )
+            speeds = [
+                f"$VEL.CP={0.001 * speed:.6f}" for speed in speeds_within(moves, *SPEEDS).tolist()
+            ]
+            rows = np.hstack(
+                (frames(moves.position, moves.rotation), values[:, self._own :])
+            ).tolist()
+            lines = [
+                f"{self._unhindered}{speed}|{self._lin % tuple(row)}{corner}"
+                for speed, row, corner in zip(speeds, rows, corners, strict=True)
+            ]
             marked = [
-                f"$APO.CDIS={size:.3f}|{line}" if corner else line for line, corner in zip(lines, corners, strict=True)
+                f"$APO.CDIS={size:.3f}|{line}" if corner else line
+                for line, corner in zip(lines, corners, strict=True)
             ]
         else:
             percent = self._percent(moves, values)
             rows = values.tolist()
-            marked = [f"BAS(#VEL_PTP,{share:d})|{self._external_speeds(share)}{self._ptp % tuple(row)}"
-                    for share, row in zip(percent, rows, strict=True)]
+            marked = [
+                f"BAS(#VEL_PTP,{share:d})|{self._external_speeds(share)}{self._ptp % tuple(row)}"
+                for share, row in zip(percent, rows, strict=True)
+            ]
         self._before = values[-1]
         if id(moves) in self._switching:
             marked[-1] = switching.in_front(self._switching[id(moves)], marked[-1])
@@ -137,9 +156,12 @@ class Lines:
         wrong = ~((percent <= 100.5) & (tame | (percent >= 0.5 * LEAST_PERCENT)))
         if wrong.any():
             raise InputError(
-                "JOINT_SPEED", place(moves),
+                "JOINT_SPEED",
+                place(moves),
                 "a rapid would need {:.3g} % of the largest joint speed, and KRL takes whole percentages from {} to 100; "
-                "use another rapid speed", percent[wrong][0], LEAST_PERCENT,
+                "use another rapid speed",
+                percent[wrong][0],
+                LEAST_PERCENT,
             )
         whole = np.clip(np.rint(percent), LEAST_PERCENT, 100)
         if self._before is not None or len(moves) > 1:
@@ -154,7 +176,11 @@ class Lines:
 
     def _rounding(self, moves: Moves) -> float:
         """mm: corners are rounded within half the shortest move of the bead at most."""
-        shortest = float(np.nan_to_num(moves.speed * moves.duration).min()) if moves.kind == DEPOSIT else 0.0
+        shortest = (
+            float(np.nan_to_num(moves.speed * moves.duration).min())
+            if moves.kind == DEPOSIT
+            else 0.0
+        )
         return math.floor(1000.0 * min(0.005 * self._blend * shortest, 100.0)) / 1000.0
 
 

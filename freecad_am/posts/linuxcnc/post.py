@@ -36,7 +36,13 @@ from ..nc import numbers
 from ..nc import parts as common
 from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, lines_of, packed, whole
-from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_no_process, refuse_schedules, refuse_triggers
+from ..refusals import (
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_no_process,
+    refuse_schedules,
+    refuse_triggers,
+)
 from .read import read
 
 __all__ = ["read", "write"]
@@ -71,10 +77,16 @@ SLOWEST = 0.2
 # s: an input that does not come stops the program for good
 LONGEST_WAIT = 10_000_000
 # comments of this kind would be carried out
-_ACTIVE = re.compile(r"(?:abort|debug|error|log\w*|msg|print|probe\w*|py|warning)\s*,", re.IGNORECASE)
+_ACTIVE = re.compile(
+    r"(?:abort|debug|error|log\w*|msg|print|probe\w*|py|warning)\s*,", re.IGNORECASE
+)
 # M words with a meaning of their own
 _TAKEN = frozenset(
-    {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 19, 30, *range(48, 54), *range(60, 74), *range(428, 431))} | {"M98", "M99", "H"}
+    {
+        f"M{n}"
+        for n in (0, 1, 2, 3, 4, 5, 6, 19, 30, *range(48, 54), *range(60, 74), *range(428, 431))
+    }
+    | {"M98", "M99", "H"}
 )
 
 
@@ -90,16 +102,34 @@ def write(program: Program) -> dict[str, bytes]:
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [_remark(line) for words in (*program.remarks, *_own_remarks(program)) for line in common.wrapped(words)]
-    groups = list(grouped(program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)))
+    remarks = [
+        _remark(line)
+        for words in (*program.remarks, *_own_remarks(program))
+        for line in common.wrapped(words)
+    ]
+    groups = list(
+        grouped(
+            program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)
+        )
+    )
     parts = packed(groups, program.max_points, _NO_END, whole)
     if len(parts) == 1:
-        return {f"{name}.ngc": _file([*remarks, *_modes(program), *_lines(program, parts[0]), "M2"])}
+        return {
+            f"{name}.ngc": _file([*remarks, *_modes(program), *_lines(program, parts[0]), "M2"])
+        }
     names = NAMING.parts(name, len(parts))
     refuse_calls_of_own(program, {name, *names}, program_name)
-    files = {f"{name}.ngc": _file([*remarks, *_modes(program), *(f"o<{part}> call" for part in names), "M2"])}
+    files = {
+        f"{name}.ngc": _file(
+            [*remarks, *_modes(program), *(f"o<{part}> call" for part in names), "M2"]
+        )
+    }
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
-        inside = [_remark(f"part {number} of {len(parts)}"), *_modes(program), *_lines(program, pieces)]
+        inside = [
+            _remark(f"part {number} of {len(parts)}"),
+            *_modes(program),
+            *_lines(program, pieces),
+        ]
         files[f"{part}.ngc"] = _file([f"o<{part}> sub", *inside, f"o<{part}> endsub", "M2"])
     return files
 
@@ -110,7 +140,10 @@ def program_name(name: str, where: str) -> str:
 
 
 def refuse_setup(
-    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    motion: str,
+    setup: str,
+    external: tuple[str, ...] = (),
+    carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
     common.refuse_setup("linuxcnc", motion, setup)
@@ -126,24 +159,32 @@ def _refuse(program: Program) -> None:
     refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_PIN)
     refuse_schedules(program, LAST_PIN, LAST_SCHEDULE, inside=True)
-    scheduled, fed = (any(isinstance(block, Schedule) for block in program.blocks),
-                      any(run.wire is not None for run in program.moves))
+    scheduled, fed = (
+        any(isinstance(block, Schedule) for block in program.blocks),
+        any(run.wire is not None for run in program.moves),
+    )
     if scheduled and fed and program.schedule_output == program.nc.wire_output:
         raise InputError(
-            "SCHEDULE", "program.schedule.output", "analogue output {} carries the speed of the wire; use another one for "
-            "schedules", program.schedule_output,
+            "SCHEDULE",
+            "program.schedule.output",
+            "analogue output {} carries the speed of the wire; use another one for schedules",
+            program.schedule_output,
         )
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
-            "DEPOSIT_OUTPUT", "program.deposit_output",
-            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}; use one of these", LAST_PIN,
+            "DEPOSIT_OUTPUT",
+            "program.deposit_output",
+            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}; use one of these",
+            LAST_PIN,
             program.deposit_output,
         )
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_PIN:
             raise InputError(
-                "DEPOSIT_INPUT", "process.between_layers.input",
-                "digital inputs are 1 to {} (motion.digital-in-00 is number 1), not {}; use one of these", LAST_PIN,
+                "DEPOSIT_INPUT",
+                "process.between_layers.input",
+                "digital inputs are 1 to {} (motion.digital-in-00 is number 1), not {}; use one of these",
+                LAST_PIN,
                 block.number,
             )
     refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
@@ -154,14 +195,19 @@ def _refuse(program: Program) -> None:
 def _refuse_cartesian(program: Program) -> None:
     if not program.nc.switch_kinematics:
         raise InputError(
-            "NO_TIP_KINEMATICS", "program.nc.switch_kinematics",
+            "NO_TIP_KINEMATICS",
+            "program.nc.switch_kinematics",
             "positions on the part need the kinematics that M428 chooses; set it to true, or use `motion: joint`",
         )
     if not 1 <= program.user_frame <= len(OFFSETS):
         raise InputError(
-            "UNSUPPORTED_FRAME", "program.user_frame",
+            "UNSUPPORTED_FRAME",
+            "program.user_frame",
             "work offset {} is not there for the part; use 1 to {} (G54 to G59.2; the ninth, {}, is set to zero for moves "
-            "of the axes)", program.user_frame, len(OFFSETS), MACHINE_OFFSET,
+            "of the axes)",
+            program.user_frame,
+            len(OFFSETS),
+            MACHINE_OFFSET,
         )
     if program.carried is not None:
         _refuse_tilt(program.carried)
@@ -172,10 +218,16 @@ def _refuse_tilt(carried: tuple[float, ...]) -> None:
     if max(abs(angle) for angle in carried[3:5]) > 1e-9:
         x, y, z, rx, ry, rz = (*carried[:3], *(math.degrees(angle) for angle in carried[3:]))
         raise InputError(
-            "UNSUPPORTED_FRAME", "program.origin",
+            "UNSUPPORTED_FRAME",
+            "program.origin",
             "a work offset of LinuxCNC turns about Z only, and the part leans on the table by RX {:.4g} and RY {:.4g} deg; "
-            "enter an upright origin, as cell.platform: [{:.6g}, {:.6g}, {:.6g}, 0, 0, {:.6g}], or use `motion: joint`", rx,
-            ry, x, y, z, rz + 0.0,
+            "enter an upright origin, as cell.platform: [{:.6g}, {:.6g}, {:.6g}, 0, 0, {:.6g}], or use `motion: joint`",
+            rx,
+            ry,
+            x,
+            y,
+            z,
+            rz + 0.0,
         )
 
 
@@ -215,14 +267,33 @@ def _axes_again(program: Program) -> list[str]:
 def _instructions(program: Program, block: Block) -> list[str]:
     cartesian = program.motion == "cartesian"
     if isinstance(block, DepositOn):
-        enter = [*(["M428", OFFSETS[program.user_frame - 1]] if cartesian else []), _through(program)]
+        enter = [
+            *(["M428", OFFSETS[program.user_frame - 1]] if cartesian else []),
+            _through(program),
+        ]
         # at rest: at once
-        wire = [] if block.wire is None else [f"M68 {_wire(program).format(*numbers.wire(program, [block.wire]))}"]
-        return [*enter, *(["G4 P0"] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)])]
+        wire = (
+            []
+            if block.wire is None
+            else [f"M68 {_wire(program).format(*numbers.wire(program, [block.wire]))}"]
+        )
+        return [
+            *enter,
+            *(
+                ["G4 P0"]
+                if program.dry_run
+                else [*wire, _output(program, True), *_dwell(block.lead)]
+            ),
+        ]
     if isinstance(block, DepositOff):
         leave = [EXACT_STOP, *(_axes_again(program) if cartesian else [])]
-        return [*(["G4 P0"] if program.dry_run else [*_dwell(block.lead), _output(program, False)]), *leave]
-    if isinstance(block, Schedule):  # at rest: at once; within a bead queued, where the next move begins
+        return [
+            *(["G4 P0"] if program.dry_run else [*_dwell(block.lead), _output(program, False)]),
+            *leave,
+        ]
+    if isinstance(
+        block, Schedule
+    ):  # at rest: at once; within a bead queued, where the next move begins
         return [f"M6{7 if block.inside else 8} E{program.schedule_output - 1} Q{block.number}"]
     if isinstance(block, LayerStart):
         return [_remark(f"layer {block.layer}")]
@@ -232,7 +303,13 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return [f"M66 P{block.number - 1} L3 Q{LONGEST_WAIT}"]
     if isinstance(block, WaitBelow):  # of analogue inputs M66 only reads the value, into #5399
         sample, loop = f"M66 E{block.number - 1} L0", f"o<cool{block.layer}_{block.bead}>"
-        return [sample, f"{loop} while [#5399 GE {numbers.level(block.below)}]", *_dwell(0.1), sample, f"{loop} endwhile"]
+        return [
+            sample,
+            f"{loop} while [#5399 GE {numbers.level(block.below)}]",
+            *_dwell(0.1),
+            sample,
+            f"{loop} endwhile",
+        ]
     if isinstance(block, Call):
         return [f"o<{program_name(block.program, block.where)}> call", *_modes(program)]
     raise TypeError(f"no instruction for {block!r}")
@@ -271,8 +348,13 @@ def _motion(program: Program, run: Run) -> list[str]:
     if moves.interpolation == LINEAR_MOVE:
         assert moves.position is not None
         rotary = np.array([kind == ROTARY for kind in program.axis_kinds])
-        values = np.hstack([np.round(moves.position[part], numbers.DECIMALS) + 0.0, values[:, rotary]])
-        names = [*"XYZ", *(name for name, turns in zip(names, rotary.tolist(), strict=True) if turns)]
+        values = np.hstack(
+            [np.round(moves.position[part], numbers.DECIMALS) + 0.0, values[:, rotary]]
+        )
+        names = [
+            *"XYZ",
+            *(name for name, turns in zip(names, rotary.tolist(), strict=True) if turns),
+        ]
     blocks = numbers.blocks(numbers.rows(numbers.template(names), values), run.words[part])
     ahead = len(blocks) - len(values)
     for row in np.flatnonzero(moves.halt[part]).tolist():

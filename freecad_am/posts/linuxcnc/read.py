@@ -17,7 +17,9 @@ from ..nc.read import AXES, TIME, TIP, Shape, Track, unreadable
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _WORD = re.compile(rf"([XYZABCF])({_NUMBER})$")
 _SUB = re.compile(r"O<(\w+)> (SUB|ENDSUB|CALL)$")
-_COMMENT = re.compile(r"\((?!\s*(?:ABORT|DEBUG|ERROR|LOG\w*|MSG|PRINT|PROBE\w*|PY|WARNING)\s*,)[^()]*\)")
+_COMMENT = re.compile(
+    r"\((?!\s*(?:ABORT|DEBUG|ERROR|LOG\w*|MSG|PRINT|PROBE\w*|PY|WARNING)\s*,)[^()]*\)"
+)
 _HARMLESS = re.compile(r"G92\.2$")
 _CORNERS = re.compile(rf"G61(\.1)?$|G64(?: P({_NUMBER}))?(?: Q({_NUMBER}))?$")
 _TOOL = re.compile(r"G43 H(\d+)$")
@@ -72,7 +74,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         if not (lines[0][1] == f"O<{name}> SUB" and lines[-2][1] == f"O<{name}> ENDSUB"):
             main.append(name)
     if len(main) != 1:
-        raise unreadable("program", Text("there are {} programs that are not subs, expected one", len(main)))
+        raise unreadable(
+            "program", Text("there are {} programs that are not subs, expected one", len(main))
+        )
     state = _State(programs)
     _follow(main[0], programs[main[0]], state, ())
     if state.track.on or state.loop[0]:
@@ -87,13 +91,18 @@ def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
         layer = _LAYER.match(line.strip())
         text = line.strip() if layer else " ".join(_COMMENT.sub(" ", line).split())
         if len(line) > 250 or (not layer and "(" in text) or ";" in text:
-            raise unreadable(f"{file} line {number}", "a comment that may be carried out, or a line that is too long")
+            raise unreadable(
+                f"{file} line {number}",
+                "a comment that may be carried out, or a line that is too long",
+            )
         if text:
             found.append((f"{file} line {number}", text))
     return found
 
 
-def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tuple[str, ...]) -> None:
+def _follow(
+    name: str, lines: list[tuple[str, str]], state: _State, callers: tuple[str, ...]
+) -> None:
     """Carry out the lines of a program in order, and of the subs it calls."""
     if name in callers:
         raise unreadable(name, "it calls itself")
@@ -165,7 +174,9 @@ def _cooled(where: str, text: str, state: _State) -> bool:
     loop = _LOOP.match(text)
     if sample := _SAMPLE.match(text):
         if state.loop[1] not in ("", sample[1]):
-            raise unreadable(where, "another analogue input is read than the one that is waited for")
+            raise unreadable(
+                where, "another analogue input is read than the one that is waited for"
+            )
         state.sampled = sample[1]
     elif loop and loop[2] and sampled and not state.loop[0]:
         state.loop = loop[1], sampled
@@ -175,7 +186,9 @@ def _cooled(where: str, text: str, state: _State) -> bool:
     elif loop and not loop[2] and sampled and state.loop[0] == loop[1]:
         state.loop = "", ""
     elif loop or (state.loop[0] and not _DWELL.match(text)):
-        raise unreadable(where, Text("{!r} in or about a loop that waits for an analogue input", text))
+        raise unreadable(
+            where, Text("{!r} in or about a loop that waits for an analogue input", text)
+        )
     else:
         return bool(state.loop[0])
     return True
@@ -188,10 +201,20 @@ def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> Non
         _follow(name, state.files[name][1:-1], state, callers)
     else:
         # a program of the controller; what it leaves set is not known
-        state.units, state.offset, state.zeroed, state.linear, state.kinematics = set(), "", set(), False, ""
+        state.units, state.offset, state.zeroed, state.linear, state.kinematics = (
+            set(),
+            "",
+            set(),
+            False,
+            "",
+        )
         state.track.happens("call", name)
         state.track.rests()
-        state.track.tool, state.track.exact, state.track.rounding = float("nan"), False, float("inf")
+        state.track.tool, state.track.exact, state.track.rounding = (
+            float("nan"),
+            False,
+            float("inf"),
+        )
 
 
 def _line(where: str, text: str, state: _State) -> None:
@@ -247,9 +270,14 @@ def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None
         on = text == state.on_word
         if not on:
             state.off_word = state.off_word or text
-        name, wrong = "M", text not in (state.on_word, state.off_word) or output[3] in ("0", "1", "2", "6", "30")
+        name, wrong = (
+            "M",
+            text not in (state.on_word, state.off_word) or output[3] in ("0", "1", "2", "6", "30"),
+        )
     if wrong or state.output not in ("", name):
-        raise unreadable(where, Text("{!r} is not understood, or a second output is switched", text))
+        raise unreadable(
+            where, Text("{!r} is not understood, or a second output is switched", text)
+        )
     state.output, state.track.on = name, on
     if output[1] not in ("62", "63"):  # these wait for the next move instead
         state.track.rests()

@@ -71,8 +71,18 @@ def with_wire(program: Program, moves: Moves, lines: Sequence[str], statement: s
     values = wire(program, moves.wire.tolist())
     changed = [value != before for before, value in zip(values, values[1:])]
     rest = len(lines) - len(values) + 1
-    statements = [[statement.format(value)] if new else [] for new, value in zip(changed, values[1:], strict=True)]
-    return [*lines[:rest], *(line for words, move in zip(statements, lines[rest:], strict=True) for line in (*words, move))]
+    statements = [
+        [statement.format(value)] if new else []
+        for new, value in zip(changed, values[1:], strict=True)
+    ]
+    return [
+        *lines[:rest],
+        *(
+            line
+            for words, move in zip(statements, lines[rest:], strict=True)
+            for line in (*words, move)
+        ),
+    ]
 
 
 class Feeds:
@@ -113,8 +123,12 @@ class Feeds:
             by_speed |= (way >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
         by_speed[0] &= not self.after_tip  # a text that ended in a position does not tell the way
         self.after_tip = False
-        return [f"{PATH} {feed(speed)}" if is_slow else f"{TIME} {feed(by_time)}"
-                for is_slow, speed, by_time in zip(by_speed.tolist(), speeds.tolist(), inverse.tolist(), strict=True)]
+        return [
+            f"{PATH} {feed(speed)}" if is_slow else f"{TIME} {feed(by_time)}"
+            for is_slow, speed, by_time in zip(
+                by_speed.tolist(), speeds.tolist(), inverse.tolist(), strict=True
+            )
+        ]
 
 
 def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
@@ -123,7 +137,9 @@ def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
     for word, (before, value) in zip(words, (feed.split() for feed in feeds), strict=True):
         if not sort:
             lines.append(before)
-        lines.append(f"{before} G1 {word} {value}" if sort not in ("", before) else f"G1 {word} {value}")
+        lines.append(
+            f"{before} G1 {word} {value}" if sort not in ("", before) else f"G1 {word} {value}"
+        )
         sort = before
     return lines
 
@@ -137,9 +153,12 @@ def _inverse_times(moves: Moves) -> Array:
     wrong = ~((inverse >= SLOWEST) & (inverse <= FASTEST))
     if wrong.any():
         raise InputError(
-            "MOVE_TIME", place(moves),
+            "MOVE_TIME",
+            place(moves),
             "a move of {:.4g} s cannot be written; moves take {:.2g} to {:.0f} s: use another speed or a larger chord error",
-            moves.duration[wrong][0], 60.0 / FASTEST, 60.0 / SLOWEST,
+            moves.duration[wrong][0],
+            60.0 / FASTEST,
+            60.0 / SLOWEST,
         )
     return inverse
 
@@ -150,8 +169,11 @@ def _tip_feeds(moves: Moves) -> Array:
     wrong = ~((feeds >= SLOWEST) & (feeds <= FASTEST))
     if wrong.any():
         raise InputError(
-            "MOVE_SPEED", place(moves),
-            "{:.4g} mm/s cannot be written; use {:.2g} to {:.0f} mm/s", moves.speed[wrong][0], SLOWEST / 60.0,
+            "MOVE_SPEED",
+            place(moves),
+            "{:.4g} mm/s cannot be written; use {:.2g} to {:.0f} mm/s",
+            moves.speed[wrong][0],
+            SLOWEST / 60.0,
             FASTEST / 60.0,
         )
     return feeds

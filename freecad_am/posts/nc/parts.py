@@ -20,42 +20,80 @@ def wrapped(text: str) -> list[str]:
 def refuse_table(program: Program, post: str) -> None:
     """Raises InputError UNSUPPORTED_AXES, NOTHING_TO_WRITE, UNREACHABLE, NO_POSITIONS: what no such program can say."""
     refuse_incomplete(program, post, len(program.axis_names))
-    linear = [name for name, kind in zip(program.axis_names, program.axis_kinds, strict=True) if kind == LINEAR]
-    rotary = [name for name, kind in zip(program.axis_names, program.axis_kinds, strict=True) if kind == ROTARY]
-    if sorted(linear) != ["X", "Y", "Z"] or not set(rotary) <= set("ABC") or len(set(rotary)) != len(rotary):
+    linear = [
+        name
+        for name, kind in zip(program.axis_names, program.axis_kinds, strict=True)
+        if kind == LINEAR
+    ]
+    rotary = [
+        name
+        for name, kind in zip(program.axis_names, program.axis_kinds, strict=True)
+        if kind == ROTARY
+    ]
+    if (
+        sorted(linear) != ["X", "Y", "Z"]
+        or not set(rotary) <= set("ABC")
+        or len(set(rotary)) != len(rotary)
+    ):
         raise InputError(
-            "UNSUPPORTED_AXES", "cell.machine",
+            "UNSUPPORTED_AXES",
+            "cell.machine",
             "the post {} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {}: name its joints "
-            "mx my mz and a, b or c", post, " ".join(program.axis_names),
+            "mx my mz and a, b or c",
+            post,
+            " ".join(program.axis_names),
         )
     if program.motion == "cartesian" and any(
-        run.position is None or run.direction is None for run in program.moves if run.kind == DEPOSIT
+        run.position is None or run.direction is None
+        for run in program.moves
+        if run.kind == DEPOSIT
     ):
-        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+        raise InputError(
+            "NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`"
+        )
 
 
 def refuse_words(program: Program, taken: frozenset[str]) -> None:
     """Raises InputError DEPOSIT_WORD for what cannot switch the deposit: no M or H words, the same one twice, or words with
     another meaning (`taken`; H for all of these)."""
-    words = {"program.nc.deposit_on": program.nc.deposit_on, "program.nc.deposit_off": program.nc.deposit_off}
+    words = {
+        "program.nc.deposit_on": program.nc.deposit_on,
+        "program.nc.deposit_off": program.nc.deposit_off,
+    }
     if not any(words.values()):
         return
     for key, word in words.items():
         if not re.fullmatch(r"M\d{1,3}|H\d{1,2}=\d{1,5}", word):
-            raise InputError("DEPOSIT_WORD", key,
-                             "{!r} is not a word such as M7 or H2=1; give one for on and one for off", word)
-        if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in taken or (word.startswith("H") and "H" in taken):
-            raise InputError("DEPOSIT_WORD", key, "{} means something else to the controller; use another word", word)
+            raise InputError(
+                "DEPOSIT_WORD",
+                key,
+                "{!r} is not a word such as M7 or H2=1; give one for on and one for off",
+                word,
+            )
+        if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in taken or (
+            word.startswith("H") and "H" in taken
+        ):
+            raise InputError(
+                "DEPOSIT_WORD",
+                key,
+                "{} means something else to the controller; use another word",
+                word,
+            )
     if program.nc.deposit_on == program.nc.deposit_off:
-        raise InputError("DEPOSIT_WORD", key, "{} cannot switch both on and off; give two different words", word)
+        raise InputError(
+            "DEPOSIT_WORD", key, "{} cannot switch both on and off; give two different words", word
+        )
 
 
 def refuse_wire_output(program: Program, last: int) -> None:
     """Raises InputError WIRE_OUTPUT where the program tells the speed of the wire by an analogue output beyond `last`."""
     if any(run.wire is not None for run in program.moves) and program.nc.wire_output > last:
         raise InputError(
-            "WIRE_OUTPUT", "program.nc.wire_output",
-            "the controller's program sets analogue outputs 1 to {}, not {}; use one of these", last, program.nc.wire_output,
+            "WIRE_OUTPUT",
+            "program.nc.wire_output",
+            "the controller's program sets analogue outputs 1 to {}, not {}; use one of these",
+            last,
+            program.nc.wire_output,
         )
 
 
@@ -63,8 +101,12 @@ def refuse_setup(post: str, motion: str, setup: str) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what is not a machine with rotary axes; both motions of these can be said."""
     if setup != "rotary-table":
         raise InputError(
-            "UNSUPPORTED_SETUP", "cell.setup", "the post {} cannot write {} ({} motion); use rotary-table", post, setup,
-            motion
+            "UNSUPPORTED_SETUP",
+            "cell.setup",
+            "the post {} cannot write {} ({} motion); use rotary-table",
+            post,
+            setup,
+            motion,
         )
 
 

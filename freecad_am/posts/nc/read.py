@@ -34,7 +34,11 @@ class Shape:
         words = [_SHAPED.match(word) for word in block if word not in (ahead, "G1")]
         self.names = [word[1] for word in words if word]
         self.shorter = {word[1] for word in words if word and word[2] == "=DC("}
-        parts = [f" {word[1]}{re.escape(word[2])}({_NUMBER}){re.escape(word[4])}" for word in words if word]
+        parts = [
+            f" {word[1]}{re.escape(word[2])}({_NUMBER}){re.escape(word[4])}"
+            for word in words
+            if word
+        ]
         self._pattern = re.compile((f"(?:{ahead} )?G1" if ahead else "G1") + "".join(parts))
 
     @staticmethod
@@ -133,36 +137,67 @@ class Track:
         sorts = np.array([sort for sort, _ in self.rows])
         tips = sorts == TIP
         linear = np.array([name in _LINEAR for name in self.axes])
-        given = np.where(tips[:, None], [name in self.rows[_first(tips)][1] for name in self.axes] & ~linear, True)
+        given = np.where(
+            tips[:, None],
+            [name in self.rows[_first(tips)][1] for name in self.axes] & ~linear,
+            True,
+        )
         joints, digits = self._values(self.axes, given)
         feeds, feed_digits = self._values(("F",), np.ones((len(self.rows), 1), bool), each=True)
-        duration, duration_digits = _durations(sorts, joints, linear, feeds[:, 0], feed_digits[:, 0])
+        duration, duration_digits = _durations(
+            sorts, joints, linear, feeds[:, 0], feed_digits[:, 0]
+        )
         joints[:, ~linear] = np.radians(joints[:, ~linear])
         turning, sliding = (float(np.max(digits[side], initial=0.0)) for side in (~linear, linear))
         shorter = np.array([name in self.shorter for name in self.axes])
-        read = {"linear_digits": sliding, "duration_digits": duration_digits, "shorter_way": shorter}
+        read = {
+            "linear_digits": sliding,
+            "duration_digits": duration_digits,
+            "shorter_way": shorter,
+        }
         read["lines"] = self.lines.read()
         read |= self._wire() | self._numbers(tips)
         deposit, stops, events = np.array(self.deposit), np.array(self.stops), tuple(self.events)
         if not tips.any():
             return ReadMoves(
-                joints, math.radians(turning), duration, deposit, tips, stops, events, **read,  # type: ignore[arg-type]
+                joints,
+                math.radians(turning),
+                duration,
+                deposit,
+                tips,
+                stops,
+                events,
+                **read,  # type: ignore[arg-type]
             )
         position, position_digits = self._values(_LINEAR, np.repeat(tips[:, None], 3, axis=1))
-        vectors = np.repeat((tips & np.array([_VECTOR[0] in words for _, words in self.rows]))[:, None], 3, axis=1)
+        vectors = np.repeat(
+            (tips & np.array([_VECTOR[0] in words for _, words in self.rows]))[:, None], 3, axis=1
+        )
         direction, direction_digits = self._values(_VECTOR, vectors)
         length = np.linalg.norm(direction, axis=1, keepdims=True)
         return ReadMoves(
-            joints, math.radians(turning), duration, deposit, tips, stops, events, position=position,
-            position_digits=float(position_digits.max()), speed=np.where(tips, feeds[:, 0] / 60.0, np.nan),
+            joints,
+            math.radians(turning),
+            duration,
+            deposit,
+            tips,
+            stops,
+            events,
+            position=position,
+            position_digits=float(position_digits.max()),
+            speed=np.where(tips, feeds[:, 0] / 60.0, np.nan),
             speed_digits=float(np.max(feed_digits[tips, 0])) / 60.0,
             direction=direction / length if vectors.any() else None,
-            direction_digits=float(direction_digits.max()), **read,  # type: ignore[arg-type]
+            direction_digits=float(direction_digits.max()),
+            **read,  # type: ignore[arg-type]
         )
 
     def _numbers(self, tips: Mask) -> dict[str, object]:
         corners, numbers = np.array(self.corners), np.array(self.numbers)
-        read: dict[str, object] = {"tool_frame": numbers[:, 1], "user_frame": numbers[:, 0] if tips.any() else None}
+        read: dict[str, object] = {
+            "tool_frame": numbers[:, 1],
+            "user_frame": numbers[:, 0] if tips.any() else None,
+        }
         given = ~np.isnan(corners).all()
         return {**read, "rounding": corners} if given else read
 
@@ -187,7 +222,9 @@ class Track:
 def _half_digits(texts: Sequence[str]) -> Array:
     """(n,) half of the last digit of each number."""
     decimals = np.array([len(text.partition(".")[2]) for text in texts], dtype=np.intp)
-    half: Array = np.array([0.5 * 10.0**-count for count in range(int(decimals.max(initial=0)) + 1)])[decimals]
+    half: Array = np.array(
+        [0.5 * 10.0**-count for count in range(int(decimals.max(initial=0)) + 1)]
+    )[decimals]
     return half
 
 
@@ -203,7 +240,9 @@ def _durations(
     steps = np.diff(axes, axis=0, prepend=axes[:1])
     way, turn = (np.linalg.norm(steps[:, side], axis=1) for side in (linear, ~linear))
     way = np.where((sorts == AXES) & (way == 0.0), turn, way)
-    duration = np.where(sorts == TIME, 60.0 / feeds, np.where(sorts == TIP, np.nan, 60.0 * way / feeds))
+    duration = np.where(
+        sorts == TIME, 60.0 / feeds, np.where(sorts == TIP, np.nan, 60.0 * way / feeds)
+    )
     return duration, np.nan_to_num(duration * digits / (feeds - digits))
 
 

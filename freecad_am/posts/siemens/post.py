@@ -38,7 +38,13 @@ from ..nc import numbers
 from ..nc import parts as common
 from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, lines_of, packed, place, whole
-from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_no_process, refuse_schedules, refuse_triggers
+from ..refusals import (
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_no_process,
+    refuse_schedules,
+    refuse_triggers,
+)
 from .read import read
 
 __all__ = ["read", "write"]
@@ -69,13 +75,74 @@ LAST_OUTPUT, LAST_INPUT, LAST_ANALOGUE = 99, 32, 8
 _TAKEN = frozenset(f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 17, 19, 30, 40, 41, 42, 43, 44, 45, 70))
 # words of the language that begin like a name; what else it knows is found by trying it on the controller
 _RESERVED = frozenset(
-    ("AND", "ATRANS", "AROT", "BRISK", "CASE", "COMPCAD", "COMPCURV", "COMPOF", "COMPON", "DEF", "DIV", "ELSE", "ENDFOR")
-    + ("ENDIF", "ENDLOOP", "ENDWHILE", "EXTERN", "FALSE", "FFWOF", "FFWON", "FGROUP", "FOR", "GOTO", "GOTOB", "GOTOF", "IF")
-    + ("LOOP", "MCALL", "MOD", "MSG", "NOT", "OR", "ORIMKS", "ORIVECT", "ORIWKS", "PROC", "REPEAT", "RET", "ROT", "SET")
-    + ("SETMS", "SOFT", "STOPRE", "SUPA", "TO", "TRAFOOF", "TRANS", "TRAORI", "TRUE", "UNTIL", "WHILE", "XOR")
+    (
+        "AND",
+        "ATRANS",
+        "AROT",
+        "BRISK",
+        "CASE",
+        "COMPCAD",
+        "COMPCURV",
+        "COMPOF",
+        "COMPON",
+        "DEF",
+        "DIV",
+        "ELSE",
+        "ENDFOR",
+    )
+    + (
+        "ENDIF",
+        "ENDLOOP",
+        "ENDWHILE",
+        "EXTERN",
+        "FALSE",
+        "FFWOF",
+        "FFWON",
+        "FGROUP",
+        "FOR",
+        "GOTO",
+        "GOTOB",
+        "GOTOF",
+        "IF",
+    )
+    + (
+        "LOOP",
+        "MCALL",
+        "MOD",
+        "MSG",
+        "NOT",
+        "OR",
+        "ORIMKS",
+        "ORIVECT",
+        "ORIWKS",
+        "PROC",
+        "REPEAT",
+        "RET",
+        "ROT",
+        "SET",
+    )
+    + (
+        "SETMS",
+        "SOFT",
+        "STOPRE",
+        "SUPA",
+        "TO",
+        "TRAFOOF",
+        "TRANS",
+        "TRAORI",
+        "TRUE",
+        "UNTIL",
+        "WHILE",
+        "XOR",
+    )
 )
 NAMING = Naming(
-    str.upper, "[A-Z]{2}|_[A-Z]", "two letters, or an underscore and a letter", longest=24, spare=3, prefix="AM_",
+    str.upper,
+    "[A-Z]{2}|_[A-Z]",
+    "two letters, or an underscore and a letter",
+    longest=24,
+    spare=3,
+    prefix="AM_",
     reserved=_RESERVED,
 )
 
@@ -91,16 +158,32 @@ def write(program: Program) -> dict[str, bytes]:
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [f"; {line}" for words in (*program.remarks, *_own_remarks(program)) for line in common.wrapped(words)]
-    groups = list(grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block)))
+    remarks = [
+        f"; {line}"
+        for words in (*program.remarks, *_own_remarks(program))
+        for line in common.wrapped(words)
+    ]
+    groups = list(
+        grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block))
+    )
     parts = packed(groups, program.max_points, _NO_END, whole)
     if len(parts) == 1:
-        return {f"{name}.MPF": _file([*remarks, *_HEAD, *_modes(program), *_lines(program, parts[0]), "M30"])}
+        return {
+            f"{name}.MPF": _file(
+                [*remarks, *_HEAD, *_modes(program), *_lines(program, parts[0]), "M30"]
+            )
+        }
     names = NAMING.parts(name, len(parts))
     refuse_calls_of_own(program, {name, *names}, program_name)
     files = {f"{name}.MPF": _file([*remarks, *_HEAD, *names, "M30"])}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
-        lines = [f"; part {number} of {len(parts)}", *_HEAD, *_modes(program), *_lines(program, pieces), "M17"]
+        lines = [
+            f"; part {number} of {len(parts)}",
+            *_HEAD,
+            *_modes(program),
+            *_lines(program, pieces),
+            "M17",
+        ]
         files[f"{part}.SPF"] = _file(lines)
     return files
 
@@ -111,7 +194,10 @@ def program_name(name: str, where: str) -> str:
 
 
 def refuse_setup(
-    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    motion: str,
+    setup: str,
+    external: tuple[str, ...] = (),
+    carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
     common.refuse_setup("siemens", motion, setup)
@@ -126,16 +212,21 @@ def _refuse(program: Program) -> None:
     _refuse_schedules(program)
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_OUTPUT:
         raise InputError(
-            "DEPOSIT_OUTPUT", "program.deposit_output",
+            "DEPOSIT_OUTPUT",
+            "program.deposit_output",
             "H words have address extensions to {}, not {}; use another output, or program.nc.deposit_on and deposit_off",
-            LAST_OUTPUT, program.deposit_output,
+            LAST_OUTPUT,
+            program.deposit_output,
         )
     common.refuse_words(program, _TAKEN)
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_INPUT:
             raise InputError(
-                "DEPOSIT_INPUT", "process.between_layers.input",
-                "the controller's program reads inputs 1 to {}, not {}; use one of these", LAST_INPUT, block.number,
+                "DEPOSIT_INPUT",
+                "process.between_layers.input",
+                "the controller's program reads inputs 1 to {}, not {}; use one of these",
+                LAST_INPUT,
+                block.number,
             )
     refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     _refuse_continuous_steps(program)
@@ -144,9 +235,13 @@ def _refuse(program: Program) -> None:
 def _refuse_schedules(program: Program) -> None:
     refuse_schedules(program, LAST_OUTPUT, LAST_SCHEDULE)
     own = program.nc.deposit_on or f"H{program.deposit_output}="
-    if any(isinstance(block, Schedule) for block in program.blocks) and own.startswith(f"H{program.schedule_output}="):
+    if any(isinstance(block, Schedule) for block in program.blocks) and own.startswith(
+        f"H{program.schedule_output}="
+    ):
         raise InputError(
-            "SCHEDULE", "program.schedule.output", "H{} switches the deposit; use another one for schedules",
+            "SCHEDULE",
+            "program.schedule.output",
+            "H{} switches the deposit; use another one for schedules",
             program.schedule_output,
         )
 
@@ -160,9 +255,12 @@ def _refuse_continuous_steps(program: Program) -> None:
         move, axis = np.argwhere(steps > LARGEST_TURN)[0]
         places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
         raise InputError(
-            "ENDLESS_STEP", place(program.moves[places[move + 1]]),
+            "ENDLESS_STEP",
+            place(program.moves[places[move + 1]]),
             "axis {} turns {:.1f} deg in one move; an axis without end goes less than 180 deg per move: add points, or "
-            "limit the axis", program.axis_names[axes[axis]], steps[move, axis],
+            "limit the axis",
+            program.axis_names[axes[axis]],
+            steps[move, axis],
         )
 
 
@@ -171,7 +269,9 @@ def _own_remarks(program: Program) -> Iterator[str]:
         yield f"{_offset(program.user_frame)}: the program origin with the rotary axes at zero, from the table's face"
         if program.carried is not None:
             x, y, z, *angles = program.carried
-            yield f"X {x:.4f} Y {y:.4f} Z {z:.4f}, then Z {{}} Y {{}} X {{}} deg (RPY)".format(*_rpy(angles))
+            yield f"X {x:.4f} Y {y:.4f} Z {z:.4f}, then Z {{}} Y {{}} X {{}} deg (RPY)".format(
+                *_rpy(angles)
+            )
     for name, continuous in zip(program.axis_names, program.continuous, strict=True):
         if continuous:
             yield f"axis {name} turns without end: a modulo rotary axis"
@@ -204,9 +304,16 @@ def _modes(program: Program) -> list[str]:
 def _instructions(program: Program, block: Block) -> list[str]:
     cartesian = program.motion == "cartesian"
     if isinstance(block, DepositOn):
-        wire = [] if block.wire is None else [_WIRE.format(program.nc.wire_output, *numbers.wire(program, [block.wire]))]
+        wire = (
+            []
+            if block.wire is None
+            else [_WIRE.format(program.nc.wire_output, *numbers.wire(program, [block.wire]))]
+        )
         on = [] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)]
-        return [*([_offset(program.user_frame), "TRAORI", "ORIWKS ORIVECT"] if cartesian else []), *on]
+        return [
+            *([_offset(program.user_frame), "TRAORI", "ORIWKS ORIVECT"] if cartesian else []),
+            *on,
+        ]
     if isinstance(block, DepositOff):
         off = [] if program.dry_run else [*_dwell(block.lead), _output(program, False)]
         return [*off, *(["TRAFOOF", "G500"] if cartesian else [])]
@@ -219,7 +326,11 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, WaitInput):
         return [f"WHILE $A_IN[{block.number}]==0", *_dwell(0.1), "ENDWHILE"]
     if isinstance(block, WaitBelow):
-        return [f"WHILE $A_INA[{block.number}]>={numbers.level(block.below)}", *_dwell(0.1), "ENDWHILE"]
+        return [
+            f"WHILE $A_INA[{block.number}]>={numbers.level(block.below)}",
+            *_dwell(0.1),
+            "ENDWHILE",
+        ]
     if isinstance(block, Call):
         return [program_name(block.program, block.where), *_HEAD, *_modes(program)]
     raise TypeError(f"no instruction for {block!r}")
@@ -261,7 +372,9 @@ def _motion(program: Program, run: Run) -> list[str]:
     for row in np.flatnonzero(moves.stops[part]).tolist():
         blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
     # a synchronized action of one block: it takes effect where that begins, without a stop
-    worded = numbers.with_wire(program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}"))
+    worded = numbers.with_wire(
+        program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}")
+    )
     # the time of one block would be that of all those compressed into one, and so would the wire's speed
     by_speed = all(feed.startswith(numbers.PATH) for feed in run.words[part])
     if program.nc.compress and by_speed and len(worded) == len(blocks):
@@ -276,7 +389,9 @@ def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
     values[:, continuous] = np.round(values[:, continuous] % 360.0, numbers.DECIMALS) % 360.0
     words = [
         f"{name}=DC(%.{numbers.DECIMALS}f)" if end and kind == ROTARY else numbers.template([name])
-        for name, kind, end in zip(program.axis_names, program.axis_kinds, program.continuous, strict=True)
+        for name, kind, end in zip(
+            program.axis_names, program.axis_kinds, program.continuous, strict=True
+        )
     ]
     return " ".join(words), values
 

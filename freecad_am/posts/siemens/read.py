@@ -69,11 +69,17 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     """
     main = [name for name in files if name.upper().endswith(".MPF")]
     if len(main) != 1 or any(not name.upper().endswith((".MPF", ".SPF")) for name in files):
-        raise unreadable("program", Text("there are {} main programs, expected one with its parts", len(main)))
-    programs = {name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()}
+        raise unreadable(
+            "program", Text("there are {} main programs, expected one with its parts", len(main))
+        )
+    programs = {
+        name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()
+    }
     words = {text for blocks in programs.values() for _, text in blocks}
     # an H word that is ever 0 switches; others tell schedules, which begin with 1
-    state = _State(programs, switching={text.partition("=")[0] for text in words if text.endswith("=0")})
+    state = _State(
+        programs, switching={text.partition("=")[0] for text in words if text.endswith("=0")}
+    )
     start = main[0].upper().rpartition(".")[0]
     _follow(start, state, ())
     if state.track.on:
@@ -135,7 +141,9 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
 def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> None:
     if wire := _WIRE.match(text):
         if state.compress or (not wire[1] and state.track.on):
-            raise unreadable(where, "the analogue output stops the machine within a bead, or its compressor")
+            raise unreadable(
+                where, "the analogue output stops the machine within a bead, or its compressor"
+            )
         state.track.set_wire(int(wire[2]), wire[3], where)
         return
     words: dict[str, str] = {}
@@ -198,12 +206,17 @@ def _mode(token: str, state: _State) -> bool:
 def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None:
     if not state.linear or state.units != _UNITS:
         raise unreadable(where, "a move before G1, G90 and G710 are said")
-    if state.corners and not any(state.corners == {word, *others} for word, others in _PAIRED.items()):
+    if state.corners and not any(
+        state.corners == {word, *others} for word, others in _PAIRED.items()
+    ):
         raise unreadable(where, Text("{} do not belong together", " ".join(sorted(state.corners))))
     if state.tip:
         known = state.workpiece and state.group and state.offset
         if state.feed != "G94" or not known or words.keys() != _TIP_WORDS:
-            raise unreadable(where, "with TRAORI a move needs X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS and a work offset")
+            raise unreadable(
+                where,
+                "with TRAORI a move needs X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS and a work offset",
+            )
         state.track.add(TIP, words, where, stops)
         return
     if state.offset != "G500":
@@ -214,7 +227,10 @@ def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None
         state.track.add(SLIDES, words, where, stops)
         return
     if state.compress:
-        raise unreadable(where, "blocks with a time are compressed into one, which would take the time of the last")
+        raise unreadable(
+            where,
+            "blocks with a time are compressed into one, which would take the time of the last",
+        )
     state.track.add(TIME, words, where, stops)
 
 
@@ -236,7 +252,13 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
         raise unreadable(where, Text("{!r} is not understood", token))
     else:
         # a program of the controller; what it leaves set is not known
-        state.units, state.offset, state.group, state.linear, state.corners = set(), "", False, False, set()
+        state.units, state.offset, state.group, state.linear, state.corners = (
+            set(),
+            "",
+            False,
+            False,
+            set(),
+        )
         state.track.happens("call", token)
         state.track.frame = state.track.tool = float("nan")
 

@@ -15,7 +15,9 @@ from freecad_am.core.types import Array
 from ...core.issues import InputError, Text
 
 _NAMESPACE = "{http://www.staubli.com/robotics/VAL3/"
-PROJECT, DATA, PROGRAM = (_NAMESPACE + space + "}" for space in ("Project/3", "Data/2", "Program/2"))
+PROJECT, DATA, PROGRAM = (
+    _NAMESPACE + space + "}" for space in ("Project/3", "Data/2", "Program/2")
+)
 AXES = ("j1", "j2", "j3", "j4", "j5", "j6")
 POSE = ("x", "y", "z", "rx", "ry", "rz")
 _PLAIN = re.compile(r"(?:-?[0-9]+(?:\.[0-9]+)? )*")
@@ -58,13 +60,19 @@ def _folder(file: str) -> str:
 def _application(file: str, files: dict[str, bytes]) -> Application:
     folder, root = _folder(file), _parsed(file, files)
     parameters = root.find(f"{PROJECT}Parameters")
-    if root.tag != f"{PROJECT}Project" or parameters is None or parameters.get("millimeterUnit") != "true":
+    if (
+        root.tag != f"{PROJECT}Project"
+        or parameters is None
+        or parameters.get("millimeterUnit") != "true"
+    ):
         raise unreadable(file, "it is not a project in millimetres")
     programs = {}
     for element in root.iterfind(f"{PROJECT}Programs/{PROJECT}Program"):
         name = str(element.get("file")).removesuffix(".pgx")
         programs[name] = _statements(name, f"{folder}/{name}.pgx", files)
-    (data,) = [str(element.get("file")) for element in root.iterfind(f"{PROJECT}Database/{PROJECT}Data")] or [""]
+    (data,) = [
+        str(element.get("file")) for element in root.iterfind(f"{PROJECT}Database/{PROJECT}Data")
+    ] or [""]
     libraries = {
         str(element.get("alias")): str(element.get("path"))
         for element in root.iterfind(f"{PROJECT}Libraries/{PROJECT}Library")
@@ -91,7 +99,11 @@ def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int
     if program is None or code is None or program.get("name") != name:
         raise unreadable(file, Text("it does not hold the code of a program {}", name))
     lines = [(number, line.strip()) for number, line in enumerate(code.split("\n"), 1)]
-    lines = [(number, line) for number, line in lines if line and (not line.startswith("//") or _LAYER.match(line))]
+    lines = [
+        (number, line)
+        for number, line in lines
+        if line and (not line.startswith("//") or _LAYER.match(line))
+    ]
     if len(lines) < 2 or lines[0][1] != "begin" or lines[-1][1] != "end":
         raise unreadable(file, "its code does not run from begin to end")
     return lines[1:-1]
@@ -100,10 +112,19 @@ def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int
 def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
     found: dict[str, Data] = {}
     for element in _parsed(file, files).iterfind(f"{DATA}Datas/{DATA}Data"):
-        name, values = str(element.get("name")), [dict(value.attrib) for value in element.iterfind(f"{DATA}Value")]
+        name, values = (
+            str(element.get("name")),
+            [dict(value.attrib) for value in element.iterfind(f"{DATA}Value")],
+        )
         keys = [value.pop("key", "") for value in values]
-        if name in found or keys != [str(key) for key in range(len(values))] or element.get("size") != str(len(values)):
-            raise unreadable(file, Text("the values of {} are not those from 0 to its size, each once", name))
+        if (
+            name in found
+            or keys != [str(key) for key in range(len(values))]
+            or element.get("size") != str(len(values))
+        ):
+            raise unreadable(
+                file, Text("the values of {} are not those from 0 to its size, each once", name)
+            )
         found[name] = Data(str(element.get("type")), tuple(values))
     return found
 
@@ -133,7 +154,11 @@ def rotations(degrees: Array) -> Array:
 def poses(values: Array) -> Array:
     """(n, 4, 4) of x y z rx ry rz (n, 6), mm and degrees."""
     result = np.zeros((len(values), 4, 4))
-    result[:, :3, :3], result[:, :3, 3], result[:, 3, 3] = rotations(values[:, 3:]), values[:, :3], 1.0
+    result[:, :3, :3], result[:, :3, 3], result[:, 3, 3] = (
+        rotations(values[:, 3:]),
+        values[:, :3],
+        1.0,
+    )
     return result
 
 

@@ -72,22 +72,49 @@ class _Values:
     def frame(self, app: Application, name: str, where: str) -> Array:
         """(4, 4) the frame that the points of an array are in; it must stand in the world, and the arm stay as it is."""
         for value in app.data[name].values:
-            if any(value.get(word, f"{word[0]}same") != f"{word[0]}same" for word in ("shoulder", "elbow", "wrist")):
-                raise unreadable(where, Text("a point of {} asks for another configuration of the arm", name))
-        return self._one(app, name, "frame", "world[0]", where, Text("the points of {} are not all in one frame", name))
+            if any(
+                value.get(word, f"{word[0]}same") != f"{word[0]}same"
+                for word in ("shoulder", "elbow", "wrist")
+            ):
+                raise unreadable(
+                    where, Text("a point of {} asks for another configuration of the arm", name)
+                )
+        return self._one(
+            app,
+            name,
+            "frame",
+            "world[0]",
+            where,
+            Text("the points of {} are not all in one frame", name),
+        )
 
     def carrier(self, app: Application, name: str, where: str) -> Array:
         """(4, 4) what the tools of an array stand on: the flange, or one other tool that stands on it."""
         if self.father(app, name) == _FLANGE:
             return np.eye(4)
-        return self._one(app, name, "tool", _FLANGE, where, Text("the tools of {} are not all on one tool", name))
+        return self._one(
+            app, name, "tool", _FLANGE, where, Text("the tools of {} are not all on one tool", name)
+        )
 
-    def _one(self, app: Application, name: str, kind: str, ground: str, where: str, otherwise: str) -> Array:
+    def _one(
+        self, app: Application, name: str, kind: str, ground: str, where: str, otherwise: str
+    ) -> Array:
         match = re.fullmatch(r"(\w+)\[0\]", self.father(app, name))
         data = app.data.get(match[1], Data("", ())) if match else Data("", ())
-        if match is None or data.kind != kind or len(data.values) != 1 or self.father(app, match[1]) != ground:
-            raise unreadable(where, Text("{} that stands {}", otherwise,
-                                         Word("in the world" if kind == "frame" else "on the flange")))
+        if (
+            match is None
+            or data.kind != kind
+            or len(data.values) != 1
+            or self.father(app, match[1]) != ground
+        ):
+            raise unreadable(
+                where,
+                Text(
+                    "{} that stands {}",
+                    otherwise,
+                    Word("in the world" if kind == "frame" else "on the flange"),
+                ),
+            )
         found: Array = poses(self.six(app, match[1]))[0]
         return found
 
@@ -99,7 +126,9 @@ def _corners(values: _Values, app: Application, descriptor: str, step: Step) -> 
     full = values(app, descriptor, _ACCELERATION)[step.speed]
     kinds = ("off", "Cartesian") if step.linear else ("off", "joint", "Cartesian")
     if not np.isin(words, kinds).all() or (leave != reach).any() or (full != 100.0).any():
-        raise unreadable(step.where, "it rounds corners or accelerates in a way that is not understood")
+        raise unreadable(
+            step.where, "it rounds corners or accelerates in a way that is not understood"
+        )
     rounded: Array = np.where(words == "off", 0.0, np.maximum(leave, 1e-9))
     return rounded
 
@@ -115,8 +144,16 @@ def moves_of(steps: list[Step]) -> ReadMoves:
     values = _Values()
     joints, point = np.full((total, 6), np.nan), np.full((total, 6), np.nan)
     tools, lever = np.tile(np.eye(4), (total, 1, 1)), np.zeros(total)
-    share, speed, deposit = np.full(total, np.nan), np.full(total, np.nan), np.zeros(total, dtype=bool)
-    stops, rounding, straight = np.zeros(total, dtype=bool), np.full(total, np.nan), np.zeros(total, dtype=bool)
+    share, speed, deposit = (
+        np.full(total, np.nan),
+        np.full(total, np.nan),
+        np.zeros(total, dtype=bool),
+    )
+    stops, rounding, straight = (
+        np.zeros(total, dtype=bool),
+        np.full(total, np.nan),
+        np.zeros(total, dtype=bool),
+    )
     frame: Array | None = None
     row = 0
     for step in steps:
@@ -143,18 +180,38 @@ def moves_of(steps: list[Step]) -> ReadMoves:
             known = (percent == 100.0) & (most > 0.0) & (most_turn >= _UNLIMITED)
         else:
             joints[rows], share[rows] = values(app, target, AXES)[step.point], percent / 100.0
-            known = (percent > 0.0) & (percent <= 100.0) & (most >= _UNLIMITED) & (most_turn >= _UNLIMITED)
+            known = (
+                (percent > 0.0)
+                & (percent <= 100.0)
+                & (most >= _UNLIMITED)
+                & (most_turn >= _UNLIMITED)
+            )
         if not known.all() or (not step.linear and values.father(app, tool) != _FLANGE):
-            raise unreadable(step.where, "its speed is limited, or its tool fixed, in a way that is not understood")
+            raise unreadable(
+                step.where,
+                "its speed is limited, or its tool fixed, in a way that is not understood",
+            )
     linear = bool(np.isfinite(speed).any())
     return ReadMoves(
-        np.radians(joints) if np.isfinite(share).any() else None, float(np.radians(values.digits(AXES))),
-        np.full(total, np.nan), deposit, straight, stops, (), rounding=rounding,
-        position=point[:, :3] if linear else None, rotation=rotations(point[:, 3:]) if linear else None,
+        np.radians(joints) if np.isfinite(share).any() else None,
+        float(np.radians(values.digits(AXES))),
+        np.full(total, np.nan),
+        deposit,
+        straight,
+        stops,
+        (),
+        rounding=rounding,
+        position=point[:, :3] if linear else None,
+        rotation=rotations(point[:, 3:]) if linear else None,
         position_digits=values.digits(_LENGTHS),
         rotation_digits=float(np.radians(values.digits(_ANGLES))),
-        speed=speed, speed_digits=values.digits(_SPEEDS), share=share, share_digits=values.digits(_SHARE) / 100.0,
-        frame=frame, tool=tools if linear else None, lever=lever if linear else None,
+        speed=speed,
+        speed_digits=values.digits(_SPEEDS),
+        share=share,
+        share_digits=values.digits(_SHARE) / 100.0,
+        frame=frame,
+        tool=tools if linear else None,
+        lever=lever if linear else None,
     )
 
 

@@ -24,14 +24,21 @@ SLOWEST, LEAST_PERCENT = 0.01, 0.001
 
 def degrees(joints: Array) -> Array:
     """Joint values (n, axes) in degrees as the text has them."""
-    rounded: Array = np.asarray(np.round(np.degrees(joints), ANGLE_DECIMALS) + 0.0, dtype=np.float64)
+    rounded: Array = np.asarray(
+        np.round(np.degrees(joints), ANGLE_DECIMALS) + 0.0, dtype=np.float64
+    )
     return rounded
 
 
 def frames(position: Array, rotation: Array) -> Array:
     """X Y Z in mm and RX RY RZ in degrees, (n, 6), of positions (n, 3) and rotations (n, 3, 3) = Rx Ry Rz."""
     angles = MOVING_XYZ.numbers(rotation)
-    values: Array = np.hstack((np.round(position, LENGTH_DECIMALS), np.round(np.degrees(angles), ANGLE_DECIMALS))) + 0.0
+    values: Array = (
+        np.hstack(
+            (np.round(position, LENGTH_DECIMALS), np.round(np.degrees(angles), ANGLE_DECIMALS))
+        )
+        + 0.0
+    )
     return values
 
 
@@ -49,14 +56,20 @@ class Descriptors:
         blends = self._blends(moves)
         if moves.interpolation == LINEAR_MOVE:
             speeds = _speeds(moves).tolist()
-            words = [_descriptor("100", f"{speed:.3f}", blend) for speed, blend in zip(speeds, blends, strict=True)]
+            words = [
+                _descriptor("100", f"{speed:.3f}", blend)
+                for speed, blend in zip(speeds, blends, strict=True)
+            ]
         else:
             start = shown[:1] if self.before is None else self.before
             percent = self._percent(moves, np.diff(shown, axis=0, prepend=start))
             if self.before is None:
                 percent[0] = 100.0 * FIRST_SHARE
             shares = percent.tolist()
-            words = [_descriptor(f"{share:.5f}", UNLIMITED, blend) for share, blend in zip(shares, blends, strict=True)]
+            words = [
+                _descriptor(f"{share:.5f}", UNLIMITED, blend)
+                for share, blend in zip(shares, blends, strict=True)
+            ]
         self.before = shown[-1:]
         return words
 
@@ -72,9 +85,12 @@ class Descriptors:
             wrong[0] = False
         if wrong.any():
             raise InputError(
-                "JOINT_SPEED", place(moves),
+                "JOINT_SPEED",
+                place(moves),
                 "a move would need {:.4g} % of the largest joint speed, which cannot be written; use another speed, so that "
-                "it is {} to 100 %", percent[wrong][0], LEAST_PERCENT,
+                "it is {} to 100 %",
+                percent[wrong][0],
+                LEAST_PERCENT,
             )
         return np.where(share > 0.0, np.clip(percent, LEAST_PERCENT, 100.0), 100.0)
 
@@ -87,7 +103,8 @@ class Descriptors:
             distance = math.floor(1000.0 * min(0.005 * self.blend * shortest, 100.0)) / 1000.0
         kind = ("Cartesian" if self.cartesian else "joint") if distance > 0.0 else "off"
         through, exact = (
-            f'blend="{word}" leave="{size:.3f}" reach="{size:.3f}"' for word, size in ((kind, distance), ("off", 0.0))
+            f'blend="{word}" leave="{size:.3f}" reach="{size:.3f}"'
+            for word, size in ((kind, distance), ("off", 0.0))
         )
         return [exact if stops else through for stops in moves.halt.tolist()]
 
@@ -96,7 +113,11 @@ def _speeds(moves: Moves) -> Array:
     fits = (moves.speed >= SLOWEST) & (moves.speed < float(UNLIMITED))
     if not fits.all():
         raise InputError(
-            "MOVE_SPEED", place(moves), "{:.4g} mm/s cannot be written; use at least {} mm/s", moves.speed[~fits][0], SLOWEST
+            "MOVE_SPEED",
+            place(moves),
+            "{:.4g} mm/s cannot be written; use at least {} mm/s",
+            moves.speed[~fits][0],
+            SLOWEST,
         )
     return moves.speed
 

@@ -16,7 +16,18 @@ import numpy as np
 from ...core.controller import Controller
 from ...core.issues import InputError
 from ...core.orientation import MOVING_XYZ, Pendant
-from ...core.program import JOINT_MOVE, Block, Call, DepositOff, DepositOn, LayerStart, Program, Six, Wait, WaitInput
+from ...core.program import (
+    JOINT_MOVE,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Program,
+    Six,
+    Wait,
+    WaitInput,
+)
 from ..names import Naming
 from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, packed, size, unbroken, with_retracts
@@ -61,12 +72,48 @@ PART = "prog"  # alias of the part that is loaded
 
 # words of the language that an alias of a library cannot be; case does not count in file names
 _RESERVED = frozenset(
-    ("AND", "BEGIN", "BREAK", "CALL", "CASE", "DEFAULT", "DO", "ELSE", "ELSEIF", "END", "ENDFOR", "ENDIF", "ENDSWITCH")
-    + ("ENDWHILE", "FALSE", "FLANGE", "FOR", "IF", "NOT", "OR", "RETURN", "START", "STEP", "STOP", "SWITCH", "THEN", "TO")
+    (
+        "AND",
+        "BEGIN",
+        "BREAK",
+        "CALL",
+        "CASE",
+        "DEFAULT",
+        "DO",
+        "ELSE",
+        "ELSEIF",
+        "END",
+        "ENDFOR",
+        "ENDIF",
+        "ENDSWITCH",
+    )
+    + (
+        "ENDWHILE",
+        "FALSE",
+        "FLANGE",
+        "FOR",
+        "IF",
+        "NOT",
+        "OR",
+        "RETURN",
+        "START",
+        "STEP",
+        "STOP",
+        "SWITCH",
+        "THEN",
+        "TO",
+    )
     + ("TRUE", "UNTIL", "WHILE", "WORLD", "XOR", PART.upper())
 )
 NAMING = Naming(
-    str, "[A-Za-z]", "a letter", longest=15, spare=3, prefix="am_", reserved=_RESERVED, what="an application's name"
+    str,
+    "[A-Za-z]",
+    "a letter",
+    longest=15,
+    spare=3,
+    prefix="am_",
+    reserved=_RESERVED,
+    what="an application's name",
 )
 _LOAD = """\
 if {alias}:libLoad("./{part}")!=0
@@ -87,8 +134,12 @@ def write(program: Program) -> dict[str, bytes]:
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
-    groups = list(grouped(program, numbers.Descriptors(program), lambda block: _instructions(program, block)))
+    remarks = [
+        line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)
+    ]
+    groups = list(
+        grouped(program, numbers.Descriptors(program), lambda block: _instructions(program, block))
+    )
     if size([piece for group in groups for piece in group])[0] <= program.max_points:
         (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
         return _application(program, name, name, remarks, pieces)
@@ -96,7 +147,9 @@ def write(program: Program) -> dict[str, bytes]:
     parts = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(parts))
     load = [line for part in names for line in _LOAD.format(alias=PART, part=part).split("\n")]
-    files = _files(program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"})
+    files = _files(
+        program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"}
+    )
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = text.remark(f"part {number} of {len(parts)}")
         files |= _application(program, f"{name}/{part}", part, head, pieces)
@@ -112,12 +165,20 @@ def program_name(name: str, where: str) -> str:
 
 
 def refuse_setup(
-    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    motion: str,
+    setup: str,
+    external: tuple[str, ...] = (),
+    carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
     if setup not in SETUPS:
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post staubli cannot write {} ({} motion); use another post",
-                         setup, motion)
+        raise InputError(
+            "UNSUPPORTED_SETUP",
+            "cell.setup",
+            "the post staubli cannot write {} ({} motion); use another post",
+            setup,
+            motion,
+        )
 
 
 def _refuse(program: Program) -> None:
@@ -130,10 +191,14 @@ def _refuse(program: Program) -> None:
     refuse_without_speeds(program, AXES)
     refuse_without_positions(program)
     for block in program.blocks:
-        if isinstance(block, Call) and re.fullmatch(rf"{program.name}\d*", program_name(block.program, block.where), re.I):
+        if isinstance(block, Call) and re.fullmatch(
+            rf"{program.name}\d*", program_name(block.program, block.where), re.I
+        ):
             raise InputError(
-                "PROGRAM_NAME", block.where, "{!r} may be a program of this very job; call one of another name",
-                block.program
+                "PROGRAM_NAME",
+                block.where,
+                "{!r} may be a program of this very job; call one of another name",
+                block.program,
             )
 
 
@@ -196,12 +261,19 @@ def _single(six: Six | None, more: str) -> list[str]:
 
 
 def _files(
-    program: Program, folder: str, name: str, lines: list[str], arrays: dict[str, tuple[str, list[str]]],
+    program: Program,
+    folder: str,
+    name: str,
+    lines: list[str],
+    arrays: dict[str, tuple[str, list[str]]],
     libraries: dict[str, str],
 ) -> dict[str, bytes]:
     off = [] if program.dry_run else ["doDeposit=false"]
     if off:
-        arrays = {**arrays, "doDeposit": ("dio", [f'link="BasicIO-1\\%Q{program.deposit_output - 1}"'])}
+        arrays = {
+            **arrays,
+            "doDeposit": ("dio", [f'link="BasicIO-1\\%Q{program.deposit_output - 1}"']),
+        }
     return {
         f"{folder}/{name}.pjx": text.project(name, ("start", "stop"), libraries),
         f"{folder}/{name}.dtx": text.database(arrays),
@@ -223,24 +295,36 @@ def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]
             pattern, array, kind = "movel(pTarget,tPath[{point}],mPath[{speed}])", "tPath", "tool"
             values = text.frames(places, _GAUGE)
         else:
-            pattern, array, kind = "movel(pPath[{point}],tCarried,mPath[{speed}])", "pPath", "pointRx"
+            pattern, array, kind = (
+                "movel(pPath[{point}],tCarried,mPath[{speed}])",
+                "pPath",
+                "pointRx",
+            )
             values = text.frames(places, _POINT)
     first = _appended(arrays, array, kind, values)
     words = list(run.words[rows])
     alike = len(set(words)) == 1
     last = arrays["mPath"][1] if "mPath" in arrays else []
     same = alike and last[-1:] == words[:1]
-    speed = len(last) - 1 if same else _appended(arrays, "mPath", "mdesc", words[:1] if alike else words)
+    speed = (
+        len(last) - 1
+        if same
+        else _appended(arrays, "mPath", "mdesc", words[:1] if alike else words)
+    )
     if len(run) == 1:
         return [pattern.format(point=first, speed=speed), "waitEndMove()"]
     index = str(speed) if alike else "l_nI" if speed == first else f"l_nI{speed - first:+d}"
     return [
-        f"for l_nI={first} to {first + len(run) - 1}", f"  {pattern.format(point='l_nI', speed=index)}", "endFor",
+        f"for l_nI={first} to {first + len(run) - 1}",
+        f"  {pattern.format(point='l_nI', speed=index)}",
+        "endFor",
         "waitEndMove()",
     ]
 
 
-def _appended(arrays: dict[str, tuple[str, list[str]]], name: str, kind: str, values: list[str]) -> int:
+def _appended(
+    arrays: dict[str, tuple[str, list[str]]], name: str, kind: str, values: list[str]
+) -> int:
     """The index of the first of the values added to an array."""
     held = arrays.setdefault(name, (kind, []))[1]
     held += values

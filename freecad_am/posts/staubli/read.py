@@ -58,9 +58,13 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
     found = applications(files)
-    outer = [folder for folder in found if not any(folder.startswith(f"{other}/") for other in found)]
+    outer = [
+        folder for folder in found if not any(folder.startswith(f"{other}/") for other in found)
+    ]
     if len(outer) != 1:
-        raise unreadable("program", Text("there are {} applications, expected one with its parts", len(outer)))
+        raise unreadable(
+            "program", Text("there are {} applications, expected one with its parts", len(outer))
+        )
     run = _Run(found)
     _follow(found[outer[0]], "start", run, ())
     if not run.steps:
@@ -70,7 +74,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     lines = Lines()
     for step in run.steps:
         lines.add(step.where, len(step.point))
-    read_moves = dataclasses.replace(moves_of(run.steps), events=tuple(run.events), lines=lines.read())
+    read_moves = dataclasses.replace(
+        moves_of(run.steps), events=tuple(run.events), lines=lines.read()
+    )
     for app in found.values():
         _check_stop(app, run.output)
     return read_moves
@@ -79,10 +85,18 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 def _check_stop(app: Application, output: str) -> None:
     """Stopping an application must end its motion and switch off what it may have switched on."""
     lines = [line for _, line in app.programs.get("stop", [])]
-    named = [name for name, data in app.data.items() if data.kind == "dio" and "%Q" in data.values[0].get("link", "")]
+    named = [
+        name
+        for name, data in app.data.items()
+        if data.kind == "dio" and "%Q" in data.values[0].get("link", "")
+    ]
     links = {app.data[name].values[0]["link"] for name in named}
-    if lines != ["resetMotion()", *(f"{name}=false" for name in named)] or links != ({output} if output else set()):
-        raise unreadable(f"{app.folder}/stop.pgx", "it does not end the motion and switch the deposit off")
+    if lines != ["resetMotion()", *(f"{name}=false" for name in named)] or links != (
+        {output} if output else set()
+    ):
+        raise unreadable(
+            f"{app.folder}/stop.pgx", "it does not end the motion and switch the deposit off"
+        )
 
 
 def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, str], ...]) -> None:
@@ -115,20 +129,32 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
             if called is not None:
                 _follow(called, call[2], run, (*callers, here))
             else:
-                run.happens("call", str(call[1]).upper() if call[2] == "start" else f"{call[1]}:{call[2]}")
+                run.happens(
+                    "call", str(call[1]).upper() if call[2] == "start" else f"{call[1]}:{call[2]}"
+                )
         else:
             _other(app, line, run, where)
 
 
 def _load(
-    app: Application, alias: str, part: str, statements: Iterator[tuple[int, str]], run: _Run, where: str
+    app: Application,
+    alias: str,
+    part: str,
+    statements: Iterator[tuple[int, str]],
+    run: _Run,
+    where: str,
 ) -> None:
     """Loading a part stops the program where it fails; the robot must not deposit meanwhile."""
     rest = [next(statements, (0, ""))[1] for _ in range(3)]
     if not rest[0].startswith("popUpMsg(") or rest[1:] != ["return", "endIf"]:
         raise unreadable(where, "a part is loaded without stopping where it cannot be")
     if run.on or f"{app.folder}/{part}" not in run.found or alias not in app.libraries:
-        raise unreadable(where, Text("{} is loaded while depositing, is not there, or {} is not a library", part, alias))
+        raise unreadable(
+            where,
+            Text(
+                "{} is loaded while depositing, is not there, or {} is not a library", part, alias
+            ),
+        )
     run.loaded[app.folder, alias] = f"{app.folder}/{part}"
 
 
@@ -160,9 +186,19 @@ def _other(app: Application, line: str, run: _Run, where: str) -> None:
 
 def _link(app: Application, name: str, letter: str, where: str) -> str:
     data = app.data.get(name, Data("", ()))
-    if data.kind != "dio" or len(data.values) != 1 or f"%{letter}" not in data.values[0].get("link", ""):
-        raise unreadable(where, Text("{} is not a digital {} of the project", name,
-                                     Word("output" if letter == "Q" else "input")))
+    if (
+        data.kind != "dio"
+        or len(data.values) != 1
+        or f"%{letter}" not in data.values[0].get("link", "")
+    ):
+        raise unreadable(
+            where,
+            Text(
+                "{} is not a digital {} of the project",
+                name,
+                Word("output" if letter == "Q" else "input"),
+            ),
+        )
     return data.values[0]["link"]
 
 
@@ -184,11 +220,25 @@ def _move(app: Application, line: str, counter: Integers, run: _Run, where: str)
         data = app.data.get(name, Data("", ()))
         taken = _indices(index, counter)
         if data.kind != kind or taken is None or taken.min() < 0 or taken.max() >= len(data.values):
-            raise unreadable(where, Text("{} is not {} data of the project, or has not so many values", name, kind))
+            raise unreadable(
+                where,
+                Text("{} is not {} data of the project, or has not so many values", name, kind),
+            )
         rows.append(taken)
     run.moving = True
     run.moves += len(rows[0])
-    run.steps.append(Step(app, where, letter == "l", (names[0], names[1], names[2]), rows[0], rows[1], rows[2], run.on))
+    run.steps.append(
+        Step(
+            app,
+            where,
+            letter == "l",
+            (names[0], names[1], names[2]),
+            rows[0],
+            rows[1],
+            rows[2],
+            run.on,
+        )
+    )
 
 
 def _indices(index: str | None, counter: Integers) -> Integers | None:

@@ -55,7 +55,9 @@ _FRAME = " ".join(
 def project(name: str, programs: Sequence[str], libraries: dict[str, str]) -> bytes:
     """The project of an application. programs: their names; libraries: path of each alias."""
     files = "".join(f'    <Program file="{program}.pgx" />\n' for program in programs)
-    others = "".join(f'    <Library alias="{alias}" path="{path}" />\n' for alias, path in libraries.items())
+    others = "".join(
+        f'    <Library alias="{alias}" path="{path}" />\n' for alias, path in libraries.items()
+    )
     return _file(_PROJECT.format(programs=files, name=name, libraries=others))
 
 
@@ -66,7 +68,11 @@ def database(arrays: dict[str, tuple[str, list[str]]]) -> bytes:
 
 def _array(name: str, kind: str, values: list[str]) -> str:
     head = f'    <Data name="{name}" access="private" xsi:type="array" type="{kind}" size="{len(values)}">\n'
-    return head + "".join(f'      <Value key="{key}" {value} />\n' for key, value in enumerate(values)) + "    </Data>\n"
+    return (
+        head
+        + "".join(f'      <Value key="{key}" {value} />\n' for key, value in enumerate(values))
+        + "    </Data>\n"
+    )
 
 
 def code(name: str, lines: Iterable[str]) -> bytes:

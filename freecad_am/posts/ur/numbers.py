@@ -21,7 +21,9 @@ CYCLE, SHORTEST = 0.002, 0.001
 # mm/s: a path speed is written to 0.001 mm/s
 SLOWEST, FASTEST = 0.01, 1000.0
 # mm on the flange: places for the point whose way the blends of joint moves count on, the part being carried
-TOOL_POINTS = np.array([[0, 0, 0], [200, 0, 0], [-200, 0, 0], [0, 200, 0], [0, -200, 0], [0, 0, 200]], dtype=np.float64)
+TOOL_POINTS = np.array(
+    [[0, 0, 0], [200, 0, 0], [-200, 0, 0], [0, 200, 0], [0, -200, 0], [0, 0, 200]], dtype=np.float64
+)
 
 
 class Words:
@@ -35,7 +37,10 @@ class Words:
         self.tool_point, ways = _ways(program)
         radii = _radii(program, ways)
         counts = np.cumsum([0] + [len(run) for run in program.moves])
-        self.radii = {id(run): radii[start : start + len(run)] for run, start in zip(program.moves, counts.tolist())}
+        self.radii = {
+            id(run): radii[start : start + len(run)]
+            for run, start in zip(program.moves, counts.tolist())
+        }
 
     def __call__(self, moves: Moves) -> list[str]:
         """`t=..., r=...` of joint moves, `v=..., r=...` of straight ones."""
@@ -43,7 +48,9 @@ class Words:
             texts = [f"v={speed:.6f}" for speed in (_speeds(moves) * 0.001).tolist()]
         else:
             texts = [f"t={seconds:.6f}" for seconds in _times(moves).tolist()]
-        return [f"{word}, r={radius:.6f}" for word, radius in zip(texts, self.radii[id(moves)].tolist())]
+        return [
+            f"{word}, r={radius:.6f}" for word, radius in zip(texts, self.radii[id(moves)].tolist())
+        ]
 
 
 def _ways(program: Program) -> tuple[Array | None, Array]:
@@ -55,7 +62,9 @@ def _ways(program: Program) -> tuple[Array | None, Array]:
     at = flange[:, :3, :3] @ TOOL_POINTS.T + flange[:, :3, 3:]
     ways = np.linalg.norm(np.diff(at, axis=0, prepend=at[:1]), axis=1)
     through = ~np.concatenate([run.stops for run in moves])
-    shortest = np.minimum(ways, np.vstack([ways[1:], ways[-1:]]))[through].min(axis=0, initial=np.inf)
+    shortest = np.minimum(ways, np.vstack([ways[1:], ways[-1:]]))[through].min(
+        axis=0, initial=np.inf
+    )
     best = int(np.argmax(np.round(shortest, 6)))
     return TOOL_POINTS[best], ways[:, best]
 
@@ -70,12 +79,16 @@ def _radii(program: Program, ways: Array) -> Array:
     short = ~stops & (radii < MICRON)
     if program.blend and short.any():
         first = int(np.argmax(short))
-        run = moves[int(np.searchsorted(np.cumsum([len(run) for run in moves]), first, side="right"))]
+        run = moves[
+            int(np.searchsorted(np.cumsum([len(run) for run in moves]), first, side="right"))
+        ]
         raise InputError(
-            "BLEND_RADIUS", place(run),
+            "BLEND_RADIUS",
+            place(run),
             "the tool goes {:.3g} mm past a point that is not stopped at, too little for a blend radius, and the robot "
             "would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at "
-            "every point", adjacent[first],
+            "every point",
+            adjacent[first],
         )
     return radii
 
@@ -85,9 +98,12 @@ def _times(moves: Moves) -> Array:
     seconds = np.where(np.isfinite(moves.duration), moves.duration, 0.0)
     if moves.kind != RAPID and seconds.min() < CYCLE:
         raise InputError(
-            "MOVE_TIME", place(moves),
+            "MOVE_TIME",
+            place(moves),
             "a move takes {:.3g} ms, less than the {:.0f} ms in which the controller steps; use a larger "
-            "strategy.chord_error or a lower process.travel_speed", 1000.0 * seconds.min(), 1000.0 * CYCLE,
+            "strategy.chord_error or a lower process.travel_speed",
+            1000.0 * seconds.min(),
+            1000.0 * CYCLE,
         )
     times: Array = np.maximum(seconds, SHORTEST)
     return times
@@ -97,13 +113,19 @@ def _speeds(moves: Moves) -> Array:
     fits = (moves.speed >= SLOWEST) & (moves.speed <= FASTEST)
     if not fits.all():
         raise InputError(
-            "MOVE_SPEED", place(moves),
-            "{:.4g} mm/s cannot be written; use {} to {:.0f} mm/s", moves.speed[~fits][0], SLOWEST, FASTEST,
+            "MOVE_SPEED",
+            place(moves),
+            "{:.4g} mm/s cannot be written; use {} to {:.0f} mm/s",
+            moves.speed[~fits][0],
+            SLOWEST,
+            FASTEST,
         )
     return moves.speed
 
 
 def poses(position: Array, rotation: Array) -> Array:
     """x y z in m and the rotation vector in rad, (n, 6), as the text has them, of mm (n, 3) and (n, 3, 3)."""
-    values: Array = np.round(np.hstack([0.001 * position, ROTATION_VECTOR.numbers(rotation)]), DECIMALS) + 0.0
+    values: Array = (
+        np.round(np.hstack([0.001 * position, ROTATION_VECTOR.numbers(rotation)]), DECIMALS) + 0.0
+    )
     return values

@@ -75,12 +75,88 @@ LAST_ANALOGUE = 2
 
 # words of the language, and functions of its library that programs here or beside them use
 _RESERVED = frozenset(
-    ("AND", "BREAK", "CASE", "CONTINUE", "DEF", "DEFAULT", "ELIF", "ELSE", "END", "ENTER_CRITICAL", "EXIT_CRITICAL", "FALSE")
-    + ("GLOBAL", "HALT", "IF", "JOIN", "KILL", "LOCAL", "MOD", "NOT", "OR", "RETURN", "RUN", "SEC", "STRUCT", "SWITCH")
-    + ("THREAD", "TRUE", "WHILE", "XOR", "P", "PLATFORM", "SLEEP", "SYNC", "MOVEJ", "MOVEL", "MOVEP", "MOVEC", "SERVOJ")
-    + ("SERVOC", "SPEEDJ", "SPEEDL", "STOPJ", "STOPL", "SET_TCP", "SET_PAYLOAD", "POSE_TRANS", "POSE_INV", "POSE_ADD")
-    + ("GET_INVERSE_KIN", "GET_FORWARD_KIN", "POPUP", "TEXTMSG", "FREEDRIVE_MODE", "FORCE_MODE", "POWERDOWN")
-    + ("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "ATAN2", "SQRT", "POW", "LOG", "FLOOR", "CEIL", "NORM", "RANDOM")
+    (
+        "AND",
+        "BREAK",
+        "CASE",
+        "CONTINUE",
+        "DEF",
+        "DEFAULT",
+        "ELIF",
+        "ELSE",
+        "END",
+        "ENTER_CRITICAL",
+        "EXIT_CRITICAL",
+        "FALSE",
+    )
+    + (
+        "GLOBAL",
+        "HALT",
+        "IF",
+        "JOIN",
+        "KILL",
+        "LOCAL",
+        "MOD",
+        "NOT",
+        "OR",
+        "RETURN",
+        "RUN",
+        "SEC",
+        "STRUCT",
+        "SWITCH",
+    )
+    + (
+        "THREAD",
+        "TRUE",
+        "WHILE",
+        "XOR",
+        "P",
+        "PLATFORM",
+        "SLEEP",
+        "SYNC",
+        "MOVEJ",
+        "MOVEL",
+        "MOVEP",
+        "MOVEC",
+        "SERVOJ",
+    )
+    + (
+        "SERVOC",
+        "SPEEDJ",
+        "SPEEDL",
+        "STOPJ",
+        "STOPL",
+        "SET_TCP",
+        "SET_PAYLOAD",
+        "POSE_TRANS",
+        "POSE_INV",
+        "POSE_ADD",
+    )
+    + (
+        "GET_INVERSE_KIN",
+        "GET_FORWARD_KIN",
+        "POPUP",
+        "TEXTMSG",
+        "FREEDRIVE_MODE",
+        "FORCE_MODE",
+        "POWERDOWN",
+    )
+    + (
+        "SIN",
+        "COS",
+        "TAN",
+        "ASIN",
+        "ACOS",
+        "ATAN",
+        "ATAN2",
+        "SQRT",
+        "POW",
+        "LOG",
+        "FLOOR",
+        "CEIL",
+        "NORM",
+        "RANDOM",
+    )
 )
 NAMING = Naming(str, "[A-Za-z]", "a letter", longest=30, spare=4, prefix="am_", reserved=_RESERVED)
 _NO_END = 10**9
@@ -105,7 +181,11 @@ def write(program: Program) -> dict[str, bytes]:
     parts = packed(groups, program.max_points, _NO_END, whole)
     names = NAMING.parts(name, len(parts)) if len(parts) > 1 else []
     refuse_calls_of_own(program, {name, *names}, program_name)
-    remarks = [f"# {line}" for text in (*program.remarks, *_own_remarks(program, names)) for line in common.wrapped(text)]
+    remarks = [
+        f"# {line}"
+        for text in (*program.remarks, *_own_remarks(program, names))
+        for line in common.wrapped(text)
+    ]
     lines = [*remarks, *_frames(program, words.tool_point)]
     if not names:
         lines += _lines(parts[0])
@@ -122,18 +202,27 @@ def program_name(name: str, where: str) -> str:
 
 
 def refuse_setup(
-    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    motion: str,
+    setup: str,
+    external: tuple[str, ...] = (),
+    carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
-            "REMOTE_TCP", "program.motion",
+            "REMOTE_TCP",
+            "program.motion",
             "URScript moves a tool that the flange carries, at its speed; with the part on the robot the tool stands and the"
             " speed at the deposition point is another one at every point of the part, which no documented instruction of"
             " URScript holds; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post ur cannot write {}; use another post", setup)
+        raise InputError(
+            "UNSUPPORTED_SETUP",
+            "cell.setup",
+            "the post ur cannot write {}; use another post",
+            setup,
+        )
 
 
 def _refuse(program: Program) -> None:
@@ -146,22 +235,32 @@ def _refuse(program: Program) -> None:
     refuse_continuous(program)
     refuse_without_positions(program)
     if program.holds_part and any(run.flange is None for run in program.moves):
-        raise InputError("NO_POSITIONS", "program", "the program does not say where the flange is, which blends depend on; "
-                         "plan the joint path again")
+        raise InputError(
+            "NO_POSITIONS",
+            "program",
+            "the program does not say where the flange is, which blends depend on; "
+            "plan the joint path again",
+        )
     if not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
-            "DEPOSIT_OUTPUT", "program.deposit_output",
+            "DEPOSIT_OUTPUT",
+            "program.deposit_output",
             "digital outputs are 1 to {} (1 to 8 are digital_out[0] to [7], 9 to {} the configurable ones), not {}; use one "
             "of these",
-            LAST_PIN, LAST_PIN, program.deposit_output,
+            LAST_PIN,
+            LAST_PIN,
+            program.deposit_output,
         )
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_PIN:
             raise InputError(
-                "DEPOSIT_INPUT", "process.between_layers.input",
+                "DEPOSIT_INPUT",
+                "process.between_layers.input",
                 "digital inputs are 1 to {} (1 to 8 are digital_in[0] to [7], 9 to {} the configurable ones), not {}; use "
                 "one of these",
-                LAST_PIN, LAST_PIN, block.number,
+                LAST_PIN,
+                LAST_PIN,
+                block.number,
             )
 
 
@@ -192,9 +291,13 @@ def _pose(six: Six | None) -> str:
 
 def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, DepositOn):
-        return [] if program.dry_run else [_output(program.deposit_output, True), *_sleep(block.lead)]
+        return (
+            [] if program.dry_run else [_output(program.deposit_output, True), *_sleep(block.lead)]
+        )
     if isinstance(block, DepositOff):
-        return [] if program.dry_run else [*_sleep(block.lead), _output(program.deposit_output, False)]
+        return (
+            [] if program.dry_run else [*_sleep(block.lead), _output(program.deposit_output, False)]
+        )
     if isinstance(block, Schedule):
         return [f"write_output_integer_register({program.schedule_output}, {block.number})"]
     if isinstance(block, LayerStart):
@@ -239,7 +342,9 @@ def _motion(run: Run) -> list[str]:
     else:  # the controller's own arm finds the joints of the position, those next to the planned ones
         pattern = f"movej(get_inverse_kin({_SEEN}, {_JOINTS}), a=1.4, v=1.05, %s)"
         values = np.hstack([_seen(moves, part), _joints(moves, part)])
-    return [pattern % (*row, word) for row, word in zip(values.tolist(), run.words[part], strict=True)]
+    return [
+        pattern % (*row, word) for row, word in zip(values.tolist(), run.words[part], strict=True)
+    ]
 
 
 _SEEN = f"pose_trans(platform, p{_JOINTS})"

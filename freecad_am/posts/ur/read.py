@@ -58,7 +58,11 @@ class _Function:
 
 # of each move: pose, joints, time, speed, radius
 _COLUMNS = {
-    "pose": slice(0, 6), "joints": slice(6, 12), "time": slice(12, 13), "speed": slice(13, 14), "blend": slice(14, 15),
+    "pose": slice(0, 6),
+    "joints": slice(6, 12),
+    "time": slice(12, 13),
+    "speed": slice(13, 14),
+    "blend": slice(14, 15),
 }
 _WIDTH = 15
 _NONE = ("nan",) * 6
@@ -136,7 +140,9 @@ def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
     return title[1], main
 
 
-def _follow(name: str, function: _Function, known: dict[str, _Function], run: _Run, callers: tuple[str, ...]) -> None:
+def _follow(
+    name: str, function: _Function, known: dict[str, _Function], run: _Run, callers: tuple[str, ...]
+) -> None:
     """Carry out the lines of a function in order, and those of the functions of this script that it calls."""
     lines = iter(function.lines)
     known = {**known, **function.inside}
@@ -159,7 +165,9 @@ def _follow(name: str, function: _Function, known: dict[str, _Function], run: _R
             run.happens("input", _FIRST[given[1]] + float(given[2]))
         elif below := _BELOW.match(text):
             _loop(lines, where)
-            run.happens("below", 1.0 + float(below[1]), float(below[2]), digits=0.5 * 10.0 ** -len(below[3]))
+            run.happens(
+                "below", 1.0 + float(below[1]), float(below[2]), digits=0.5 * 10.0 ** -len(below[3])
+            )
         elif call := _CALL.match(text):
             if call[1] in (*callers, name):
                 raise unreadable(where, Text("{} calls itself", call[1]))
@@ -203,7 +211,10 @@ def _move(text: str, run: _Run, where: str) -> bool:
             run.platform = frame.groups()
         return True
     if not run.tcp or (found[0] == "nan") is bool(run.platform):
-        raise unreadable(where, "it moves without a tool, without the platform, or in joints where positions are given")
+        raise unreadable(
+            where,
+            "it moves without a tool, without the platform, or in joints where positions are given",
+        )
     values = [float(number) for number in found]
     if values[12] <= 0.0 or values[13] <= 0.0 or values[14] < 0.0:
         raise unreadable(where, "its time, speed or blend is none that is kept")
@@ -221,17 +232,34 @@ def _moves(run: _Run) -> ReadMoves:
     pose, joints, (duration, speed, radius) = values[:, :6], values[:, 6:12], values[:, 12:].T
     tool = np.broadcast_to(_poses(np.array([run.tcp], dtype=np.float64))[0], (len(values), 4, 4))
     moves = ReadMoves(
-        joints, half["joints"], duration, np.array(run.deposit, dtype=np.bool_), np.isfinite(speed), radius == 0.0,
-        tuple(run.events), speed=1000.0 * speed, speed_digits=1000.0 * half["speed"],
-        duration_digits=np.full(len(values), half["time"]), blend_radius=1000.0 * radius, tool=tool, lines=run.lines.read(),
+        joints,
+        half["joints"],
+        duration,
+        np.array(run.deposit, dtype=np.bool_),
+        np.isfinite(speed),
+        radius == 0.0,
+        tuple(run.events),
+        speed=1000.0 * speed,
+        speed_digits=1000.0 * half["speed"],
+        duration_digits=np.full(len(values), half["time"]),
+        blend_radius=1000.0 * radius,
+        tool=tool,
+        lines=run.lines.read(),
     )
     if not run.platform:
         return moves
     seen = _poses(pose)
     digits = max(half["pose"], 0.5 * 10.0 ** -_decimals((*run.tcp, *run.platform)))
     return dataclasses.replace(
-        moves, joints=None, digits=0.0, near=joints, near_digits=half["joints"], position=seen[:, :3, 3],
-        rotation=seen[:, :3, :3], position_digits=1000.0 * digits, rotation_digits=digits,
+        moves,
+        joints=None,
+        digits=0.0,
+        near=joints,
+        near_digits=half["joints"],
+        position=seen[:, :3, 3],
+        rotation=seen[:, :3, :3],
+        position_digits=1000.0 * digits,
+        rotation_digits=digits,
         frame=_poses(np.array([run.platform], dtype=np.float64))[0],
     )
 

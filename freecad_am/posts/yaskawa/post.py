@@ -69,7 +69,11 @@ NO_TRIGGER = "how an INFORM job switches an output ahead of a place was not conf
 refuse_process = refuse_no_process
 LAST_WEAVE = 255  # files of weaving conditions
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
-LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions
+LAST_GROUP, LAST_SCHEDULE, LAST_FILE = (
+    512,
+    255,
+    1000,
+)  # groups of eight outputs; files of arc conditions
 MOVE_LINE = re.compile(rb"MOV[JL] ")
 ON_CONTROLLER = on_controller(
     "Pulses per degree of the machine file are the controller's, and zero pulses the zero of its angles",
@@ -106,7 +110,11 @@ def write(program: Program) -> dict[str, bytes]:
     _refuse(program)
     words = _Words(program)
     groups = list(grouped(program, words, lambda block: _instructions(program, block)))
-    remarks = [line for text in (*program.remarks, *_own_remarks(program, words.off)) for line in _remark(text)]
+    remarks = [
+        line
+        for text in (*program.remarks, *_own_remarks(program, words.off))
+        for line in _remark(text)
+    ]
     meaning = [line for text in _meaning(program) for line in _remark(text)]
     most = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
     parts = packed(groups, min(program.max_points, most), most, continued(_remark, program.woven))
@@ -115,8 +123,13 @@ def write(program: Program) -> dict[str, bytes]:
         return {f"{name}.JBI": job(program, name, [*remarks, *meaning], parts[0])}
     names = NAMING.parts(name, len(parts))
     refuse_calls_of_own(program, {name, *names}, program_name)
-    header = [*remarks, *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts")]
-    files = {f"{name}.JBI": job(program, name, [*header, *(f"CALL JOB:{part}" for part in names)], [])}
+    header = [
+        *remarks,
+        *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts"),
+    ]
+    files = {
+        f"{name}.JBI": job(program, name, [*header, *(f"CALL JOB:{part}" for part in names)], [])
+    }
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = [*_remark(f"part {number} of {len(parts)}"), *meaning]
         files[f"{part}.JBI"] = job(program, part, head, pieces)
@@ -129,17 +142,26 @@ def program_name(name: str, where: str) -> str:
 
 
 def refuse_setup(
-    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    motion: str,
+    setup: str,
+    external: tuple[str, ...] = (),
+    carried: tuple[float, ...] | None = None,
 ) -> None:
     """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
-            "REMOTE_TCP", "program.motion",
+            "REMOTE_TCP",
+            "program.motion",
             "linear moves at the speed of a fixed nozzle over a part on the robot need the controller's external reference"
             " point, whose instruction is not documented well enough to write it; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post yaskawa cannot write {}; use another post", setup)
+        raise InputError(
+            "UNSUPPORTED_SETUP",
+            "cell.setup",
+            "the post yaskawa cannot write {}; use another post",
+            setup,
+        )
     if external:
         _refuse_coordinated(motion, external)
 
@@ -148,12 +170,18 @@ def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
     """Raises InputError COORDINATED_MOTION for what cannot be said with external axes of these kinds."""
     if motion != "cartesian":
         return
-    why = "of a robot on a track have the base axis go along, and whether their speed counts its way"
+    why = (
+        "of a robot on a track have the base axis go along, and whether their speed counts its way"
+    )
     if ROTARY in external:
-        why = "over a part on a positioner are coordinated motion (SMOVL), and what their speed is of"
+        why = (
+            "over a part on a positioner are coordinated motion (SMOVL), and what their speed is of"
+        )
     raise InputError(
-        "COORDINATED_MOTION", "program.motion",
-        "linear moves {} was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it", Word(why),
+        "COORDINATED_MOTION",
+        "program.motion",
+        "linear moves {} was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it",
+        Word(why),
     )
 
 
@@ -163,11 +191,18 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "yaskawa", axes)
     if program.external_kinds:
         _refuse_coordinated(program.motion, program.external_kinds)
-        refuse_external(program, MOST_EXTERNAL, r"ST[1-9]\d?", "the name of its station, such as ST1")
+        refuse_external(
+            program, MOST_EXTERNAL, r"ST[1-9]\d?", "the name of its station, such as ST1"
+        )
         refuse_named_track(program, Text("the base axis {} of the robot", BASE))
         if program.first_external != 1:
-            raise InputError("UNSUPPORTED_AXES", "program.axes.first", "a position of a station or of base axes has a value "
-                             "for each of them from the first one on; use 1, not {}", program.first_external)
+            raise InputError(
+                "UNSUPPORTED_AXES",
+                "program.axes.first",
+                "a position of a station or of base axes has a value "
+                "for each of them from the first one on; use 1, not {}",
+                program.first_external,
+            )
     refuse_wire(program, NO_WIRE)
     refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, 0, NO_ANALOGUE)
@@ -175,14 +210,23 @@ def _refuse(program: Program) -> None:
     refuse_weave(program, LAST_WEAVE)
     refuse_continuous(program)
     if len(program.pulses_per_degree) != axes:
-        raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
+        raise InputError(
+            "NO_PULSES",
+            "cell.machine",
+            "the machine file has no controller.pulses_per_degree; add them",
+        )
     if program.motion == "cartesian" and program.speed_unit not in UNITS:
-        raise InputError("NO_SPEED_UNIT", "cell.machine", "the machine file has no controller.speed_unit; add it")
+        raise InputError(
+            "NO_SPEED_UNIT", "cell.machine", "the machine file has no controller.speed_unit; add it"
+        )
     refuse_without_speeds(program, axes)
     if not program.dry_run and program.deposit_output > OUTPUTS:
         raise InputError(
-            "DEPOSIT_OUTPUT", "program.deposit_output",
-            "digital outputs are 1 to {}, not {}; use one of these", OUTPUTS, program.deposit_output,
+            "DEPOSIT_OUTPUT",
+            "program.deposit_output",
+            "digital outputs are 1 to {}, not {}; use one of these",
+            OUTPUTS,
+            program.deposit_output,
         )
 
 
@@ -196,7 +240,9 @@ def _own_remarks(program: Program, off: float) -> Iterator[str]:
 def _meaning(program: Program) -> Iterator[str]:
     """What the numbers of a job mean, which its own words do not tell."""
     external = [f"E{number + 1}" for number in range(len(program.external_kinds))]
-    for axis, slides, count in zip([*AXES, *external], program.slides.tolist(), program.pulses_per_degree, strict=True):
+    for axis, slides, count in zip(
+        [*AXES, *external], program.slides.tolist(), program.pulses_per_degree, strict=True
+    ):
         yield f"pulses/{'mm' if slides else 'deg'} {axis} {count!r}"
     if program.motion == "cartesian":
         yield f"V in {program.speed_unit}"
@@ -225,7 +271,9 @@ class _Words:
         if moves.interpolation == LINEAR_MOVE:
             speeds = _path_speeds(self.program, moves)
         else:
-            percent = _percent(self.program, moves, np.diff(shown, axis=0, prepend=start), self.before is None)
+            percent = _percent(
+                self.program, moves, np.diff(shown, axis=0, prepend=start), self.before is None
+            )
             speeds = [f"VJ={share:.2f}" for share in percent.tolist()]
             if moves.kind == DEPOSIT:
                 self.off = max(self.off, float(np.abs(np.round(percent, 2) / percent - 1.0).max()))
@@ -246,9 +294,13 @@ def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array
         wrong[0] = False
     if wrong.any():
         raise InputError(
-            "JOINT_SPEED", place(moves),
+            "JOINT_SPEED",
+            place(moves),
             "a move would need {:.4g} % of the largest joint speed, which is programmed in steps of {} %; use another "
-            "speed, so that it is {} to 100 %", percent[wrong][0], STEP_PERCENT, LEAST_PERCENT,
+            "speed, so that it is {} to 100 %",
+            percent[wrong][0],
+            STEP_PERCENT,
+            LEAST_PERCENT,
         )
     percent = np.where(share > 0.0, np.clip(percent, STEP_PERCENT, 100.0), 100.0)
     if first:
@@ -262,9 +314,13 @@ def _path_speeds(program: Program, moves: Moves) -> list[str]:
     fits = (moves.speed >= least) & (moves.speed <= FASTEST)
     if not fits.all():
         raise InputError(
-            "MOVE_SPEED", place(moves),
-            "{:.4g} mm/s cannot be written in {}; use {:.3g} to {:.0f} mm/s", moves.speed[~fits][0], program.speed_unit,
-            least, FASTEST,
+            "MOVE_SPEED",
+            place(moves),
+            "{:.4g} mm/s cannot be written in {}; use {:.3g} to {:.0f} mm/s",
+            moves.speed[~fits][0],
+            program.speed_unit,
+            least,
+            FASTEST,
         )
     return [f"V={speed:.{decimals}f}" for speed in (moves.speed / unit).tolist()]
 
@@ -273,7 +329,10 @@ def _instructions(program: Program, block: Block) -> list[str]:
     output = f"DOUT OT#({program.deposit_output})"
     if isinstance(block, (DepositOn, DepositOff)):
         word, arc = ("ON", "ARCON ASF") if isinstance(block, DepositOn) else ("OFF", "ARCOF AEF")
-        lines = [f"{output} {word}" if block.schedule is None else f"{arc}#({block.schedule})", *_timer(block.lead)]
+        lines = [
+            f"{output} {word}" if block.schedule is None else f"{arc}#({block.schedule})",
+            *_timer(block.lead),
+        ]
         return [] if program.dry_run else lines if word == "ON" else [*lines[1:], lines[0]]
     if isinstance(block, Schedule):
         return [f"DOUT OG#({program.schedule_output}) {block.number}"]

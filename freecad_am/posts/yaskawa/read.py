@@ -24,10 +24,18 @@ _NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
 _COUNT = re.compile(r"///NPOS (\d+),(\d+),(\d+),0,0,0$")
 _TOOL = re.compile(r"///TOOL (\d+)$")
 _POINT = re.compile(r"C(\d{5})=" + ",".join([r"(-?\d+)"] * 6) + "$")
-_EXTERNAL = {"BC": re.compile(r"BC(\d{5})=(-?\d+)$"), "EC": re.compile(r"EC(\d{5})=(-?\d+(?:,-?\d+){0,5})$")}
+_EXTERNAL = {
+    "BC": re.compile(r"BC(\d{5})=(-?\d+)$"),
+    "EC": re.compile(r"EC(\d{5})=(-?\d+(?:,-?\d+){0,5})$"),
+}
 _GROUP = re.compile(r"///GROUP1 RB1(,BS1)?(?:,(ST\d+))?$")
 _INST: tuple[str | re.Pattern[str], ...] = (
-    r"//INST", r"///DATE \d{4}/\d\d/\d\d \d\d:\d\d", r"///COMM [ -~]{0,32}", r"///ATTR SC,RW", _GROUP, r"NOP",
+    r"//INST",
+    r"///DATE \d{4}/\d\d/\d\d \d\d:\d\d",
+    r"///COMM [ -~]{0,32}",
+    r"///ATTR SC,RW",
+    _GROUP,
+    r"NOP",
 )
 _MOVJ = re.compile(r"MOVJ C(\d{5})(?: BC(\d{5}))?(?: EC(\d{5}))? VJ=(\d+\.(\d+)) PL=([0-8])$")
 _MOVL = re.compile(r"MOVL C(\d{5})()() V=(\d+(?:\.(\d+))?) PL=([0-8])$")
@@ -106,7 +114,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     called = {call[1] for job in jobs.values() for line in job.lines if (call := _CALL.match(line))}
     main = [name for name in jobs if name not in called]
     if len(main) != 1:
-        raise unreadable("program", Text("{} jobs are called by none of the others, expected one", len(main)))
+        raise unreadable(
+            "program", Text("{} jobs are called by none of the others, expected one", len(main))
+        )
     run = _Run()
     _follow(main[0], jobs, run, ())
     if not run.deposit:
@@ -117,9 +127,14 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 def _moves(run: _Run) -> ReadMoves:
     table = np.array(run.moves).reshape(-1, _WORDS + run.axes)
     names = _axes(run.axes)
-    per_unit, slides = np.array([run.per_unit[axis] for axis in names]), np.array([axis in run.slides for axis in names])
+    per_unit, slides = (
+        np.array([run.per_unit[axis] for axis in names]),
+        np.array([axis in run.slides for axis in names]),
+    )
     pulses = table[:, _WORDS:]
-    if slides.any():  # the track stands before the station in a job, wherever its axis is among them
+    if (
+        slides.any()
+    ):  # the track stands before the station in a job, wherever its axis is among them
         track, at = pulses[:, _OWN], int(np.argmax(slides))
         pulses = np.insert(np.delete(pulses, _OWN, axis=1), at, track, axis=1)
     values, per_mm = pulses / per_unit, float(np.abs(per_unit[slides]).min(initial=np.inf))
@@ -128,10 +143,21 @@ def _moves(run: _Run) -> ReadMoves:
     unit = _MM_PER_S.get(run.unit, np.nan)
     half = [0.5 * 10.0**-decimals for decimals in run.decimals]
     return ReadMoves(
-        np.where(slides, values, np.radians(values)), np.radians(0.5 / np.abs(per_unit)), np.full(len(table), np.nan),
-        np.array(run.deposit, dtype=np.bool_), linear, level == 0.0, tuple(run.events), speed=path * unit,
-        speed_digits=half[1] * unit if linear.any() else 0.0, share=0.01 * share, share_digits=0.01 * half[0], level=level,
-        tool_frame=tool, unit=run.external[1] if run.external else "", linear_digits=0.5 / per_mm,
+        np.where(slides, values, np.radians(values)),
+        np.radians(0.5 / np.abs(per_unit)),
+        np.full(len(table), np.nan),
+        np.array(run.deposit, dtype=np.bool_),
+        linear,
+        level == 0.0,
+        tuple(run.events),
+        speed=path * unit,
+        speed_digits=half[1] * unit if linear.any() else 0.0,
+        share=0.01 * share,
+        share_digits=0.01 * half[0],
+        level=level,
+        tool_frame=tool,
+        unit=run.external[1] if run.external else "",
+        linear_digits=0.5 / per_mm,
         lines=run.lines.read(),
     )
 
@@ -142,8 +168,15 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         lines = content.decode("ascii").split("\r\n")
     except UnicodeDecodeError:
         raise unreadable(file, "it has other characters than ASCII") from None
-    name, count = (_NAME.match(lines[1]), _COUNT.match(lines[3])) if len(lines) > 3 else (None, None)
-    if name is None or count is None or (lines[0], lines[2]) != ("/JOB", "//POS") or lines[-2:] != ["END", ""]:
+    name, count = (
+        (_NAME.match(lines[1]), _COUNT.match(lines[3])) if len(lines) > 3 else (None, None)
+    )
+    if (
+        name is None
+        or count is None
+        or (lines[0], lines[2]) != ("/JOB", "//POS")
+        or lines[-2:] != ["END", ""]
+    ):
         raise unreadable(file, "it is not a job from /JOB to END")
     points, at, tool = int(count[1]), 4, float("nan")
     values = np.zeros((points, 6))
@@ -155,18 +188,30 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         for number, line in enumerate(lines[at : at + points]):
             point = _POINT.match(line)
             if point is None or int(point[1]) != number:
-                raise unreadable(f"{file} line {at + number + 1}", Text("{!r} is not position {}", line, number))
+                raise unreadable(
+                    f"{file} line {at + number + 1}", Text("{!r} is not position {}", line, number)
+                )
             values[number] = [float(value) for value in point.groups()[1:]]
         at += points
     counts = {letters: int(number) for letters, number in zip(_EXTERNAL, count.groups()[1:])}
     for letters, external in counts.items():
         if external not in (0, points):
-            raise unreadable(f"{file} line 4", "not every position has one of the external axes, or these are alone")
-        values = np.hstack([values, _external_pulses(file, letters, lines[at : at + external], at)]) if external else values
+            raise unreadable(
+                f"{file} line 4",
+                "not every position has one of the external axes, or these are alone",
+            )
+        values = (
+            np.hstack([values, _external_pulses(file, letters, lines[at : at + external], at)])
+            if external
+            else values
+        )
         at += external
     for number, pattern in enumerate(_INST):
         if at + number >= len(lines) or not re.fullmatch(pattern, lines[at + number]):
-            raise unreadable(f"{file} line {at + number + 1}", "the instructions do not begin as those of a robot's job do")
+            raise unreadable(
+                f"{file} line {at + number + 1}",
+                "the instructions do not begin as those of a robot's job do",
+            )
     first = at + len(_INST)
     group = _GROUP.match(lines[first - 2])
     track, station = (bool(group[1]), group[2] or "") if group else (False, "")
@@ -180,8 +225,15 @@ def _external_pulses(file: str, letters: str, lines: list[str], at: int) -> Arra
     rows: list[list[float]] = []
     for number, line in enumerate(lines):
         point = _EXTERNAL[letters].match(line)
-        if point is None or int(point[1]) != number or (rows and len(rows[0]) != point[2].count(",") + 1):
-            raise unreadable(f"{file} line {at + number + 1}", Text("{!r} is not position {} of {}", line, number, letters))
+        if (
+            point is None
+            or int(point[1]) != number
+            or (rows and len(rows[0]) != point[2].count(",") + 1)
+        ):
+            raise unreadable(
+                f"{file} line {at + number + 1}",
+                Text("{!r} is not position {} of {}", line, number, letters),
+            )
         rows.append([float(value) for value in point[2].split(",")])
     return np.array(rows)
 
@@ -197,10 +249,20 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
     if name in callers:
         raise unreadable(job.file, "it calls itself")
     units = [ratio[1].split() for line in job.lines if (ratio := _PER_UNIT.match(line))]
-    named, slides = sorted(axis for _, axis in units), [axis for unit, axis in units if unit == "mm"]
-    if len(job.points) and (named != sorted(_axes(job.points.shape[1])) or len(slides) != job.track):
-        raise unreadable(job.file, "it does not say how many pulses there are to a degree of each axis, a mm of a track")
-    if any(_MOVL.match(line) for line in job.lines) and not any(_UNIT.match(line) for line in job.lines):
+    named, slides = (
+        sorted(axis for _, axis in units),
+        [axis for unit, axis in units if unit == "mm"],
+    )
+    if len(job.points) and (
+        named != sorted(_axes(job.points.shape[1])) or len(slides) != job.track
+    ):
+        raise unreadable(
+            job.file,
+            "it does not say how many pulses there are to a degree of each axis, a mm of a track",
+        )
+    if any(_MOVL.match(line) for line in job.lines) and not any(
+        _UNIT.match(line) for line in job.lines
+    ):
         raise unreadable(job.file, "it does not say what unit V has")
     for number, text in enumerate(job.lines, job.first):
         where = f"{job.file} line {number}"
@@ -246,7 +308,10 @@ def _remark(text: str, run: _Run, where: str) -> None:
         run.happens("layer", float(layer[1]))
     elif ratio := _PER_UNIT.match(text):
         of, axis = ratio[1].split()
-        if run.per_unit.setdefault(axis, float(ratio[2])) != float(ratio[2]) or float(ratio[2]) == 0.0:
+        if (
+            run.per_unit.setdefault(axis, float(ratio[2])) != float(ratio[2])
+            or float(ratio[2]) == 0.0
+        ):
             raise unreadable(where, Text("the pulses per {} of {} differ, or are none", of, axis))
         run.slides |= {axis} if of == "mm" else set()
     elif unit := _UNIT.match(text):
@@ -263,9 +328,14 @@ def _numbers(move: re.Match[str]) -> tuple[str | None, str | None]:
 def _move(job: _Job, text: str, run: _Run, where: str) -> None:
     joint, line = _MOVJ.match(text), _MOVL.match(text)
     move = joint or line
-    if move is None or int(move[1]) >= len(job.points) or _numbers(move) != (
-            move[1] if job.track else None, move[1] if job.station else None):
-        raise unreadable(where, Text("the move {!r} is not understood, or its position is not there", text))
+    if (
+        move is None
+        or int(move[1]) >= len(job.points)
+        or _numbers(move) != (move[1] if job.track else None, move[1] if job.station else None)
+    ):
+        raise unreadable(
+            where, Text("the move {!r} is not understood, or its position is not there", text)
+        )
     value = float(move[4])
     if value <= 0.0 or (joint and value > 100.0):
         raise unreadable(where, Text("the speed {} is none", move[4]))

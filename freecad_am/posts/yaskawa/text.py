@@ -29,11 +29,16 @@ def job(program: Program, name: str, head: Sequence[str], pieces: Sequence[Piece
     texts = [pulses(program, run.moves.joints[run.start : run.stop]) for run in runs]
     rows = np.concatenate(texts) if texts else np.zeros((0, len(program.slides)), dtype=np.int64)
     turning = ~program.slides[len(AXES) :]
-    columns = {"C": rows[:, : len(AXES)], "BC": rows[:, program.slides], "EC": rows[:, len(AXES) :][:, turning]}
+    columns = {
+        "C": rows[:, : len(AXES)],
+        "BC": rows[:, program.slides],
+        "EC": rows[:, len(AXES) :][:, turning],
+    }
     columns = {letters: values for letters, values in columns.items() if values.size}
     positions = [f"///TOOL {program.tool_frame}", "///POSTYPE PULSE", "///PULSE"] if columns else []
     positions += [
-        f"{letters}{number:05d}={','.join(map(str, row))}" for letters, values in columns.items()
+        f"{letters}{number:05d}={','.join(map(str, row))}"
+        for letters, values in columns.items()
         for number, row in enumerate(values.tolist())
     ]
     lines, point = ["NOP", *head], 0
@@ -47,7 +52,13 @@ def job(program: Program, name: str, head: Sequence[str], pieces: Sequence[Piece
             point += len(piece)
         else:
             lines += piece
-    group = ",".join(["///GROUP1 RB1", *([BASE] if program.on_track else []), *([program.unit] if program.unit else [])])
+    group = ",".join(
+        [
+            "///GROUP1 RB1",
+            *([BASE] if program.on_track else []),
+            *([program.unit] if program.unit else []),
+        ]
+    )
     count = ",".join(str(len(columns.get(letters, ()))) for letters in ("C", "BC", "EC"))
     text = [
         "/JOB", f"//NAME {name}", "//POS", f"///NPOS {count},0,0,0", *positions, "//INST",

@@ -25,7 +25,6 @@ _UNIT = 32767  # of a component of a direction
 _ROUND = 1e-9
 
 
-
 @dataclass(frozen=True, eq=False)
 class Column:
     """Values (k,) of the rows that are shown, NaN where there is none."""
@@ -57,7 +56,9 @@ class Shown:
         """Of each stretch of rapids and of each bead: its layer, bead, the first of the rows shown, whether it is laid."""
         motion, starts = self.motion, _starts(self.motion)
         first = np.searchsorted(self.rows, starts)
-        table = np.column_stack((motion.layer[starts], motion.bead[starts], first, motion.deposit[starts]))
+        table = np.column_stack(
+            (motion.layer[starts], motion.bead[starts], first, motion.deposit[starts])
+        )
         found: list[list[int]] = table.astype(int).tolist()
         return found
 
@@ -68,7 +69,8 @@ class Shown:
         ends = np.append(starts[1:], len(motion)) - 1
         return {
             (int(motion.layer[start]), int(motion.bead[start])): (int(start), int(end))
-            for start, end in zip(starts, ends) if motion.deposit[start]
+            for start, end in zip(starts, ends)
+            if motion.deposit[start]
         }
 
     def row_of(self, layer: int | None, bead: int | None, point: int | None) -> int | None:
@@ -165,7 +167,9 @@ def packed(of: Shown, into: Bytes) -> dict[str, Any]:
     low, step = of.box
     rows, motion = of.rows, of.motion
     return {
-        "rows": len(rows), "low": low.tolist(), "step": step,
+        "rows": len(rows),
+        "low": low.tolist(),
+        "step": step,
         "position": into.add(np.rint((motion.position[rows] - low) / step), "u2"),
         "build": into.add(np.rint(motion.build[rows] * _UNIT), "i2"),
         "tool": into.add(np.rint(motion.tool[rows] * _UNIT), "i2"),
@@ -173,7 +177,9 @@ def packed(of: Shown, into: Bytes) -> dict[str, Any]:
         "time": into.add(of.times, "f4"),
         "point": into.add(motion.point[rows], "u4"),
         "blocks": of.blocks(),
-        "columns": [{**_column(one, into), **_coloured(one, _deposited(motion, rows))} for one in of.columns],
+        "columns": [
+            {**_column(one, into), **_coloured(one, _deposited(motion, rows))} for one in of.columns
+        ],
         "axes": [_column(one, into) for one in of.axes],
     }
 
@@ -193,9 +199,19 @@ def _coloured(column: Column, deposited: Mask) -> dict[str, float]:
 
 def _column(column: Column, into: Bytes) -> dict[str, Any]:
     known = np.isfinite(column.values)
-    low, high = (float(column.values[known].min()), float(column.values[known].max())) if known.any() else (0.0, 0.0)
+    low, high = (
+        (float(column.values[known].min()), float(column.values[known].max()))
+        if known.any()
+        else (0.0, 0.0)
+    )
     if high - low <= _ROUND * max(1.0, abs(high)):
         high = low
     step = (high - low) / STEPS if high > low else 1.0
     whole = np.where(known, np.rint((np.where(known, column.values, low) - low) / step), NONE)
-    return {"name": column.name, "unit": column.unit, "low": low, "high": high, "values": into.add(whole, "u2")}
+    return {
+        "name": column.name,
+        "unit": column.unit,
+        "low": low,
+        "high": high,
+        "values": into.add(whole, "u2"),
+    }

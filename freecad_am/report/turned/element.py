@@ -94,7 +94,9 @@ def policy() -> str:
 def _body(body: Body, every: int, into: Bytes) -> dict[str, Any]:
     """A body as bytes, of large ones each so many-th triangle."""
     return {
-        "name": body.name, "vertices": into.add(body.vertices, "f4"), "triangles": into.add(body.triangles[::every], "u4"),
+        "name": body.name,
+        "vertices": into.add(body.vertices, "f4"),
+        "triangles": into.add(body.triangles[::every], "u4"),
     }
 
 

@@ -33,7 +33,9 @@ def distance(one, other):
 def test_rods_are_nearer_than_a_gap_where_projections_say_so():
     chance = np.random.default_rng(15)
     count = 1200
-    one = PlacedCylinders(chance.uniform(-150, 150, (count, 3)), unit(chance.normal(size=(count, 3))), *FIRST)
+    one = PlacedCylinders(
+        chance.uniform(-150, 150, (count, 3)), unit(chance.normal(size=(count, 3))), *FIRST
+    )
     axis = unit(chance.normal(size=(count, 3)))
     axis[:200] = one.axis[:200]  # side by side
     axis[200:300] = -one.axis[200:300]
@@ -52,7 +54,11 @@ def test_faces_and_sides_are_where_analysis_says():
     """Side by side, end to end, and one's end above the other's side."""
     up, ahead = np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]])
     post = PlacedCylinders(np.zeros((1, 3)), up, 100.0, 20.0)
-    beside, above, across = ([50.0, 0.0, 30.0], up, 20.0), ([5.0, 5.0, 112.0], up, 12.0), ([-10.0, 3.0, 128.0], ahead, 18.0)
+    beside, above, across = (
+        ([50.0, 0.0, 30.0], up, 20.0),
+        ([5.0, 5.0, 112.0], up, 12.0),
+        ([-10.0, 3.0, 128.0], ahead, 18.0),
+    )
     for start, axis, gap in (beside, above, across):
         other = PlacedCylinders(np.array([start]), axis, 40.0, 10.0)
         assert nearer(post, other, gap + 1e-3)[0] and not nearer(post, other, gap - 1e-3)[0], start

@@ -18,7 +18,9 @@ def depth(frustum, points, axis):
     """How far outside points (k, 3) are: a convex function of the place, negative inside."""
     x = (points * axis).sum(axis=-1)
     side = np.linalg.norm(points - x[..., None] * axis, axis=-1)
-    return np.maximum(side - frustum.radius - frustum.slope * x, np.maximum(frustum.low - x, x - frustum.high))
+    return np.maximum(
+        side - frustum.radius - frustum.slope * x, np.maximum(frustum.low - x, x - frustum.high)
+    )
 
 
 def least(function, count):
@@ -49,10 +51,16 @@ def test_as_by_convex_minimisation(kind, seed):
     rng = np.random.default_rng(seed)
     frustum = Frustum(rng.uniform(0, 2), rng.uniform(0, 1.5), rng.uniform(0, 3), rng.uniform(4, 20))
     axis = unit(rng.normal(size=(200, 3)))
-    near = axis * rng.uniform(0, frustum.high, (200, 1)) + 0.4 * frustum.reach * rng.normal(size=(200, 3))
-    corners = near[:, None] + rng.normal(size=(200, kind, 3)) * frustum.reach * rng.choice([0.1, 0.7, 4], (200, 1, 1))
+    near = axis * rng.uniform(0, frustum.high, (200, 1)) + 0.4 * frustum.reach * rng.normal(
+        size=(200, 3)
+    )
+    corners = near[:, None] + rng.normal(size=(200, kind, 3)) * frustum.reach * rng.choice(
+        [0.1, 0.7, 4], (200, 1, 1)
+    )
     meets = (
-        frustum.meets_segments(corners[:, 0], corners[:, 1], axis) if kind == 2 else frustum.meets_triangles(corners, axis)
+        frustum.meets_segments(corners[:, 0], corners[:, 1], axis)
+        if kind == 2
+        else frustum.meets_triangles(corners, axis)
     )
     truth = least_depth(frustum, corners, axis)
     clear_cut = np.abs(truth) > 1e-6
@@ -98,7 +106,10 @@ def test_the_tree_finds_what_a_look_at_every_one_finds(seed):
         found = Obstacles(corners, since).touched(frustum, tip, axis, moment)
         wanted = np.zeros(300, dtype=bool)
         for k in range(300):
-            offset, axes = corners[since < moment[k]] - tip[k], np.tile(axis[k], ((since < moment[k]).sum(), 1))
+            offset, axes = (
+                corners[since < moment[k]] - tip[k],
+                np.tile(axis[k], ((since < moment[k]).sum(), 1)),
+            )
             if kind == 3:
                 wanted[k] = frustum.meets_triangles(offset, axes).any()
             else:

@@ -17,25 +17,38 @@ def rings(profile, sides=90, name="ring"):
     """A closed body of revolution about z: a polygon of (radius, height), counter-clockwise, turned around."""
     angle = 2 * np.pi * np.arange(sides) / sides
     count = len(profile)
-    vertices = np.concatenate([np.c_[r * np.cos(angle), r * np.sin(angle), np.full(sides, z)] for r, z in profile])
+    vertices = np.concatenate(
+        [np.c_[r * np.cos(angle), r * np.sin(angle), np.full(sides, z)] for r, z in profile]
+    )
     one, two = np.arange(sides), np.roll(np.arange(sides), -1)
     faces = []
     for k in range(count):
         a, b = k * sides, (k + 1) % count * sides
-        faces += [np.stack([a + one, a + two, b + two], 1), np.stack([a + one, b + two, b + one], 1)]
+        faces += [
+            np.stack([a + one, a + two, b + two], 1),
+            np.stack([a + one, b + two, b + one], 1),
+        ]
     return Body(name, vertices, np.concatenate(faces))
 
 
 def cube(half, centre=(0.0, 0.0, 0.0)):
-    vertices = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float) + centre
+    vertices = (
+        half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
+        + centre
+    )
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return Body("cube", vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]))
+    return Body(
+        "cube", vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    )
 
 
 def together(*bodies):
     begin = np.cumsum([0, *(len(body.vertices) for body in bodies)])
-    return Body("all", np.concatenate([body.vertices for body in bodies]),
-                np.concatenate([body.triangles + b for body, b in zip(bodies, begin)]))
+    return Body(
+        "all",
+        np.concatenate([body.vertices for body in bodies]),
+        np.concatenate([body.triangles + b for body, b in zip(bodies, begin)]),
+    )
 
 
 def pipe(inner, outer, half):
@@ -44,7 +57,9 @@ def pipe(inner, outer, half):
 
 def touched(body, tip, axis=UP, nozzle=NOZZLE):
     tip = np.atleast_2d(np.asarray(tip, dtype=float))
-    return of_bodies([body], tip, nozzle.reach).touched(nozzle, tip, np.broadcast_to(axis, tip.shape))
+    return of_bodies([body], tip, nozzle.reach).touched(
+        nozzle, tip, np.broadcast_to(axis, tip.shape)
+    )
 
 
 def test_points_in_a_thick_pipe_and_in_overlapping_and_nested_cubes():
@@ -54,14 +69,18 @@ def test_points_in_a_thick_pipe_and_in_overlapping_and_nested_cubes():
     turn = np.mod(np.arctan2(points[:, 1], points[:, 0]), 2 * np.pi / sides) - np.pi / sides
     radius = np.hypot(points[:, 0], points[:, 1]) * np.cos(turn) / np.cos(np.pi / sides)
     within = (radius > 20) & (radius < 50) & (np.abs(points[:, 2]) < 40)
-    assert (inside_of(pipe(20.0, 50.0, 40.0)).holds(points) == within).all() and 1000 < within.sum() < 19_000
+    assert (
+        inside_of(pipe(20.0, 50.0, 40.0)).holds(points) == within
+    ).all() and 1000 < within.sum() < 19_000
 
     big = np.abs(points).max(axis=1) < 50
     shifted = np.abs(points - 20).max(axis=1) < 30
     small = np.abs(points).max(axis=1) < 20
     both = together(cube(50.0), cube(30.0, (20.0, 20.0, 20.0)))
     assert (inside_of(both).holds(points) == (big | shifted)).all()
-    hollow = together(cube(50.0), Body("cavity", cube(20.0).vertices, cube(20.0).triangles[:, ::-1]))
+    hollow = together(
+        cube(50.0), Body("cavity", cube(20.0).vertices, cube(20.0).triangles[:, ::-1])
+    )
     assert (inside_of(hollow).holds(points) == (big & ~small)).all()
 
 
@@ -73,19 +92,40 @@ def test_turned_over_triangles_and_bare_triangles_do_not_matter():
     turned[[1, 4, 7]] = turned[[1, 4, 7], ::-1]
     loose = Body("loose", solid.corners().reshape(-1, 3), np.arange(36).reshape(-1, 3))
     truth = np.abs(points).max(axis=1) < 50
-    for body in (Body("turned", solid.vertices, turned), Body("over", solid.vertices, solid.triangles[:, ::-1]), loose):
+    for body in (
+        Body("turned", solid.vertices, turned),
+        Body("over", solid.vertices, solid.triangles[:, ::-1]),
+        loose,
+    ):
         assert (inside_of(body).holds(points) == truth).all()
 
 
-@pytest.mark.parametrize("place, inside", [((0, 0, -30), True), ((150, -150, 100), True), ((0, 0, 200.2), False),
-                                           ((0, 0, -261), False), ((223, 0, 0), False), ((210, 0, 0), True)])
+@pytest.mark.parametrize(
+    "place, inside",
+    [
+        ((0, 0, -30), True),
+        ((150, -150, 100), True),
+        ((0, 0, 200.2), False),
+        ((0, 0, -261), False),
+        ((223, 0, 0), False),
+        ((210, 0, 0), True),
+    ],
+)
 def test_a_nozzle_inside_a_big_cube_touches_it(place, inside):
     assert touched(cube(200.0), place).item() == inside
 
 
 def test_a_nozzle_in_the_bore_of_a_pipe_is_free_and_in_its_wall_is_not():
     thick = pipe(40.0, 140.0, 150.0)
-    tips = [[0, 0, -20], [10, 5, 30], [90, 0, -20], [0, -90, 60], [30, 0, 0], [0, 0, 170], [170, 0, 0]]
+    tips = [
+        [0, 0, -20],
+        [10, 5, 30],
+        [90, 0, -20],
+        [0, -90, 60],
+        [30, 0, 0],
+        [0, 0, 170],
+        [170, 0, 0],
+    ]
     assert touched(thick, tips).tolist() == [False, False, True, True, True, False, False]
 
 
@@ -110,8 +150,11 @@ def test_random_nozzles_against_samples_of_them():
     height = np.linspace(0.81, 19.99, 40)
     angle = np.linspace(0, 2 * np.pi, 60)
     round_it = np.cos(angle)[:, None] * side[:, None] + np.sin(angle)[:, None] * other[:, None]
-    skin = tip[:, None, None] + height[:, None, None] * axis[:, None, None] + (
-        (0.5 + 0.3 * height - 1e-3)[:, None, None] * round_it[:, None])
+    skin = (
+        tip[:, None, None]
+        + height[:, None, None] * axis[:, None, None]
+        + ((0.5 + 0.3 * height - 1e-3)[:, None, None] * round_it[:, None])
+    )
     sampled = (np.abs(skin) < 100).all(axis=3).any(axis=(1, 2))
     inside = (np.abs(skin) < 100).all(axis=(1, 2, 3))
     assert found[sampled].all() and inside.sum() > 20

@@ -31,10 +31,13 @@ def skin(solid, tip, axis, count=45):
     turn = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     around = np.cos(turn)[:, None] * one + np.sin(turn)[:, None] * two
     height = np.linspace(solid.low, solid.high, count)
-    side = height[:, None, None] * axis + (solid.radius + solid.slope * height)[:, None, None] * around
+    side = (
+        height[:, None, None] * axis + (solid.radius + solid.slope * height)[:, None, None] * around
+    )
     discs = [
         end * axis + share * (solid.radius + solid.slope * end) * around
-        for end in (solid.low, solid.high) for share in np.linspace(0.0, 1.0, 16)
+        for end in (solid.low, solid.high)
+        for share in np.linspace(0.0, 1.0, 16)
     ]
     return tip + np.concatenate([side.reshape(-1, 3), *discs])
 
@@ -45,7 +48,11 @@ def in_frustum(solid, tip, axis, points, deep):
     up = offset @ axis
     side = np.linalg.norm(offset - up[:, None] * axis, axis=1)
     lean = np.hypot(1.0, solid.slope)
-    return (up > solid.low + deep) & (up < solid.high - deep) & ((solid.radius + solid.slope * up - side) / lean > deep)
+    return (
+        (up > solid.low + deep)
+        & (up < solid.high - deep)
+        & ((solid.radius + solid.slope * up - side) / lean > deep)
+    )
 
 
 def stadium(points, build, width, height, count=7):
@@ -56,7 +63,9 @@ def stadium(points, build, width, height, count=7):
         side = np.cross(build, along)
         side /= np.linalg.norm(side)
         way = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(b - a) / 0.6))
-        u, v = np.meshgrid(np.linspace(-0.5, 0.5, 2 * count) * width, np.linspace(0.0, 1.0, count) * height)
+        u, v = np.meshgrid(
+            np.linspace(-0.5, 0.5, 2 * count) * width, np.linspace(0.0, 1.0, count) * height
+        )
         u, v = u.ravel(), v.ravel()
         round_ = 0.5 * height
         kept = np.hypot(np.maximum(np.abs(u) - (0.5 * width - round_), 0.0), v - round_) <= round_
@@ -68,7 +77,10 @@ def stadium(points, build, width, height, count=7):
 @pytest.mark.parametrize("corners", [1, 2, 3, 4])
 def test_distances_are_those_that_a_minimisation_finds(corners):
     rng = np.random.default_rng(corners)
-    axis, points = units(rng, 40), rng.uniform(-50, 50, (40, 1, 3)) + rng.uniform(-6, 6, (40, corners, 3))
+    axis, points = (
+        units(rng, 40),
+        rng.uniform(-50, 50, (40, 1, 3)) + rng.uniform(-6, 6, (40, corners, 3)),
+    )
     low, high = separation.bounds(NOZZLE, axis, points)
     assert (high - low).max() < 1e-4
 
@@ -80,22 +92,31 @@ def test_distances_are_those_that_a_minimisation_finds(corners):
 
     for k in range(40):  # a point of the nozzle, and the shares of the corners in one of the hull
         limits = [
-            {"type": "ineq", "fun": lambda v, k=k: NOZZLE.radius + NOZZLE.slope * up(v, k) - across(v, k)},
+            {
+                "type": "ineq",
+                "fun": lambda v, k=k: NOZZLE.radius + NOZZLE.slope * up(v, k) - across(v, k),
+            },
             {"type": "ineq", "fun": lambda v, k=k: up(v, k) - NOZZLE.low},
             {"type": "ineq", "fun": lambda v, k=k: NOZZLE.high - up(v, k)},
             {"type": "eq", "fun": lambda v: v[3:].sum() - 1.0},
         ]
         start = np.r_[20.0 * axis[k], np.full(corners, 1.0 / corners)]
         found = minimize(
-            lambda v, k=k: np.sum((v[:3] - v[3:] @ points[k]) ** 2), start, method="SLSQP", constraints=limits,
-            bounds=[(None, None)] * 3 + [(0.0, 1.0)] * corners, options={"maxiter": 300, "ftol": 1e-12},
+            lambda v, k=k: np.sum((v[:3] - v[3:] @ points[k]) ** 2),
+            start,
+            method="SLSQP",
+            constraints=limits,
+            bounds=[(None, None)] * 3 + [(0.0, 1.0)] * corners,
+            options={"maxiter": 300, "ftol": 1e-12},
         )
         assert abs(np.sqrt(max(found.fun, 0.0)) - high[k]) < 2e-3 + 1e-3 * (high[k] == 0.0), k
 
 
 def test_what_touches_is_what_points_of_beads_inside_of_the_nozzle_say():
     rng = np.random.default_rng(7)
-    points = np.stack([np.linspace(-30, 30, 13), 6 * np.sin(np.linspace(0, 5, 13)), np.linspace(0, 4, 13)], axis=1)
+    points = np.stack(
+        [np.linspace(-30, 30, 13), 6 * np.sin(np.linspace(0, 5, 13)), np.linspace(0, 4, 13)], axis=1
+    )
     up, width, height = np.array([0.0, 0.0, 1.0]), 8.0, 2.0
     laid = deposit.of_beads(points, np.tile(up, (13, 1)), width, height, [0])
     there = scene([], points, 100.0, laid)
@@ -136,13 +157,17 @@ def test_distances_from_bodies_are_those_of_their_sampled_faces_and_none_inside(
 
 def test_a_piece_is_there_from_its_moment_on_and_a_corner_has_its_outer_side():
     points = np.array([[0.0, 0, 0], [20, 0, 0], [20, 20, 0], [20, 40, 0]])
-    laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (4, 1)), 8.0, 2.0, [0], np.array([10, 11, 12, 13]))
+    laid = deposit.of_beads(
+        points, np.tile([0.0, 0.0, 1.0], (4, 1)), 8.0, 2.0, [0], np.array([10, 11, 12, 13])
+    )
     there = scene([], points, 100.0, laid)
     probe = Frustum(0.05, 0.0, 0.0, 0.5)
     tip = np.array([[10.0, 3, 0.5], [20, 30, 0.5], [22.2, -2.2, 0.8]])
     up = np.tile([0.0, 0.0, 1.0], (3, 1))
     for moment, wanted in ((11, [0, 0, 0]), (12, [1, 0, 0]), (13, [1, 0, 1]), (14, [1, 1, 1])):
-        assert there.touched(probe, tip, up, np.full(3, moment)).tolist() == [bool(each) for each in wanted], moment
+        assert there.touched(probe, tip, up, np.full(3, moment)).tolist() == [
+            bool(each) for each in wanted
+        ], moment
 
 
 def test_the_bead_being_laid_and_its_neighbours_are_not_touched_but_a_finished_one_is():
@@ -161,7 +186,9 @@ def test_the_bead_being_laid_and_its_neighbours_are_not_touched_but_a_finished_o
 
 def test_what_is_exempt_may_differ_from_look_to_look():
     points = np.array([[-20.0, 0, 0], [20, 0, 0]])
-    there = scene([], points, 100.0, deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (2, 1)), 8.0, 2.0, [0]))
+    there = scene(
+        [], points, 100.0, deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (2, 1)), 8.0, 2.0, [0])
+    )
     tip, up = np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1))
     tip[:, 2] = [0.0, 1.0, 1.0]
     solid = travelling(0.5, SLOPE, 60.0, np.array([2.0, 1.0, 0.0]))
@@ -173,7 +200,12 @@ def test_memory_is_linear():
     def peak(count):
         s = np.linspace(0, 400, count)
         points = np.stack([s, np.zeros(count), np.zeros(count)], axis=1)
-        there = scene([], points, 0.0, deposit.of_beads(points, np.tile([0.0, 0, 1.0], (count, 1)), 8.0, 1.0, [0]))
+        there = scene(
+            [],
+            points,
+            0.0,
+            deposit.of_beads(points, np.tile([0.0, 0, 1.0], (count, 1)), 8.0, 1.0, [0]),
+        )
         tip = points + [0.0, 9.0, 0.0]
         tracemalloc.start()
         there.touched(NOZZLE, tip, np.tile([0.0, 0, 1.0], (count, 1)))
@@ -189,14 +221,21 @@ def test_deposit_made_part_by_part_is_touched_as_all_of_it(monkeypatch):
     turn = np.linspace(0.0, 40.0, 700)
     points = np.stack([20.0 * np.cos(turn), 20.0 * np.sin(turn), 0.15 * turn], axis=1)
     points[:, :2] += 4.0 * np.sign(np.sin(5.0 * turn))[:, None]  # corners
-    build, width, height = units(rng, 700) * 0.1 + [0.0, 0.0, 1.0], rng.uniform(2.0, 5.0, 700), rng.uniform(0.5, 1.5, 700)
+    build, width, height = (
+        units(rng, 700) * 0.1 + [0.0, 0.0, 1.0],
+        rng.uniform(2.0, 5.0, 700),
+        rng.uniform(0.5, 1.5, 700),
+    )
     build /= np.linalg.norm(build, axis=1, keepdims=True)
     starts = np.array([0, 90, 91, 400])
     whole = deposit.of_beads(points, build, width, height, starts, foot=3.0)
     tip, axis = rng.uniform(-26.0, 26.0, (4000, 3)) + [0.0, 0.0, 2.0], units(rng, 4000)
     moment, own = rng.integers(0, 720, 4000), rng.integers(0, 700, 4000)
     late = np.full(4000, 700)
-    expected = [whole.touched(NOZZLE, tip, axis, late), whole.touched(NOZZLE, tip, axis, moment, own)]
+    expected = [
+        whole.touched(NOZZLE, tip, axis, late),
+        whole.touched(NOZZLE, tip, axis, moment, own),
+    ]
     assert 0.2 < expected[1].mean() < expected[0].mean() < 0.95
     for part in (7, 64, 1000):
         monkeypatch.setattr(deposit, "PART", part)
@@ -211,11 +250,15 @@ def meander(count, turns=6.0):
     return np.stack([40.0 * np.sin(turns * np.pi * s), 40.0 * s, 0.3 * np.sin(9.0 * s)], axis=1)
 
 
-def test_the_layer_being_laid_is_told_the_same_with_and_without_looking_at_each_of_its_pieces(monkeypatch):
+def test_the_layer_being_laid_is_told_the_same_with_and_without_looking_at_each_of_its_pieces(
+    monkeypatch,
+):
     rng = np.random.default_rng(20)
     below, mine = meander(600), meander(1500) + [0.0, 2.0, 1.5]
     points = np.concatenate([below, mine])
-    laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), 4.0, 1.5, [0, len(below)], foot=3.0)
+    laid = deposit.of_beads(
+        points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), 4.0, 1.5, [0, len(below)], foot=3.0
+    )
     at = rng.integers(len(below) + 50, len(points), 6000)
     tip = points[at] + rng.normal(size=(6000, 3)) * [0.5, 0.5, 0.1]
     axis = units(rng, 6000)
@@ -224,7 +267,9 @@ def test_the_layer_being_laid_is_told_the_same_with_and_without_looking_at_each_
     asked = NOZZLE, tip, axis, at + 1, np.full(6000, len(below))
     found = laid.touched(*asked)
     assert 0.2 < found.mean() < 0.8
-    monkeypatch.setattr(own_layer, "matter", lambda lines, since, solid, query, *rest: np.arange(len(query)))
+    monkeypatch.setattr(
+        own_layer, "matter", lambda lines, since, solid, query, *rest: np.arange(len(query))
+    )
     assert (laid.touched(*asked) == found).all()
 
 
@@ -240,7 +285,9 @@ def test_pieces_next_to_the_tip_are_not_looked_at_one_by_one(monkeypatch):
     work = []
     for count in (2000, 8000, 32000):
         points = meander(count)
-        laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (count, 1)), 4.0, 1.5, [0], foot=3.0)
+        laid = deposit.of_beads(
+            points, np.tile([0.0, 0.0, 1.0], (count, 1)), 4.0, 1.5, [0], foot=3.0
+        )
         at = np.linspace(count // 2, count - 1, 200).astype(int)
         looked[0] = 0
         axis = np.tile([np.sin(0.3), 0.0, np.cos(0.3)], (200, 1))

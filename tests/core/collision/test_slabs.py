@@ -23,19 +23,29 @@ def nozzles(random, points, count):
     """Tips near to points, and unit axes any way."""
     axis = random.normal(size=(count, 3))
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
-    return points[random.integers(len(points), size=count)] + random.normal(scale=4.0, size=(count, 3)), axis
+    return points[random.integers(len(points), size=count)] + random.normal(
+        scale=4.0, size=(count, 3)
+    ), axis
 
 
 @pytest.mark.parametrize("short", [True, False])
-@pytest.mark.parametrize(("width", "height", "step"), [(5.0, 0.2, 0.1), (3.0, 3.0, 1.0), (1.0, 4.0, 0.5)])
+@pytest.mark.parametrize(
+    ("width", "height", "step"), [(5.0, 0.2, 0.1), (3.0, 3.0, 1.0), (1.0, 4.0, 0.5)]
+)
 def test_what_is_left_out_meets_no_piece(width, height, step, short):
     random = np.random.default_rng(7)
     points, beads = bead(random, 403, step, width, height, short)
     boxes = slabs.of_pieces(beads.corners, beads.radius, BRANCH)
-    assert np.abs(np.einsum("nij,nkj->nik", boxes.sides, boxes.sides))[:, ~np.eye(3, dtype=bool)].max() < 1e-9
+    assert (
+        np.abs(np.einsum("nij,nkj->nik", boxes.sides, boxes.sides))[:, ~np.eye(3, dtype=bool)].max()
+        < 1e-9
+    )
     tip, axis = nozzles(random, points, 60)
     solid = Frustum(1.0, 0.4, 0.5, 15.0)
-    query, node = (each.ravel() for each in np.meshgrid(np.arange(60), np.arange(len(boxes.centre)), indexing="ij"))
+    query, node = (
+        each.ravel()
+        for each in np.meshgrid(np.arange(60), np.arange(len(boxes.centre)), indexing="ij")
+    )
     near = slabs.near(boxes, solid, node, tip[query], axis[query])
     far = np.setdiff1d(np.arange(len(query)), near)
     assert len(far) > 0.3 * len(query)
@@ -54,7 +64,9 @@ def test_a_box_lies_as_its_pieces_do():
     beads = of_beads(points, np.tile(up, (65, 1)), 6.0, 0.4, np.array([0]), short=True)
     boxes = slabs.of_pieces(beads.corners, beads.radius, BRANCH)
     sizes = np.sort(2.0 * np.linalg.norm(boxes.sides, axis=2), axis=1)
-    assert sizes == pytest.approx(np.tile([0.0, 0.8, 5.6], (8, 1)), abs=1e-9)  # rounded by 0.2 mm all about
+    assert sizes == pytest.approx(
+        np.tile([0.0, 0.8, 5.6], (8, 1)), abs=1e-9
+    )  # rounded by 0.2 mm all about
     assert boxes.rounding == pytest.approx(0.2)
 
 

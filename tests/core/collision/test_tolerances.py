@@ -21,9 +21,23 @@ WIDTH, HEIGHT = 4.0, 2.0
 
 def wall(x):
     """A block whose face looks along -X at x, and reaches far to all other sides."""
-    corners = np.array([[x + a, b, c] for a in (0.0, 50.0) for b in (-50.0, 50.0) for c in (-50.0, 50.0)])
-    sides = [(0, 1, 3), (0, 3, 2), (4, 7, 5), (4, 6, 7), (0, 5, 1), (0, 4, 5), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
-             (1, 5, 7), (1, 7, 3)]
+    corners = np.array(
+        [[x + a, b, c] for a in (0.0, 50.0) for b in (-50.0, 50.0) for c in (-50.0, 50.0)]
+    )
+    sides = [
+        (0, 1, 3),
+        (0, 3, 2),
+        (4, 7, 5),
+        (4, 6, 7),
+        (0, 5, 1),
+        (0, 4, 5),
+        (2, 3, 7),
+        (2, 7, 6),
+        (0, 2, 6),
+        (0, 6, 4),
+        (1, 5, 7),
+        (1, 7, 3),
+    ]
     return Body("wall", corners, np.array(sides))
 
 
@@ -39,28 +53,43 @@ def meets(nozzle, x, bodies=(), deposit=None):
 
 
 # mm that two solids are in one another
-@pytest.mark.parametrize(("deep", "touched"), [(-0.02, False), (0.03, False), (0.07, True), (0.5, True)])
+@pytest.mark.parametrize(
+    ("deep", "touched"), [(-0.02, False), (0.03, False), (0.07, True), (0.5, True)]
+)
 def test_on_rapids_a_nozzle_is_in_a_bead_by_no_more_than_its_chords_are_off(deep, touched):
     x = RADIUS + 0.5 * WIDTH - deep
     assert meets(travelling(RADIUS, 0.0, LENGTH), x, deposit=bead()) == touched
 
 
-@pytest.mark.parametrize(("deep", "touched"), [(-0.02, False), (0.08, False), (0.12, True), (0.5, True)])
+@pytest.mark.parametrize(
+    ("deep", "touched"), [(-0.02, False), (0.08, False), (0.12, True), (0.5, True)]
+)
 def test_on_rapids_a_nozzle_is_in_a_body_by_no_more_than_triangles_are_off(deep, touched):
     assert meets(travelling(RADIUS, 0.0, LENGTH), deep - RADIUS, [wall(0.0)]) == touched
 
 
-@pytest.mark.parametrize(("deep", "let", "halfway"), [(0.02, True, False), (0.08, True, False), (0.12, True, True)])
+@pytest.mark.parametrize(
+    ("deep", "let", "halfway"), [(0.02, True, False), (0.08, True, False), (0.12, True, True)]
+)
 def test_while_depositing_beads_are_met_exactly_and_halfway_within_a_tenth(deep, let, halfway):
     nozzle = depositing(RADIUS, 0.5, LENGTH, 0.0)
     low = nozzle.deposit.low
-    tall = of_beads(np.array([[0.0, -50.0, 0.0], [0.0, 50.0, 0.0]]), np.repeat(UP, 2, axis=0), WIDTH, 2.0 * low, [0])
+    tall = of_beads(
+        np.array([[0.0, -50.0, 0.0], [0.0, 50.0, 0.0]]),
+        np.repeat(UP, 2, axis=0),
+        WIDTH,
+        2.0 * low,
+        [0],
+    )
     # the side of the cone is deepest in the bead's round flank, a quarter circle of its half width about its upper edge
     round_, top = 0.5 * WIDTH, 2.0 * low - 0.5 * WIDTH
     lean = np.hypot(1.0, 0.5)
     x = (RADIUS + 0.5 * top) + lean * (round_ - deep)
     assert low < top - 0.5 * round_ / lean  # that place is above what is left out
-    assert meets(nozzle, x, deposit=tall) == let and meets(nozzle.halfway(), x, deposit=tall) == halfway
+    assert (
+        meets(nozzle, x, deposit=tall) == let
+        and meets(nozzle.halfway(), x, deposit=tall) == halfway
+    )
     assert not meets(nozzle, x + lean * (deep + 0.01), deposit=tall)
 
 
@@ -73,9 +102,16 @@ def test_over_the_bodies_that_a_nozzle_deposits_on_what_both_faces_may_be_off_is
 @pytest.mark.parametrize("clearance", [0.0, 10.0])
 def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched, clearance):
     """A rod of link 2 along the wall: it touches from a fifth of a millimetre on, and with a clearance so much farther."""
-    cell = cells.resolve(CellParameters(
-        setup="tool-on-robot", mount="part", deposition_point=(1000.0, 0.0, -100.0, 0.0, 0.0, 0.0), platform_diameter=0.0,
-    ), np.eye(4), "developable")
+    cell = cells.resolve(
+        CellParameters(
+            setup="tool-on-robot",
+            mount="part",
+            deposition_point=(1000.0, 0.0, -100.0, 0.0, 0.0, 0.0),
+            platform_diameter=0.0,
+        ),
+        np.eye(4),
+        "developable",
+    )
     joints = np.radians([[10.0, 20.0, -15.0, 5.0, 40.0, 30.0]])
     ends = np.array([[-5.0 - gap - clearance, y, 0.0, 1.0] for y in (-10.0, 10.0)])
     part = cell.station @ np.linalg.inv(cell.mount)

@@ -20,7 +20,9 @@ def blade(length=200.0, width=40.0, bend=15.0):
 def wavy(seed):
     rng = np.random.default_rng(seed)
     a = 2.0 * np.pi * np.arange(300) / 300
-    radius = 50.0 + sum(rng.uniform(-4.0, 4.0) * np.cos(k * a + rng.uniform(0, 6)) for k in range(2, 6))
+    radius = 50.0 + sum(
+        rng.uniform(-4.0, 4.0) * np.cos(k * a + rng.uniform(0, 6)) for k in range(2, 6)
+    )
     holes = [circle(rng.uniform(5, 9), 60, (18.0, 6.0)), circle(7.0, 60, rng.uniform(-20, -8, 2))]
     return [circle(radius, 300), *(hole[::-1] for hole in holes)]
 
@@ -36,8 +38,18 @@ SHAPES = {
     "L": polygon((0, 0), (100, 0), (100, 33), (31, 33), (31, 80), (0, 80)),
     "U": polygon((0, 0), (90, 0), (90, 70), (60, 70), (60, 28), (28, 28), (28, 70), (0, 70)),
     "comb": polygon(
-        (0, 0), (110, 0), (110, 60), (88, 60), (88, 22), (66, 22), (66, 60),
-        (44, 60), (44, 22), (22, 22), (22, 60), (0, 60),
+        (0, 0),
+        (110, 0),
+        (110, 60),
+        (88, 60),
+        (88, 22),
+        (66, 22),
+        (66, 60),
+        (44, 60),
+        (44, 22),
+        (22, 22),
+        (22, 60),
+        (0, 60),
     ),
     "wavy 1": wavy(1),
     "wavy 2": wavy(2),
@@ -77,5 +89,7 @@ def inside(loops, points):
 def raster(loops, pitch):
     """Places of a grid over the loops, and which are inside."""
     low, high = np.vstack(loops).min(axis=0) - 8.0, np.vstack(loops).max(axis=0) + 8.0
-    grid = np.stack(np.meshgrid(*(np.arange(a, b, pitch) for a, b in zip(low, high))), axis=-1).reshape(-1, 2)
+    grid = np.stack(
+        np.meshgrid(*(np.arange(a, b, pitch) for a, b in zip(low, high))), axis=-1
+    ).reshape(-1, 2)
     return grid, inside(loops, grid)

@@ -17,7 +17,9 @@ from freecad_am.core.geometry.regions.region import joined, regions
 from freecad_am.core.geometry.regions.strip import Period, strips
 from freecad_am.core.parameters.filled import DevelopableParameters
 
-_spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
+_spec = importlib.util.spec_from_file_location(
+    "filling_shapes", Path(__file__).with_name("shapes.py")
+)
 shapes = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(shapes)
 
@@ -26,7 +28,13 @@ S, GAP = DEFAULT.bead_spacing, DEFAULT.gap * DEFAULT.bead_spacing
 BEADS = Beads(S, GAP, DEFAULT.least_bead, DEFAULT.thin, chord_error=0.2 * DEFAULT.chord_error)
 PITCH, STEP = 0.3, 0.1
 WAYS = [
-    ("contours", 0.0), ("spiral", 0.0), ("lines", 0.0), ("lines", 0.52), ("lines", 1.57), ("zigzag", 0.0), ("zigzag", 0.8),
+    ("contours", 0.0),
+    ("spiral", 0.0),
+    ("lines", 0.0),
+    ("lines", 0.52),
+    ("lines", 1.57),
+    ("zigzag", 0.0),
+    ("zigzag", 0.8),
 ]
 IDS = [f"{pattern} {angle}" for pattern, angle in WAYS]
 
@@ -60,7 +68,10 @@ def ground(name):
     grid, within = shapes.raster(REGIONS[name], PITCH)
     border = shapes.tree([(loop, True) for loop in REGIONS[name]], STEP)
     from_border = shapes.distance(border, grid, 0.5 * S)
-    reach = shapes.distance(cKDTree(grid[within & (from_border >= 0.5 * S)]), grid, 0.5 * S) < 0.5 * S - PITCH
+    reach = (
+        shapes.distance(cKDTree(grid[within & (from_border >= 0.5 * S)]), grid, 0.5 * S)
+        < 0.5 * S - PITCH
+    )
     return grid, within, from_border, reach
 
 
@@ -68,10 +79,12 @@ def ground(name):
 @pytest.mark.parametrize("name", REGIONS)
 @pytest.mark.always
 def test_at_least_99_percent_is_covered_and_no_bead_is_outside(name, pattern, angle):
-    region, = regions(REGIONS[name])
+    (region,) = regions(REGIONS[name])
     curves = fill(region, BEADS, pattern, angle, DEFAULT.contour)
     grid, within, from_border, reach = ground(name)
-    away = shapes.distance(shapes.tree([(curve.points, curve.closed) for curve in curves], STEP), grid, 2.0 * S)
+    away = shapes.distance(
+        shapes.tree([(curve.points, curve.closed) for curve in curves], STEP), grid, 2.0 * S
+    )
     covered = away <= 0.5 * S + 1e-3
     assert (covered & reach).sum() >= 0.99 * reach.sum()
     assert away[reach].max() < 0.5 * (S + GAP) + 0.02, "no gap is wider than stated"
@@ -88,7 +101,9 @@ def test_lines_keep_their_spacing_from_the_contour_round_them():
     for angle in (0.0, 0.5 * np.pi):
         curves = fill(regions(REGIONS["rectangle"])[0], BEADS, "lines", angle, True)
         across = np.array([-np.sin(angle), np.cos(angle)])
-        level = np.sort([(curve.points @ across).mean() for curve in curves if curve.kind == "line"])
+        level = np.sort(
+            [(curve.points @ across).mean() for curve in curves if curve.kind == "line"]
+        )
         extent = np.sort(REGIONS["rectangle"][0] @ across)[[0, -1]]
         assert level[0] - extent[0] == pytest.approx(1.5 * S, rel=1e-3)
         assert extent[1] - level[-1] == pytest.approx(1.5 * S, rel=1e-3)
@@ -96,8 +111,10 @@ def test_lines_keep_their_spacing_from_the_contour_round_them():
 
 def test_a_gap_that_no_bead_closes_is_told():
     """Without the beads in the middle their places are told, with widths."""
-    region, = regions(REGIONS["star 1"])
-    curves = [curve for curve in fill(region, BEADS, "lines", 0.52, True) if curve.kind != "closing"][:-1]
+    (region,) = regions(REGIONS["star 1"])
+    curves = [
+        curve for curve in fill(region, BEADS, "lines", 0.52, True) if curve.kind != "closing"
+    ][:-1]
     found = open_places(region, curves, BEADS)
     tree = shapes.tree([(curve.points, curve.closed) for curve in curves], 0.02)
     assert found
@@ -107,15 +124,20 @@ def test_a_gap_that_no_bead_closes_is_told():
 
 
 @pytest.mark.parametrize("apex", [math.inf, 150.0])
-@pytest.mark.parametrize("pattern,angle", [("contours", 0.0), ("lines", 0.0), ("spiral", 0.0), ("zigzag", 1.57)])
+@pytest.mark.parametrize(
+    "pattern,angle", [("contours", 0.0), ("lines", 0.0), ("spiral", 0.0), ("zigzag", 1.57)]
+)
 @pytest.mark.always
 def test_a_strip_round_a_hub_is_covered(apex, pattern, angle):
     turn = 190.0
     period = Period(turn if math.isinf(apex) else turn / apex, apex)
     u = turn * (np.arange(400) / 400 - 0.5)
-    low, high = 1.2 * np.sin(2.0 * np.pi * 3 * u / turn), 23.0 + 0.8 * np.cos(2.0 * np.pi * 2 * u / turn)
+    low, high = (
+        1.2 * np.sin(2.0 * np.pi * 3 * u / turn),
+        23.0 + 0.8 * np.cos(2.0 * np.pi * 2 * u / turn),
+    )
     lower, upper = np.stack([u, low], axis=1), np.stack([u, high], axis=1)[::-1]
-    strip, = strips([(period.unroll(lower), 1), (period.unroll(upper), -1)], period)
+    (strip,) = strips([(period.unroll(lower), 1), (period.unroll(upper), -1)], period)
     curves = fill(strip, BEADS, pattern, angle, DEFAULT.contour)
     assert open_places(strip, curves, BEADS) == []
     # half of it and somewhat more, for what is beside; on the plane
@@ -126,17 +148,23 @@ def test_a_strip_round_a_hub_is_covered(apex, pattern, angle):
         every = np.vstack([cover + np.array([k * turn, 0.0]) for k in (-1, 0, 1)])
         return cKDTree(period.unroll(every[np.abs(every[:, 0]) < reach_of + 4.0 * S]))
 
-    grid = np.stack(np.meshgrid(np.arange(-reach_of, reach_of, PITCH), np.arange(-5.0, 29.0, PITCH)), axis=-1).reshape(-1, 2)
+    grid = np.stack(
+        np.meshgrid(np.arange(-reach_of, reach_of, PITCH), np.arange(-5.0, 29.0, PITCH)), axis=-1
+    ).reshape(-1, 2)
     border = np.interp(grid[:, 0], u, low), np.interp(grid[:, 0], u, high)
     within, flat = (grid[:, 1] > border[0]) & (grid[:, 1] < border[1]), period.unroll(grid)
     edge = cloud([period.unroll(lower), period.unroll(upper)])
     lines = [
-        np.vstack([curve.points, period.moved(curve.points[:1], curve.turns)]) if curve.closed else curve.points
+        np.vstack([curve.points, period.moved(curve.points[:1], curve.turns)])
+        if curve.closed
+        else curve.points
         for curve in curves
     ]
     away, from_border = cloud(lines).query(flat)[0], edge.query(flat)[0]
     middle = np.abs(grid[:, 0]) < reach_of - 2.0 * S
-    reach = (cKDTree(flat[within & (from_border >= 0.5 * S)]).query(flat)[0] < 0.5 * S - PITCH) & middle
+    reach = (
+        cKDTree(flat[within & (from_border >= 0.5 * S)]).query(flat)[0] < 0.5 * S - PITCH
+    ) & middle
     covered = away <= 0.5 * S + 0.02
     assert (covered & reach).sum() >= 0.99 * reach.sum()
     assert not (covered & ~within & middle & (from_border > 0.1)).any()
@@ -149,18 +177,29 @@ def test_beads_wider_than_their_spacing_cover_as_much_and_stay_inside(name, patt
     """As laid: 9.5 mm wide at 6.5 mm, measured by the width."""
     width, beads = 9.5, replace(BEADS, spacing=6.5, gap=1.3, width=9.5)
     loops = [1.6 * loop for loop in REGIONS[name]]
-    region, = regions(loops)
+    (region,) = regions(loops)
     curves = fill(region, beads, pattern, angle, DEFAULT.contour)
     grid, within = shapes.raster(loops, PITCH)
-    from_border = shapes.distance(shapes.tree([(loop, True) for loop in loops], STEP), grid, 0.5 * width)
-    away = shapes.distance(shapes.tree([(curve.points, curve.closed) for curve in curves], STEP), grid, 2.0 * width)
-    reach = shapes.distance(cKDTree(grid[within & (from_border >= 0.5 * width)]), grid, 0.5 * width) < 0.5 * width - PITCH
-    single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]  # stand out, and are told
+    from_border = shapes.distance(
+        shapes.tree([(loop, True) for loop in loops], STEP), grid, 0.5 * width
+    )
+    away = shapes.distance(
+        shapes.tree([(curve.points, curve.closed) for curve in curves], STEP), grid, 2.0 * width
+    )
+    reach = (
+        shapes.distance(cKDTree(grid[within & (from_border >= 0.5 * width)]), grid, 0.5 * width)
+        < 0.5 * width - PITCH
+    )
+    single = [
+        curve for curve in curves if curve.kind == "centre" and curve.ring == 0
+    ]  # stand out, and are told
     covered = away <= 0.5 * width + 1e-3
     assert (covered & reach).sum() >= 0.99 * reach.sum()
     assert away[reach].max() < 0.5 * width + 0.02 or away[reach].max() < 0.5 * (width + beads.gap)
     assert single or (covered & ~within & (from_border > 0.05)).sum() <= 0.01 * within.sum()
-    middle = shapes.tree([(curve.points, curve.closed) for curve in curves if curve not in single], STEP)
+    middle = shapes.tree(
+        [(curve.points, curve.closed) for curve in curves if curve not in single], STEP
+    )
     assert middle.query(shapes.dense(loops[0], True, STEP))[0].min() > 0.5 * width - 0.05
     assert open_places(region, curves, beads) == []
 
@@ -175,8 +214,10 @@ def test_slits_are_closed_and_wedges_beside_them_told():
         return left + shapes.polygon((a, 0), (60, 0), (60, 20), (b, 20))
 
     for slit in (0.0, 1e-6, 0.02):
-        whole, = joined(regions(halves(slit)), 0.05)
-        assert len(whole.borders()) == 1 and whole.area == pytest.approx(1600.0, abs=0.3 + 20.0 * slit)
+        (whole,) = joined(regions(halves(slit)), 0.05)
+        assert len(whole.borders()) == 1 and whole.area == pytest.approx(
+            1600.0, abs=0.3 + 20.0 * slit
+        )
     apart = regions(halves(0.5))
     assert joined(apart, 0.05) == apart and len(apart) == 2
     curves = [curve for region in apart for curve in fill(region, BEADS)]
@@ -193,30 +234,46 @@ def test_slits_are_closed_and_wedges_beside_them_told():
 def test_strips_of_beads_wider_than_their_spacing_stay_inside():
     period = Period(190.0)
     u = 190.0 * (np.arange(200) / 200 - 0.5)
-    low, high = np.stack([u, np.zeros(200)], axis=1), np.stack([u, np.full(200, 41.0)], axis=1)[::-1]
-    strip, = strips([(low, 1), (high, -1)], period)
+    low, high = (
+        np.stack([u, np.zeros(200)], axis=1),
+        np.stack([u, np.full(200, 41.0)], axis=1)[::-1],
+    )
+    (strip,) = strips([(low, 1), (high, -1)], period)
     beads = replace(BEADS, spacing=6.5, gap=1.3, width=9.5)
     for pattern, angle, ring in (
-        ("contours", 0.0, False), ("lines", 0.0, False), ("lines", 0.0, True), ("lines", 1.57, True),
+        ("contours", 0.0, False),
+        ("lines", 0.0, False),
+        ("lines", 0.0, True),
+        ("lines", 1.57, True),
     ):
         curves = fill(strip, beads, pattern, angle, ring)
         height = np.concatenate([curve.points[:, 1] for curve in curves])
-        assert height.min() == pytest.approx(4.75, abs=0.02) and height.max() == pytest.approx(36.25, abs=0.02)
+        assert height.min() == pytest.approx(4.75, abs=0.02) and height.max() == pytest.approx(
+            36.25, abs=0.02
+        )
         assert open_places(strip, curves, beads) == []
-        rows = np.unique(np.round([curve.points[:, 1].mean() for curve in curves if curve.turns], 2))
+        rows = np.unique(
+            np.round([curve.points[:, 1].mean() for curve in curves if curve.turns], 2)
+        )
         assert np.diff(rows).max() <= 6.6 or angle
 
 
 @pytest.mark.parametrize("size", [(60.0, 43.0), (90.0, 63.0), (47.0, 31.0)])
 def test_links_of_zigzags_lie_inside_of_their_contour(size):
     """What is laid, length times spacing, against the lines alone: links on the edge of the contour lay half on it."""
-    region, = regions(shapes.polygon((0, 0), (size[0], 0), size, (0, size[1])))
+    (region,) = regions(shapes.polygon((0, 0), (size[0], 0), size, (0, size[1])))
     curves = fill(region, BEADS, "zigzag", 0.0, 1)
     laid = sum(np.hypot(*np.diff(whole(curve), axis=0).T).sum() * S for curve in curves)
-    lines = sum(np.hypot(*np.diff(whole(curve), axis=0).T).sum() * S for curve in fill(region, BEADS, "lines", 0.0, 1))
+    lines = sum(
+        np.hypot(*np.diff(whole(curve), axis=0).T).sum() * S
+        for curve in fill(region, BEADS, "lines", 0.0, 1)
+    )
     ends = 2.0 * (size[1] - 2.0 * S)  # mm of the contour's inner edge that lines end on
     assert laid - lines < 0.15 * S * ends
-    contour, corners = curves[0], np.vstack([curve.points[1:-1] for curve in curves if curve.kind == "zigzag"])
+    contour, corners = (
+        curves[0],
+        np.vstack([curve.points[1:-1] for curve in curves if curve.kind == "zigzag"]),
+    )
     assert shapes.tree([(contour.points, True)], STEP).query(corners)[0].min() > 0.85 * S
 
 
@@ -224,22 +281,64 @@ def ribs(thick, pitch=20.0, count=3, foot=0.0):
     """A lattice of ribs, on a foot that beads fit into or without one."""
     size = (count - 1) * pitch + thick
     holes = [
-        np.array([(x, y), (x, y + pitch - thick), (x + pitch - thick, y + pitch - thick), (x + pitch - thick, y)])
-        for x in thick + pitch * np.arange(count - 1) for y in thick + pitch * np.arange(count - 1)
+        np.array(
+            [
+                (x, y),
+                (x, y + pitch - thick),
+                (x + pitch - thick, y + pitch - thick),
+                (x + pitch - thick, y),
+            ]
+        )
+        for x in thick + pitch * np.arange(count - 1)
+        for y in thick + pitch * np.arange(count - 1)
     ]
     outer = np.array([(0, -foot), (size, -foot), (size, size), (0, size)], dtype=float)
     return [outer, *holes]
 
 
-@pytest.mark.parametrize("loops,least", [
-    (ribs(3.5), 0.99), (ribs(4.4), 0.95), (ribs(4.0, foot=15.0), 0.985),
-    (shapes.polygon(
-        (0, 0), (60, 0), (60, 12), (42, 12), (42, 40), (38, 40), (38, 12), (20, 12), (20, 40), (16, 40), (16, 12), (0, 12),
-    ), 0.99),
-    (shapes.polygon(
-        (0, 0), (30, 0), (30, 4), (17, 4), (17, 25), (30, 25), (30, 29), (0, 29), (0, 25), (13, 25), (13, 4), (0, 4),
-    ), 0.99),
-], ids=["lattice 3.5", "lattice 4.4", "lattice on a foot", "fins", "I"])
+@pytest.mark.parametrize(
+    "loops,least",
+    [
+        (ribs(3.5), 0.99),
+        (ribs(4.4), 0.95),
+        (ribs(4.0, foot=15.0), 0.985),
+        (
+            shapes.polygon(
+                (0, 0),
+                (60, 0),
+                (60, 12),
+                (42, 12),
+                (42, 40),
+                (38, 40),
+                (38, 12),
+                (20, 12),
+                (20, 40),
+                (16, 40),
+                (16, 12),
+                (0, 12),
+            ),
+            0.99,
+        ),
+        (
+            shapes.polygon(
+                (0, 0),
+                (30, 0),
+                (30, 4),
+                (17, 4),
+                (17, 25),
+                (30, 25),
+                (30, 29),
+                (0, 29),
+                (0, 25),
+                (13, 25),
+                (13, 4),
+                (0, 4),
+            ),
+            0.99,
+        ),
+    ],
+    ids=["lattice 3.5", "lattice 4.4", "lattice on a foot", "fins", "I"],
+)
 @pytest.mark.parametrize("pattern", ["contours", "zigzag"])
 def test_ribs_thinner_than_a_bead_are_filled_in_all_their_branches(loops, least, pattern):
     """Of the whole section, as no bead has its usual room in ribs; ribs of 4.4 mm meet in places of their own contours."""
@@ -252,5 +351,5 @@ def test_ribs_thinner_than_a_bead_are_filled_in_all_their_branches(loops, least,
 
 def test_points_of_a_region_get_no_bead_of_their_own():
     """What runs to a point is not a rib: beads there would stand out of it by half."""
-    region, = regions(shapes.polygon((0, 0), (20, 0), (20, 12), (0, 12), (-40, 6)))
+    (region,) = regions(shapes.polygon((0, 0), (20, 0), (20, 12), (0, 12), (-40, 6)))
     assert min(curve.points[:, 0].min() for curve in fill(region, BEADS)) > -25.0

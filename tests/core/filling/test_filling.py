@@ -15,11 +15,18 @@ from freecad_am.core.filling.lines import Frame, levels_between, rows
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InfeasibleError, InputError
 
-_spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
+_spec = importlib.util.spec_from_file_location(
+    "filling_shapes", Path(__file__).with_name("shapes.py")
+)
 shapes = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(shapes)
 SHAPES, dense, inside, raster, tree, distance = (
-    shapes.SHAPES, shapes.dense, shapes.inside, shapes.raster, shapes.tree, shapes.distance,
+    shapes.SHAPES,
+    shapes.dense,
+    shapes.inside,
+    shapes.raster,
+    shapes.tree,
+    shapes.distance,
 )
 
 S, GAP, PITCH = 5.0, 2.0, 0.4
@@ -28,7 +35,7 @@ STEP = 0.05
 
 
 def filled(name, pattern, beads=BEADS, **options):
-    region, = regions(SHAPES[name])
+    (region,) = regions(SHAPES[name])
     return fill(region, beads, pattern, **options)
 
 
@@ -39,7 +46,12 @@ def ground(name):
     border = tree([(loop, True) for loop in SHAPES[name]], STEP)
     grid, within = raster(SHAPES[name], PITCH)
     core = within & (distance(border, grid, 0.5 * S) >= 0.5 * S)
-    return border, grid, within, distance(tree([(grid[core], False)], 1e9), grid, 0.5 * S) < 0.5 * S - PITCH
+    return (
+        border,
+        grid,
+        within,
+        distance(tree([(grid[core], False)], 1e9), grid, 0.5 * S) < 0.5 * S - PITCH,
+    )
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -91,7 +103,10 @@ def test_contours_cover_all_but_medial_axis_and_corners():
 @pytest.mark.parametrize("angle", [0.0, 0.4, 2.0])
 def test_lines_are_parallel_and_a_spacing_apart(angle):
     curves = [curve for curve in filled("wavy 1", "lines", angle=angle) if curve.kind == "line"]
-    way, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    way, across = (
+        np.array([np.cos(angle), np.sin(angle)]),
+        np.array([-np.sin(angle), np.cos(angle)]),
+    )
     heights = np.array([curve.points @ across for curve in curves])
     assert np.ptp(heights, axis=1).max() < 1e-9
     levels = np.unique(heights.mean(axis=1).round(6))
@@ -105,9 +120,15 @@ def test_lines_are_parallel_and_a_spacing_apart(angle):
 
 
 def test_levels_of_lines():
-    assert levels_between(0.0, 19.9, BEADS) == pytest.approx([0, 4.975, 9.95, 14.925, 19.9], abs=1e-5)
-    assert levels_between(0.0, 20.02, BEADS) == pytest.approx([0, 5.005, 10.01, 15.015, 20.02], abs=1e-5)
-    assert levels_between(0.0, 20.1, BEADS) == pytest.approx([0, 5, 10, 12.55, 15.1, 20.1], abs=1e-5)
+    assert levels_between(0.0, 19.9, BEADS) == pytest.approx(
+        [0, 4.975, 9.95, 14.925, 19.9], abs=1e-5
+    )
+    assert levels_between(0.0, 20.02, BEADS) == pytest.approx(
+        [0, 5.005, 10.01, 15.015, 20.02], abs=1e-5
+    )
+    assert levels_between(0.0, 20.1, BEADS) == pytest.approx(
+        [0, 5, 10, 12.55, 15.1, 20.1], abs=1e-5
+    )
     assert levels_between(0.0, 21.0, BEADS) == pytest.approx([0, 5, 10, 13, 16, 21], abs=1e-5)
     assert levels_between(0.0, 19.0, BEADS) == pytest.approx([0, 5, 9.5, 14, 19], abs=1e-5)
     assert levels_between(3.0, 3.0, BEADS) == pytest.approx([3.0])
@@ -139,7 +160,7 @@ def test_zigzags_link_lines_inside_and_shortly(name):
 
 def test_a_spiral_is_one_curve_from_the_border_to_the_middle():
     spirals = [curve for curve in filled("circle", "spiral") if curve.kind == "spiral"]
-    spiral, = spirals
+    (spiral,) = spirals
     assert not spiral.closed
     radius = np.hypot(*spiral.points.T)
     assert radius[0] == pytest.approx(34.5, abs=0.03) and radius.min() < 5.0
@@ -155,22 +176,39 @@ def test_sense_and_start(clockwise):
     for curve in filled("annulus", "contours", beads):
         x, y = curve.points.T
         assert ((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() < 0) == clockwise
-        assert np.degrees(np.arctan2(y[0], x[0])) == pytest.approx(0.0, abs=1.5), "starts are lined up"
+        assert np.degrees(np.arctan2(y[0], x[0])) == pytest.approx(0.0, abs=1.5), (
+            "starts are lined up"
+        )
     up = Beads(S, GAP, 0.0, start=0.5 * np.pi)
     for curve in filled("annulus", "contours", up):
         assert curve.points[0, 1] == pytest.approx(curve.points[:, 1].max(), abs=1e-6)
 
 
 def test_thin_regions_and_necks():
-    thin, = regions(shapes.blade(100.0, 4.0))
-    curve, = fill(thin, BEADS)
+    (thin,) = regions(shapes.blade(100.0, 4.0))
+    (curve,) = fill(thin, BEADS)
     assert curve.kind == "centre" and not curve.closed
     assert np.ptp(curve.points[:, 0]) > 70.0
     neck = shapes.polygon(
-        (0, 0), (40, 0), (40, 18), (60, 18), (60, 0), (100, 0), (100, 40), (60, 40), (60, 21), (40, 21), (40, 40), (0, 40),
+        (0, 0),
+        (40, 0),
+        (40, 18),
+        (60, 18),
+        (60, 0),
+        (100, 0),
+        (100, 40),
+        (60, 40),
+        (60, 21),
+        (40, 21),
+        (40, 40),
+        (0, 40),
     )
-    region, = regions(neck)
-    bridge, = [curve for curve in fill(region, BEADS) if curve.kind == "centre" and 45.0 < curve.points[:, 0].mean() < 55.0]
+    (region,) = regions(neck)
+    (bridge,) = [
+        curve
+        for curve in fill(region, BEADS)
+        if curve.kind == "centre" and 45.0 < curve.points[:, 0].mean() < 55.0
+    ]
     assert np.abs(bridge.points[:, 1] - 19.5).max() < 0.2
     for shape in (thin, region):
         with pytest.raises(InfeasibleError) as refused:
@@ -182,7 +220,10 @@ def test_thin_regions_and_necks():
 def test_short_beads_that_close_gaps_go_on_until_they_are_long_enough(pattern):
     least = 12.0
     curves = filled("wavy 1", pattern, Beads(S, GAP, least), walls=1)
-    lines = [np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points for curve in curves]
+    lines = [
+        np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
+        for curve in curves
+    ]
     lengths = [np.hypot(*np.diff(line, axis=0).T).sum() for line in lines]
     assert min(lengths) >= least - 1e-9
     _, grid, _, reach = ground("wavy 1")
@@ -195,11 +236,13 @@ def test_short_beads_that_close_gaps_go_on_until_they_are_long_enough(pattern):
 def test_scale_changes_nothing_and_neither_does_doing_it_again(pattern):
     loops = SHAPES["blade"]
     one = filled("blade", pattern)
-    region, = regions([loop.copy() for loop in loops])
-    assert all(np.array_equal(a.points, b.points) for a, b in zip(one, fill(region, BEADS, pattern)))
+    (region,) = regions([loop.copy() for loop in loops])
+    assert all(
+        np.array_equal(a.points, b.points) for a, b in zip(one, fill(region, BEADS, pattern))
+    )
     mine = sum(np.hypot(*np.diff(c.points, axis=0).T).sum() for c in one)
     for scale in (1e-3, 1e4):
-        large, = regions([loop * scale for loop in loops])
+        (large,) = regions([loop * scale for loop in loops])
         scaled = fill(large, Beads(S * scale, GAP * scale, 0.0), pattern)
         theirs = sum(np.hypot(*np.diff(c.points, axis=0).T).sum() for c in scaled)
         assert theirs / scale == pytest.approx(mine, rel=0.01)
@@ -211,18 +254,36 @@ def test_unknown_patterns_are_refused():
 
 
 def test_no_lines_where_they_have_room_but_nothing_to_run_through():
-    region, = regions(SHAPES["circle"])
+    (region,) = regions(SHAPES["circle"])
     assert rows(Frame([], (region,), (), []), BEADS, 0.3) == []
 
 
-@pytest.mark.parametrize(("loops", "closed"), [
-    ([np.array([[0.0, 0.0], [30.0, 0.0], [12.0, 4e-4]])], False),
-    ([np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 0.003], [40.0, 20.0], [29.997, 0.003], [0.0, 0.003]])], False),
-    ([shapes.circle(40.0, 720), shapes.circle(39.997, 720)[::-1]], True),
-], ids=["needle", "hook", "ring"])
+@pytest.mark.parametrize(
+    ("loops", "closed"),
+    [
+        ([np.array([[0.0, 0.0], [30.0, 0.0], [12.0, 4e-4]])], False),
+        (
+            [
+                np.array(
+                    [
+                        [0.0, 0.0],
+                        [30.0, 0.0],
+                        [30.0, 0.003],
+                        [40.0, 20.0],
+                        [29.997, 0.003],
+                        [0.0, 0.003],
+                    ]
+                )
+            ],
+            False,
+        ),
+        ([shapes.circle(40.0, 720), shapes.circle(39.997, 720)[::-1]], True),
+    ],
+    ids=["needle", "hook", "ring"],
+)
 def test_slivers_thinner_than_the_chord_error_take_no_time(loops, closed):
     """What triangles leave of a section along a rim: their middle was searched for by places as near as they are thin."""
-    region, = regions(loops)
+    (region,) = regions(loops)
     began = time.process_time()
     curves = fill(region, Beads(5.0, 1.0, 2.0, chord_error=0.02))
     assert time.process_time() - began < 0.5 and curves[0].closed == closed

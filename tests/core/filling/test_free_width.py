@@ -17,7 +17,9 @@ from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.filled import DevelopableParameters
 
-_spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
+_spec = importlib.util.spec_from_file_location(
+    "filling_shapes", Path(__file__).with_name("shapes.py")
+)
 shapes = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(shapes)
 
@@ -39,7 +41,9 @@ def places(curves):
         ends = np.c_[curve.points, share]
         ends = np.vstack([ends, ends[:1]]) if curve.closed else ends
         for a, b in zip(ends, ends[1:]):
-            t = np.linspace(0.0, 1.0, max(int(np.ceil(np.hypot(*(b - a)[:2]) / STEP)), 1) + 1)[:, None]
+            t = np.linspace(0.0, 1.0, max(int(np.ceil(np.hypot(*(b - a)[:2]) / STEP)), 1) + 1)[
+                :, None
+            ]
             found.append(a + t * (b - a))
     rows = np.vstack(found)
     return rows[:, :2], S * rows[:, 2]
@@ -74,7 +78,7 @@ def bar(thick, length=90.0):
 @pytest.mark.always
 def test_bars_of_any_thickness_are_filled_evenly(thick, pattern):
     loops = bar(thick)
-    region, = regions(loops)
+    (region,) = regions(loops)
     curves, share = adapted(region, pattern, 0.7, 1.4)
     count = round(thick / (share * S))
     assert share * S * count == pytest.approx(thick, rel=0.01) and 0.7 <= share <= 1.41
@@ -89,10 +93,13 @@ def test_bars_of_any_thickness_are_filled_evenly(thick, pattern):
     assert (covered & ~within).sum() <= 0.01 * within.sum()
     if pattern == "contours":
         area = sum(
-            (np.hypot(*np.diff(line, axis=0).T) * 0.5 * (wide[1:] + wide[:-1])).sum() for line, wide in (
-                (np.vstack([c.points, c.points[:1]]) if c.closed else c.points,
-                 S * (np.r_[c.share, c.share[:1]] if c.closed else c.share)) for c in (
-                    c if c.share is not None else shares_of_one(c) for c in curves)
+            (np.hypot(*np.diff(line, axis=0).T) * 0.5 * (wide[1:] + wide[:-1])).sum()
+            for line, wide in (
+                (
+                    np.vstack([c.points, c.points[:1]]) if c.closed else c.points,
+                    S * (np.r_[c.share, c.share[:1]] if c.closed else c.share),
+                )
+                for c in (c if c.share is not None else shares_of_one(c) for c in curves)
             )
         )
         assert area == pytest.approx(thick * 90.0, rel=0.08), "what is laid is what the bar takes"
@@ -105,8 +112,8 @@ def shares_of_one(curve):
 
 
 def test_a_wedge_narrower_than_a_bead_is_as_wide_as_its_bead():
-    region, = regions(shapes.polygon((0, 0), (80, 0), (80, 4.9), (0, 3.0)))
-    curve, = adapted(region, "contours", 0.5, 1.5)[0]
+    (region,) = regions(shapes.polygon((0, 0), (80, 0), (80, 4.9), (0, 3.0)))
+    (curve,) = adapted(region, "contours", 0.5, 1.5)[0]
     x, share = curve.points[:, 0], curve.share
     inner = (x > 4.0) & (x < 76.0)
     assert S * share[inner] == pytest.approx(3.0 + 1.9 * x[inner] / 80.0, rel=0.02)
@@ -114,13 +121,15 @@ def test_a_wedge_narrower_than_a_bead_is_as_wide_as_its_bead():
 
 def test_the_usual_range_changes_nothing():
     for name in ("comb", "wavy 1"):
-        region, = regions(shapes.SHAPES[name])
+        (region,) = regions(shapes.SHAPES[name])
         usual = fill(region, BEADS)
         curves, share = adapted(region, "contours", 1.0, 1.0)
-        assert share == 1.0 and all(a is b or (np.array_equal(a.points, b.points) and b.share is None)
-                                    for a, b in zip(usual, curves, strict=True))
+        assert share == 1.0 and all(
+            a is b or (np.array_equal(a.points, b.points) and b.share is None)
+            for a, b in zip(usual, curves, strict=True)
+        )
     # nothing within the range: the usual spacing, and gaps in the middle as wide as they are
-    region, = regions(bar(8.0))
+    (region,) = regions(bar(8.0))
     curves, share = adapted(region, "contours", 0.95, 1.05)
     assert share == 1.0
 
@@ -131,7 +140,9 @@ def test_spread_starts_keep_apart_and_aligned_ones_do_not(name):
         found = {}
         for layer in range(6):
             beads = Beads(S, 1.0, 2.0, chord_error=0.02, spread=layer * OVER if spread else None)
-            region, = regions(shapes.SHAPES[name][:1])  # without holes there is one contour of each number, or few
+            (region,) = regions(
+                shapes.SHAPES[name][:1]
+            )  # without holes there is one contour of each number, or few
             for curve in fill(region, beads):
                 if curve.kind == "contour":
                     found.setdefault((layer, curve.ring), []).append(curve.points)
@@ -144,21 +155,33 @@ def test_spread_starts_keep_apart_and_aligned_ones_do_not(name):
         return min(near, 1.0 - near)
 
     def least(found):
-        pairs = [(key, (key[0] + i, key[1] + j)) for key in found for i, j in ((0, 1), (1, 0), (1, 1), (1, -1))]
+        pairs = [
+            (key, (key[0] + i, key[1] + j))
+            for key in found
+            for i, j in ((0, 1), (1, 0), (1, 1), (1, -1))
+        ]
         return [share(found[a], found[b]) for a, b in pairs if b in found]
+
     assert max(least(starts(False))) < 0.12 or name in ("wavy 2", "L", "blade")
     apart = least(starts(True))
     # where contours differ in shape from the ones outside of them, so do the shares of their length
-    assert len(apart) > 8 and np.median(apart) > 0.2 and min(apart) > (0.02 if name in ("wavy 2", "L") else 0.08)
+    assert (
+        len(apart) > 8
+        and np.median(apart) > 0.2
+        and min(apart) > (0.02 if name in ("wavy 2", "L") else 0.08)
+    )
 
 
-@pytest.mark.parametrize("given,told", [
-    ((0.2, 1.4), "20 % is out of range; give at least 30 % and at most 200 %"),
-    ((1.4, 0.7), "140 % to 70 % is not a range; give the smaller percentage first"),
-    ((1.1, 1.4), "110 % to 140 % is without 100 %, the usual width; include it"),
-    ((1.0,), "is not a range; give two percentages"),
-    ((float("nan"), 1.2), "nan is not a number"),
-])
+@pytest.mark.parametrize(
+    "given,told",
+    [
+        ((0.2, 1.4), "20 % is out of range; give at least 30 % and at most 200 %"),
+        ((1.4, 0.7), "140 % to 70 % is not a range; give the smaller percentage first"),
+        ((1.1, 1.4), "110 % to 140 % is without 100 %, the usual width; include it"),
+        ((1.0,), "is not a range; give two percentages"),
+        ((float("nan"), 1.2), "nan is not a number"),
+    ],
+)
 def test_ranges_that_are_none_are_told(given, told):
     with pytest.raises(InputError, match="spacing_range") as refused:
         DevelopableParameters(spacing_range=given)
@@ -169,13 +192,15 @@ def test_ranges_that_are_none_are_told(given, told):
 def test_beads_cover_as_much_as_they_are_wide(thick):
     """Bars in beads wider or narrower than usual: against what discs of their widths sweep."""
     loops = bar(thick, 50.0)
-    region, = regions(loops)
+    (region,) = regions(loops)
     curves, share = adapted(region, "contours", 0.7, 1.4)
     grid = shapes.raster(loops, 0.25)[0] + np.array([0.1, 0.07])
     within, swept_over = shapes.inside(loops, grid), swept(curves, grid)
     found = covered(region, curves, BEADS)
     pixel, near = 0.25**2, 0.06 * 2.0 * (50.0 + thick)  # a quarter of a place along the border
-    assert found.area == pytest.approx(region.area) and found.covered == pytest.approx(pixel * swept_over.sum(), abs=near)
+    assert found.area == pytest.approx(region.area) and found.covered == pytest.approx(
+        pixel * swept_over.sum(), abs=near
+    )
     assert found.left == pytest.approx(pixel * (within & ~swept_over).sum(), abs=near)
     assert found.outside == pytest.approx(pixel * (swept_over & ~within).sum(), abs=near)
     usual = covered(region, [replace(curve, share=None) for curve in curves], BEADS)

@@ -12,9 +12,14 @@ def test_lengths_are_those_of_numpy_to_the_last_bit(count):
     rng = np.random.default_rng(count)
     corners = rng.normal(size=(count, 3, 3)) * rng.choice([1e-4, 1.0, 300.0], size=(count, 1, 1))
     assert np.array_equal(lengths(corners[:, 0]), np.linalg.norm(corners[:, 0], axis=1))
-    for following in (np.roll(corners, -1, axis=1) - corners, corners - np.roll(corners, -1, axis=1)):
+    for following in (
+        np.roll(corners, -1, axis=1) - corners,
+        corners - np.roll(corners, -1, axis=1),
+    ):
         assert np.array_equal(sides(corners), np.linalg.norm(following, axis=2))
-    assert np.array_equal(sides(corners[::2]), np.linalg.norm((np.roll(corners, -1, axis=1) - corners)[::2], axis=2))
+    assert np.array_equal(
+        sides(corners[::2]), np.linalg.norm((np.roll(corners, -1, axis=1) - corners)[::2], axis=2)
+    )
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 20_000])

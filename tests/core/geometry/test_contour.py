@@ -30,7 +30,10 @@ def test_order_and_sense_of_the_pieces_do_not_matter(seed):
     heights = np.cumsum(random.uniform(1.0, 5.0, 8))
     points = list(zip(random.uniform(5.0, 50.0, 8), heights, strict=True))
     whole = corners(*points)
-    shuffled = [whole[i].reversed() if random.random() < 0.5 else whole[i] for i in random.permutation(len(whole))]
+    shuffled = [
+        whole[i].reversed() if random.random() < 0.5 else whole[i]
+        for i in random.permutation(len(whole))
+    ]
     chains, gap = contour.chains(shuffled)
     assert len(chains) == 1
     assert gap == 0.0
@@ -43,7 +46,9 @@ def test_order_and_sense_of_the_pieces_do_not_matter(seed):
 
 
 def test_gaps_are_told_and_wide_ones_left():
-    chains, gap = contour.chains(corners((5, 0), (5, 4)) + corners((5.05, 4), (6, 9)) + corners((8, 9), (8, 12)))
+    chains, gap = contour.chains(
+        corners((5, 0), (5, 4)) + corners((5.05, 4), (6, 9)) + corners((8, 9), (8, 12))
+    )
     assert sorted(len(chain) for chain in chains) == [1, 2]
     assert gap == pytest.approx(0.05)
 
@@ -64,12 +69,16 @@ def test_flat_steps_stay_and_flat_bottoms_go():
 
 
 def test_a_full_part_has_one_wall():
-    assert [names(wall) for wall in contour.walls(corners((0, 0), (10, 0), (10, 30), (0, 30)))] == [["Face2"]]
+    assert [names(wall) for wall in contour.walls(corners((0, 0), (10, 0), (10, 30), (0, 30)))] == [
+        ["Face2"]
+    ]
 
 
 def test_round_contours_are_cut_at_their_lowest_and_highest_points():
     # samples that miss both points
-    ring = pieces(arc((50, 0), 10, 0.4, 0.4 + np.pi), arc((50, 0), 10, 0.4 + np.pi, 0.4 + 2 * np.pi))
+    ring = pieces(
+        arc((50, 0), 10, 0.4, 0.4 + np.pi), arc((50, 0), 10, 0.4 + np.pi, 0.4 + 2 * np.pi)
+    )
     outer, inner = (contour.meridian_of(wall) for wall in contour.walls(contour.chains(ring)[0][0]))
     for wall, side in ((outer, 1.0), (inner, -1.0)):
         assert wall.length == pytest.approx(10.0 * np.pi, abs=1e-6)
@@ -79,9 +88,15 @@ def test_round_contours_are_cut_at_their_lowest_and_highest_points():
 
 
 def test_a_dome_with_a_rounded_rim_is_cut_in_its_rim():
-    rim = pieces(arc((0, 0), 45, np.pi / 2, 0.0), arc((44, 0), 1, 0.0, -np.pi), arc((0, 0), 43, 0.0, np.pi / 2))
+    rim = pieces(
+        arc((0, 0), 45, np.pi / 2, 0.0),
+        arc((44, 0), 1, 0.0, -np.pi),
+        arc((0, 0), 43, 0.0, np.pi / 2),
+    )
     walls = [contour.meridian_of(wall) for wall in contour.walls(rim)]
-    assert [wall.length for wall in walls] == pytest.approx([22.5 * np.pi + np.pi / 2, 21.5 * np.pi + np.pi / 2])
+    assert [wall.length for wall in walls] == pytest.approx(
+        [22.5 * np.pi + np.pi / 2, 21.5 * np.pi + np.pi / 2]
+    )
     assert all(wall.points[0] == pytest.approx([44.0, -1.0], abs=1e-6) for wall in walls)
 
 

@@ -18,7 +18,10 @@ def tube(course, radius=2.0, sides=12):
     across /= np.linalg.norm(across, axis=1)[:, None]
     up = np.cross(across, way)
     turn = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)[:, None]
-    rings = [point + radius * (np.cos(turn) * a + np.sin(turn) * b) for point, a, b in zip(course, across, up)]
+    rings = [
+        point + radius * (np.cos(turn) * a + np.sin(turn) * b)
+        for point, a, b in zip(course, across, up)
+    ]
     points = np.vstack([*rings, course[:1], course[-1:]])
     i = np.arange(sides)
     j = (i + 1) % sides
@@ -27,7 +30,10 @@ def tube(course, radius=2.0, sides=12):
         low, high = ring * sides, (ring + 1) * sides
         faces += [np.c_[low + i, low + j, high + j], np.c_[low + i, high + j, high + i]]
     last, ends = (len(course) - 1) * sides, len(course) * sides
-    faces += [np.c_[j, i, np.full(sides, ends)], np.c_[last + i, last + j, np.full(sides, ends + 1)]]
+    faces += [
+        np.c_[j, i, np.full(sides, ends)],
+        np.c_[last + i, last + j, np.full(sides, ends + 1)],
+    ]
     return points, np.vstack(faces).astype(np.intp)
 
 
@@ -39,6 +45,7 @@ def looped(rise):
 
 def passes(a, b, corners):
     """Whether the line from a to b passes through a triangle: signs of volumes, one pair at a time."""
+
     def side(p, q, r, s):
         return np.sign(np.dot(np.cross(q - p, r - p), s - p))
 
@@ -59,10 +66,15 @@ def test_pairs_are_those_found_one_by_one(seed):
     low, high = corners.min(axis=1), corners.max(axis=1)
     for i in range(150):
         for j in range(i):
-            if (low[i] > high[j]).any() or (low[j] > high[i]).any():  # boxes about them that are apart
+            if (low[i] > high[j]).any() or (
+                low[j] > high[i]
+            ).any():  # boxes about them that are apart
                 continue
             one, other = corners[i], corners[j]
-            if any(passes(one[k], one[k - 1], other) or passes(other[k], other[k - 1], one) for k in range(3)):
+            if any(
+                passes(one[k], one[k - 1], other) or passes(other[k], other[k - 1], one)
+                for k in range(3)
+            ):
                 meant.add((j, i))
     assert len(meant) > 40 and found == meant
 
@@ -95,7 +107,9 @@ def test_what_only_touches_does_not_cross(deep):
     assert len(crossings(points, np.arange(9).reshape(-1, 3), 0.01).pairs) == 1
 
 
-@pytest.mark.parametrize("turn", [np.eye(3), Rotation.from_euler("xyz", [0.4, 1.2, -0.3]).as_matrix()])
+@pytest.mark.parametrize(
+    "turn", [np.eye(3), Rotation.from_euler("xyz", [0.4, 1.2, -0.3]).as_matrix()]
+)
 def test_a_mesh_that_cuts_itself_is_refused_with_the_place(turn):
     points, faces = tube(looped(1.0))
     with pytest.raises(InputError) as found:

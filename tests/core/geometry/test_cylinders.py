@@ -10,7 +10,9 @@ from freecad_am.core.geometry import cylinders
 def spread_on(points, triangles, random, count=4000):
     """Points evenly on triangles."""
     corners = points[triangles]
-    size = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    size = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
     chosen = random.choice(len(triangles), count, p=size / size.sum())
     a, b = random.uniform(size=(2, count))
     a, b = np.where(a + b > 1.0, 1.0 - a, a), np.where(a + b > 1.0, 1.0 - b, b)
@@ -25,10 +27,14 @@ def tube(path, radius, sides=16):
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     side = np.array([0.0, 1.0, 0.0])
     up = np.cross(along, side)
-    rings = path[:, None] + radius * (np.cos(angle)[None, :, None] * side + np.sin(angle)[None, :, None] * up[:, None])
+    rings = path[:, None] + radius * (
+        np.cos(angle)[None, :, None] * side + np.sin(angle)[None, :, None] * up[:, None]
+    )
     k = np.arange((len(path) - 1) * sides)
     right = np.where(k % sides == sides - 1, k - sides + 1, k + 1)
-    triangles = np.concatenate([np.stack([k, right, right + sides], 1), np.stack([k, right + sides, k + sides], 1)])
+    triangles = np.concatenate(
+        [np.stack([k, right, right + sides], 1), np.stack([k, right + sides, k + sides], 1)]
+    )
     return rings.reshape(-1, 3), triangles
 
 

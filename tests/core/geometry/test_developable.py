@@ -9,7 +9,11 @@ import pytest
 from freecad_am.core.geometry.developable import Developable
 
 BASES = [
-    Developable(60.0, 200.0), Developable(60.0), Developable(3.0, 0.5), Developable(60.0, 1e7), Developable(250.0, 90.0),
+    Developable(60.0, 200.0),
+    Developable(60.0),
+    Developable(3.0, 0.5),
+    Developable(60.0, 1e7),
+    Developable(250.0, 90.0),
     Developable(0.4, 3.0),
 ]
 
@@ -28,7 +32,9 @@ def spread(base, n, seed):
 def test_there_and_back(base, middle):
     points = spread(base, 4000, 1)
     size = np.abs(points).max()
-    np.testing.assert_allclose(base.wrap(base.flat(points, middle), middle), points, atol=1e-12 * size)
+    np.testing.assert_allclose(
+        base.wrap(base.flat(points, middle), middle), points, atol=1e-12 * size
+    )
 
 
 @pytest.mark.parametrize("base", BASES)
@@ -38,7 +44,9 @@ def test_lengths_of_curves_stay(base):
     theta, z = -2.0 + 4.0 * t, 0.5 * min(base.height, base.radius) * np.sin(5.0 * t)
     rho = base.radius * (1.0 - z / base.height)
     space = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
-    lengths = [np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in (space, base.flat(space))]
+    lengths = [
+        np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in (space, base.flat(space))
+    ]
     np.testing.assert_allclose(lengths[1], lengths[0], rtol=1e-9)
 
 
@@ -52,7 +60,10 @@ def test_angles_stay(base):
     up = np.cross(normal, around)
     step = 1e-5 * base.radius
     flat = base.flat(points)
-    moved = [(base.flat(points + step * way) - base.flat(points - step * way)) / (2.0 * step) for way in (around, up)]
+    moved = [
+        (base.flat(points + step * way) - base.flat(points - step * way)) / (2.0 * step)
+        for way in (around, up)
+    ]
     # derivatives of an isometry turn the tangent plane rigidly, with its outside up
     for one in moved:
         np.testing.assert_allclose(np.linalg.norm(one, axis=1), 1.0, atol=1e-6)
@@ -66,11 +77,17 @@ def test_offsets_are_equidistant(base):
     for distance in (0.3, 5.0, 40.0):
         further = base.offset(distance)
         points = spread(further, 1000, 3)
-        np.testing.assert_allclose(base.distance(points), distance, atol=1e-12 * np.abs(points).max())
+        np.testing.assert_allclose(
+            base.distance(points), distance, atol=1e-12 * np.abs(points).max()
+        )
         foot = points - distance * base.normals(points)
-        keep = foot[:, 2] < base.height  # the part that lies over the surface itself, not over its apex
+        keep = (
+            foot[:, 2] < base.height
+        )  # the part that lies over the surface itself, not over its apex
         keep &= (foot[:, :2] * points[:, :2]).sum(axis=1) > 0.0
-        np.testing.assert_allclose(base.distance(foot[keep]), 0.0, atol=1e-12 * np.abs(points).max())
+        np.testing.assert_allclose(
+            base.distance(foot[keep]), 0.0, atol=1e-12 * np.abs(points).max()
+        )
 
 
 def test_offsets_of_the_paper():
@@ -92,7 +109,9 @@ def test_only_the_nappe_below_the_apex():
     assert base.distance(mirrored)[0] > 100.0
 
 
-@pytest.mark.parametrize("radius, height", [(0.0, 10.0), (-1.0, 10.0), (5.0, 0.0), (5.0, -3.0), (float("nan"), 1.0)])
+@pytest.mark.parametrize(
+    "radius, height", [(0.0, 10.0), (-1.0, 10.0), (5.0, 0.0), (5.0, -3.0), (float("nan"), 1.0)]
+)
 def test_nonsense_is_refused(radius, height):
     with pytest.raises(ValueError):
         Developable(radius, height)

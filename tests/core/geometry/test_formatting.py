@@ -10,18 +10,33 @@ def test_places_are_told_to_a_thousandth_without_negative_zeros():
     assert place([1.00049, -0.0001, 250.0]) == "(1, 0, 250)"
 
 
-@pytest.mark.parametrize(("distance", "text"), [(0.0, "0.001"), (2e-14, "0.001"), (0.0123, "0.012"), (0.5, "0.5")])
+@pytest.mark.parametrize(
+    ("distance", "text"), [(0.0, "0.001"), (2e-14, "0.001"), (0.0123, "0.012"), (0.5, "0.5")]
+)
 def test_deviations_are_told_no_finer_than_a_thousandth(distance, text):
     assert deviation(distance) == text
 
 
-@pytest.mark.parametrize(("number", "text"), [(3.0, "3"), (46_789_123.0, "47,000,000"), (4.7e14, "4.7e+14"), (1e400, "inf")])
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(3.0, "3"), (46_789_123.0, "47,000,000"), (4.7e14, "4.7e+14"), (1e400, "inf")],
+)
 def test_counts_are_told_to_two_digits(number, text):
     assert count(number) == text
 
 
-@pytest.mark.parametrize(("number", "rounded"), [
-    (0.00451, 0.0046), (0.0045, 0.0045), (1.0, 1.0), (99.2, 100.0), (1234.0, 1300.0), (float("inf"), float("inf")),
-])
+@pytest.mark.parametrize(
+    ("number", "rounded"),
+    [
+        (0.00451, 0.0046),
+        (0.0045, 0.0045),
+        (1.0, 1.0),
+        (99.2, 100.0),
+        (1234.0, 1300.0),
+        (float("inf"), float("inf")),
+    ],
+)
 def test_what_is_enough_is_rounded_up(number, rounded):
-    assert at_least(number) == pytest.approx(rounded, rel=1e-12) and at_least(number) >= number * (1.0 - 1e-9)
+    assert at_least(number) == pytest.approx(rounded, rel=1e-12) and at_least(number) >= number * (
+        1.0 - 1e-9
+    )

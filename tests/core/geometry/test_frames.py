@@ -27,7 +27,9 @@ def test_bryant_is_rx_ry_rz_and_comes_back(rng):
     six = rng.uniform(-3, 3, (500, 6))
     six[:, 4] = rng.uniform(-np.pi / 2, np.pi / 2, 500)
     poses = frames.bryant(six)
-    assert np.abs(poses[:, :3, :3] - Rotation.from_euler("XYZ", six[:, 3:]).as_matrix()).max() < 1e-14
+    assert (
+        np.abs(poses[:, :3, :3] - Rotation.from_euler("XYZ", six[:, 3:]).as_matrix()).max() < 1e-14
+    )
     assert np.array_equal(poses[:, :3, 3], six[:, :3])
     assert np.abs(frames.to_bryant(poses[:, :3, :3]) - six[:, 3:]).max() < 1e-9
 

@@ -69,7 +69,9 @@ def test_only_what_is_linked_is_joined():
 def test_chains_of_random_successors():
     rng = np.random.default_rng(1)
     names, following, wanted = rng.permutation(1000), np.full(1000, -1), {}
-    for part, closed in zip(np.split(names, [1, 3, 300, 301 + 64, 900]), [False, False, True, False, True, False]):
+    for part, closed in zip(
+        np.split(names, [1, 3, 300, 301 + 64, 900]), [False, False, True, False, True, False]
+    ):
         following[part[:-1]] = part[1:]
         if closed:
             following[part[-1]] = part[0]
@@ -89,6 +91,8 @@ def test_edges_are_each_there_once_in_order_and_borders_have_one_face():
         faces = random.integers(0, count, (500, 3), dtype=np.int32)
         one = Mesh(np.zeros((count, 3)), faces)
         half = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        edges, place, found = np.unique(np.sort(half, axis=1), axis=0, return_inverse=True, return_counts=True)
+        edges, place, found = np.unique(
+            np.sort(half, axis=1), axis=0, return_inverse=True, return_counts=True
+        )
         assert np.array_equal(one.edges, edges)
         assert np.array_equal(one.border_edges, half[found[np.ravel(place)] == 1])

@@ -69,11 +69,15 @@ def test_inside_out_solids_are_turned_and_pieces_told_apart():
     other, more = ball(6.0, (40.0, 0.0, 0.0), seed=5)
     hollow, inner = ball(3.0, (40.0, 0.0, 0.0), seed=6)
     vertices = np.vstack([points, other, hollow])
-    triangles = np.vstack([faces[:, ::-1], more + len(points), inner[:, ::-1] + len(points) + len(other)])
+    triangles = np.vstack(
+        [faces[:, ::-1], more + len(points), inner[:, ::-1] + len(points) + len(other)]
+    )
     found = repaired(vertices, triangles, "balls")
     volumes = sorted(solid.volume for solid in found.solids)
-    whole = [repaired(*ball(*args), "one").solids[0].volume for args in (
-        (10.0,), (6.0, (40.0, 0.0, 0.0), 150, 5), (3.0, (40.0, 0.0, 0.0), 150, 6))]
+    whole = [
+        repaired(*ball(*args), "one").solids[0].volume
+        for args in ((10.0,), (6.0, (40.0, 0.0, 0.0), 150, 5), (3.0, (40.0, 0.0, 0.0), 150, 6))
+    ]
     np.testing.assert_allclose(volumes, [whole[1] - whole[2], whole[0]])
     assert "a solid was inside out" in told(found)
 
@@ -84,7 +88,9 @@ def test_what_is_not_safe_is_refused_with_its_place():
     with pytest.raises(InputError) as caught:
         repaired(points, np.delete(faces, around, axis=0), "ball.stl")
     assert (caught.value.code, caught.value.where) == ("OPEN_MESH", "ball.stl")
-    assert f"{len(around)} edges" in caught.value.message and "close" in caught.value.message.lower()
+    assert (
+        f"{len(around)} edges" in caught.value.message and "close" in caught.value.message.lower()
+    )
     fin = np.vstack([points, points[0] * 2.0])
     apex = len(points)
     with pytest.raises(InputError) as caught:
@@ -114,17 +120,25 @@ def box(size=10.0, at=(0.0, 0.0, 0.0)):
 def both(*meshes):
     """Meshes as one."""
     begin = np.cumsum([0, *(len(points) for points, _ in meshes)])
-    return np.vstack([points for points, _ in meshes]), np.vstack([faces + at for (_, faces), at in zip(meshes, begin)])
+    return np.vstack([points for points, _ in meshes]), np.vstack(
+        [faces + at for (_, faces), at in zip(meshes, begin)]
+    )
 
 
-@pytest.mark.parametrize("turn", [np.eye(3), Rotation.from_euler("xyz", [0.4, 1.2, -0.3]).as_matrix()])
+@pytest.mark.parametrize(
+    "turn", [np.eye(3), Rotation.from_euler("xyz", [0.4, 1.2, -0.3]).as_matrix()]
+)
 def test_boxes_that_touch_along_an_edge_are_told_apart(turn):
-    points, faces = both(box(), box(at=(10.0, 10.0, 0.0)), box(at=(20.0, 0.0, 0.0)))  # each beside the next
+    points, faces = both(
+        box(), box(at=(10.0, 10.0, 0.0)), box(at=(20.0, 0.0, 0.0))
+    )  # each beside the next
     found = repaired(points @ turn, faces, "boxes")
     assert sorted(solid.volume for solid in found.solids) == pytest.approx([1000.0] * 3)
     for solid in found.solids:
         assert (Edges(solid.triangles).count == 2).all()
-    assert [issue.code for issue in found.issues] == ["MENDED"] and "2 edges of more than two" in told(found)
+    assert [issue.code for issue in found.issues] == [
+        "MENDED"
+    ] and "2 edges of more than two" in told(found)
     where = [float(number) for number in told(found).split("(")[1].split(")")[0].split(",")]
     assert (turn @ where)[1] == pytest.approx(10.0, abs=1e-3)
 
@@ -135,8 +149,10 @@ def test_small_holes_are_closed_and_larger_ones_named():
     gone = np.zeros(len(faces), dtype=bool)
     for vertex in (20, 200):
         gone |= (faces == vertex).any(axis=1)
-    widest = max(np.linalg.norm(np.ptp(points[faces[(faces == vertex).any(axis=1)]].reshape(-1, 3), axis=0))
-                 for vertex in (20, 200))
+    widest = max(
+        np.linalg.norm(np.ptp(points[faces[(faces == vertex).any(axis=1)]].reshape(-1, 3), axis=0))
+        for vertex in (20, 200)
+    )
     found = repaired(points, faces[~gone], "ball", hole=widest + 1e-6)
     assert len(found.solids) == 1 and found.solids[0].volume == pytest.approx(whole, rel=2e-3)
     assert found.issues[0].code == "MENDED" and "2 holes were closed" in told(found)
@@ -165,7 +181,9 @@ def test_a_fin_and_triangles_that_cross_change_no_volume():
 
 def test_what_stands_in_the_box_of_another_is_no_cavity():
     """A ball, inside out, between the arms of a U: in its box, not in it."""
-    outline = np.array([[0, 0], [30, 0], [30, 30], [20, 30], [20, 10], [10, 10], [10, 30], [0, 30]], dtype=float)
+    outline = np.array(
+        [[0, 0], [30, 0], [30, 30], [20, 30], [20, 10], [10, 10], [10, 30], [0, 30]], dtype=float
+    )
     low = np.column_stack([outline, np.zeros(8)])
     points = np.vstack([low, low + [0.0, 0.0, 20.0]])
     cap = [(0, 1, 4), (0, 4, 5), (1, 2, 4), (2, 3, 4), (0, 5, 7), (5, 6, 7)]
@@ -176,13 +194,17 @@ def test_what_stands_in_the_box_of_another_is_no_cavity():
     inner, turned = ball(3.0, (15.0, 20.0, 10.0))
     found = repaired(*both((points, np.array(faces)), (inner, turned[:, ::-1])), "both")
     volumes = sorted(solid.volume for solid in found.solids)
-    assert volumes == pytest.approx([repaired(inner, turned, "ball").solids[0].volume, 700.0 * 20.0])
+    assert volumes == pytest.approx(
+        [repaired(inner, turned, "ball").solids[0].volume, 700.0 * 20.0]
+    )
 
 
 def test_a_mesh_with_every_triangle_from_both_sides_is_one_solid():
     points, faces = ball()
     found = repaired(points, np.vstack([faces, faces[:, ::-1]]), "ball")
-    assert [solid.volume for solid in found.solids] == pytest.approx([repaired(points, faces, "ball").solids[0].volume])
+    assert [solid.volume for solid in found.solids] == pytest.approx(
+        [repaired(points, faces, "ball").solids[0].volume]
+    )
 
 
 def test_a_surface_without_inside_is_refused():
@@ -192,14 +214,22 @@ def test_a_surface_without_inside_is_refused():
     u, v = (grid.ravel() for grid in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
     angle, other = 2.0 * np.pi * u / n, 2.0 * np.pi * (v + 0.5) / n
     across = 3.0 + np.cos(angle / 2.0) * np.sin(other) - np.sin(angle / 2.0) * np.sin(2.0 * other)
-    points = np.stack([across * np.cos(angle), across * np.sin(angle),
-                       np.sin(angle / 2.0) * np.sin(other) + np.cos(angle / 2.0) * np.sin(2.0 * other)], axis=1)
+    points = np.stack(
+        [
+            across * np.cos(angle),
+            across * np.sin(angle),
+            np.sin(angle / 2.0) * np.sin(other) + np.cos(angle / 2.0) * np.sin(2.0 * other),
+        ],
+        axis=1,
+    )
     faces = []
     for i in range(n):
         for j in range(n):
             a, b = number[i, j], number[i, (j + 1) % n]
             row = number[(i + 1) % n]
-            c, d = (row[j], row[(j + 1) % n]) if i < n - 1 else (row[n - 1 - j], row[(n - 2 - j) % n])
+            c, d = (
+                (row[j], row[(j + 1) % n]) if i < n - 1 else (row[n - 1 - j], row[(n - 2 - j) % n])
+            )
             faces += [(a, c, b), (b, c, d)]
     with pytest.raises(InputError) as caught:
         repaired(points, np.array(faces, dtype=np.intp), "bottle")

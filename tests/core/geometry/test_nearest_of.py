@@ -13,14 +13,19 @@ def rings():
     made = []
     for place in random.uniform(-100.0, 100.0, (25, 2)):
         angle = np.sort(random.uniform(0.0, 2.0 * np.pi, random.integers(3, 40)))
-        made.append(place + random.uniform(2.0, 30.0, (len(angle), 1)) * np.c_[np.cos(angle), np.sin(angle)])
+        made.append(
+            place + random.uniform(2.0, 30.0, (len(angle), 1)) * np.c_[np.cos(angle), np.sin(angle)]
+        )
     return made
 
 
 @pytest.mark.parametrize("count", [0, 1, 4, 300])
 def test_nothing_is_lost_with_rings_that_are_passed_over(rings, count):
     points = np.random.default_rng(count).uniform(-150.0, 150.0, (count, 2))
-    boxes = np.array([ring.min(axis=0) for ring in rings]), np.array([ring.max(axis=0) for ring in rings])
+    boxes = (
+        np.array([ring.min(axis=0) for ring in rings]),
+        np.array([ring.max(axis=0) for ring in rings]),
+    )
     places, away = nearest_of(rings, boxes, points)
     each = [nearest(ring, points, closed=True) for ring in rings]
     all_away = np.array([one.distance for one in each]).reshape(len(rings), count)
@@ -31,7 +36,12 @@ def test_nothing_is_lost_with_rings_that_are_passed_over(rings, count):
 
 def test_rings_that_no_point_is_near_count_nothing(rings):
     points = np.random.default_rng(1).uniform(-150.0, 150.0, (40, 2))
-    angles = [np.arctan2(*(ring[None] - points[:, None]).transpose(2, 0, 1)[::-1]) for ring in rings]
+    angles = [
+        np.arctan2(*(ring[None] - points[:, None]).transpose(2, 0, 1)[::-1]) for ring in rings
+    ]
     turns = [np.diff(np.c_[angle, angle[:, 0]], axis=1) for angle in angles]
     turned = sum(((turn + np.pi) % (2.0 * np.pi) - np.pi).sum(axis=1) for turn in turns)
-    assert np.array_equal(winding(rings, points), np.rint(turned / (2.0 * np.pi)).astype(int)) and turned.max() > 6.0
+    assert (
+        np.array_equal(winding(rings, points), np.rint(turned / (2.0 * np.pi)).astype(int))
+        and turned.max() > 6.0
+    )

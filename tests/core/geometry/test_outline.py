@@ -9,7 +9,9 @@ from freecad_am.core.toolpath import Bead
 
 
 def helix(t):
-    return np.c_[15 * np.cos(t), 15 * np.sin(t), 4 * t], np.c_[-15 * np.sin(t), 15 * np.cos(t), 4 + 0 * t]
+    return np.c_[15 * np.cos(t), 15 * np.sin(t), 4 * t], np.c_[
+        -15 * np.sin(t), 15 * np.cos(t), 4 + 0 * t
+    ]
 
 
 def test_points_and_tangents_between_are_the_curves_own():
@@ -56,13 +58,17 @@ def test_on_a_clothoid_whose_curvature_falls_to_a_sixteenth():
 def test_a_corner_is_kept_and_both_its_sides_are_curves():
     """Two half circles that meet at right angles: the segments beside the corner are arcs, not chords."""
     t = np.linspace(0, np.pi / 2, 21)
-    first, second = np.c_[np.sin(t), 1 - np.cos(t), 0 * t], np.c_[1 - np.sin(t), 2 - np.cos(t), 0 * t]
+    first, second = (
+        np.c_[np.sin(t), 1 - np.cos(t), 0 * t],
+        np.c_[1 - np.sin(t), 2 - np.cos(t), 0 * t],
+    )
     into, out = np.c_[np.cos(t), np.sin(t), 0 * t], np.c_[-np.cos(t), np.sin(t), 0 * t]
     points = 10 * np.r_[first, second[1:]]
     tangents = np.stack([np.r_[into, out[1:]], np.r_[into[:-1], out]], axis=1)
     found, _ = outline(points, tangents).at(np.arange(40), 0.5)
     centre = np.where(np.arange(40) < 20, 0.0, 10.0)[:, None] * [1.0, 0, 0] + np.where(
-        np.arange(40) < 20, 10.0, 20.0)[:, None] * [0, 1.0, 0]
+        np.arange(40) < 20, 10.0, 20.0
+    )[:, None] * [0, 1.0, 0]
     assert np.abs(np.linalg.norm(found - centre, axis=1) - 10).max() < 1e-12
 
 
@@ -77,7 +83,10 @@ def test_tangents_go_with_the_bead():
     each = np.arange(32)
     middle = bead.outline.at(each, 0.5)[0]
     assert np.abs(bead.reversed().outline.at(each, 0.5)[0] - middle[::-1]).max() < 1e-12
-    assert np.abs(bead.started_at(7).outline.at(each, 0.5)[0] - np.roll(middle, -7, axis=0)).max() < 1e-12
+    assert (
+        np.abs(bead.started_at(7).outline.at(each, 0.5)[0] - np.roll(middle, -7, axis=0)).max()
+        < 1e-12
+    )
     part = bead.part(slice(3, 9))
     assert not part.closed and len(part) == 6
     assert np.abs(part.outline.at(np.arange(5), 0.5)[0] - middle[3:8]).max() < 1e-12

@@ -26,7 +26,9 @@ def grid(patch, u, v):
     uu, vv = np.meshgrid(u, v, indexing="ij")
     uv = np.stack([uu, vv], axis=-1)
     a, b, c, d = uv[:-1, :-1], uv[1:, :-1], uv[1:, 1:], uv[:-1, 1:]
-    corners = np.concatenate([np.stack(each, axis=2).reshape(-1, 3, 2) for each in ((a, b, c), (a, c, d))])
+    corners = np.concatenate(
+        [np.stack(each, axis=2).reshape(-1, 3, 2) for each in ((a, b, c), (a, c, d))]
+    )
     if patch.sign < 0.0:
         corners = corners[:, ::-1]
     return patch.at(corners.reshape(-1, 2))[0].reshape(-1, 3, 3), corners
@@ -36,12 +38,20 @@ def joined(*pieces):
     """The wall of (patch, u, v) pieces, equal corners merged."""
     made = [grid(*piece) for piece in pieces]
     corners = np.concatenate([one for one, _ in made])
-    _, first, index = np.unique(np.round(corners.reshape(-1, 3), 7), axis=0, return_index=True, return_inverse=True)
+    _, first, index = np.unique(
+        np.round(corners.reshape(-1, 3), 7), axis=0, return_index=True, return_inverse=True
+    )
     vertices = corners.reshape(-1, 3)[first]
     patch = np.repeat(np.arange(len(made)), [len(one) for one, _ in made])
     return PatchWall(
-        vertices, np.ravel(index).reshape(-1, 3), patch, np.concatenate([uv for _, uv in made]),
-        tuple(piece[0] for piece in pieces), (), np.zeros(len(vertices), dtype=bool), (),
+        vertices,
+        np.ravel(index).reshape(-1, 3),
+        patch,
+        np.concatenate([uv for _, uv in made]),
+        tuple(piece[0] for piece in pieces),
+        (),
+        np.zeros(len(vertices), dtype=bool),
+        (),
     )
 
 
@@ -50,9 +60,13 @@ def elbow(count=48):
     around, along = np.linspace(0.0, TURN, count + 1), np.linspace(0.0, 0.5 * np.pi, 25)
     foot = Patch(CYLINDER, (TUBE,), pose((0, 0, -20)), periods=(TURN, 0.0))
     bend = Patch(TORUS, (BEND, TUBE), pose((-BEND, 0, 0), z=(0, -1, 0)), periods=(TURN, TURN))
-    head = Patch(CYLINDER, (TUBE,), pose((-BEND, 0, BEND), x=(0, 0, 1), z=(-1, 0, 0)), periods=(TURN, 0.0))
+    head = Patch(
+        CYLINDER, (TUBE,), pose((-BEND, 0, BEND), x=(0, 0, 1), z=(-1, 0, 0)), periods=(TURN, 0.0)
+    )
     return joined(
-        (foot, around, np.linspace(0.0, 20.0, 8)), (bend, along, around), (head, around, np.linspace(0.0, 30.0, 11))
+        (foot, around, np.linspace(0.0, 20.0, 8)),
+        (bend, along, around),
+        (head, around, np.linspace(0.0, 30.0, 11)),
     )
 
 
@@ -72,8 +86,12 @@ def test_projection_across_tangent_joints_is_exact():
     wall = elbow()
     rng = np.random.default_rng(3)
     spots = wall.vertices[wall.triangles[rng.integers(len(wall.triangles), size=10000)]]
-    near = np.einsum("nk,nkc->nc", rng.dirichlet(np.ones(3), size=10000), spots) + rng.normal(0.0, 0.1, (10000, 3))
-    joint = np.stack([TUBE * np.cos(near[:, 1]), TUBE * np.sin(near[:, 1]), 0.0 * near[:, 1]], axis=1)
+    near = np.einsum("nk,nkc->nc", rng.dirichlet(np.ones(3), size=10000), spots) + rng.normal(
+        0.0, 0.1, (10000, 3)
+    )
+    joint = np.stack(
+        [TUBE * np.cos(near[:, 1]), TUBE * np.sin(near[:, 1]), 0.0 * near[:, 1]], axis=1
+    )
     near = np.vstack([near, joint + rng.normal(0.0, 1e-3, joint.shape)])
     near = near[(near[:, 2] > -20.0) & (near[:, 0] > -BEND - 30.0)]
     points, normals = wall.project(near)
@@ -96,46 +114,68 @@ def test_the_outer_side_may_be_against_the_surface():
     even = np.linspace(0.0, 9.0, 5)
     wall = joined((inner, np.linspace(-np.pi, 0.0, 20), even), (flat, even, even))
     points, normals = wall.project(np.array([[TUBE + 0.1, 1e-4, 4.4], [TUBE + 0.1, -1e-4, 4.4]]))
-    assert points[0] == pytest.approx([TUBE, 1e-4, 4.4], abs=1e-12) and normals[0] == pytest.approx([-1, 0, 0], abs=1e-12)
+    assert points[0] == pytest.approx([TUBE, 1e-4, 4.4], abs=1e-12) and normals[0] == pytest.approx(
+        [-1, 0, 0], abs=1e-12
+    )
     assert np.hypot(*points[1, :2]) == pytest.approx(TUBE, abs=1e-12)
-    facets = np.cross(*(wall.vertices[wall.triangles[:, k]] - wall.vertices[wall.triangles[:, 0]] for k in (1, 2)))
-    assert (np.einsum("ij,ij->i", facets, wall.project(wall.vertices[wall.triangles].mean(axis=1))[1]) > 0.0).all()
+    facets = np.cross(
+        *(wall.vertices[wall.triangles[:, k]] - wall.vertices[wall.triangles[:, 0]] for k in (1, 2))
+    )
+    assert (
+        np.einsum("ij,ij->i", facets, wall.project(wall.vertices[wall.triangles].mean(axis=1))[1])
+        > 0.0
+    ).all()
 
 
-@pytest.mark.parametrize(("patch", "level"), [
-    (Patch(CONE, (10.0, 0.3), pose((1, 2, 3), x=(0, 1, 0), z=(1, 0, 0))), None),
-    (Patch(CONE, (10.0, -0.3), pose((1, 2, 3))), None),
-    (Patch(SPHERE, (20.0,), pose((4, 5, 6))), None),
-    (Patch(TORUS, (30.0, 8.0), pose((4, 5, 6), x=(0, 0, 1), z=(0, 1, 0))), None),
-], ids=["cone", "narrowing cone", "sphere", "torus"])
+@pytest.mark.parametrize(
+    ("patch", "level"),
+    [
+        (Patch(CONE, (10.0, 0.3), pose((1, 2, 3), x=(0, 1, 0), z=(1, 0, 0))), None),
+        (Patch(CONE, (10.0, -0.3), pose((1, 2, 3))), None),
+        (Patch(SPHERE, (20.0,), pose((4, 5, 6))), None),
+        (Patch(TORUS, (30.0, 8.0), pose((4, 5, 6), x=(0, 0, 1), z=(0, 1, 0))), None),
+    ],
+    ids=["cone", "narrowing cone", "sphere", "torus"],
+)
 def test_closed_forms_return_what_was_moved_along_the_normal(patch, level):
     rng = np.random.default_rng(5)
     uv = rng.uniform([-3.0, -1.4], [3.0, 1.4], (500, 2))
     points, normals = patch.at(uv)
     assert np.linalg.norm(normals, axis=1) == pytest.approx(1.0, abs=1e-12)
-    assert patch.inverse(points + rng.uniform(-3.0, 3.0, (500, 1)) * normals) == pytest.approx(uv, abs=1e-11)
+    assert patch.inverse(points + rng.uniform(-3.0, 3.0, (500, 1)) * normals) == pytest.approx(
+        uv, abs=1e-11
+    )
     step = 1e-5
     for axis in (0, 1):
-        slope = (patch.at(uv + step * np.eye(2)[axis])[0] - patch.at(uv - step * np.eye(2)[axis])[0]) / (2.0 * step)
+        slope = (
+            patch.at(uv + step * np.eye(2)[axis])[0] - patch.at(uv - step * np.eye(2)[axis])[0]
+        ) / (2.0 * step)
         assert np.abs(np.einsum("ij,ij->i", slope, normals)).max() < 1e-7
 
 
 def rational_tube():
     """The cylinder of radius 10 and height 40 as a rational spline of four quarters, linear along u."""
-    corners = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], float)
+    corners = np.array(
+        [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], float
+    )
     weight = np.where(np.arange(9) % 2, np.sqrt(0.5), 1.0)
     poles = np.empty((2, 9, 4))
     for row, height in enumerate((0.0, 40.0)):
         poles[row] = np.column_stack([10.0 * corners * weight[:, None], height * weight, weight])
     knots = np.r_[0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4].astype(float)
-    return Patch(SPLINE, (), np.eye(4), -1.0, (0.0, 4.0), np.array([0.0, 0.0, 1.0, 1.0]), knots, poles)
+    return Patch(
+        SPLINE, (), np.eye(4), -1.0, (0.0, 4.0), np.array([0.0, 0.0, 1.0, 1.0]), knots, poles
+    )
 
 
 def test_a_rational_spline_is_the_cylinder_it_stands_for():
     patch = rational_tube()
     wall = joined((patch, np.linspace(0, 1, 21), np.linspace(0, 4, 33)))
     rng = np.random.default_rng(7)
-    angle, height = rng.uniform(0.0, TURN, 5000), rng.uniform(-1.0, 41.0, 5000)  # past the ends it goes on straight
+    angle, height = (
+        rng.uniform(0.0, TURN, 5000),
+        rng.uniform(-1.0, 41.0, 5000),
+    )  # past the ends it goes on straight
     out = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
     near = (10.0 + rng.uniform(-0.3, 0.3, 5000))[:, None] * out + height[:, None] * [0.0, 0.0, 1.0]
     points, normals = wall.project(near)
@@ -150,7 +190,11 @@ def test_nearest_point_of_a_triangle():
     assert (share > -1e-12).all() and share.sum(axis=1) == pytest.approx(1.0)
     foot = share[:, :1] * a + share[:, 1:2] * b + share[:, 2:] * c
     assert np.linalg.norm(foot - p, axis=1) == pytest.approx(distance, abs=1e-9)
-    for corner in (a, b, c):  # the angle at the nearest point is blunt towards every point of the triangle
+    for corner in (
+        a,
+        b,
+        c,
+    ):  # the angle at the nearest point is blunt towards every point of the triangle
         assert (np.einsum("ij,ij->i", p - foot, corner - foot) < 1e-9).all()
     assert closest(a, a, b, 0.5 * (a + b))[0] == pytest.approx(0.0, abs=1e-7)
 
@@ -166,7 +210,10 @@ def test_curves_and_rims():
 
 
 def test_runs_part_at_corners_and_meeting_places():
-    square = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0), (0, 2, 0), (0, 1, 0)], float)
+    square = np.array(
+        [(0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0), (0, 2, 0), (0, 1, 0)],
+        float,
+    )
     edges = np.stack([np.arange(8), (np.arange(8) + 1) % 8], axis=1)
     edges[3] = edges[3, ::-1]
     found = runs(square, edges)
@@ -175,8 +222,10 @@ def test_runs_part_at_corners_and_meeting_places():
     angle = np.linspace(0.0, TURN, 41)[:-1]
     circle = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
     edges = np.stack([np.arange(40), (np.arange(40) + 1) % 40], axis=1)
-    (members, forward, closed), = runs(circle, edges)
+    ((members, forward, closed),) = runs(circle, edges)
     assert closed and len(members) == 40
     assert forward.all() or not forward.any()
     slopes = tangents(circle, edges)
-    assert slopes[:, 0] == pytest.approx(np.stack([-np.sin(angle), np.cos(angle), 0.0 * angle], axis=1), abs=1e-5)
+    assert slopes[:, 0] == pytest.approx(
+        np.stack([-np.sin(angle), np.cos(angle), 0.0 * angle], axis=1), abs=1e-5
+    )

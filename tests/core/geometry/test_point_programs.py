@@ -37,31 +37,45 @@ def laid(text, chord_error=0.01):
     return gcode.curves_of(text, "part.gcode", chord_error)
 
 
-@pytest.mark.parametrize("values", [
-    {"mode": "M82", "a": 2, "b": 4, "c": 6, "back": 4, "relative": ""},
-    {"mode": "M83", "a": 2, "b": 2, "c": 2, "back": -2, "relative": ""},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"mode": "M82", "a": 2, "b": 4, "c": 6, "back": 4, "relative": ""},
+        {"mode": "M83", "a": 2, "b": 2, "c": 2, "back": -2, "relative": ""},
+    ],
+)
 def test_moves_that_extrude_are_beads_and_comments_are_layers(values):
     curves = laid(SQUARE.format(**values))
     assert [one.layer for one in curves] == [0, 0, 1]
-    np.testing.assert_allclose(curves[0].points, [[10, 10, 0.5], [30, 10, 0.5], [30, 30, 0.5], [10, 30, 0.5]], atol=1e-12)
+    np.testing.assert_allclose(
+        curves[0].points, [[10, 10, 0.5], [30, 10, 0.5], [30, 30, 0.5], [10, 30, 0.5]], atol=1e-12
+    )
     np.testing.assert_allclose(curves[1].points, [[50, 10, 0.5], [60, 10, 0.5]], atol=1e-12)
     np.testing.assert_allclose(curves[2].points, [[60, 10, 1.0], [60, 20, 1.0]], atol=1e-12)
     assert all(one.directions is None for one in curves)
 
 
 def test_relative_moves_shifted_counts_and_layers_by_z():
-    curves = laid("G91\nG1 X5 Y5 Z1\nG1 X10 E1\nG1 Z1\nG92 X0 Y0\nG90\nM83\nG1 X0 Y7 E1\nG1 X0 Y0\nG1 Z1\nG1 X1 E1\n")
+    curves = laid(
+        "G91\nG1 X5 Y5 Z1\nG1 X10 E1\nG1 Z1\nG92 X0 Y0\nG90\nM83\nG1 X0 Y7 E1\nG1 X0 Y0\nG1 Z1\nG1 X1 E1\n"
+    )
     assert [one.layer for one in curves] == [0, 1, 2]
     np.testing.assert_allclose(curves[0].points, [[5, 5, 1], [15, 5, 1]])
     np.testing.assert_allclose(curves[1].points, [[15, 5, 2], [15, 12, 2]])
     np.testing.assert_allclose(curves[2].points, [[15, 5, 1], [16, 5, 1]])
 
 
-@pytest.mark.parametrize(("words", "middle", "radius", "turn"), [
-    ("G3 X0 Y10 I-10 J0", (0, 0), 10, 90), ("G2 X0 Y10 I-10 J0", (0, 0), 10, -270), ("G3 X10 Y0 I-10", (0, 0), 10, 360),
-    ("G3 X0 Y10 R10", (0, 0), 10, 90), ("G2 X0 Y10 R10", (10, 10), 10, -90), ("G3 X0 Y10 R-10", (10, 10), 10, 270),
-])
+@pytest.mark.parametrize(
+    ("words", "middle", "radius", "turn"),
+    [
+        ("G3 X0 Y10 I-10 J0", (0, 0), 10, 90),
+        ("G2 X0 Y10 I-10 J0", (0, 0), 10, -270),
+        ("G3 X10 Y0 I-10", (0, 0), 10, 360),
+        ("G3 X0 Y10 R10", (0, 0), 10, 90),
+        ("G2 X0 Y10 R10", (10, 10), 10, -90),
+        ("G3 X0 Y10 R-10", (10, 10), 10, 270),
+    ],
+)
 def test_arcs_are_within_the_chord_error(words, middle, radius, turn):
     (curve,) = laid(f"G90\nM83\nG0 X10 Y0 Z2\n{words} Z3 E4\n", 0.02)
     flat = curve.points[:, :2] - middle
@@ -69,22 +83,32 @@ def test_arcs_are_within_the_chord_error(words, middle, radius, turn):
     angle = np.unwrap(np.arctan2(flat[:, 1], flat[:, 0]))
     np.testing.assert_allclose(np.degrees(angle[-1] - angle[0]), turn, atol=1e-9)
     assert radius * (1.0 - np.cos(0.5 * np.abs(np.diff(angle)).max())) <= 0.02
-    np.testing.assert_allclose(curve.points[:, 2], 2.0 + (angle - angle[0]) / (angle[-1] - angle[0]))
+    np.testing.assert_allclose(
+        curve.points[:, 2], 2.0 + (angle - angle[0]) / (angle[-1] - angle[0])
+    )
 
 
-@pytest.mark.parametrize(("text", "line", "words"), [
-    ("", "part.gcode", "no bead"), ("G0 X1 Y1 Z1\nG1 X5\n", "part.gcode", "no move of it extrudes"),
-    ("G20\nG1 X1 Y1 Z1 E1\n", "line 1", "inches"), ("G18\n", "line 1", "plane of X and Z"),
-    ("G1 X1 E1\n", "line 1", "before the program says where"),
-    ("G0 X0 Y0 Z0\nG2 X5 Y5 E1\n", "line 2", "give the middle of the arc or its radius"),
-    ("G0 X0 Y0 Z0\nG2 X5 Y5 I1 J0 E1\n", "line 2", "from its middle"),
-    ("G0 X0 Y0 Z0\nG3 X9 Y0 R2 E1\n", "line 2", "makes no arc"),
-    ("G5 X1 Y1\n", "line 1", "splines"), ("G0 X99999999\n", "line 1", "at most"),
-])
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("", "part.gcode", "no bead"),
+        ("G0 X1 Y1 Z1\nG1 X5\n", "part.gcode", "no move of it extrudes"),
+        ("G20\nG1 X1 Y1 Z1 E1\n", "line 1", "inches"),
+        ("G18\n", "line 1", "plane of X and Z"),
+        ("G1 X1 E1\n", "line 1", "before the program says where"),
+        ("G0 X0 Y0 Z0\nG2 X5 Y5 E1\n", "line 2", "give the middle of the arc or its radius"),
+        ("G0 X0 Y0 Z0\nG2 X5 Y5 I1 J0 E1\n", "line 2", "from its middle"),
+        ("G0 X0 Y0 Z0\nG3 X9 Y0 R2 E1\n", "line 2", "makes no arc"),
+        ("G5 X1 Y1\n", "line 1", "splines"),
+        ("G0 X99999999\n", "line 1", "at most"),
+    ],
+)
 def test_programs_that_are_not_understood_are_told_with_their_line(text, line, words):
     with pytest.raises(InputError) as told:
         laid(text)
-    assert told.value.code == "BAD_GCODE" and line in told.value.where and words in told.value.message, told.value
+    assert (
+        told.value.code == "BAD_GCODE" and line in told.value.where and words in told.value.message
+    ), told.value
 
 
 def message(*fields):
@@ -113,8 +137,19 @@ def toolpath(layers):
     for number, segments in layers:
         parts = []
         for on, points, ways in segments:
-            rows = [message((1, 2, vector(p)), (2, 2, vector(w)), (6, 1, 50.0)) for p, w in zip(points, ways)]
-            parts.append((2, 2, message(*((1, 2, row) for row in rows), *([(2, 0, 1)] if on else []), (3, 0, 3))))
+            rows = [
+                message((1, 2, vector(p)), (2, 2, vector(w)), (6, 1, 50.0))
+                for p, w in zip(points, ways)
+            ]
+            parts.append(
+                (
+                    2,
+                    2,
+                    message(
+                        *((1, 2, row) for row in rows), *([(2, 0, 1)] if on else []), (3, 0, 3)
+                    ),
+                )
+            )
         groups.append((1, 2, message((1, 0, number), *parts)))
     return message(*groups, (2, 2, message((1, 1, 2.0), (7, 1, 4.0))))
 
@@ -122,7 +157,9 @@ def toolpath(layers):
 def test_a_toolpath_of_adaone():
     line, other = [[0, 0, 2], [30, 0, 2], [30, 0, 2], [30, 20, 2]], [[5, 5, 4], [25, 5, 4]]
     down, leaning = [[0, 0, -1]] * 4, [[0, 0.6, -0.8]] * 2
-    data = toolpath([(3, [(True, line, down), (False, other, leaning)]), (7, [(True, other, leaning)])])
+    data = toolpath(
+        [(3, [(True, line, down), (False, other, leaning)]), (7, [(True, other, leaning)])]
+    )
     first, second = ada3dp.curves_of(data, "part.ada3dp")
     np.testing.assert_allclose(first.points, [line[0], line[1], line[3]])
     np.testing.assert_allclose(first.directions, [[0, 0, 1]] * 3)
@@ -130,7 +167,9 @@ def test_a_toolpath_of_adaone():
     np.testing.assert_allclose(second.directions, [[0, -0.6, 0.8]] * 2)
     assert (first.layer, second.layer) == (0, 1)
     for damaged, words in (
-        (data[:40], "damaged"), (b"G1 X0", "damaged"), (b"", "no segment"),
+        (data[:40], "damaged"),
+        (b"G1 X0", "damaged"),
+        (b"", "no segment"),
         (toolpath([(0, [(False, line, down)])]), "no segment"),
         (toolpath([(0, [(True, [[0, 0, 1], [float("nan"), 0, 0]], down[:2])])]), "not a number"),
     ):

@@ -22,7 +22,9 @@ def test_triangles_cover_a_star_once(seed, backwards):
     angle = 2.0 * np.pi * np.arange(count) / count
     radius = rng.uniform(1.0, 8.0, count)
     area = 0.5 * float((radius * np.roll(radius, -1)).sum()) * np.sin(2.0 * np.pi / count)
-    flat = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(count)], axis=1)[:: -1 if backwards else 1]
+    flat = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(count)], axis=1)[
+        :: -1 if backwards else 1
+    ]
     corners = flat @ turned(seed).T + 50.0
     way = turned(seed) @ [0.0, 0.0, -1.0 if backwards else 1.0]
     found = triangulated(corners)
@@ -39,4 +41,8 @@ def test_corners_on_a_line_are_kept():
     found = triangulated(corners)
     a, b, c = corners[found].swapaxes(0, 1)
     areas = 0.5 * np.cross(b - a, c - a)[:, 2]
-    assert set(found.ravel()) == set(range(8)) and areas.min() >= 0.0 and areas.sum() == pytest.approx(4.0)
+    assert (
+        set(found.ravel()) == set(range(8))
+        and areas.min() >= 0.0
+        and areas.sum() == pytest.approx(4.0)
+    )

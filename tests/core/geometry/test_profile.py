@@ -28,7 +28,14 @@ def test_a_curve_of_changing_curvature_is_met_everywhere():
         return np.stack([30.0 + 3.0 * np.sin(t / 4.0), t], axis=1), slope
 
     meridian = Meridian.chained([sampled(wave, [0.0, 50.0])])
-    truth, _ = quad(lambda z: np.hypot(1.0, 0.75 * np.cos(z / 4.0)), 0.0, 50.0, epsabs=1e-11, epsrel=1e-13, limit=200)
+    truth, _ = quad(
+        lambda z: np.hypot(1.0, 0.75 * np.cos(z / 4.0)),
+        0.0,
+        50.0,
+        epsabs=1e-11,
+        epsrel=1e-13,
+        limit=200,
+    )
     assert meridian.length == pytest.approx(truth, abs=1e-7)
     r, h, t = meridian.at(np.linspace(0.0, meridian.length, 30011))
     assert np.abs(r - (30.0 + 3.0 * np.sin(h / 4.0))).max() < 1e-7
@@ -64,18 +71,26 @@ def test_heights_are_found_wherever_the_curve_crosses_them():
     angle = np.arcsin(0.6)
     assert found[0] == pytest.approx([0.0, 10.0 * np.pi], abs=1e-9)
     assert found[1] == pytest.approx([10.0 * angle, 10.0 * (np.pi - angle)], abs=1e-8)
-    assert found[2] == pytest.approx([5.0 * np.pi], abs=1e-3)  # where the curve is level the height says little of s
+    assert found[2] == pytest.approx(
+        [5.0 * np.pi], abs=1e-3
+    )  # where the curve is level the height says little of s
     assert len(found[3]) == 0
 
 
 def test_a_wall_speaks_part_coordinates():
-    turn = np.array([[0.0, -1.0, 0.0, 3.0], [0.0, 0.0, -1.0, 4.0], [1.0, 0.0, 0.0, 5.0], [0.0, 0.0, 0.0, 1.0]])
+    turn = np.array(
+        [[0.0, -1.0, 0.0, 3.0], [0.0, 0.0, -1.0, 4.0], [1.0, 0.0, 0.0, 5.0], [0.0, 0.0, 0.0, 1.0]]
+    )
     wall = RevolvedWall(Meridian.chained([line((10.0, 0.0), (10.0, 5.0))]), turn)
     at = np.array([0.3, 2.0])
     local = np.stack([10.0 * np.cos(at), 10.0 * np.sin(at), [1.0, 2.0], np.ones(2)], axis=1)
-    assert wall.points(np.full(2, 10.0), np.array([1.0, 2.0]), at) == pytest.approx((local @ turn.T)[:, :3])
+    assert wall.points(np.full(2, 10.0), np.array([1.0, 2.0]), at) == pytest.approx(
+        (local @ turn.T)[:, :3]
+    )
     outward = wall.directions(np.array([[1.0, 0.0, 0.0]]), at)
-    assert outward == pytest.approx(np.stack([np.cos(at), np.sin(at), [0.0, 0.0]], axis=1) @ turn[:3, :3].T)
+    assert outward == pytest.approx(
+        np.stack([np.cos(at), np.sin(at), [0.0, 0.0]], axis=1) @ turn[:3, :3].T
+    )
 
 
 @pytest.mark.parametrize("points", [[[1.0, 0.0]], [[-1.0, 0.0], [1.0, 1.0]]])

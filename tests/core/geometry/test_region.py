@@ -30,8 +30,14 @@ def test_islands_in_holes_are_regions_of_their_own(scale):
     outer, inner = regions([island * scale, HOLE * scale, SQUARE * scale])
     assert [outer.area / scale**2, inner.area / scale**2] == pytest.approx([64.0, 9.0])
     assert [len(outer.borders()), len(inner.borders())] == [2, 1]
-    assert outer.width / scale == pytest.approx(2.343, rel=0.006) and inner.width / scale == pytest.approx(3.0, rel=0.006)
-    assert outer.contains(scale * np.array([[1.0, 1.0], [5.0, 5.0], [11.0, 5.0]])).tolist() == [True, False, False]
+    assert outer.width / scale == pytest.approx(
+        2.343, rel=0.006
+    ) and inner.width / scale == pytest.approx(3.0, rel=0.006)
+    assert outer.contains(scale * np.array([[1.0, 1.0], [5.0, 5.0], [11.0, 5.0]])).tolist() == [
+        True,
+        False,
+        False,
+    ]
 
 
 def test_order_and_starts_do_not_depend_on_how_loops_come():
@@ -47,10 +53,14 @@ def test_order_and_starts_do_not_depend_on_how_loops_come():
 
 def test_crossing_loops_are_mended_and_told():
     bow = mended([np.array([[0.0, 0.0], [10.0, 0.0], [0.0, 10.0], [10.0, 10.0]])])
-    assert sum(one.area for one in bow.regions) == pytest.approx(25.0) and bow.changed == pytest.approx(25.0)
+    assert sum(one.area for one in bow.regions) == pytest.approx(
+        25.0
+    ) and bow.changed == pytest.approx(25.0)
     assert "25 mm^2" in bow.issues()[0].message
     across = mended([SQUARE, HOLE + 5.0])
-    assert sum(one.area for one in across.regions) == pytest.approx(91.0) and across.changed == pytest.approx(27.0)
+    assert sum(one.area for one in across.regions) == pytest.approx(
+        91.0
+    ) and across.changed == pytest.approx(27.0)
     sound = mended([np.repeat(SQUARE, 3, axis=0), HOLE])
     assert sound.changed == 0.0 and sound.issues() == ()
 
@@ -66,7 +76,7 @@ def test_parallel_curves_are_at_the_distance(distance):
     a = 2.0 * np.pi * np.arange(500) / 500
     round_ = np.stack([np.cos(a), np.sin(a)], axis=1)
     loops = [round_ * (60 + 9 * np.sin(5 * a))[:, None], (round_ * 8 + [20, 5])[::-1]]
-    whole, = regions(loops)
+    (whole,) = regions(loops)
     for part in whole.grown(distance, 0.01):
         for ring in part.borders():
             middles = 0.5 * (ring + np.roll(ring, -1, axis=0))
@@ -97,11 +107,19 @@ def test_pieces_without_room_for_a_circle_are_left_out_and_no_others():
     rng = np.random.default_rng(3)
     square = regions([40.0 * SQUARE])[0]
     discs = regions([SQUARE])[0].grown(1.0, 0.05)
-    bites = [one for place in rng.uniform(0.0, 390.0, (900, 2)) for one in regions([discs[0].borders()[0] * 1.2 + place])]
+    bites = [
+        one
+        for place in rng.uniform(0.0, 390.0, (900, 2))
+        for one in regions([discs[0].borders()[0] * 1.2 + place])
+    ]
     whole = square.without(bites)
     for wide in (0.5, 2.0, 6.0):
         for error in (0.5, 0.001):
             room = [one.borders()[0] for one in whole if one.grown(-0.5 * wide, error)]
-            found = [one.borders()[0] for one in square.without(bites, wide) if one.grown(-0.5 * wide, error)]
+            found = [
+                one.borders()[0]
+                for one in square.without(bites, wide)
+                if one.grown(-0.5 * wide, error)
+            ]
             assert all(np.array_equal(a, b) for a, b in zip(room, found, strict=True))
         assert len(room) < len(square.without(bites, wide)) < len(whole)

@@ -29,7 +29,9 @@ def brute(curve, points):
     return np.linalg.norm(points[:, None] - a - t[..., None] * along, axis=-1).min(axis=1)
 
 
-@pytest.mark.parametrize("curve", [circle(), square(), square(closed=False), circle().started_at(7)])
+@pytest.mark.parametrize(
+    "curve", [circle(), square(), square(closed=False), circle().started_at(7)]
+)
 def test_nearest_point_against_brute_force(curve):
     points = np.random.default_rng(5).uniform(-12.0, 12.0, (150, 3))
     distance, foot, w = curve.nearest(points)
@@ -41,8 +43,12 @@ def test_nearest_point_against_brute_force(curve):
 def test_near_the_centre_of_curvature_the_nearest_point_is_still_found():
     ellipse = circle(90)
     squeezed = np.array([1.0, 0.8, 1.0])
-    curve = SpaceCurve(ellipse.w, ellipse.points * squeezed, ellipse.into * squeezed, ellipse.out * squeezed, True)
-    centre = np.array([[10.0 - 6.4, 0.0, 0.0]]) + np.linspace(-0.2, 0.2, 21)[:, None] * np.array([1.0, 0.3, 0.0])
+    curve = SpaceCurve(
+        ellipse.w, ellipse.points * squeezed, ellipse.into * squeezed, ellipse.out * squeezed, True
+    )
+    centre = np.array([[10.0 - 6.4, 0.0, 0.0]]) + np.linspace(-0.2, 0.2, 21)[:, None] * np.array(
+        [1.0, 0.3, 0.0]
+    )
     assert curve.nearest(centre)[0] == pytest.approx(brute(curve, centre), abs=1e-7)
 
 
@@ -61,13 +67,17 @@ def test_the_error_estimate_is_the_error():
     curve = circle(20)
     w = curve.w[:-1] + 0.5 * curve.span
     exact = 10.0 * np.stack([np.cos(w), np.sin(w), 0.0 * w], axis=1)
-    assert curve.interpolation_error() == pytest.approx(np.linalg.norm(curve.at(w)[0] - exact, axis=1), rel=0.02)
+    assert curve.interpolation_error() == pytest.approx(
+        np.linalg.norm(curve.at(w)[0] - exact, axis=1), rel=0.02
+    )
     assert square().interpolation_error() == pytest.approx(np.zeros(4), abs=1e-12)
 
 
 def test_what_is_no_curve_is_refused():
     with pytest.raises(ValueError, match="rise"):
-        SpaceCurve(np.array([0.0, 0.0]), np.zeros((2, 3)), np.zeros((2, 3)), np.zeros((2, 3)), False)
+        SpaceCurve(
+            np.array([0.0, 0.0]), np.zeros((2, 3)), np.zeros((2, 3)), np.zeros((2, 3)), False
+        )
     with pytest.raises(ValueError, match="nodes"):
         SpaceCurve(np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)), np.zeros((1, 3)), False)
     with pytest.raises(ValueError, match="closed"):

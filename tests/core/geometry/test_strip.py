@@ -12,12 +12,18 @@ from freecad_am.core.filling.fill import fill
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.regions.strip import Period, Strip, strips
 
-HUBS = {"cylinder": Developable(30.0), "cone": Developable(60.0, 200.0), "wide cone": Developable(90.0, 70.0)}
+HUBS = {
+    "cylinder": Developable(30.0),
+    "cone": Developable(60.0, 200.0),
+    "wide cone": Developable(90.0, 70.0),
+}
 BEADS = Beads(4.0, 1.5, 0.0)
 
 
 def period(hub):
-    return Period(2.0 * math.pi * hub.radius) if hub.is_cylinder else Period(hub.flat_turn, hub.slant)
+    return (
+        Period(2.0 * math.pi * hub.radius) if hub.is_cylinder else Period(hub.flat_turn, hub.slant)
+    )
 
 
 def border(hub, height, middle, back=False):
@@ -33,7 +39,7 @@ def collar(hub, middle=0.0):
         (border(hub, lambda t: 0.6 * np.sin(3.0 * t), middle), 1),
         (border(hub, lambda t: 25.0 + 0.3 * np.cos(2 * t), middle, True), -1),
     ]
-    strip, = strips(loops, period(hub))
+    (strip,) = strips(loops, period(hub))
     return strip
 
 
@@ -58,12 +64,16 @@ def test_contours_run_on_over_the_cut(name):
     edges = [in_space(hub, strip, flat, turns) for flat, turns in strip.borders()]
     for curve in curves:
         points = in_space(hub, strip, curve.points, curve.turns)
-        assert np.linalg.norm(np.diff(points, axis=0, append=points[:1]), axis=1).max() < 0.04, "closed, no jump at the cut"
+        assert np.linalg.norm(np.diff(points, axis=0, append=points[:1]), axis=1).max() < 0.04, (
+            "closed, no jump at the cut"
+        )
         nearest = np.min([cKDTree(edge).query(points[::7])[0] for edge in edges], axis=0)
         # distances in space are shorter than on the hub, by the chord of the turn alone
         wanted = (curve.ring + 0.5) * BEADS.spacing
         assert (nearest < wanted + 0.01 * BEADS.spacing).all()
-        assert (nearest > wanted * (1.0 - wanted**2 / (24.0 * 25.0**2)) - 0.01 * BEADS.spacing).all()
+        assert (
+            nearest > wanted * (1.0 - wanted**2 / (24.0 * 25.0**2)) - 0.01 * BEADS.spacing
+        ).all()
 
 
 @pytest.mark.parametrize("name", HUBS)
@@ -73,7 +83,9 @@ def test_cutting_elsewhere_gives_the_same_beads(name, options):
     hub = HUBS[name]
     one, other = collar(hub), collar(hub, 1.3)
     mine, theirs = fill(one, BEADS, **options), fill(other, BEADS, **options)
-    assert [(c.kind, c.ring) for c in mine if c.turns] == [(c.kind, c.ring) for c in theirs if c.turns]
+    assert [(c.kind, c.ring) for c in mine if c.turns] == [
+        (c.kind, c.ring) for c in theirs if c.turns
+    ]
     clouds = [
         np.vstack([in_space(hub, strip, c.points, c.turns, middle) for c in curves if c.turns])
         for strip, curves, middle in ((one, mine, 0.0), (other, theirs, 1.3))
@@ -87,14 +99,20 @@ def test_a_hole_goes_all_the_way_through():
     hub = HUBS["cylinder"]
     back = -2.0 * np.pi * np.arange(90) / 90
     flat = np.stack([8.0 * np.cos(back), 13.0 + 8.0 * np.sin(back)], axis=1)
-    loops = [(border(hub, lambda t: 0.0 * t, 0.0), 1), (border(hub, lambda t: 26.0 + 0.0 * t, 0.0, True), -1), (flat, 0)]
-    strip, = strips(loops, period(hub))
+    loops = [
+        (border(hub, lambda t: 0.0 * t, 0.0), 1),
+        (border(hub, lambda t: 26.0 + 0.0 * t, 0.0, True), -1),
+        (flat, 0),
+    ]
+    (strip,) = strips(loops, period(hub))
     assert len(strip.holes) == 1
-    part, = strip.grown(-2.0, 0.01)
+    (part,) = strip.grown(-2.0, 0.01)
     assert isinstance(part, Strip) and len(part.holes) == 1
-    part, = strip.grown(-4.0, 0.01)
+    (part,) = strip.grown(-4.0, 0.01)
     assert not isinstance(part, Strip)
     turn = 2.0 * math.pi * hub.radius
     y = np.linspace(-9.0, 9.0, 20001)
     lost = 2.0 * np.sqrt(144.0 - y**2)
-    assert part.area == pytest.approx(turn * 18.0 - np.sum(0.5 * (lost[1:] + lost[:-1])) * (y[1] - y[0]), rel=2e-4)
+    assert part.area == pytest.approx(
+        turn * 18.0 - np.sum(0.5 * (lost[1:] + lost[:-1])) * (y[1] - y[0]), rel=2e-4
+    )

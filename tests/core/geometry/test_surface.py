@@ -30,8 +30,12 @@ def test_derivatives_are_those_of_the_points(wall):
     point, along, around = wall.derivatives(u, v)
     step = 1e-5
     assert point == pytest.approx(wall.point(u, v), abs=1e-12)
-    assert along == pytest.approx((wall.point(u + step, v) - wall.point(u - step, v)) / (2 * step), abs=1e-6)
-    assert around == pytest.approx((wall.point(u, v + step) - wall.point(u, v - step)) / (2 * step), abs=1e-6)
+    assert along == pytest.approx(
+        (wall.point(u + step, v) - wall.point(u - step, v)) / (2 * step), abs=1e-6
+    )
+    assert around == pytest.approx(
+        (wall.point(u, v + step) - wall.point(u, v - step)) / (2 * step), abs=1e-6
+    )
     assert wall.point(u, v + wall.period) == pytest.approx(point, abs=1e-9)
 
 

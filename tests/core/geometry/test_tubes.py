@@ -32,7 +32,9 @@ def test_a_straight_tube_has_its_volume_and_stands_on_its_points(sides):
     points = np.outer(np.linspace(0.0, 10.0, 7), turn[0])
     mesh, _ = made(points, np.tile(turn[2], (7, 1)), False, sides)
     assert volume(mesh) == pytest.approx(10.0 * area(sides) * 3.0 * 2.0 / 4.0, rel=1e-12)
-    assert np.ptp(mesh.points @ turn[1]) == pytest.approx(3.0) and np.ptp(mesh.points @ turn[0]) == pytest.approx(10.0)
+    assert np.ptp(mesh.points @ turn[1]) == pytest.approx(3.0) and np.ptp(
+        mesh.points @ turn[0]
+    ) == pytest.approx(10.0)
     heights = mesh.points @ turn[2]
     assert (heights.min(), heights.max()) == pytest.approx((0.0, 2.0), abs=1e-12)
     assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1.0)
@@ -57,13 +59,17 @@ def test_a_ring_has_the_volume_of_its_section_turned():
     mesh, across = made(points, np.tile([0.0, 0.0, 1.0], (count + 1, 1)), True, 8)
     way = 2.0 * 20.0 * count * np.sin(np.pi / count)
     assert volume(mesh) == pytest.approx(way * area(8) * 1.5, rel=1e-6)
-    assert np.allclose(across.side[0], across.side[-1]) and np.allclose(across.turn, 2.0 * np.pi / count)
+    assert np.allclose(across.side[0], across.side[-1]) and np.allclose(
+        across.turn, 2.0 * np.pi / count
+    )
 
 
 def test_corners_are_mitred_and_sharp_ones_not_without_bound():
     corner = np.array([[0.0, 0, 0], [10, 0, 0], [10, 10, 0]])
     mesh, across = made(corner, np.tile([0.0, 0.0, 1.0], (3, 1)), False, 4, 2.0, 2.0)
-    assert across.mitre == pytest.approx([1.0, np.sqrt(2.0), 1.0]) and across.turn[1] == pytest.approx(np.pi / 2)
+    assert across.mitre == pytest.approx([1.0, np.sqrt(2.0), 1.0]) and across.turn[
+        1
+    ] == pytest.approx(np.pi / 2)
     assert volume(mesh) == pytest.approx(20.0 * 4.0)
     back = np.array([[0.0, 0, 0], [10, 0, 0], [0, 0, 0]])
     mesh, across = made(back, np.tile([0.0, 0.0, 1.0], (3, 1)), False, 4)

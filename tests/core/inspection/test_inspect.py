@@ -34,14 +34,18 @@ def test_any_attitude_is_found_to_within_the_noise_over_the_root_of_the_points(s
     wall, noise, count = funnel(), 0.03, 4000
     points, normal = sampled(wall, rng, count)
     by = away(rng, rng.uniform(0.5, 3.0), 400.0)
-    found = inspected(moved(points + normal * rng.normal(0.0, noise, (count, 1)), by), planned(wall, "funnel"))
+    found = inspected(
+        moved(points + normal * rng.normal(0.0, noise, (count, 1)), by), planned(wall, "funnel")
+    )
     whole = found.motion @ by
     axis = whole[:3, :3] @ wall.frame[:3, 2]
     bound = 8.0 * noise / np.sqrt(count)
     assert np.abs(axis - wall.frame[:3, 2]).max() < bound / 20.0
     origin = moved(wall.frame[None, :3, 3], whole)[0]
     assert np.abs(origin - wall.frame[:3, 3]).max() < 3.0 * bound
-    assert found.spread.deviation == pytest.approx(noise, rel=0.05) and abs(found.spread.mean) < bound
+    assert (
+        found.spread.deviation == pytest.approx(noise, rel=0.05) and abs(found.spread.mean) < bound
+    )
     assert len(found.free) == 1 and "FREE_MOTION" in codes(found)  # it may turn about its axis
 
 
@@ -70,13 +74,15 @@ def test_what_deviations_do_not_feel_stays_as_it_was_measured():
     found = inspected(points + [3.0, -2.0, 1.0], planned(hemisphere(), "dome"))
     assert np.abs(found.motion[:3, :3] - np.eye(3)).max() < 1e-6
     assert found.motion[:3, 3] == pytest.approx([-3.0, 2.0, -1.0], abs=1e-6)
-    assert [issue.message.split(" changes")[0] for issue in found.issues if issue.code == "FREE_MOTION"] == [
-        "turning it about the centre of the sphere"
-    ]
+    assert [
+        issue.message.split(" changes")[0] for issue in found.issues if issue.code == "FREE_MOTION"
+    ] == ["turning it about the centre of the sphere"]
 
 
 def box():
-    corners = np.array([[x, y, z] for x in (-30.0, 30.0) for y in (-20.0, 20.0) for z in (0.0, 20.0)])
+    corners = np.array(
+        [[x, y, z] for x in (-30.0, 30.0) for y in (-20.0, 20.0) for z in (0.0, 20.0)]
+    )
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
     share = np.random.default_rng(0).dirichlet((1.0, 1.0, 1.0), (12, 150))
@@ -103,7 +109,9 @@ def test_a_fit_may_be_held_to_shifts_to_an_axis_or_to_nothing():
     assert beside.motion[2, :3] == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
     held = inspected(points + [0.0, 0.0, 0.3], of, fit="none")
     assert (held.motion == np.eye(4)).all()
-    assert held.spread.most == pytest.approx(0.3, abs=1e-9) and held.spread.least == pytest.approx(-0.3, abs=1e-9)
+    assert held.spread.most == pytest.approx(0.3, abs=1e-9) and held.spread.least == pytest.approx(
+        -0.3, abs=1e-9
+    )
 
 
 def test_pairs_of_points_tell_which_way_round_a_box_is():
@@ -142,7 +150,8 @@ def test_circles_of_known_ovality_eccentricity_and_diameter():
     assert [one.zone.zone for one in found.circles] == pytest.approx([0.2, 0.0, 0.6], abs=2e-3)
     assert [one.eccentricity for one in found.circles] == pytest.approx([0.05] * 3, abs=1e-3)
     assert [one.fitted.radius for one in found.circles] == pytest.approx(
-        [wall.meridian.at(wall.meridian.s_at_height([h])[0])[0][0] for h in (10.0, 25.0, 40.0)], abs=2e-3
+        [wall.meridian.at(wall.meridian.s_at_height([h])[0])[0][0] for h in (10.0, 25.0, 40.0)],
+        abs=2e-3,
     )
     assert found.ball is None
 
@@ -158,7 +167,9 @@ def test_points_of_a_band_are_slid_to_its_height(with_wall):
     for height in (15.0, 25.0, 35.0):
         found = figures.circle(of, points, normal, height, 0.5, "scan")
         assert found.zone.zone < (1e-6 if with_wall else 0.02)
-        assert found.fitted.radius == pytest.approx(np.sqrt(R0**2 - height**2), abs=1e-6 if with_wall else 0.01)
+        assert found.fitted.radius == pytest.approx(
+            np.sqrt(R0**2 - height**2), abs=1e-6 if with_wall else 0.01
+        )
         assert found.count > 100
 
 
@@ -167,14 +178,22 @@ def test_thickness_where_both_sides_were_measured():
     points, normal = sampled(hemisphere(), rng, 6000, 0.0, 0.9)
     outside = np.arange(6000) % 2 == 0
     scanned = points + np.where(outside, 1.6, -1.45)[:, None] * normal
-    found = inspected(scanned, planned(hemisphere(), "dome"), side="both", thickness=3.0, fit="none")
-    assert found.thickness.mean == pytest.approx(3.05, abs=1e-6) and found.thickness.deviation < 1e-6
-    assert found.spread.most == pytest.approx(0.1, abs=1e-7) and found.spread.least == pytest.approx(-0.05, abs=1e-7)
+    found = inspected(
+        scanned, planned(hemisphere(), "dome"), side="both", thickness=3.0, fit="none"
+    )
+    assert (
+        found.thickness.mean == pytest.approx(3.05, abs=1e-6) and found.thickness.deviation < 1e-6
+    )
+    assert found.spread.most == pytest.approx(
+        0.1, abs=1e-7
+    ) and found.spread.least == pytest.approx(-0.05, abs=1e-7)
     assert found.thickness.count > 500
 
 
 def example():
-    spec = importlib.util.spec_from_file_location("inspection_points", EXAMPLES / "inspection_points.py")
+    spec = importlib.util.spec_from_file_location(
+        "inspection_points", EXAMPLES / "inspection_points.py"
+    )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -183,7 +202,10 @@ def example():
 def test_the_example_is_what_its_script_makes_in_the_pattern_of_the_paper():
     made = example()
     path = EXAMPLES / "inspection" / "hemisphere-synthetic.csv"
-    assert path.read_text(encoding="utf-8") == made.text() and "SYNTHETIC" in made.text().splitlines()[0]
+    assert (
+        path.read_text(encoding="utf-8") == made.text()
+        and "SYNTHETIC" in made.text().splitlines()[0]
+    )
     height, azimuth = made.pattern()
     helix = np.flatnonzero(height == 15.0)[0]
     assert (height[0], azimuth[0]) == (10.0, 0.0) and height[:helix].max() <= 40.0
@@ -198,8 +220,10 @@ def test_the_example_gives_back_the_deviations_that_were_put_in():
     height, azimuth = made.pattern()
     put_in = made.deviations(height, azimuth, np.random.default_rng(made.SEED))
     found = inspect(
-        point_file.read(EXAMPLES / "inspection" / "hemisphere-synthetic.csv"), planned(hemisphere(), "hemisphere"),
-        InspectionParameters(probe_radius=1.5, tolerance=0.1, heights=("15", "25", "35")), lambda *_: None,
+        point_file.read(EXAMPLES / "inspection" / "hemisphere-synthetic.csv"),
+        planned(hemisphere(), "hemisphere"),
+        InspectionParameters(probe_radius=1.5, tolerance=0.1, heights=("15", "25", "35")),
+        lambda *_: None,
     )
     radius = np.sqrt(R0**2 - height**2)
     normal = np.column_stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height]) / R0
@@ -210,7 +234,10 @@ def test_the_example_gives_back_the_deviations_that_were_put_in():
     assert found.ball.zone.zone == pytest.approx(figures.zone_of(truth, "truth").zone, abs=1e-3)
     for one in found.circles:
         ring = height == one.height
-        own = truth[ring][:, :2] * ((radius[ring] + put_in[ring]) / np.linalg.norm(truth[ring][:, :2], axis=1))[:, None]
+        own = (
+            truth[ring][:, :2]
+            * ((radius[ring] + put_in[ring]) / np.linalg.norm(truth[ring][:, :2], axis=1))[:, None]
+        )
         assert one.zone.zone >= narrowest(own, "ring").zone - 0.02 and one.gap < 0.1
         assert one.count >= ring.sum()
 
@@ -218,7 +245,9 @@ def test_the_example_gives_back_the_deviations_that_were_put_in():
 def test_many_points_have_the_narrowest_zone_of_all():
     rng = np.random.default_rng(25)
     direction = rng.normal(size=(20000, 2))
-    points = direction * ((30.0 + rng.normal(0.0, 0.1, 20000)) / np.linalg.norm(direction, axis=1))[:, None] + [4.0, 5.0]
+    points = direction * ((30.0 + rng.normal(0.0, 0.1, 20000)) / np.linalg.norm(direction, axis=1))[
+        :, None
+    ] + [4.0, 5.0]
     fast = figures.zone_of(points, "scan")
     distance = np.linalg.norm(points - fast.centre, axis=1)
     assert (fast.inner, fast.outer) == pytest.approx((distance.min(), distance.max()), abs=1e-12)
@@ -237,7 +266,11 @@ def test_figures_of_deviations_are_those_of_their_definitions():
     assert figures.spread(np.full(7, 0.3), 0.1).counts.sum() == 7
     for far in (1e6, -1e6, 1e12):  # a scan in another place altogether, as far everywhere
         alike = figures.spread(np.full(7, far), 0.1)
-        assert alike.counts.sum() == 7 and (np.diff(alike.edges) > 0.0).all() and alike.edges[0] <= far <= alike.edges[-1]
+        assert (
+            alike.counts.sum() == 7
+            and (np.diff(alike.edges) > 0.0).all()
+            and alike.edges[0] <= far <= alike.edges[-1]
+        )
 
 
 def test_bands_are_alike_on_both_sides_and_green_within():
@@ -254,22 +287,37 @@ def test_the_table_has_a_column_for_each_part_and_their_spread():
     rng = np.random.default_rng(27)
     points, normal = sampled(hemisphere(), rng, 1500, 0.1, 0.7)
     dome = planned(hemisphere(), "dome")
-    each = [inspected(points + normal * rng.normal(0.0, noise, (1500, 1)), dome) for noise in (0.1, 0.2)]
-    by_name = {name: (values, mean, deviation) for name, _, values, mean, deviation in table.compared(each)}
+    each = [
+        inspected(points + normal * rng.normal(0.0, noise, (1500, 1)), dome) for noise in (0.1, 0.2)
+    ]
+    by_name = {
+        name: (values, mean, deviation) for name, _, values, mean, deviation in table.compared(each)
+    }
     values, mean, deviation = by_name["Spherical defect"]
     assert values == [one.ball.zone.zone for one in each]
-    assert mean == pytest.approx(np.mean(values)) and deviation == pytest.approx(abs(values[1] - values[0]) / np.sqrt(2.0))
+    assert mean == pytest.approx(np.mean(values)) and deviation == pytest.approx(
+        abs(values[1] - values[0]) / np.sqrt(2.0)
+    )
     data = table.as_data(each[0])
-    assert data["sphericity_mm"]["minimum_zone"] == values[0] and sum(data["histogram"]["counts"]) == data["counted"]
+    assert (
+        data["sphericity_mm"]["minimum_zone"] == values[0]
+        and sum(data["histogram"]["counts"]) == data["counted"]
+    )
     lines = list(table.deviations(each[0]))
-    assert len(lines) == 1501 and float(lines[7].split(",")[3]) == pytest.approx(each[0].deviation[6], abs=1e-6)
+    assert len(lines) == 1501 and float(lines[7].split(",")[3]) == pytest.approx(
+        each[0].deviation[6], abs=1e-6
+    )
 
 
 @pytest.mark.parametrize(
     ("values", "where"),
-    [({"heights": ("high",)}, "inspection.heights"), ({"pairs": "1 2 3"}, "inspection.pairs"),
-     ({"side": "both"}, "inspection.thickness"), ({"tolerance": 0.0}, "inspection.tolerance"),
-     ({"trim": 0.6}, "inspection.trim")],
+    [
+        ({"heights": ("high",)}, "inspection.heights"),
+        ({"pairs": "1 2 3"}, "inspection.pairs"),
+        ({"side": "both"}, "inspection.thickness"),
+        ({"tolerance": 0.0}, "inspection.tolerance"),
+        ({"trim": 0.6}, "inspection.trim"),
+    ],
 )
 def test_parameters_that_make_no_sense_are_refused_by_name(values, where):
     with pytest.raises(InputError) as caught:

@@ -45,23 +45,34 @@ def test_walls_in_any_frame_keep_offsets_along_normals():
 def test_a_corner_is_nearest_to_all_between_its_normals():
     """A cylinder of 20 mm with a flat roof: outside of the corner the distance is that from its circle."""
     up, down = np.array([0.0, 1.0]), np.array([-1.0, 0.0])
-    meridian = Meridian.chained([
-        (np.array([[20.0, 0.0], [20.0, 30.0]]), np.array([up, up])),
-        (np.array([[20.0, 30.0], [0.0, 30.0]]), np.array([down, down])),
-    ])
+    meridian = Meridian.chained(
+        [
+            (np.array([[20.0, 0.0], [20.0, 30.0]]), np.array([up, up])),
+            (np.array([[20.0, 30.0], [0.0, 30.0]]), np.array([down, down])),
+        ]
+    )
     of = planned(RevolvedWall(meridian, np.eye(4)), "can")
     rng = np.random.default_rng(3)
-    angle, r, z = rng.uniform(0, 2 * np.pi, 500), rng.uniform(20.0, 30.0, 500), rng.uniform(30.0, 40.0, 500)
+    angle, r, z = (
+        rng.uniform(0, 2 * np.pi, 500),
+        rng.uniform(20.0, 30.0, 500),
+        rng.uniform(30.0, 40.0, 500),
+    )
     points = np.column_stack([r * np.cos(angle), r * np.sin(angle), z])
     distance, normal = of.exact(points)
     assert np.abs(distance - np.hypot(r - 20.0, z - 30.0)).max() < 1e-6
-    away = np.column_stack([(r - 20.0) * np.cos(angle), (r - 20.0) * np.sin(angle), z - 30.0]) / distance[:, None]
+    away = (
+        np.column_stack([(r - 20.0) * np.cos(angle), (r - 20.0) * np.sin(angle), z - 30.0])
+        / distance[:, None]
+    )
     assert np.abs(normal - away).max() < 1e-3
 
 
 def test_past_the_sides_of_part_of_a_turn():
     of = planned(hemisphere(0.0, np.pi, False), "half")
-    beside = np.array([[40.0, -2.0, 10.0], [40.0, 2.0, 10.0], [-40.0, -5.0, 10.0], [0.0, -45.0, 0.0]])
+    beside = np.array(
+        [[40.0, -2.0, 10.0], [40.0, 2.0, 10.0], [-40.0, -5.0, 10.0], [0.0, -45.0, 0.0]]
+    )
     assert of.past(beside) == pytest.approx([2.0, 0.0, 5.0, 45.0], abs=0.2)
     assert list(of.within_edges(beside)) == [False, True, False, False]
 
@@ -75,7 +86,9 @@ def test_sides_of_a_wall_are_half_a_thickness_off():
         assert distance == pytest.approx(0.5, abs=1e-8)
         assert np.abs(found - np.sign(at) * normal).max() < 1e-6
     both = np.concatenate([points + 1.6 * normal, points - 1.3 * normal])
-    assert sided(of.exact, "both", 3.0)(both)[0] == pytest.approx(np.repeat([0.1, -0.2], 200), abs=1e-8)
+    assert sided(of.exact, "both", 3.0)(both)[0] == pytest.approx(
+        np.repeat([0.1, -0.2], 200), abs=1e-8
+    )
 
 
 def test_triangles_of_a_box_are_exact_and_never_end():
@@ -98,7 +111,9 @@ def rings(layer_height, radius=30.0):
     layers = []
     for number in range(12):
         turn = angle if number % 2 else angle[::-1]
-        points = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.full(181, layer_height * number)])
+        points = np.column_stack(
+            [radius * np.cos(turn), radius * np.sin(turn), np.full(181, layer_height * number)]
+        )
         up = np.tile([0.0, 0.0, 1.0], (181, 1))
         layers.append(Layer((Bead(points, up, up, turn, np.full(181, 6.0), True),)))
     return layers
@@ -108,7 +123,11 @@ def test_beads_of_a_pipe_are_its_surface_whichever_way_they_run():
     toolpath = Toolpath(tuple(rings(2.0)), np.eye(4), 2.0, 0.01)
     of = planned(toolpath, "Toolpath")
     rng = np.random.default_rng(6)
-    angle, height, off = rng.uniform(0, 2 * np.pi, 1000), rng.uniform(0.0, 22.0, 1000), rng.uniform(-2.0, 2.0, 1000)
+    angle, height, off = (
+        rng.uniform(0, 2 * np.pi, 1000),
+        rng.uniform(0.0, 22.0, 1000),
+        rng.uniform(-2.0, 2.0, 1000),
+    )
     points = np.column_stack([(30.0 + off) * np.cos(angle), (30.0 + off) * np.sin(angle), height])
     distance, normal = of.exact(points)
     assert np.abs(distance - off).max() < 1e-3
@@ -124,13 +143,30 @@ def test_normals_of_beads_are_those_of_the_wall_they_make(sense):
     layers = []
     for s in np.linspace(0.0, wall.meridian.length, 30):
         radius, height, tangent = wall.meridian.at(np.full(181, s))
-        build = wall.directions(np.column_stack([tangent[:, 0], np.zeros(181), tangent[:, 1]]), angle)
-        layers.append(Layer((Bead(wall.points(radius, height, angle), build, build, angle, np.full(181, 6.0), True),)))
+        build = wall.directions(
+            np.column_stack([tangent[:, 0], np.zeros(181), tangent[:, 1]]), angle
+        )
+        layers.append(
+            Layer(
+                (
+                    Bead(
+                        wall.points(radius, height, angle),
+                        build,
+                        build,
+                        angle,
+                        np.full(181, 6.0),
+                        True,
+                    ),
+                )
+            )
+        )
     beads = planned(Toolpath(tuple(layers), wall.frame, 2.4, 0.01), "Toolpath")
     points, normal = sampled(wall, np.random.default_rng(7), 2000)
     off = np.random.default_rng(8).uniform(-2.0, 2.0, 2000)
     distance, found = beads.exact(points + off[:, None] * normal)
-    assert np.abs(distance - off).max() < 2.4**2 / 8.0 / R0 + 0.06  # off the bend, and of normals half a layer away
+    assert (
+        np.abs(distance - off).max() < 2.4**2 / 8.0 / R0 + 0.06
+    )  # off the bend, and of normals half a layer away
     assert (found * normal).sum(axis=1).min() > 0.99
 
 

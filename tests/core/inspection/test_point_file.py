@@ -27,7 +27,16 @@ def told(measured):
 @pytest.mark.parametrize("running", [False, True])
 @pytest.mark.parametrize(
     ("delimiter", "comma"),
-    [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), (" ", "."), ("   ", ","), (", ", ".")],
+    [
+        (",", "."),
+        (";", "."),
+        (";", ","),
+        ("\t", "."),
+        ("\t", ","),
+        (" ", "."),
+        ("   ", ","),
+        (", ", "."),
+    ],
 )
 def test_delimiters_and_decimal_signs_are_told_from_the_text(delimiter, comma, running):
     found = point_file.parse(table(delimiter, comma, running=running).encode(), "scan.csv")
@@ -38,17 +47,31 @@ def test_delimiters_and_decimal_signs_are_told_from_the_text(delimiter, comma, r
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
 def test_headings_choose_the_columns_and_name_the_unit(encoding):
-    rows = "".join(f"P{k};{z / 25.4:.7f};0.1;{x / 25.4:.7f};{y / 25.4:.7f}\n" for k, (x, y, z) in enumerate(POINTS))
+    rows = "".join(
+        f"P{k};{z / 25.4:.7f};0.1;{x / 25.4:.7f};{y / 25.4:.7f}\n"
+        for k, (x, y, z) in enumerate(POINTS)
+    )
     text = "# Prüfung, Maß\nname;Z [in];dev;X [in];Y [in]\n" + rows
     found = point_file.parse(text.encode(encoding), "Teil.txt")
     assert np.abs(found.points - POINTS).max() < 1e-5
-    assert "by their headings" in told(found) and "2 more columns" in told(found) and "in inch" in told(found)
+    assert (
+        "by their headings" in told(found)
+        and "2 more columns" in told(found)
+        and "in inch" in told(found)
+    )
 
 
 @pytest.mark.parametrize(
     ("head", "unit", "scale"),
-    [("x_m,y_m,z_m", "auto", 1000.0), ("# units: cm", "auto", 10.0), ("// Unit = millimeters", "auto", 1.0),
-     ("x,y,z", "inch", 25.4), ("x_m,y_m,z_m", "mm", 1.0), ("X (µm),Y (µm),Z (µm)", "auto", 1e-3), ("", "auto", 1.0)],
+    [
+        ("x_m,y_m,z_m", "auto", 1000.0),
+        ("# units: cm", "auto", 10.0),
+        ("// Unit = millimeters", "auto", 1.0),
+        ("x,y,z", "inch", 25.4),
+        ("x_m,y_m,z_m", "mm", 1.0),
+        ("X (µm),Y (µm),Z (µm)", "auto", 1e-3),
+        ("", "auto", 1.0),
+    ],
 )
 def test_units(head, unit, scale):
     found = point_file.parse(table(",", head=head).encode(), "scan.xyz", unit)
@@ -74,8 +97,10 @@ def binary_stl(corners):
 
 def ascii_stl(corners):
     text = "".join(
-        "facet normal 0 0 0\n outer loop\n" + "".join(f"  vertex {x:.6e} {y:.6e} {z:.6e}\n" for x, y, z in triangle)
-        + " endloop\nendfacet\n" for triangle in corners
+        "facet normal 0 0 0\n outer loop\n"
+        + "".join(f"  vertex {x:.6e} {y:.6e} {z:.6e}\n" for x, y, z in triangle)
+        + " endloop\nendfacet\n"
+        for triangle in corners
     )
     return f"solid s\n{text}endsolid s\n".encode()
 
@@ -96,7 +121,12 @@ def ply(kind):
     if kind == "ascii":
         return (head + "".join(f"{x} 7 {y} {z}\n" for x, y, z in POINTS) + "3 0 1 2\n").encode()
     sign = "<" if kind == "binary_little_endian" else ">"
-    return head.encode() + b"".join(struct.pack(f"{sign}fBdf", x, 7, y, z) for x, y, z in POINTS) + b"\x03" + bytes(12)
+    return (
+        head.encode()
+        + b"".join(struct.pack(f"{sign}fBdf", x, 7, y, z) for x, y, z in POINTS)
+        + b"\x03"
+        + bytes(12)
+    )
 
 
 @pytest.mark.parametrize("kind", ["ascii", "binary_little_endian", "binary_big_endian"])
@@ -105,24 +135,36 @@ def test_vertices_of_ply(kind):
 
 
 def test_vertices_of_obj():
-    text = "# obj\n" + "".join(f"v {x} {y} {z} 0.5 0.5 0.5\nvn 0 0 1\n" for x, y, z in POINTS) + "f 1 2 3\n"
+    text = (
+        "# obj\n"
+        + "".join(f"v {x} {y} {z} 0.5 0.5 0.5\nvn 0 0 1\n" for x, y, z in POINTS)
+        + "f 1 2 3\n"
+    )
     assert (point_file.parse(text.encode(), "scan.OBJ").points == POINTS).all()
 
 
 def test_large_scans_are_thinned_evenly(monkeypatch):
     monkeypatch.setattr(point_file, "MAX_POINTS", 10)
     found = point_file.parse(table(",").encode(), "scan.csv")
-    assert (found.points == POINTS[np.linspace(0, 39, 10).astype(int)]).all() and "of 40 points 10 are kept" in told(found)
+    assert (
+        found.points == POINTS[np.linspace(0, 39, 10).astype(int)]
+    ).all() and "of 40 points 10 are kept" in told(found)
 
 
 @pytest.mark.parametrize(
     ("data", "name", "code"),
     [
-        (b"", "scan.csv", "EMPTY_FILE"), (b" \n", "scan.stl", "EMPTY_FILE"), (b"a;b;c\nd;e;f\n", "scan.csv", "NO_POINTS"),
-        (b"1 2\n3 4\n", "scan.txt", "NO_POINTS"), (b"1,25,2,50,3,75\n4,25,5,50,6,75\n", "scan.csv", "AMBIGUOUS"),
-        (b"1 2 3\n" + b"no point\n" * 5, "scan.xyz", "BAD_FILE"), (b"nan nan nan\n", "scan.xyz", "NO_POINTS"),
-        (b"ply\nformat ascii 1.0\n", "scan.ply", "BAD_FILE"), (ply("binary_little_endian")[:-200], "scan.ply", "BAD_FILE"),
-        (b"v 1 2 three\n", "scan.obj", "BAD_FILE"), (b"no mesh at all", "scan.stl", "NO_POINTS"),
+        (b"", "scan.csv", "EMPTY_FILE"),
+        (b" \n", "scan.stl", "EMPTY_FILE"),
+        (b"a;b;c\nd;e;f\n", "scan.csv", "NO_POINTS"),
+        (b"1 2\n3 4\n", "scan.txt", "NO_POINTS"),
+        (b"1,25,2,50,3,75\n4,25,5,50,6,75\n", "scan.csv", "AMBIGUOUS"),
+        (b"1 2 3\n" + b"no point\n" * 5, "scan.xyz", "BAD_FILE"),
+        (b"nan nan nan\n", "scan.xyz", "NO_POINTS"),
+        (b"ply\nformat ascii 1.0\n", "scan.ply", "BAD_FILE"),
+        (ply("binary_little_endian")[:-200], "scan.ply", "BAD_FILE"),
+        (b"v 1 2 three\n", "scan.obj", "BAD_FILE"),
+        (b"no mesh at all", "scan.stl", "NO_POINTS"),
     ],
 )
 def test_what_is_no_points_is_refused(data, name, code):

@@ -14,7 +14,9 @@ HALF = np.array([40.0, 25.0, 12.0])
 def box(points):
     """Distance from a box, and its slope: written down, not searched."""
     outside = np.abs(points) - HALF
-    distance = np.linalg.norm(np.maximum(outside, 0.0), axis=1) + np.minimum(outside.max(axis=1), 0.0)
+    distance = np.linalg.norm(np.maximum(outside, 0.0), axis=1) + np.minimum(
+        outside.max(axis=1), 0.0
+    )
     side = np.sign(points) + (points == 0.0)
     nearest = np.eye(3)[np.argmax(outside, axis=1)]
     off = np.maximum(outside, 0.0)
@@ -30,7 +32,9 @@ def sphere(points):
 
 def cylinder(points):
     distance = np.hypot(points[:, 0], points[:, 1])
-    return distance - 20.0, np.column_stack([points[:, :2] / distance[:, None], np.zeros(len(points))])
+    return distance - 20.0, np.column_stack(
+        [points[:, :2] / distance[:, None], np.zeros(len(points))]
+    )
 
 
 def on_box(rng, count):
@@ -84,7 +88,9 @@ def test_any_attitude_is_found_by_principal_axes(seed):
         away = points - np.array([40.0, 25.0, 12.0])
         other = np.linalg.norm(away, axis=1)
         nearer = other - 9.0 < distance
-        return np.where(nearer, other - 9.0, distance), np.where(nearer[:, None], away / other[:, None], slope)
+        return np.where(nearer, other - 9.0, distance), np.where(
+            nearer[:, None], away / other[:, None], slope
+        )
 
     planned = on_box(rng, 3000)
     knob = rng.normal(size=(400, 3))
@@ -136,7 +142,9 @@ def test_turns_that_a_round_part_does_not_feel_are_told_and_not_made():
     assert np.abs(found.distance).max() < 1e-9
     assert np.abs(moved(np.array([[0.5, -1.0, 2.0]]), found.motion)).max() < 1e-9
     assert np.abs(found.motion[:3, :3] - np.eye(3)).max() < 0.01  # and it was hardly turned
-    assert len(found.free) == 3 and all(told.startswith("a turn about the axis through (") for told in found.free)
+    assert len(found.free) == 3 and all(
+        told.startswith("a turn about the axis through (") for told in found.free
+    )
 
     angle, height = rng.uniform(0.0, 2.0 * np.pi, 800), rng.uniform(0.0, 50.0, 800)
     pipe = np.column_stack([20.0 * np.cos(angle), 20.0 * np.sin(angle), height])
@@ -148,7 +156,12 @@ def test_turns_that_a_round_part_does_not_feel_are_told_and_not_made():
 
 @pytest.mark.parametrize(
     ("count", "trim", "code"),
-    [(5, 0.0, "TOO_FEW_POINTS"), (0, 0.0, "TOO_FEW_POINTS"), (50, 0.5, "OUT_OF_RANGE"), (50, -0.1, "OUT_OF_RANGE")],
+    [
+        (5, 0.0, "TOO_FEW_POINTS"),
+        (0, 0.0, "TOO_FEW_POINTS"),
+        (50, 0.5, "OUT_OF_RANGE"),
+        (50, -0.1, "OUT_OF_RANGE"),
+    ],
 )
 def test_what_cannot_be_fitted_is_refused(count, trim, code):
     with pytest.raises(InputError) as caught:

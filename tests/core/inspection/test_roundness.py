@@ -37,7 +37,10 @@ def test_no_centre_tried_by_brute_force_has_a_narrower_zone(make, seed):
     trials = [found.centre + rng.normal(0.0, scale, found.centre.shape) for scale in scales]
     assert min(map(zone, trials)) >= found.zone - 1e-9
     for start in trials[::2500]:
-        assert minimize(zone, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-10}).fun >= found.zone - 1e-8
+        assert (
+            minimize(zone, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-10}).fun
+            >= found.zone - 1e-8
+        )
     assert found.zone == pytest.approx(zone(found.centre), abs=1e-12)
 
 
@@ -70,7 +73,12 @@ def test_least_squares_is_stationary_and_beats_its_neighbours(make, seed):
 
     best = square(np.append(found.centre, found.radius))
     for _ in range(200):
-        assert square(np.append(found.centre, found.radius) + rng.normal(0.0, 1e-3, len(found.centre) + 1)) > best
+        assert (
+            square(
+                np.append(found.centre, found.radius) + rng.normal(0.0, 1e-3, len(found.centre) + 1)
+            )
+            > best
+        )
     assert found.zone >= narrowest(points, "scan").zone
 
 
@@ -101,7 +109,10 @@ def test_an_arc_of_thirty_degrees_has_the_right_radius():
         (np.zeros((0, 2)), "TOO_FEW_POINTS"),
         (np.array([[0.0, 0.0], [1.0, 0.0]]), "TOO_FEW_POINTS"),
         (np.array([[0.0, 0.0], [1.0, 1.0], [5.0, 5.0], [2.0, 2.0]]), "FLAT_POINTS"),
-        (np.column_stack([np.random.default_rng(0).normal(size=(20, 2)), np.full(20, 3.0)]), "FLAT_POINTS"),
+        (
+            np.column_stack([np.random.default_rng(0).normal(size=(20, 2)), np.full(20, 3.0)]),
+            "FLAT_POINTS",
+        ),
         (np.full((5, 3), 2.0), "FLAT_POINTS"),
     ],
 )

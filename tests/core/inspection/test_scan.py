@@ -60,7 +60,9 @@ def points_on(surface, size=(100.0, 60.0), count=30_000, noise=0.02, outliers=0.
 def block():
     strategy = SolidParameters(layer_height=HEIGHT, bead_spacing=6.25, chord_error=0.05)
     solids = stacked([box((-60, -25, 0), (60, 25, 30))], strategy, "block")
-    return plan(solids, strategy, BuildDirectionParameters(), ProcessParameters(travel_speed=6.0), None)
+    return plan(
+        solids, strategy, BuildDirectionParameters(), ProcessParameters(travel_speed=6.0), None
+    )
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +78,12 @@ def fit(toolpath, points, **parameters):
 def between(layer):
     """Nine places from each point of a layer to the next, on the straight way between them."""
     share = np.linspace(0.0, 1.0, 10)[:, None, None]
-    return np.vstack([(bead.points[:-1] + share * np.diff(bead.points, axis=0)).reshape(-1, 3) for bead in layer.beads])
+    return np.vstack(
+        [
+            (bead.points[:-1] + share * np.diff(bead.points, axis=0)).reshape(-1, 3)
+            for bead in layer.beads
+        ]
+    )
 
 
 def test_the_first_layer_lies_on_what_was_scanned_and_the_others_lead_back(block, laid):
@@ -84,11 +91,15 @@ def test_the_first_layer_lies_on_what_was_scanned_and_the_others_lead_back(block
     x, y, _ = made.fitted.places.T
     assert np.abs(made.fitted.off - bent(x, y)).max() < 0.06
     count = made.fitted.layers
-    assert count - 1 < np.abs(made.fitted.off).max() / (0.2 * HEIGHT) <= count  # the fewest that keep heights within a fifth
+    assert (
+        count - 1 < np.abs(made.fitted.off).max() / (0.2 * HEIGHT) <= count
+    )  # the fewest that keep heights within a fifth
     for number, layer in enumerate(made.layers):
         x, y, z = between(layer).T
         share = max(0.0, 1.0 - number / count)
-        assert np.abs(z - number * HEIGHT - share * bent(x, y)).max() < 0.06  # three times the noise
+        assert (
+            np.abs(z - number * HEIGHT - share * bent(x, y)).max() < 0.06
+        )  # three times the noise
     for one, other in zip(block.layers[count:], made.layers[count:], strict=True):
         assert one is other  # what is back at the plan is the plan
 
@@ -97,7 +108,10 @@ def test_outliers_move_nothing(laid):
     """Where one point in a hundred is wrong patches are the same as without, but for less than their noise."""
     points, clean = points_on(bent), points_on(bent, outliers=0.0)
     places = laid.layers[0].beads[0].points
-    wrong, right = (Scan(some, "s", 5.0).heights(places, np.tile(UP, (len(places), 1))).off for some in (points, clean))
+    wrong, right = (
+        Scan(some, "s", 5.0).heights(places, np.tile(UP, (len(places), 1))).off
+        for some in (points, clean)
+    )
     assert (np.abs(points - clean).max(axis=1) > 1.0).mean() > 0.009
     assert np.abs(wrong - right).max() < 0.02
 
@@ -109,7 +123,9 @@ def test_thinner_layers_are_laid_faster_by_as_much(laid):
         assert 0.79 * HEIGHT < low < high < 1.21 * HEIGHT
         for bead in made.layers[number].beads:
             middle = 0.5 * (bead.height[1:] + bead.height[:-1])
-            assert bead.speed[1:] * middle == pytest.approx(6.0 * HEIGHT, rel=1e-9)  # as much at every place
+            assert bead.speed[1:] * middle == pytest.approx(
+                6.0 * HEIGHT, rel=1e-9
+            )  # as much at every place
     tops = [np.concatenate([bead.points[:, 2] for bead in layer.beads]) for layer in made.layers]
     assert made.layers[0].beads[0].height[0] == pytest.approx(
         HEIGHT - bent(*made.layers[0].beads[0].points[0, :2]) / made.fitted.layers, abs=0.02
@@ -133,8 +149,10 @@ def test_after_a_layer_the_next_lies_on_what_has_grown(block):
 def test_scans_that_do_not_serve_are_refused(block):
     points = points_on(bent)
     for code, of, more in (
-        ("SCAN_MISSES", points[points[:, 0] < 0.0], {}), ("SCAN_MISSES", points[:5], {}),
-        ("SCAN_OFF", points + (0.0, 0.0, 4.0), {}), ("NO_LAYER", points, {"after_layer": 14}),
+        ("SCAN_MISSES", points[points[:, 0] < 0.0], {}),
+        ("SCAN_MISSES", points[:5], {}),
+        ("SCAN_OFF", points + (0.0, 0.0, 4.0), {}),
+        ("NO_LAYER", points, {"after_layer": 14}),
     ):
         with pytest.raises(InputError) as error:
             fit(block, of, **more)
@@ -168,11 +186,20 @@ def test_units_and_other_parts_are_told_from_the_part():
 
 def test_a_scan_from_anywhere_is_laid_onto_the_part():
     """All sides of a wedge, that no turn makes another place of it; one that is alike turned by half a turn is refused."""
-    wedge = hull(np.array([(0, 0, 0), (90, 0, 0), (0, 50, 0), (90, 50, 0), (0, 0, 40), (0, 30, 40)], dtype=float), "wedge")
+    wedge = hull(
+        np.array(
+            [(0, 0, 0), (90, 0, 0), (0, 50, 0), (90, 50, 0), (0, 0, 40), (0, 30, 40)], dtype=float
+        ),
+        "wedge",
+    )
     rng, corner = np.random.default_rng(3), wedge.corners()
-    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    area = np.linalg.norm(
+        np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1
+    )
     share = rng.dirichlet((1.0, 1.0, 1.0), 8000)
-    points = np.einsum("nk,nkc->nc", share, corner[rng.choice(len(corner), 8000, p=area / area.sum())])
+    points = np.einsum(
+        "nk,nkc->nc", share, corner[rng.choice(len(corner), 8000, p=area / area.sum())]
+    )
     points += rng.normal(0.0, 0.02, points.shape)
     points[:80] += rng.uniform(-40.0, 40.0, (80, 3))
     turn = Rotation.from_euler("xyz", [70.0, -40.0, 130.0], degrees=True).as_matrix()
@@ -191,23 +218,36 @@ def test_the_body_to_keep_clear_of_is_where_it_was_scanned():
     x, y, z = found.vertices[found.vertices[:, 2] > -3.0].T
     inside = (np.abs(x) < 95.0) & (np.abs(y) < 55.0)
     assert inside.sum() > 100 and np.abs(z - bent(x, y))[inside].max() < 0.06
-    assert found.vertices[:, 2].min() == -10.0 and (found.vertices[:, 2] == -10.0).sum() > 100  # its underside stays
+    assert (
+        found.vertices[:, 2].min() == -10.0 and (found.vertices[:, 2] == -10.0).sum() > 100
+    )  # its underside stays
     both = np.vstack([points[:500], points[:500] - (0.0, 0.0, 10.0)])
-    assert facing(both, PLATE, UP)[:500].mean() > 0.95 and facing(both, PLATE, UP)[500:].mean() < 0.05
+    assert (
+        facing(both, PLATE, UP)[:500].mean() > 0.95 and facing(both, PLATE, UP)[500:].mean() < 0.05
+    )
 
 
-@pytest.mark.parametrize(("surface", "parameters"), [
-    (bent, {}), (bent, {"scan_band": 0.05}), (lambda x, y: 10.0 - 0.4 + 0.004 * x, {"after_layer": 4}),
-    (lambda x, y: 4.5 + 0.0 * x, {"scan_band": 0.1}),
-])
+@pytest.mark.parametrize(
+    ("surface", "parameters"),
+    [
+        (bent, {}),
+        (bent, {"scan_band": 0.05}),
+        (lambda x, y: 10.0 - 0.4 + 0.004 * x, {"after_layer": 4}),
+        (lambda x, y: 4.5 + 0.0 * x, {"scan_band": 0.1}),
+    ],
+)
 def test_how_far_layers_are_moved_at_most_is_known_of_each(block, surface, parameters):
     made = fit(block, points_on(surface), **parameters)
     known = moved_most(made.fitted, np.arange(len(made.layers)))
-    far = np.array([
-        max(np.abs(bead.points[:, 2] - number * HEIGHT).max() for bead in layer.beads)
-        for number, layer in enumerate(made.layers)
-    ])
-    assert (far <= known + 0.03).all()  # patches of neighbours lead on a little beyond the first layer
+    far = np.array(
+        [
+            max(np.abs(bead.points[:, 2] - number * HEIGHT).max() for bead in layer.beads)
+            for number, layer in enumerate(made.layers)
+        ]
+    )
+    assert (
+        far <= known + 0.03
+    ).all()  # patches of neighbours lead on a little beyond the first layer
     assert np.abs(far - known).max() < 0.1 * known.max() + 0.03 and known[made.fitted.layer] > 0.1
 
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Links that touch: nothing that is drawn reaches into a body untold, and what is told is near."""
 
-
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
@@ -22,18 +21,24 @@ from tests.posts.driven import bead_body
 
 PART_ON_ROBOT = {}
 TOOL_ON_ROBOT = {"setup": "tool-on-robot", "deposition_point": (900.0, 0.0, -100.0, 0.0, 0.0, 0.0)}
-SETUPS = pytest.mark.parametrize("setup", [PART_ON_ROBOT, TOOL_ON_ROBOT], ids=["part on robot", "tool on robot"])
+SETUPS = pytest.mark.parametrize(
+    "setup", [PART_ON_ROBOT, TOOL_ON_ROBOT], ids=["part on robot", "tool on robot"]
+)
 SIZE = np.array([260.0, 180.0, 340.0])  # of a box
 
 
 def box(low, name="fixture"):
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * SIZE + low
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return Body(name, corners, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]))
+    return Body(
+        name, corners, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
+    )
 
 
 def cell_of(setup, **more):
-    return cells.resolve(CellParameters(**{"limits": "paper", "platform_diameter": 0.0, **setup, **more}), np.eye(4))
+    return cells.resolve(
+        CellParameters(**{"limits": "paper", "platform_diameter": 0.0, **setup, **more}), np.eye(4)
+    )
 
 
 def drawn(cell):
@@ -78,8 +83,15 @@ def test_what_is_drawn_does_not_reach_into_a_box_untold_and_what_is_told_is_near
                 assert not ((points > low) & (points < low + SIZE)).all(axis=1).any(), (k, link)
     for k in told:
         seen = seen_from_part(cell, q[k], found.link[k])
-        points = np.concatenate([solid.moved(seen).points[solid.triangles].mean(axis=1) for solid in links[found.link[k]]])
-        off = np.linalg.norm(np.maximum(np.maximum(low - points, points - low - SIZE), 0.0), axis=1).min()
+        points = np.concatenate(
+            [
+                solid.moved(seen).points[solid.triangles].mean(axis=1)
+                for solid in links[found.link[k]]
+            ]
+        )
+        off = np.linalg.norm(
+            np.maximum(np.maximum(low - points, points - low - SIZE), 0.0), axis=1
+        ).min()
         # plates count as round cylinders, and tapering ones as wide as they are at most
         assert off < 90.0
 
@@ -100,7 +112,9 @@ def test_a_rod_and_a_box_touch_where_analysis_says():
         for gap, wanted in ((-1.0, True), (1.0, False)):
             low = middle - 0.5 * SIZE
             low += side * (0.5 * (SIZE @ side) + reach + gap)
-            assert arm_contact.ArmContact(cell, only, [box(low)]).touches(q[None]).any[0] == wanted, (link, gap)
+            assert (
+                arm_contact.ArmContact(cell, only, [box(low)]).touches(q[None]).any[0] == wanted
+            ), (link, gap)
 
 
 @SETUPS
@@ -142,7 +156,9 @@ def test_links_touch_beads_as_wide_and_high_as_they_are(setup):
             seen = frames.inverse(place)
             for rod in rods[link]:
                 ball = np.hypot(0.5 * rod.length, rod.radius) + near
-                around = tree.query_ball_point(place[:3, :3] @ (0.5 * (rod.start + rod.end)) + place[:3, 3], ball)
+                around = tree.query_ball_point(
+                    place[:3, :3] @ (0.5 * (rod.start + rod.end)) + place[:3, 3], ball
+                )
                 if not around:
                     continue
                 own = dense[around] @ seen[:3, :3].T + seen[:3, 3]
@@ -159,12 +175,18 @@ def test_links_touch_beads_as_wide_and_high_as_they_are(setup):
 
 
 def test_platform_and_nozzle_are_looked_at():
-    cell = cell_of(PART_ON_ROBOT, platform_diameter=400.0, nozzle=NozzleParameters(length=500.0, half_angle=0.6))
+    cell = cell_of(
+        PART_ON_ROBOT,
+        platform_diameter=400.0,
+        nozzle=NozzleParameters(length=500.0, half_angle=0.6),
+    )
     arm = ArmContact(cell, rods_of(cell))
     assert arm.names[:2] == (NOZZLE, PLATFORM)
     q = anywhere(cell, 2000, 7)
     found = arm.touches(q)
-    assert {0, 1} <= set(np.unique(found.what)) <= {NONE, 0, 1, *range(2, 9)}  # and links each other
+    assert (
+        {0, 1} <= set(np.unique(found.what)) <= {NONE, 0, 1, *range(2, 9)}
+    )  # and links each other
     # the forearm meets a large platform where the wrist is bent most, whatever the other joints
     bent = np.abs(q[:, 4])
     platform = (found.what == 1) & (found.link == 4)
@@ -178,5 +200,7 @@ def test_platform_and_nozzle_are_looked_at():
 
 def test_unreachable_points_touch_nothing():
     cell = cell_of(PART_ON_ROBOT)
-    found = ArmContact(cell, rods_of(cell), [box(np.array([-130.0, -90.0, -170.0]))]).touches(np.full((3, 6), np.nan))
+    found = ArmContact(cell, rods_of(cell), [box(np.array([-130.0, -90.0, -170.0]))]).touches(
+        np.full((3, 6), np.nan)
+    )
     assert (found.link == NONE).all() and (found.what == NONE).all()

@@ -8,7 +8,14 @@ from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.kinematics.links.distance import least_distance
 from freecad_am.core.simulation.placing import placing
-from tests.core.kinematics.test_arm_contact import PART_ON_ROBOT, SIZE, TOOL_ON_ROBOT, anywhere, box, cell_of
+from tests.core.kinematics.test_arm_contact import (
+    PART_ON_ROBOT,
+    SIZE,
+    TOOL_ON_ROBOT,
+    anywhere,
+    box,
+    cell_of,
+)
 from tests.core.planning.test_arm_clearance import on_rods
 
 REACH = 400.0

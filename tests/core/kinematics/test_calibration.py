@@ -80,7 +80,11 @@ def _by_kdl(text, q):
     for name in ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"):
         at = yaml.safe_load(text)["kinematics"][name]
         turned = kdl.Rotation.RPY(*(float(at[key]) for key in ("roll", "pitch", "yaw")))
-        chain.addSegment(kdl.Segment(kdl.Joint(), kdl.Frame(turned, kdl.Vector(*(float(at[key]) for key in "xyz")))))
+        chain.addSegment(
+            kdl.Segment(
+                kdl.Joint(), kdl.Frame(turned, kdl.Vector(*(float(at[key]) for key in "xyz")))
+            )
+        )
         chain.addSegment(kdl.Segment(kdl.Joint(name, kdl.Joint.RotZ)))
     solver, frame, angles = kdl.ChainFkSolverPos_recursive(chain), kdl.Frame(), kdl.JntArray(6)
     result = np.tile(np.eye(4), (len(q), 1, 1))
@@ -108,7 +112,9 @@ def test_every_solution_gives_its_pose_and_none_is_lost_where_the_arm_can_move(r
     poses = _by_kdl(FILE, q)
     found = robot.arm.inverse(poses)
     reached = np.isfinite(found).all(axis=2)
-    assert (reached == np.isfinite(found).any(axis=2)).all() and np.nanmax(np.abs(found)) <= np.pi + 1e-12
+    assert (reached == np.isfinite(found).any(axis=2)).all() and np.nanmax(
+        np.abs(found)
+    ) <= np.pi + 1e-12
     for words in range(8):
         some = reached[words]
         assert (robot.arm.branch_of(found[words, some]) == words).all()
@@ -123,17 +129,30 @@ def test_every_solution_gives_its_pose_and_none_is_lost_where_the_arm_can_move(r
     assert reached.sum() > 0.99 * np.isfinite(several[..., 0]).sum()
 
 
-@pytest.mark.parametrize(("old", "new", "where", "says"), [
-    ("kinematics:", "kinematik:", "kinematics.shoulder.x", "this key is missing"),
-    ("    roll: 0.0021345\n", "", "kinematics.forearm.roll", "this key is missing"),
-    ("x: -0.6131245", "x: 0.6 m", "kinematics.forearm.x", "'0.6 m' is not a number"),
-    ("x: -0.6131245", "x: nan", "kinematics.forearm.x", "'nan' is not a number"),
-    ("x: -0.6131245", "x -0.6131245", "line 18", "is not `key: value`"),
-    ("x: -0.6131245", "x: -0.6131245\n    x: 1", "line 19", "the key kinematics.forearm.x is there twice"),
-    ("x: -0.6131245", "x: -0.425", "kinematics.forearm", "it is 188 mm and"),
-    ("x: -0.6131245", "x: -613.1", "kinematics.forearm", "name the machine that it is of"),
-    ("roll: 1.5713123", "roll: 90.02", "kinematics.upper_arm", "deg from where the machine file has this joint"),
-])
+@pytest.mark.parametrize(
+    ("old", "new", "where", "says"),
+    [
+        ("kinematics:", "kinematik:", "kinematics.shoulder.x", "this key is missing"),
+        ("    roll: 0.0021345\n", "", "kinematics.forearm.roll", "this key is missing"),
+        ("x: -0.6131245", "x: 0.6 m", "kinematics.forearm.x", "'0.6 m' is not a number"),
+        ("x: -0.6131245", "x: nan", "kinematics.forearm.x", "'nan' is not a number"),
+        ("x: -0.6131245", "x -0.6131245", "line 18", "is not `key: value`"),
+        (
+            "x: -0.6131245",
+            "x: -0.6131245\n    x: 1",
+            "line 19",
+            "the key kinematics.forearm.x is there twice",
+        ),
+        ("x: -0.6131245", "x: -0.425", "kinematics.forearm", "it is 188 mm and"),
+        ("x: -0.6131245", "x: -613.1", "kinematics.forearm", "name the machine that it is of"),
+        (
+            "roll: 1.5713123",
+            "roll: 90.02",
+            "kinematics.upper_arm",
+            "deg from where the machine file has this joint",
+        ),
+    ],
+)
 def test_a_broken_calibration_is_refused_with_its_place(tmp_path, old, new, where, says):
     path = tmp_path / "broken.yaml"
     assert old in FILE
@@ -146,9 +165,17 @@ def test_a_broken_calibration_is_refused_with_its_place(tmp_path, old, new, wher
 
 def test_what_takes_no_calibration_says_so(calibration, tmp_path):
     for name, code, says in (
-        (f"fanuc-arcmate120ic calibration={calibration}", "BAD_CALIBRATION", "takes no calibration"),
+        (
+            f"fanuc-arcmate120ic calibration={calibration}",
+            "BAD_CALIBRATION",
+            "takes no calibration",
+        ),
         (f"ur-ur5e calibration={calibration}", "BAD_CALIBRATION", "name the machine that it is of"),
-        (f"ur-ur10e calibration={tmp_path / 'none.yaml'}", "UNKNOWN_MACHINE", "there is no calibration"),
+        (
+            f"ur-ur10e calibration={tmp_path / 'none.yaml'}",
+            "UNKNOWN_MACHINE",
+            "there is no calibration",
+        ),
         (f"ur-ur11 calibration={calibration}", "UNKNOWN_MACHINE", "did you mean"),
     ):
         with pytest.raises(InputError) as found:

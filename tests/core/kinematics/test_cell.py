@@ -25,7 +25,11 @@ def random_cell(rng, setup, mount="feature"):
         return tuple(np.r_[rng.uniform(-size, size, 3), rng.uniform(-3, 3, 3)])
 
     parameters = CellParameters(
-        setup=setup, deposition_point=six(1500.0), platform=six(50.0), nozzle=NozzleParameters(tool=six(300.0)), mount=mount
+        setup=setup,
+        deposition_point=six(1500.0),
+        platform=six(50.0),
+        nozzle=NozzleParameters(tool=six(300.0)),
+        mount=mount,
     )
     return cells.resolve(parameters, frames.bryant(six(400.0)))
 
@@ -36,9 +40,16 @@ def test_the_tip_stands_on_the_point_along_the_tool_axis_for_every_rotation(setu
     rng = np.random.default_rng(1)
     for _ in range(5):
         cell = random_cell(rng, setup, mount)
-        position, tool, phi = rng.uniform(-200, 200, (50, 3)), directions(rng, 50), rng.uniform(-9, 9, 50)
+        position, tool, phi = (
+            rng.uniform(-200, 200, (50, 3)),
+            directions(rng, 50),
+            rng.uniform(-9, 9, 50),
+        )
         flange = cell.flange_poses(position, tool, phi)
-        assert np.abs(flange[:, :3, :3] @ np.swapaxes(flange[:, :3, :3], 1, 2) - np.eye(3)).max() < 1e-12
+        assert (
+            np.abs(flange[:, :3, :3] @ np.swapaxes(flange[:, :3, :3], 1, 2) - np.eye(3)).max()
+            < 1e-12
+        )
         tip, axis = cell.tip_in_part(flange)
         assert np.abs(tip - position).max() < 1e-9
         assert np.abs(axis - tool).max() < 1e-12
@@ -48,7 +59,11 @@ def test_the_tip_stands_on_the_point_along_the_tool_axis_for_every_rotation(setu
 def test_the_tip_alone_is_where_the_closed_form_takes_it(setup):
     rng = np.random.default_rng(6)
     cell = random_cell(rng, setup)
-    position, tool, phi = rng.uniform(-300, 300, (3000, 3)), directions(rng, 3000), rng.uniform(-9, 9, 3000)
+    position, tool, phi = (
+        rng.uniform(-300, 300, (3000, 3)),
+        directions(rng, 3000),
+        rng.uniform(-9, 9, 3000),
+    )
     joints = cell.machine.arm.inverse(cell.flange_poses(position, tool, phi))
     reached = np.isfinite(joints).all(axis=2)
     assert np.count_nonzero(reached) > 1000
@@ -61,20 +76,32 @@ def test_the_tip_alone_is_where_the_closed_form_takes_it(setup):
 @pytest.mark.parametrize("machine", ["table-xyzac", "head-xyzab"])
 def test_the_tip_alone_of_machines_with_sliding_axes(machine):
     rng = np.random.default_rng(7)
-    cell = cells.resolve(CellParameters(machine=machine, setup="rotary-table"), frames.bryant((10, 20, 30, 0.1, 0.2, 0.3)))
+    cell = cells.resolve(
+        CellParameters(machine=machine, setup="rotary-table"),
+        frames.bryant((10, 20, 30, 0.1, 0.2, 0.3)),
+    )
     axes = rng.uniform(-3.0, 3.0, (50, 5)) * np.where(cell.machine.chain.sliding, 100.0, 1.0)
-    assert np.abs(cell.tip_at(axes) - cell.tip_in_part(cell.machine.chain.forward(axes))[0]).max() < 1e-10
+    assert (
+        np.abs(cell.tip_at(axes) - cell.tip_in_part(cell.machine.chain.forward(axes))[0]).max()
+        < 1e-10
+    )
 
 
 @pytest.mark.parametrize("setup", SETUPS)
 def test_the_spin_turns_the_flange_about_the_deposition_point(setup):
     rng = np.random.default_rng(2)
     cell = random_cell(rng, setup)
-    position, tool, phi = rng.uniform(-200, 200, (50, 3)), directions(rng, 50), rng.uniform(-3, 3, 50)
+    position, tool, phi = (
+        rng.uniform(-200, 200, (50, 3)),
+        directions(rng, 50),
+        rng.uniform(-3, 3, 50),
+    )
     step = 1e-6
     here, later = (cell.flange_poses(position, tool, phi + d) for d in (-step, step))
     middle = cell.flange_poses(position, tool, phi)
-    change = (later[:, :3, :3] - here[:, :3, :3]) / (2 * step) @ np.swapaxes(middle[:, :3, :3], 1, 2)
+    change = (
+        (later[:, :3, :3] - here[:, :3, :3]) / (2 * step) @ np.swapaxes(middle[:, :3, :3], 1, 2)
+    )
     turning = np.stack([change[:, 2, 1], change[:, 0, 2], change[:, 1, 0]], axis=1)
     spin, point = cell.rotation_axis(middle), cell.deposition_point(middle)
     assert np.abs(turning - spin).max() < 1e-8
@@ -120,7 +147,8 @@ def test_rz_degenerates_where_the_build_direction_is_nearly_horizontal():
 @pytest.mark.parametrize(
     ("parameters", "code"),
     [
-        ({"setup": "tool-on-robot+positioner"}, "NOT_YET"), ({"setup": "rotary-table"}, "WRONG_SETUP"),
+        ({"setup": "tool-on-robot+positioner"}, "NOT_YET"),
+        ({"setup": "rotary-table"}, "WRONG_SETUP"),
         ({"machine": "fanuc-arcmate120id"}, "UNKNOWN_MACHINE"),
         ({"limits": "pape"}, "UNKNOWN_LIMITS"),
     ],
@@ -135,8 +163,17 @@ def test_what_cannot_be_resolved_is_refused(parameters, code):
 def test_a_machine_file_of_a_robot_with_its_track_is_refused_whatever_the_setup(setup, tmp_path):
     """It was taken for a five-axis machine, and those without five axes for an internal error."""
     told = json.loads((machine.BUILT_IN / "kuka-kr16-2.json").read_text(encoding="utf-8"))
-    told["joints"].insert(0, {"name": "rail", "type": "prismatic", "origin": [0, 0, 0], "rpy": [0, 0, 0], "axis": [1, 0, 0],
-                              "max_speed": 1000})
+    told["joints"].insert(
+        0,
+        {
+            "name": "rail",
+            "type": "prismatic",
+            "origin": [0, 0, 0],
+            "rpy": [0, 0, 0],
+            "axis": [1, 0, 0],
+            "max_speed": 1000,
+        },
+    )
     told["controller"] |= {"matrix": np.eye(7).tolist(), "offset": [0] * 7}
     told["limits"]["maker"]["axes"].insert(0, [-1000, 1000])
     for pose in told["check_poses"]:

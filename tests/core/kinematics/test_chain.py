@@ -14,7 +14,11 @@ def product(chain, q):
     """Link poses and flange of one joint vector, as the definition says."""
     pose, links = np.eye(4), []
     for origin, direction, angle in zip(chain.origins, chain.directions, q, strict=True):
-        pose = pose @ origin @ frames.pose(Rotation.from_rotvec(angle * direction).as_matrix(), np.zeros(3))
+        pose = (
+            pose
+            @ origin
+            @ frames.pose(Rotation.from_rotvec(angle * direction).as_matrix(), np.zeros(3))
+        )
         links.append(pose)
     return links, pose @ chain.flange
 
@@ -31,7 +35,9 @@ def skewed():
     )
 
 
-@pytest.mark.parametrize("name", ["skewed", "kuka-kr16-r2010-2", "motoman-ar2010", "staubli-rx60bl"])
+@pytest.mark.parametrize(
+    "name", ["skewed", "kuka-kr16-r2010-2", "motoman-ar2010", "staubli-rx60bl"]
+)
 def test_forward_and_frames_are_the_product_of_matrices(name, skewed):
     chain = skewed if name == "skewed" else machine.load(name).chain
     q = np.random.default_rng(6).uniform(-7, 7, (20, chain.axes))
@@ -40,7 +46,10 @@ def test_forward_and_frames_are_the_product_of_matrices(name, skewed):
         links, flange = product(chain, angles)
         assert np.abs(got.flange[row] - flange).max() < 1e-10
         for axis, link in enumerate(links):
-            assert np.abs(got.directions[row, axis] - link[:3, :3] @ chain.directions[axis]).max() < 1e-13
+            assert (
+                np.abs(got.directions[row, axis] - link[:3, :3] @ chain.directions[axis]).max()
+                < 1e-13
+            )
             assert np.abs(got.origins[row, axis] - link[:3, 3]).max() < 1e-10
     assert np.array_equal(chain.forward(q), got.flange)
 

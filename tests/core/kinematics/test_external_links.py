@@ -29,16 +29,34 @@ from freecad_am.kdl.chain import KdlArm
 from tests.core.kinematics import urdf_cells
 
 D500, TRACK = "motoman-motopos-d500", "kuka-kl100-2"
-STANDS = (1150.0, 120.0, -50.0, 0.0, 0.0, 30.0)  # mm, deg: near, so that a good share of random postures touches
+STANDS = (
+    1150.0,
+    120.0,
+    -50.0,
+    0.0,
+    0.0,
+    30.0,
+)  # mm, deg: near, so that a good share of random postures touches
 RAIL = (0.0, -40.0, -356.0, 0.0, 0.0, 90.0)
 STEP = 12.0  # mm between points within boxes
 
 
 def cell_of(external, **more):
-    return cells.resolve(CellParameters(**{
-        "machine": "kuka-kr8-r2100-2-arc-hw", "setup": "tool-on-robot", "branch": "auto", "platform": 5.0,
-        "platform_diameter": 0.0, "external": external, "nozzle": NozzleParameters(tool=(20.0, 0.0, 300.0, 0.0, 0.6, 0.0)),
-        **more}), np.eye(4))
+    return cells.resolve(
+        CellParameters(
+            **{
+                "machine": "kuka-kr8-r2100-2-arc-hw",
+                "setup": "tool-on-robot",
+                "branch": "auto",
+                "platform": 5.0,
+                "platform_diameter": 0.0,
+                "external": external,
+                "nozzle": NozzleParameters(tool=(20.0, 0.0, 300.0, 0.0, 0.6, 0.0)),
+                **more,
+            }
+        ),
+        np.eye(4),
+    )
 
 
 def text(machine, pose, carries):
@@ -62,13 +80,20 @@ def matrix(frame):
 def mechanism(name, pose, values):
     """The frames of a mechanism's links in the world, floor first, by PyKDL from its file."""
     told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
-    turned = PyKDL.Rotation.RotX(np.radians(pose[3])) * PyKDL.Rotation.RotY(np.radians(pose[4])) * PyKDL.Rotation.RotZ(
-        np.radians(pose[5]))
+    turned = (
+        PyKDL.Rotation.RotX(np.radians(pose[3]))
+        * PyKDL.Rotation.RotY(np.radians(pose[4]))
+        * PyKDL.Rotation.RotZ(np.radians(pose[5]))
+    )
     chain = PyKDL.Chain()
     for joint in told["joints"]:
         chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_frame(joint["origin"], joint["rpy"])))
         kind = PyKDL.Joint.TransAxis if joint.get("type") == "prismatic" else PyKDL.Joint.RotAxis
-        chain.addSegment(PyKDL.Segment(PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), kind), PyKDL.Frame()))
+        chain.addSegment(
+            PyKDL.Segment(
+                PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), kind), PyKDL.Frame()
+            )
+        )
     solver, angles = PyKDL.ChainFkSolverPos_recursive(chain), PyKDL.JntArray(len(values))
     for index, value in enumerate(values):
         angles[index] = value
@@ -82,7 +107,9 @@ def mechanism(name, pose, values):
 
 def points_within(piece):
     """Points within a box or a cylinder of a file, in the frame of its link."""
-    size = np.array(piece["box"] if "box" in piece else [piece["cylinder"][0]] * 2 + [piece["cylinder"][1]])
+    size = np.array(
+        piece["box"] if "box" in piece else [piece["cylinder"][0]] * 2 + [piece["cylinder"][1]]
+    )
     axes = [np.linspace(-0.5, 0.5, int(np.ceil(length / STEP)) + 1) * length for length in size]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     if "cylinder" in piece:
@@ -94,20 +121,31 @@ def points_within(piece):
 def bodies_of(name):
     told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
     links = ("base", *(joint["name"] for joint in told["joints"]))
-    return [np.concatenate([points_within(piece) for piece in told["bodies"][link]]) for link in links]
+    return [
+        np.concatenate([points_within(piece) for piece in told["bodies"][link]]) for link in links
+    ]
 
 
 def anywhere(cell, count, seed):
     low, high = np.maximum(cell.limits.lower, -np.pi), np.minimum(cell.limits.upper, np.pi)
     sliding = cell.machine.chain.sliding
-    low, high = np.where(sliding, cell.limits.lower, low), np.where(sliding, cell.limits.upper, high)
+    low, high = (
+        np.where(sliding, cell.limits.lower, low),
+        np.where(sliding, cell.limits.upper, high),
+    )
     return np.random.default_rng(seed).uniform(low, high, (count, len(low)))
 
 
 def test_they_are_where_pykdl_has_them_seen_from_part_and_world():
     cell = cell_of(BOTH)
     q = anywhere(cell, 40, 1)
-    assert [one.name.rsplit(" ", 1)[1] for one in cell.external_links] == ["base", "e1", "e2", "base", "e3"]
+    assert [one.name.rsplit(" ", 1)[1] for one in cell.external_links] == [
+        "base",
+        "e1",
+        "e2",
+        "base",
+        "e3",
+    ]
     seen, world = cell.external_link_frames(q), cell.world(q)
     for k, row in enumerate(q):
         wanted = [*mechanism(D500, STANDS, row[6:8]), *mechanism(TRACK, RAIL, row[8:])]
@@ -115,7 +153,11 @@ def test_they_are_where_pykdl_has_them_seen_from_part_and_world():
         assert np.abs(to_world @ seen[k] - wanted).max() < 1e-9
         # and the robot on the carriage, the platform on the face
         moved = wanted[4] @ np.linalg.inv(mechanism(TRACK, RAIL, [0.0])[1])
-        arm = moved @ KdlArm(cell.robot).forward(row[None, :6])[0] if np.allclose(cell.robot.base, np.eye(4)) else None
+        arm = (
+            moved @ KdlArm(cell.robot).forward(row[None, :6])[0]
+            if np.allclose(cell.robot.base, np.eye(4))
+            else None
+        )
         if arm is not None:
             assert np.abs(to_world @ cell.machine.chain.forward(row[None])[0] - arm).max() < 1e-6
         face = (wanted[2] @ frames.pose(np.eye(3), [0, 0, 150.0]))[:3, 3]
@@ -132,18 +174,31 @@ def test_in_the_simulation_the_rail_stands_still_and_the_carriage_goes_under_the
     went = np.linalg.norm((second.links[0] - first.links[0])[:3, 3])
     assert went == pytest.approx(abs(q[1, 6] - q[0, 6])) and went > 100.0
     for place in (first, second):
-        assert np.abs((np.linalg.inv(place.external_links[1]) @ place.links[0])[:3, 3] - [40.0, 0.0, 356.0]).max() < 1e-6
+        assert (
+            np.abs(
+                (np.linalg.inv(place.external_links[1]) @ place.links[0])[:3, 3]
+                - [40.0, 0.0, 356.0]
+            ).max()
+            < 1e-6
+        )
 
 
-@pytest.mark.parametrize("external", [text(D500, STANDS, "part"), BOTH], ids=["positioner", "with track"])
+@pytest.mark.parametrize(
+    "external", [text(D500, STANDS, "part"), BOTH], ids=["positioner", "with track"]
+)
 @pytest.mark.always("with track")
-def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is_told_is_near(external):
+def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is_told_is_near(
+    external,
+):
     cell = cell_of(external)
     rods = link_rods.of_robot(cell.robot.chain)
     arm = ArmContact(cell, rods)
     q = anywhere(cell, 1500, 2)
     found, beside = arm.touches(q), bodies_of(D500)
-    told = np.flatnonzero(found.any & np.isin(found.what, [arm.names.index(one.name) for one in cell.external_links[:3]]))
+    told = np.flatnonzero(
+        found.any
+        & np.isin(found.what, [arm.names.index(one.name) for one in cell.external_links[:3]])
+    )
     assert len(told) > 25 and (~found.any).sum() > 40
     links, seen = cell.links(q), cell.external_link_frames(q)
 
@@ -157,7 +212,10 @@ def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is
             away = points - rod.start
             along = away @ axis
             out = np.sqrt(np.maximum(np.einsum("ij,ij->i", away, away) - along * along, 0.0))
-            best = max(best, float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()))
+            best = max(
+                best,
+                float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()),
+            )
         return best
 
     for k in np.flatnonzero(~found.any)[:60]:
@@ -179,12 +237,17 @@ def test_the_nozzle_is_looked_at_too():
     middle, half = np.array([0.0, 290.0, 289.5]), 0.5 * np.array([300.0, 178.0, 429.0])
 
     def tip_of(cell, q):
-        return (np.linalg.inv(cell.world(q)) @ (cell.machine.chain.forward(q) @ cell.carried))[:, :3, 3]
+        return (np.linalg.inv(cell.world(q)) @ (cell.machine.chain.forward(q) @ cell.carried))[
+            :, :3, 3
+        ]
 
     anyhow = cell_of(text(D500, STANDS, "part"))
     place = tip_of(anyhow, np.append(posture, [0.0, 0.0])[None])[0] - middle
     cell = cell_of(text(D500, (*place, 0.0, 0.0, 0.0), "part"))
-    q = np.concatenate([posture + np.random.default_rng(5).uniform(-1.0, 1.0, (800, 6)) ** 3, np.zeros((800, 2))], axis=1)
+    q = np.concatenate(
+        [posture + np.random.default_rng(5).uniform(-1.0, 1.0, (800, 6)) ** 3, np.zeros((800, 2))],
+        axis=1,
+    )
     found, at = ArmContact(cell, [[] for _ in range(7)]).touches(q), tip_of(cell, q) - place
     deep = (np.abs(at - middle) < half - 5.0).all(axis=1)
     assert deep.sum() > 30 and (found.link[deep] == 8).all()
@@ -214,7 +277,9 @@ def test_links_read_once_are_not_read_again():
     cell = cell_of(BOTH)
     moved = cell_of(text(D500, (900.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
     again = external_links(moved.external, known=cell.external_links)
-    assert [one.body.vertices is other.body.vertices for one, other in zip(again, cell.external_links)] == [True] * 3
+    assert [
+        one.body.vertices is other.body.vertices for one, other in zip(again, cell.external_links)
+    ] == [True] * 3
 
 
 URDF_BODIES = """\
@@ -231,8 +296,11 @@ FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
 def stl(path):
     """A tetrahedron in a file of text."""
     facets = "".join(
-        "facet normal 0 0 1\nouter loop\n" + "".join("vertex {} {} {}\n".format(*corner) for corner in CORNERS[face])
-        + "endloop\nendfacet\n" for face in FACES)
+        "facet normal 0 0 1\nouter loop\n"
+        + "".join("vertex {} {} {}\n".format(*corner) for corner in CORNERS[face])
+        + "endloop\nendfacet\n"
+        for face in FACES
+    )
     path.write_text(f"solid plate\n{facets}endsolid plate\n", encoding="utf-8")
 
 
@@ -242,19 +310,31 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
     text_ = urdf_cells.whole_cell(track=True)
     for link in ("positioner_base_link", "positioner_link_1", "track_link_1"):
         text_ = text_.replace(f'<link name="{link}"/>', f'<link name="{link}">{URDF_BODIES}</link>')
-    text_ = text_.replace("</robot>", PLATE + urdf_cells.fixed("positioner_tool0", "plate", "0.01 0.02 0.03", "0 0 1")
-                          + "</robot>")
+    text_ = text_.replace(
+        "</robot>",
+        PLATE
+        + urdf_cells.fixed("positioner_tool0", "plate", "0.01 0.02 0.03", "0 0 1")
+        + "</robot>",
+    )
     path = tmp_path / "bay.urdf"
     path.write_text(text_, encoding="utf-8")
     machine, external = texts_of(Reference(str(path)))
-    cell = cells.resolve(CellParameters(machine=machine, setup="tool-on-robot", external=external, platform=0.0), np.eye(4))
+    cell = cells.resolve(
+        CellParameters(machine=machine, setup="tool-on-robot", external=external, platform=0.0),
+        np.eye(4),
+    )
     cell = dataclasses.replace(cell, external_links=external_links(cell.external, mesh_of))
     axes = {one.name.rsplit(" ", 1)[1] for one in cell.external_links}
     assert axes == {"e1", "e2", "e3", "base"}
     values = {"track_E1": 0.4, "positioner_E1": 0.3, "positioner_E2": -0.7}
-    order = [name for one in cell.external.mechanisms for name in (
-        ["track_E1"] if one.carries == "robot" else ["positioner_E1", "positioner_E2"])]
-    joints = np.array([[0.0] * 6 + [values[name] * (1000.0 if name == "track_E1" else 1.0) for name in order]])
+    order = [
+        name
+        for one in cell.external.mechanisms
+        for name in (["track_E1"] if one.carries == "robot" else ["positioner_E1", "positioner_E2"])
+    ]
+    joints = np.array(
+        [[0.0] * 6 + [values[name] * (1000.0 if name == "track_E1" else 1.0) for name in order]]
+    )
     zero = dict.fromkeys(re.findall(r'joint name="(robot_[^"]+)" type="rev', text_), 0.0)
     at = urdf_cells.placed(text_, {**zero, **values})
     still = urdf_cells.placed(text_, {**zero, **values, "track_E1": 0.0})
@@ -270,7 +350,9 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
             link = "positioner_base_link" if one.axis < 0 else moved[order[one.axis]]
             own = frames.from_rpy([100.0, 200.0, 300.0], [0.3, 0.0, 0.4])
             there = to_world @ at[link] @ own
-            sides = np.array([[x, y, z] for x in (-100, 100) for y in (-150, 150) for z in (-200, 200)])
+            sides = np.array(
+                [[x, y, z] for x in (-100, 100) for y in (-150, 150) for z in (-200, 200)]
+            )
             expected = sides @ there[:3, :3].T + there[:3, 3]
         gap = np.linalg.norm(corners[None] - expected[:, None], axis=2).min(axis=1)
         assert gap.max() < 1e-5, one.name
@@ -282,31 +364,58 @@ def test_a_machine_file_made_of_a_urdf_has_its_bodies(tmp_path):
     text_ = urdf_cells.whole_cell()
     for link in ("positioner_base_link", "positioner_link_2"):
         text_ = text_.replace(f'<link name="{link}"/>', f'<link name="{link}">{URDF_BODIES}</link>')
-    text_ = text_.replace("</robot>", PLATE + urdf_cells.fixed("positioner_tool0", "plate", "0.01 0.02 0.03", "0 0 1")
-                          + "</robot>")
+    text_ = text_.replace(
+        "</robot>",
+        PLATE
+        + urdf_cells.fixed("positioner_tool0", "plate", "0.01 0.02 0.03", "0 0 1")
+        + "</robot>",
+    )
     (tmp_path / "bay.urdf").write_text(text_, encoding="utf-8")
-    described = urdf_machine.external_chain(urdf.Urdf(tmp_path / "bay.urdf"), "positioner_base_link", "positioner_tool0")
+    described = urdf_machine.external_chain(
+        urdf.Urdf(tmp_path / "bay.urdf"), "positioner_base_link", "positioner_tool0"
+    )
     q = np.radians([[0.0, 0.0], [20.0, -50.0], [-70.0, 130.0]])
-    draft = dataclasses.replace(machine_draft.of_description(described, "URDF bay.urdf"), id="mine", title="Mine",
-                                values=np.degrees(q), poses=described.chain.forward(q))
+    draft = dataclasses.replace(
+        machine_draft.of_description(described, "URDF bay.urdf"),
+        id="mine",
+        title="Mine",
+        values=np.degrees(q),
+        poses=described.chain.forward(q),
+    )
     folder = tmp_path / "mine"
     folder.mkdir()
     (folder / "mine.json").write_text(machine_draft.text(draft), encoding="utf-8")
     told = json.loads((folder / "mine.json").read_text(encoding="utf-8"))["bodies"]
-    assert told["source"] == "URDF bay.urdf" and set(told) == {"source", "base", list(described.joints)[1]}
+    assert told["source"] == "URDF bay.urdf" and set(told) == {
+        "source",
+        "base",
+        list(described.joints)[1],
+    }
     base, tilt, table = load("mine", (str(folder),)).bodies
     assert (len(base), len(tilt), len(table)) == (2, 0, 3)
     at = frames.from_rpy([100.0, 200.0, 300.0], [0.3, 0.0, 0.4])
-    sides = np.array([[x, y, z] for x in (-100, 100) for y in (-150, 150) for z in (-200, 200)]) @ at[:3, :3].T + at[:3, 3]
+    sides = (
+        np.array([[x, y, z] for x in (-100, 100) for y in (-150, 150) for z in (-200, 200)])
+        @ at[:3, :3].T
+        + at[:3, 3]
+    )
     for brick, rod in (base, table[:2]):
         assert np.linalg.norm(brick.points[None] - sides[:, None], axis=2).min(axis=1).max() < 1e-6
         assert np.linalg.norm(brick.points[None] - sides[:, None], axis=2).min(axis=0).max() < 1e-6
         radius = np.hypot(*rod.points[:, :2].T)
-        assert radius.max() < 60.5 and np.ptp(rod.points[:, 2]) == pytest.approx(100.0) and rod.points[:, 2].min() == -100.0
+        assert (
+            radius.max() < 60.5
+            and np.ptp(rod.points[:, 2]) == pytest.approx(100.0)
+            and rod.points[:, 2].min() == -100.0
+        )
         assert np.isclose(radius, 60.0 / np.cos(np.pi / 40)).any()  # the polygon holds the cylinder
-    zero = urdf_cells.placed(text_, dict.fromkeys(re.findall(r'joint name="([^"]+)" type="(?:rev|pris|con)', text_), 0.0))
+    zero = urdf_cells.placed(
+        text_, dict.fromkeys(re.findall(r'joint name="([^"]+)" type="(?:rev|pris|con)', text_), 0.0)
+    )
     seen = np.linalg.inv(zero["positioner_link_2"]) @ zero["plate"]
-    np.testing.assert_allclose(mesh_of(table[2])[0], CORNERS @ seen[:3, :3].T + seen[:3, 3], atol=1e-6)
+    np.testing.assert_allclose(
+        mesh_of(table[2])[0], CORNERS @ seen[:3, :3].T + seen[:3, 3], atol=1e-6
+    )
 
 
 def mesh_of(shape):
@@ -315,12 +424,16 @@ def mesh_of(shape):
     return CORNERS @ shape.pose[:3, :3].T + shape.pose[:3, 3], FACES
 
 
-@pytest.mark.parametrize(("changed", "words"), [
-    ({"source": "made up", "base": [{"box": [1, 2]}]}, "bodies.base.0..box"),
-    ({"source": "made up", "base": [{"cylinder": [-1, 2]}]}, "larger than 0"),
-    ({"source": "made up", "elbow": []}, "'elbow' is not known"),
-    ({"base": []}, "'source' is missing"),
-], ids=["two numbers", "negative", "unknown link", "no source"])
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"source": "made up", "base": [{"box": [1, 2]}]}, "bodies.base.0..box"),
+        ({"source": "made up", "base": [{"cylinder": [-1, 2]}]}, "larger than 0"),
+        ({"source": "made up", "elbow": []}, "'elbow' is not known"),
+        ({"base": []}, "'source' is missing"),
+    ],
+    ids=["two numbers", "negative", "unknown link", "no source"],
+)
 def test_what_a_file_says_wrongly_is_refused(tmp_path, changed, words):
     told = json.loads((MECHANISMS / f"{TRACK}.json").read_text(encoding="utf-8"))
     path = tmp_path / "rail.json"
@@ -332,17 +445,26 @@ def test_what_a_file_says_wrongly_is_refused(tmp_path, changed, words):
 
 LOOKED_AT = {  # what is not looked at against what, of mechanism by mechanism's link
     "positioner": {
-        "base": {"D500 base"}, "part": {"D500 e1", "D500 e2"},
+        "base": {"D500 base"},
+        "part": {"D500 e1", "D500 e2"},
     },
     "track": {
-        "base": {"KL base", "KL e1"}, "1": {"KL e1"}, "part": {"KL base"},
+        "base": {"KL base", "KL e1"},
+        "1": {"KL e1"},
+        "part": {"KL base"},
     },
     "both": {
-        "base": {"KL base", "KL e3"}, "1": {"KL e3"}, "part": {"D500 e1", "D500 e2"},
+        "base": {"KL base", "KL e3"},
+        "1": {"KL e3"},
+        "part": {"D500 e1", "D500 e2"},
         "KL base": {"D500 base"},
     },
 }
-CELLS = {"positioner": text(D500, STANDS, "part"), "track": text(TRACK, RAIL, "robot"), "both": BOTH}
+CELLS = {
+    "positioner": text(D500, STANDS, "part"),
+    "track": text(TRACK, RAIL, "robot"),
+    "both": BOTH,
+}
 
 
 def shortly(name):
@@ -356,16 +478,25 @@ def test_pairs_that_are_left_out_are_these_and_no_others(external):
     arm = ArmContact(cell, link_rods.of_robot(cell.robot.chain))
     names = [arm.links[number] for number in range(len(arm.links))]
     looked_at = {
-        (shortly(names[number]).removeprefix("A"), shortly(what)) for group, what in zip(arm.groups, arm.names)
-        for number in group.links if arm.solids[number] or names[number] in ("part", "torch")
+        (shortly(names[number]).removeprefix("A"), shortly(what))
+        for group, what in zip(arm.groups, arm.names)
+        for number in group.links
+        if arm.solids[number] or names[number] in ("part", "torch")
     }
     beside = [shortly(one.name) for one in cell.external_links]
     # the part is looked at as a link where it moves, and else as what stands: either way counts
-    looked_at |= {("part", one) for one, other in looked_at if other == "platform" and one in beside}
-    own = [str(name).removeprefix("A") for name in names if shortly(name) not in beside and name not in ("torch",)]
+    looked_at |= {
+        ("part", one) for one, other in looked_at if other == "platform" and one in beside
+    }
+    own = [
+        str(name).removeprefix("A")
+        for name in names
+        if shortly(name) not in beside and name not in ("torch",)
+    ]
     tracks = [one for one in beside if one.startswith("KL")]
     every = {(one, other) for one in own for other in beside} | {
-        (one, other) for one in tracks for other in beside if not other.startswith("KL")}
+        (one, other) for one in tracks for other in beside if not other.startswith("KL")
+    }
     left_out = {}
     for one, other in every - looked_at:
         left_out.setdefault(one, set()).add(other)
@@ -376,8 +507,10 @@ def box_file(folder, name, changed):
     """A mechanism's file whose links are made of other boxes."""
     told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
     path = folder / f"{name}-of-boxes.json"
-    path.write_text(json.dumps({**told, "id": f"{name}-of-boxes", "bodies": {"source": "made up", **changed}}),
-                    encoding="utf-8")
+    path.write_text(
+        json.dumps({**told, "id": f"{name}-of-boxes", "bodies": {"source": "made up", **changed}}),
+        encoding="utf-8",
+    )
     return path
 
 
@@ -393,7 +526,10 @@ def test_link_1_meets_a_post_of_the_rail_it_turns_past(tmp_path):
     rods = [[] if link != 1 else link_rods.of_robot(cell.robot.chain)[1] for link in range(7)]
     arm = ArmContact(cell, rods)
     q = np.zeros((501, 7))
-    q[:, 6], q[:, 0] = np.linspace(cell.limits.lower[6], cell.limits.upper[6], 501), np.linspace(-2.0, 2.0, 501)
+    q[:, 6], q[:, 0] = (
+        np.linspace(cell.limits.lower[6], cell.limits.upper[6], 501),
+        np.linspace(-2.0, 2.0, 501),
+    )
     found = arm.touches(q)
     points = points_within(post[0])
     deep = np.zeros(501)
@@ -405,7 +541,10 @@ def test_link_1_meets_a_post_of_the_rail_it_turns_past(tmp_path):
             axis = (rod.end - rod.start) / rod.length
             along = (at - rod.start) @ axis
             out = np.linalg.norm(at - rod.start - along[:, None] * axis, axis=1)
-            deep[k] = max(deep[k], float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()))
+            deep[k] = max(
+                deep[k],
+                float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()),
+            )
     assert (deep > 5.0).sum() > 10 and (deep == 0.0).sum() > 20
     assert (found.link[deep > 1.0] == 1).all()
     away = np.convolve(deep, np.ones(15), "same") == 0.0  # no point of it in the rod a good way on
@@ -413,21 +552,29 @@ def test_link_1_meets_a_post_of_the_rail_it_turns_past(tmp_path):
 
 
 def test_the_base_meets_what_a_positioner_swings_at_it_and_a_carriage_runs_into_the_part(tmp_path):
-    arm_of_table = boxed((1400.0, 60.0, 60.0), (-700.0, 0.0, 0.0))  # from the tilt axis towards the robot
+    arm_of_table = boxed(
+        (1400.0, 60.0, 60.0), (-700.0, 0.0, 0.0)
+    )  # from the tilt axis towards the robot
     table = box_file(tmp_path, D500, {"joint_1": arm_of_table})
     cell = cell_of(text(table, (1300.0, 0.0, -250.0, 0.0, 0.0, 0.0), "part"))
     rods = link_rods.of_robot(cell.robot.chain)
     arm = ArmContact(cell, [rods[0], *[[] for _ in range(6)]])
     q = np.zeros((3, 8))
-    q[:, 6] = np.radians([0.0, 40.0, -60.0])  # level it reaches the robot's foot, else it is over it or under the floor
+    q[:, 6] = np.radians(
+        [0.0, 40.0, -60.0]
+    )  # level it reaches the robot's foot, else it is over it or under the floor
     names = [None if link == NONE else arm.links[link] for link in arm.touches(q).link]
     assert names == ["base", None, None]
 
     cell = cell_of(text(TRACK, RAIL, "robot"), deposition_point=(500.0, 900.0, 0.0, 0.0, 0.0, 0.0))
     wall = box((100.0, 100.0, 400.0), np.eye(4), "wall")
-    place = cell.mount @ np.linalg.inv(cell.station)  # the world, with the track at zero, in part coordinates
+    place = cell.mount @ np.linalg.inv(
+        cell.station
+    )  # the world, with the track at zero, in part coordinates
     across = frames.pose(np.eye(3), [0.0, 700.0, -150.0])
-    wall = dataclasses.replace(wall, vertices=wall.vertices @ (place @ across)[:3, :3].T + (place @ across)[:3, 3])
+    wall = dataclasses.replace(
+        wall, vertices=wall.vertices @ (place @ across)[:3, :3].T + (place @ across)[:3, 3]
+    )
     arm = ArmContact(cell, [[] for _ in range(7)], [wall])
     q = np.zeros((41, 7))
     q[:, 6] = np.linspace(-1000.0, 1000.0, 41)

@@ -22,8 +22,12 @@ def random_poses(seed, n=300):
 def station(seed):
     """A torch that stands askew, somewhere."""
     rng = np.random.default_rng(seed)
-    return frames.pose(frames.smallest_rotation((0, 0, 1), np.array([0.1, -0.2, 0.97]) / np.linalg.norm([0.1, -0.2, 0.97])),
-                       rng.uniform(-20, 20, 3))
+    return frames.pose(
+        frames.smallest_rotation(
+            (0, 0, 1), np.array([0.1, -0.2, 0.97]) / np.linalg.norm([0.1, -0.2, 0.97])
+        ),
+        rng.uniform(-20, 20, 3),
+    )
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -70,7 +74,9 @@ def test_a_locked_axis_leaves_the_residual_it_says(name, axis):
     turned[:, 1 - axis] = locked.angle
     axes = five.placed(turned, points, np.eye(4))
     flange = model.chain.forward(axes)
-    np.testing.assert_allclose(np.einsum("nij,nj->ni", flange[:, :3, :3], points) + flange[:, :3, 3], 0.0, atol=1e-9)
+    np.testing.assert_allclose(
+        np.einsum("nij,nj->ni", flange[:, :3, :3], points) + flange[:, :3, 3], 0.0, atol=1e-9
+    )
     held = np.einsum("nij,nj->ni", flange[:, :3, :3], tools)
     np.testing.assert_allclose(np.cos(locked.residual), held[:, 2], atol=1e-12)
     # no step of the other axis comes nearer

@@ -26,7 +26,9 @@ def joints_and_points(chain, count, seed=9):
 def carried(chain, q, points, moved):
     """Where `points` of the last link at `q` are at `moved`, with the flange there."""
     here, there = chain.forward(q), chain.forward(moved)
-    local = np.linalg.solve(here, np.concatenate((points, np.ones((len(points), 1))), axis=1)[..., None])
+    local = np.linalg.solve(
+        here, np.concatenate((points, np.ones((len(points), 1))), axis=1)[..., None]
+    )
     return (there @ local)[:, :3, 0], there[:, :3, :3]
 
 
@@ -52,7 +54,9 @@ def test_columns_are_the_velocities_of_the_point_and_of_the_link(chain):
 def test_one_point_serves_all(chain):
     q, _ = joints_and_points(chain, 5)
     point = np.array((900.0, 100.0, 300.0))
-    assert np.array_equal(jac.jacobian(chain, q, point), jac.jacobian(chain, q, np.tile(point, (5, 1))))
+    assert np.array_equal(
+        jac.jacobian(chain, q, point), jac.jacobian(chain, q, np.tile(point, (5, 1)))
+    )
 
 
 @pytest.mark.parametrize("count", [1, 700, 3 * jac.PIECE + 5])
@@ -70,7 +74,9 @@ def test_condition_knows_the_length(chain):
     for length in (1.0, 300.0):
         values = singular_values(jacobians, length)
         wanted = values[:, -1] / values[:, 0]
-        assert (np.abs(jac.condition(jacobians, length) - wanted) * np.maximum(wanted, 1e-7)).max() < 1e-14
+        assert (
+            np.abs(jac.condition(jacobians, length) - wanted) * np.maximum(wanted, 1e-7)
+        ).max() < 1e-14
 
 
 def test_condition_is_nought_at_a_singularity(chain):
@@ -128,7 +134,11 @@ def test_rate_is_the_derivative_along_the_joints(chain):
     wanted = (condition_at(step) - condition_at(-step)) / (2 * step)
     # where the smallest two values meet, or it is almost nought, a difference is not a derivative
     values = singular_values(jac.jacobian(chain, q, points))
-    smooth = (values[:, -1] > 1e-3) & (values[:, -2] > 1.05 * values[:, -1]) & (values[:, 0] > 1.05 * values[:, 1])
+    smooth = (
+        (values[:, -1] > 1e-3)
+        & (values[:, -2] > 1.05 * values[:, -1])
+        & (values[:, 0] > 1.05 * values[:, 1])
+    )
     assert smooth.sum() > 100
     got = jac.condition_rate(jac.jacobian(chain, q, points), rates, LENGTH)
     assert np.abs(got - wanted)[smooth].max() < 1e-6
@@ -138,15 +148,22 @@ def test_rate_is_the_derivative_along_the_joints(chain):
 def test_rate_about_the_tool_axis_is_that_of_a_point_held_in_space():
     """As the free rotation of a part on the robot is: the point of the part at the deposition point changes not."""
     arm = machine.load("fanuc-arcmate120ic")
-    q = np.random.default_rng(1).uniform((-1, -0.5, -0.5, -1, 0.5, -1), (1, 0.5, 0.5, 1, 1.5, 1), (100, 6))
+    q = np.random.default_rng(1).uniform(
+        (-1, -0.5, -0.5, -1, 0.5, -1), (1, 0.5, 0.5, 1, 1.5, 1), (100, 6)
+    )
     point = np.array((1045.747, -630.155, 1178.167))
     jacobians = jac.jacobian(arm.chain, q, point)
     axis = np.tile((0.0, 0.0, 0.0, 0.0, 0.0, 1.0), (100, 1))
     rates = np.linalg.solve(np.array(jacobians), axis[..., None])[..., 0]
     step = 1e-6
-    there = [jac.condition(jac.jacobian(arm.chain, q + t * rates, point), LENGTH) for t in (-step, step)]
+    there = [
+        jac.condition(jac.jacobian(arm.chain, q + t * rates, point), LENGTH) for t in (-step, step)
+    ]
     wanted = (there[1] - there[0]) / (2 * step)
-    assert np.abs(jac.condition_rate(jacobians, rates, LENGTH) - wanted).max() < 1e-5 * np.abs(wanted).max()
+    assert (
+        np.abs(jac.condition_rate(jacobians, rates, LENGTH) - wanted).max()
+        < 1e-5 * np.abs(wanted).max()
+    )
 
 
 def test_manipulability(chain):
@@ -175,9 +192,14 @@ def test_extreme_eigenvalues_of_awkward_matrices():
     """Double, vanishing and far apart eigenvalues, in any turn of the axes."""
     rng = np.random.default_rng(12)
     spectra = [
-        (1, 1, 0.5, 0.2, 0.1, 0.1), (1, 1, 1, 1, 1, 1), (0, 0, 0, 0, 0, 1), (1, 2, 3, 4, 5, 0),
+        (1, 1, 0.5, 0.2, 0.1, 0.1),
+        (1, 1, 1, 1, 1, 1),
+        (0, 0, 0, 0, 0, 1),
+        (1, 2, 3, 4, 5, 0),
         (1e-12, 1, 1e3, 1e6, 1e6, 1e7),
-        (0.5, 0.5, 0.5, 0.5, 0.5, 0.6), (0.5, 0.5000001, 1, 2, 3, 3.0000001), (0, 0, 0, 0, 0, 0),
+        (0.5, 0.5, 0.5, 0.5, 0.5, 0.6),
+        (0.5, 0.5000001, 1, 2, 3, 3.0000001),
+        (0, 0, 0, 0, 0, 0),
     ]
     turns = np.concatenate((np.eye(6)[None], np.linalg.qr(rng.standard_normal((40, 6, 6)))[0]))
     for spectrum in spectra:

@@ -20,7 +20,10 @@ def test_margin_is_the_way_to_the_nearer_end(arm):
     assert limits.exceeded(q).tolist() == [False, False, False, False, True, False, False]
     assert limits.labels == ("q1", "q2", "q3", "q4", "q5", "q6", "J3_TP (q3 - q2)")
     smallest = limits.smallest(q)
-    assert (np.degrees(smallest.margin), limits.labels[smallest.label]) == (pytest.approx(-1.0), "q5")
+    assert (np.degrees(smallest.margin), limits.labels[smallest.label]) == (
+        pytest.approx(-1.0),
+        "q5",
+    )
 
 
 def test_coupled_limit_counts(arm):
@@ -55,8 +58,12 @@ def test_the_smallest_share_is_that_of_all(arm, name):
     q = np.random.default_rng(2).uniform(-4, 4, (500, 6))
     q[7], q[8, 3] = np.nan, np.nan
     shares = limits.shares(q)
-    assert shares.shape == (500, len(limits.labels)) and (name == "paper" or (shares.argmin(axis=1) == 6).any())
-    assert np.allclose(limits.smallest_share(q), shares.min(axis=1), rtol=0.0, atol=1e-14, equal_nan=True)
+    assert shares.shape == (500, len(limits.labels)) and (
+        name == "paper" or (shares.argmin(axis=1) == 6).any()
+    )
+    assert np.allclose(
+        limits.smallest_share(q), shares.min(axis=1), rtol=0.0, atol=1e-14, equal_nan=True
+    )
 
 
 def test_endless_axis(arm):

@@ -35,7 +35,10 @@ def test_tables_have_the_kinematics_that_linuxcnc_gives_them():
     # the running controller's inverse, checked at standstill: what is on the tip of the torch
     rng = np.random.default_rng(4)
     point, (tilt, turn) = rng.uniform(-200, 200, (50, 3)), rng.uniform(-2, 2, (2, 50))
-    x, y = np.cos(turn) * point[:, 0] - np.sin(turn) * point[:, 1], np.sin(turn) * point[:, 0] + np.cos(turn) * point[:, 1]
+    x, y = (
+        np.cos(turn) * point[:, 0] - np.sin(turn) * point[:, 1],
+        np.sin(turn) * point[:, 0] + np.cos(turn) * point[:, 1],
+    )
     c, s, z = np.cos(tilt), np.sin(tilt), point[:, 2] - 10.0
     tips = {
         "table-xyzac": (x, c * (y - 20.0) - s * z + 20.0, s * (y - 20.0) + c * z + 10.0),
@@ -48,7 +51,11 @@ def test_tables_have_the_kinematics_that_linuxcnc_gives_them():
         at_tip = np.einsum("nij,nj->ni", flange[:, :3, :3], point) + flange[:, :3, 3]
         np.testing.assert_allclose(at_tip, 0.0, atol=1e-10)
         lower, upper = table.limits("maker").lower, table.limits("maker").upper
-        assert lower[0] == -500.0 and upper[3] == pytest.approx(np.radians(120.0)) and np.isinf(upper[4])
+        assert (
+            lower[0] == -500.0
+            and upper[3] == pytest.approx(np.radians(120.0))
+            and np.isinf(upper[4])
+        )
 
 
 def test_the_arc_mate_is_that_of_the_data():
@@ -57,7 +64,9 @@ def test_the_arc_mate_is_that_of_the_data():
     assert machine.load("kuka-kr16-2").axes == ("A1", "A2", "A3", "A4", "A5", "A6")
     assert machine.load("motoman-mh12").axes == ("S", "L", "U", "R", "B", "T")
     assert np.array_equal(arm.base, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 525], [0, 0, 0, 1]])
-    assert np.degrees(arm.limits("maker").lower) == pytest.approx((-170, -100, -90, -200, -140, -270))
+    assert np.degrees(arm.limits("maker").lower) == pytest.approx(
+        (-170, -100, -90, -200, -140, -270)
+    )
     assert np.degrees(arm.limits("paper").upper) == pytest.approx((185, 160, 273, 200, 135, np.inf))
     assert np.degrees(arm.max_speed) == pytest.approx((195, 175, 180, 360, 360, 550))
     zero = arm.chain.forward(np.zeros(6))
@@ -92,7 +101,9 @@ def test_unknown_machine_names_its_neighbours(tmp_path):
     said = info.value.message
     (such_as,) = re.findall("such as (.*), or the path", said)
     makers = {machine.load(one).id.partition("-")[0] for one in such_as.split(", ")}
-    assert {"abb", "fanuc", "kuka", "staubli", "ur"} <= makers and len(makers) == such_as.count(",") + 1
+    assert {"abb", "fanuc", "kuka", "staubli", "ur"} <= makers and len(makers) == such_as.count(
+        ","
+    ) + 1
     assert len(said) < 500  # a note under a field
     for path in (tmp_path / "none.json", tmp_path / "arm.urdf"):
         with pytest.raises(InputError) as info:
@@ -127,7 +138,9 @@ def test_a_file_that_is_no_machine_does_not_hide_the_others(tmp_path, text):
     (tmp_path / "mine.json").write_text(json.dumps(GOOD), encoding="utf-8")
     known = dict(machine.known([tmp_path]))
     assert known["broken"].startswith("BAD_MACHINE: ") and len(known["broken"]) > 20
-    assert known["mine"] == GOOD["title"] and known["kuka-kr16-2"] == machine.load("kuka-kr16-2").title
+    assert (
+        known["mine"] == GOOD["title"] and known["kuka-kr16-2"] == machine.load("kuka-kr16-2").title
+    )
     with pytest.raises(InputError) as info:
         machine.load("broken", [tmp_path])
     assert info.value.code == "BAD_MACHINE" and "broken.json" in info.value.where
@@ -148,59 +161,109 @@ def changed(*path, value=None, remove=False):
 BAD = {
     "geometry": (
         changed("joints", 2, "origin", value=[0, 0, 791]),
-        "check_poses[0]", "the joint frames give a flange 1 mm",
+        "check_poses[0]",
+        "the joint frames give a flange 1 mm",
     ),
     "closed form": (changed("opw", "c4", value=101), "check_poses[0]", "opw gives a flange 1 mm"),
     "pose": (changed("check_poses", 2, "origin", 1, value=0), "check_poses[2]", "mm"),
     "turned pose": (
         changed("check_poses", 0, "rotation", value=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-        "check_poses[0]", "rotation",
+        "check_poses[0]",
+        "rotation",
     ),
-    "two poses": (changed("check_poses", value=GOOD["check_poses"][:2]), "check_poses", "at least 3"),
-    "no zero pose": (changed("check_poses", value=GOOD["check_poses"][1:]), "check_poses", "all zeros"),
+    "two poses": (
+        changed("check_poses", value=GOOD["check_poses"][:2]),
+        "check_poses",
+        "at least 3",
+    ),
+    "no zero pose": (
+        changed("check_poses", value=GOOD["check_poses"][1:]),
+        "check_poses",
+        "all zeros",
+    ),
     "no poses": (changed("check_poses", remove=True), "", "'check_poses' is missing"),
     "unknown key": (changed("colour", value="yellow"), "", "'colour' is not known"),
-    "unknown joint key": (changed("joints", 1, "speed", value=3), "joints[1]", "'speed' is not known"),
+    "unknown joint key": (
+        changed("joints", 1, "speed", value=3),
+        "joints[1]",
+        "'speed' is not known",
+    ),
     "missing axis": (changed("joints", 1, "axis", remove=True), "joints[1]", "'axis' is missing"),
-    "axis not unit": (changed("joints", 1, "axis", value=[0, 2, 0]), "joints[1].axis", "unit vector"),
+    "axis not unit": (
+        changed("joints", 1, "axis", value=[0, 2, 0]),
+        "joints[1].axis",
+        "unit vector",
+    ),
     "text for a number": (
         changed("joints", 0, "origin", value=[0, "0", 525]),
-        "joints[0].origin[1]", '"0" is not a number',
+        "joints[0].origin[1]",
+        '"0" is not a number',
     ),
     "two numbers for three": (changed("flange", "rpy", value=[0, 90]), "flange.rpy", "list of 3"),
-    "speed of nought": (changed("joints", 5, "max_speed", value=0), "joints[5].max_speed", "more than 0"),
+    "speed of nought": (
+        changed("joints", 5, "max_speed", value=0),
+        "joints[5].max_speed",
+        "more than 0",
+    ),
     "five joints": (changed("joints", value=GOOD["joints"][:5]), "opw", "six joints"),
     "no joints": (changed("joints", value=[]), "joints", "no joint"),
     "sign of two": (changed("opw", "signs", value=[1, 1, -1, -1, -2, -1]), "opw.signs", "1 or -1"),
-    "an offset too large": (changed("opw", "offsets", value=[0, 0, -90, 0, 190, 180]), "opw.offsets", "within +-180"),
+    "an offset too large": (
+        changed("opw", "offsets", value=[0, 0, -90, 0, 190, 180]),
+        "opw.offsets",
+        "within +-180",
+    ),
     "no upper arm": (changed("opw", "c2", value=0), "opw.c2", "more than 0 mm"),
     "limits upside down": (
         changed("limits", "maker", "axes", 1, value=[160, -100]),
-        "limits.maker.axes[1]", "smaller one first",
+        "limits.maker.axes[1]",
+        "smaller one first",
     ),
     "no maker limits": (changed("limits", "maker", remove=True), "limits", "'maker' is missing"),
     "coupled without a label": (
         changed("limits", "maker", "coupled", 0, "label", remove=True),
-        "limits.maker.coupled[0]", "'label'",
+        "limits.maker.coupled[0]",
+        "'label'",
     ),
     "matrix without inverse": (
         changed("controller", "matrix", 2, value=[0, 1, 0, 0, 0, 0]),
-        "controller.matrix", "no inverse",
+        "controller.matrix",
+        "no inverse",
     ),
     "acceleration of nought": (
-        changed("joints", 5, "max_acceleration", value=0), "joints[5].max_acceleration", "more than 0",
+        changed("joints", 5, "max_acceleration", value=0),
+        "joints[5].max_acceleration",
+        "more than 0",
     ),
-    "jerk that is not a number": (changed("joints", 1, "max_jerk", value="much"), "joints[1].max_jerk", "much"),
-    "shape of no link": (changed("shapes", value={"joint_9": {"file": "a.stl"}}), "shapes", "'joint_9' is not known"),
-    "shape without a file": (changed("shapes", value={"base": {"scale": 2}}), "shapes.base", "'file' is missing"),
+    "jerk that is not a number": (
+        changed("joints", 1, "max_jerk", value="much"),
+        "joints[1].max_jerk",
+        "much",
+    ),
+    "shape of no link": (
+        changed("shapes", value={"joint_9": {"file": "a.stl"}}),
+        "shapes",
+        "'joint_9' is not known",
+    ),
+    "shape without a file": (
+        changed("shapes", value={"base": {"scale": 2}}),
+        "shapes.base",
+        "'file' is missing",
+    ),
     "shape of a wrong format": (
-        changed("shapes", value={"joint_2": {"file": "a.dae"}}), "shapes.joint_2.file", "a.dae is not a shape",
+        changed("shapes", value={"joint_2": {"file": "a.dae"}}),
+        "shapes.joint_2.file",
+        "a.dae is not a shape",
     ),
     "shape of no size": (
-        changed("shapes", value={"base": {"file": "a.stl", "scale": 0}}), "shapes.base.scale", "1000 for m",
+        changed("shapes", value={"base": {"file": "a.stl", "scale": 0}}),
+        "shapes.base.scale",
+        "1000 for m",
     ),
     "shape of no colour": (
-        changed("shapes", value={"base": {"file": "a.stl", "colour": [255, 0, 0]}}), "shapes.base.colour", "from 0 to 1",
+        changed("shapes", value={"base": {"file": "a.stl", "colour": [255, 0, 0]}}),
+        "shapes.base.colour",
+        "from 0 to 1",
     ),
     "no title": (changed("title", value=""), "title", "not a text"),
     "not an object": ([1, 2], "", "not an object"),
@@ -249,13 +312,21 @@ print(repr(float(machine.load("staubli-tx2-60l").limits("maker").upper[1])))
 @pytest.mark.skipif(shutil.which("localedef") is None, reason="localedef is not installed")
 def test_decimal_commas_of_a_locale_change_nothing(tmp_path, root):
     made = subprocess.run(
-        ["localedef", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")], capture_output=True, check=False
+        ["localedef", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")],
+        capture_output=True,
+        check=False,
     )
     if not (tmp_path / "de_DE.UTF-8" / "LC_NUMERIC").is_file():
-        pytest.skip(f"the sources of de_DE are not installed: {made.stderr.decode(errors='replace')}")
+        pytest.skip(
+            f"the sources of de_DE are not installed: {made.stderr.decode(errors='replace')}"
+        )
     environment = {**os.environ, "LOCPATH": str(tmp_path), "PYTHONPATH": str(root)}
     run = subprocess.run(
-        [sys.executable, "-c", READS_A_MACHINE], env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", READS_A_MACHINE],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert run.returncode == 0, run.stderr
     assert float(run.stdout.strip()) == np.radians(127.5)
@@ -266,7 +337,11 @@ def test_shapes_of_links_and_accelerations_are_read(tmp_path):
     content["shapes"] = {
         "base": {"file": "looks/base.STEP"},
         "joint_3": {
-            "file": str(tmp_path / "3.stl"), "origin": [1, 2, 3], "rpy": [0, 0, 90], "scale": 1000, "colour": [1, 0, 0.5],
+            "file": str(tmp_path / "3.stl"),
+            "origin": [1, 2, 3],
+            "rpy": [0, 0, 90],
+            "scale": 1000,
+            "colour": [1, 0, 0.5],
         },
     }
     for joint, most in zip(content["joints"], (10, 20, None, 40, 50, 60)):
@@ -275,12 +350,31 @@ def test_shapes_of_links_and_accelerations_are_read(tmp_path):
     path.write_text(json.dumps(content), encoding="utf-8")
     loaded = machine.load(path)
     base, third = loaded.shapes[0], loaded.shapes[3]
-    assert [shape is None for shape in loaded.shapes] == [False, True, True, False, True, True, True]
-    assert base.path == tmp_path / "looks" / "base.STEP" and (base.pose == np.eye(4)).all() and base.colour is None
-    assert third.path == tmp_path / "3.stl" and (third.scale, third.colour) == (1000.0, (1.0, 0.0, 0.5))
+    assert [shape is None for shape in loaded.shapes] == [
+        False,
+        True,
+        True,
+        False,
+        True,
+        True,
+        True,
+    ]
+    assert (
+        base.path == tmp_path / "looks" / "base.STEP"
+        and (base.pose == np.eye(4)).all()
+        and base.colour is None
+    )
+    assert third.path == tmp_path / "3.stl" and (third.scale, third.colour) == (
+        1000.0,
+        (1.0, 0.0, 0.5),
+    )
     assert np.abs(third.pose @ [1, 0, 0, 1] - [1, 3, 3, 1]).max() < 1e-12
     assert third.where == f"{path}: shapes.joint_3.file"
     assert np.allclose(np.degrees(loaded.max_acceleration), [10, 20, np.inf, 40, 50, 60])
     assert np.allclose(np.degrees(loaded.max_jerk), [70, 140, np.inf, 280, 350, 420])
     plain = machine.load("fanuc-arcmate120ic")
-    assert plain.shapes == (None,) * 7 and np.isinf(plain.max_acceleration).all() and np.isinf(plain.max_jerk).all()
+    assert (
+        plain.shapes == (None,) * 7
+        and np.isinf(plain.max_acceleration).all()
+        and np.isinf(plain.max_jerk).all()
+    )

@@ -37,32 +37,61 @@ def seen(arm=FANUC, count=4, seed=5, digits=2):
 
 # ---- poses as they are written
 
+
 @pytest.mark.parametrize("convention", pose_figures.CONVENTIONS)
 def test_poses_are_written_and_read_in_every_convention(convention):
     rng = np.random.default_rng(2)
     figures = np.column_stack((rng.uniform(-900, 900, (60, 3)), rng.uniform(-179, 179, (60, 3))))
     turned = pose_figures.rotation(pose_figures.FANUC, figures[:, 3:])
-    turned[:6] = [np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1), (1, 1, 1), (1, -1, -1))]
+    turned[:6] = [
+        np.diag(signs)
+        for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1), (1, 1, 1), (1, -1, -1))
+    ]
     turned[6] = frames.about_y(np.pi / 2)  # where W and R, or A and C, are one
     poses = frames.pose(turned, figures[:, :3])
     written = pose_figures.figures_of(convention, poses)
-    base, tool = frames.bryant((10.0, 20.0, 330.0, 0.1, 0.2, 0.3)), frames.bryant((1.0, 2.0, 3.0, -0.4, 0.5, 0.6))
+    base, tool = (
+        frames.bryant((10.0, 20.0, 330.0, 0.1, 0.2, 0.3)),
+        frames.bryant((1.0, 2.0, 3.0, -0.4, 0.5, 0.6)),
+    )
     read = pose_figures.flange_poses(convention, written, base, tool)
     np.testing.assert_allclose(read @ tool, base @ poses, atol=1e-9)
 
 
-@pytest.mark.parametrize("convention,figures,turned", [
-    (pose_figures.FANUC, (90, 0, 90), [[0, 0, 1], [1, 0, 0], [0, 1, 0]]),  # W about X, then R about the outer Z
-    (pose_figures.KUKA, (90, 0, 90), [[0, 0, 1], [1, 0, 0], [0, 1, 0]]),  # A about Z, then C about its own X
-    (pose_figures.STAUBLI, (90, 0, 90), [[0, -1, 0], [0, 0, -1], [1, 0, 0]]),  # RX, then RZ about its own Z
-    (pose_figures.ZYZ, (90, 90, 0), [[0, -1, 0], [0, 0, 1], [-1, 0, 0]]),
-    (pose_figures.QUATERNION, (0, 0, 2, 0), [[-1, 0, 0], [0, 1, 0], [0, 0, -1]]),  # half a turn about Y
-])
+@pytest.mark.parametrize(
+    "convention,figures,turned",
+    [
+        (
+            pose_figures.FANUC,
+            (90, 0, 90),
+            [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
+        ),  # W about X, then R about the outer Z
+        (
+            pose_figures.KUKA,
+            (90, 0, 90),
+            [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
+        ),  # A about Z, then C about its own X
+        (
+            pose_figures.STAUBLI,
+            (90, 0, 90),
+            [[0, -1, 0], [0, 0, -1], [1, 0, 0]],
+        ),  # RX, then RZ about its own Z
+        (pose_figures.ZYZ, (90, 90, 0), [[0, -1, 0], [0, 0, 1], [-1, 0, 0]]),
+        (
+            pose_figures.QUATERNION,
+            (0, 0, 2, 0),
+            [[-1, 0, 0], [0, 1, 0], [0, 0, -1]],
+        ),  # half a turn about Y
+    ],
+)
 def test_conventions_are_those_of_the_makers(convention, figures, turned):
-    np.testing.assert_allclose(pose_figures.rotation(convention, np.array(figures, float)), turned, atol=1e-12)
+    np.testing.assert_allclose(
+        pose_figures.rotation(convention, np.array(figures, float)), turned, atol=1e-12
+    )
 
 
 # ---- what is wrong
+
 
 def test_a_machine_that_is_right_gives_its_poses_and_nothing_is_suspected():
     values, poses = seen()
@@ -84,7 +113,9 @@ def test_a_wrong_sign_is_found(axis):
 @pytest.mark.parametrize("axis,off", [(1, 90.0), (2, -90.0), (4, 12.34), (3, 180.0), (2, -3.5)])
 def test_a_wrong_zero_is_found(axis, off):
     values, poses = seen()
-    wrong = dataclasses.replace(TRUE, zeros=tuple(off if index == axis else 0.0 for index in range(6)))
+    wrong = dataclasses.replace(
+        TRUE, zeros=tuple(off if index == axis else 0.0 for index in range(6))
+    )
     first = pendant.suspects(FANUC.chain, wrong, values, poses)[0]
     assert (first.kind, first.axes) == (pendant.ZERO, (axis,))
     assert np.isclose(np.mod(np.array(first.shown.zeros) + 1.0, 360.0), 1.0, atol=0.011).all()
@@ -92,9 +123,13 @@ def test_a_wrong_zero_is_found(axis, off):
 
 def test_two_signs_and_the_coupling_are_found():
     values, poses = seen()
-    first = pendant.suspects(FANUC.chain, Shown((1, 1, 1, -1, 1, -1), TRUE.zeros, TRUE.coupling), values, poses)[0]
+    first = pendant.suspects(
+        FANUC.chain, Shown((1, 1, 1, -1, 1, -1), TRUE.zeros, TRUE.coupling), values, poses
+    )[0]
     assert first.axes == (3, 5) and first.shown == TRUE
-    first = pendant.suspects(FANUC.chain, dataclasses.replace(TRUE, coupling=pendant.NONE), values, poses)[0]
+    first = pendant.suspects(
+        FANUC.chain, dataclasses.replace(TRUE, coupling=pendant.NONE), values, poses
+    )[0]
     assert first.kind == pendant.COUPLED and first.shown == TRUE
 
 
@@ -124,13 +159,18 @@ def test_a_slip_in_one_figure_is_not_explained_away():
 
 # ---- the file
 
+
 def draft(tmp_path, name="fanuc-arcmate120ic", **changes):
     """The draft of a shipped machine as the wizard makes it from its URDF."""
     path = tmp_path / "arm.urdf"
     path.write_text(urdf_text.text(machine.load(name)), encoding="utf-8")
-    found = machine_draft.of_description(urdf.Urdf(path).between("base_link", "tool0"), "URDF arm.urdf")
+    found = machine_draft.of_description(
+        urdf.Urdf(path).between("base_link", "tool0"), "URDF arm.urdf"
+    )
     values, poses = seen(machine.load(name))
-    return dataclasses.replace(found, id="mine", title="Mine", values=values, poses=poses, shown=TRUE, **changes)
+    return dataclasses.replace(
+        found, id="mine", title="Mine", values=values, poses=poses, shown=TRUE, **changes
+    )
 
 
 def test_a_draft_makes_a_machine_file_that_loads(tmp_path):
@@ -144,9 +184,15 @@ def test_a_draft_makes_a_machine_file_that_loads(tmp_path):
     ours, theirs = made.limits("maker"), FANUC.limits("maker")
     np.testing.assert_allclose(ours.lower, theirs.lower)
     np.testing.assert_allclose(ours.coefficients, theirs.coefficients)
-    np.testing.assert_allclose([ours.coupled_lower, ours.coupled_upper], [theirs.coupled_lower, theirs.coupled_upper])
+    np.testing.assert_allclose(
+        [ours.coupled_lower, ours.coupled_upper], [theirs.coupled_lower, theirs.coupled_upper]
+    )
     np.testing.assert_allclose(made.max_speed, FANUC.max_speed)
-    assert made.posts == ("fanuc",) and made.remarks == ("hall 3",) and made.sources[0] == "URDF arm.urdf"
+    assert (
+        made.posts == ("fanuc",)
+        and made.remarks == ("hall 3",)
+        and made.sources[0] == "URDF arm.urdf"
+    )
 
 
 @pytest.mark.parametrize("name", ["motoman-motopos-d500", "kuka-kl100-2"])
@@ -155,9 +201,14 @@ def test_what_stands_beside_a_robot_gets_a_file_too(tmp_path, name):
     path = tmp_path / "cell.urdf"
     path.write_text(urdf_cells.whole_cell(), encoding="utf-8")
     prefix = "track" if name.startswith("kuka") else "positioner"
-    meant = next(base for one in urdf_cell.UrdfCell(path).external()
-                 if (base := reference(one.machine).base).startswith(prefix))
-    made_of = machine_draft.of_description(urdf.Urdf(path).between(meant, f"{prefix}_tool0"), "URDF cell.urdf")
+    meant = next(
+        base
+        for one in urdf_cell.UrdfCell(path).external()
+        if (base := reference(one.machine).base).startswith(prefix)
+    )
+    made_of = machine_draft.of_description(
+        urdf.Urdf(path).between(meant, f"{prefix}_tool0"), "URDF cell.urdf"
+    )
     given = external.load(name)
     count = given.chain.axes
     values = np.random.default_rng(8).uniform(-60.0, 60.0, (4, count))
@@ -171,8 +222,13 @@ def test_what_stands_beside_a_robot_gets_a_file_too(tmp_path, name):
     np.testing.assert_allclose(made.limits("maker").upper, given.limits("maker").upper, rtol=1e-9)
     np.testing.assert_allclose(made.max_speed, given.max_speed, rtol=1e-9)
     # the user's own goes before the built-in one of its name
-    (tmp_path / f"{name}.json").write_text(machine_draft.text(dataclasses.replace(made_of, id=name)), encoding="utf-8")
-    assert external.load(name, (str(tmp_path),)).title == "Mine" and external.load(name).title != "Mine"
+    (tmp_path / f"{name}.json").write_text(
+        machine_draft.text(dataclasses.replace(made_of, id=name)), encoding="utf-8"
+    )
+    assert (
+        external.load(name, (str(tmp_path),)).title == "Mine"
+        and external.load(name).title != "Mine"
+    )
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -188,14 +244,26 @@ def test_every_machine_can_be_copied(name, tmp_path):
     assert made.axes == original.axes and made.posts == original.posts
 
 
-@pytest.mark.parametrize("change,words", [
-    (lambda one: {"values": None}, "at least 3 joint vectors"),
-    (lambda one: {"values": one.values[:2], "poses": one.poses[:2]}, "at least 3 joint vectors"),
-    (lambda one: {"values": one.values[1:], "poses": one.poses[1:]}, "the pose at all zeros is missing|at least 3"),
-    (lambda one: {"shown": Shown((1, 1, 1, -1, 1, 1), TRUE.zeros, TRUE.coupling)}, "correct the geometry or the pose"),
-    (lambda one: {"id": "my robot"}, "cannot be the name"),
-    (lambda one: {"title": ""}, "give maker and model"),
-])
+@pytest.mark.parametrize(
+    "change,words",
+    [
+        (lambda one: {"values": None}, "at least 3 joint vectors"),
+        (
+            lambda one: {"values": one.values[:2], "poses": one.poses[:2]},
+            "at least 3 joint vectors",
+        ),
+        (
+            lambda one: {"values": one.values[1:], "poses": one.poses[1:]},
+            "the pose at all zeros is missing|at least 3",
+        ),
+        (
+            lambda one: {"shown": Shown((1, 1, 1, -1, 1, 1), TRUE.zeros, TRUE.coupling)},
+            "correct the geometry or the pose",
+        ),
+        (lambda one: {"id": "my robot"}, "cannot be the name"),
+        (lambda one: {"title": ""}, "give maker and model"),
+    ],
+)
 def test_no_file_without_what_it_needs(tmp_path, change, words):
     one = draft(tmp_path)
     with pytest.raises(InputError, match=words):
@@ -209,13 +277,25 @@ def test_rounded_poses_say_so_and_rounding_has_an_end(tmp_path):
     path = tmp_path / "mine.json"
 
     def load_with(**changes):
-        path.write_text(json.dumps({**content, "check_poses": [
-            content["check_poses"][0], {**content["check_poses"][1], **changes}, *content["check_poses"][2:]]}))
+        path.write_text(
+            json.dumps(
+                {
+                    **content,
+                    "check_poses": [
+                        content["check_poses"][0],
+                        {**content["check_poses"][1], **changes},
+                        *content["check_poses"][2:],
+                    ],
+                }
+            )
+        )
         return machine.load("mine", [tmp_path])
 
     x, y, z = content["check_poses"][1]["origin"]
     assert load_with().id == "mine"
-    with pytest.raises(InputError, match=r"check_poses\[1\].within.mm: 2 is more than the rounding"):
+    with pytest.raises(
+        InputError, match=r"check_poses\[1\].within.mm: 2 is more than the rounding"
+    ):
         load_with(within={"mm": 2.0, "deg": 0.0})
     with pytest.raises(InputError, match=r"the key 'cm' is not known"):
         load_with(within={"cm": 0.1})
@@ -225,16 +305,30 @@ def test_rounded_poses_say_so_and_rounding_has_an_end(tmp_path):
 
 def test_meshes_of_a_urdf_are_those_of_the_machine_file(tmp_path):
     (tmp_path / "base.stl").touch()
-    text = urdf_text.text(FANUC).replace('<link name="base_link"/>', '''<link name="base_link"><visual>
-        <origin xyz="0 0 0.1" rpy="0 0 1.5708"/><geometry><mesh filename="base.stl"/></geometry></visual></link>''')
+    text = urdf_text.text(FANUC).replace(
+        '<link name="base_link"/>',
+        """<link name="base_link"><visual>
+        <origin xyz="0 0 0.1" rpy="0 0 1.5708"/><geometry><mesh filename="base.stl"/></geometry></visual></link>""",
+    )
     path = tmp_path / "arm.urdf"
     path.write_text(text, encoding="utf-8")
     found = machine_draft.of_description(urdf.Urdf(path).between("base_link", "tool0"), "URDF")
     values, poses = seen()
-    content = json.loads(machine_draft.text(dataclasses.replace(
-        found, id="mine", title="Mine", values=values, poses=poses, shown=TRUE)))
+    content = json.loads(
+        machine_draft.text(
+            dataclasses.replace(
+                found, id="mine", title="Mine", values=values, poses=poses, shown=TRUE
+            )
+        )
+    )
     assert content["shapes"] == {
-        "base": {"file": str(tmp_path / "base.stl"), "origin": [0, 0, 100], "rpy": [0, 0, 90], "scale": 1000.0}}
+        "base": {
+            "file": str(tmp_path / "base.stl"),
+            "origin": [0, 0, 100],
+            "rpy": [0, 0, 90],
+            "scale": 1000.0,
+        }
+    }
 
 
 def test_figures_of_an_arm_give_a_draft_of_that_arm():

@@ -12,16 +12,46 @@ from freecad_am.core.kinematics.machines import catalogue as machine_catalogue
 from freecad_am.core.kinematics.machines import machine
 
 kdl = pytest.importorskip("PyKDL")
-FILES = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(machine.BUILT_IN.glob("*.json"))}
-ROBOTS = [name for name, file in FILES.items() if not any(joint.get("type") for joint in file["joints"])]
+FILES = {
+    path.stem: json.loads(path.read_text(encoding="utf-8"))
+    for path in sorted(machine.BUILT_IN.glob("*.json"))
+}
+ROBOTS = [
+    name for name, file in FILES.items() if not any(joint.get("type") for joint in file["joints"])
+]
 PINNED = re.compile(r"github:[\w.-]+/[\w.-]+ .* @ [0-9a-f]{40}")
 LABELS = {"kuka": ["A1", "A2", "A3", "A4", "A5", "A6"], "motoman": list("SLURBT")}
 ASKED_FOR = {
-    "ur-ur3e", "ur-ur5e", "ur-ur10e", "ur-ur16e", "ur-ur20", "ur-ur30", "fanuc-crx5ia", "fanuc-crx10ia",
-    "fanuc-crx20ia-l", "fanuc-crx30ia", "abb-crb15000-5-95", "abb-crb15000-12-127", "motoman-hc10", "motoman-hc20dtp",
-    "kuka-lbr-iisy3-r760", "fanuc-m710ic-50", "fanuc-r2000ic-210f", "abb-irb2600-12-165", "abb-irb4600-40-255",
-    "abb-irb6700-235-265", "kuka-kr120-r2700-2", "kuka-kr210-r3100-2", "kuka-kr300-r2700-2", "motoman-gp25",
-    "motoman-gp50", "motoman-gp180", "motoman-ar1440", "motoman-ar2010", "staubli-tx2-60", "staubli-tx2-90xl",
+    "ur-ur3e",
+    "ur-ur5e",
+    "ur-ur10e",
+    "ur-ur16e",
+    "ur-ur20",
+    "ur-ur30",
+    "fanuc-crx5ia",
+    "fanuc-crx10ia",
+    "fanuc-crx20ia-l",
+    "fanuc-crx30ia",
+    "abb-crb15000-5-95",
+    "abb-crb15000-12-127",
+    "motoman-hc10",
+    "motoman-hc20dtp",
+    "kuka-lbr-iisy3-r760",
+    "fanuc-m710ic-50",
+    "fanuc-r2000ic-210f",
+    "abb-irb2600-12-165",
+    "abb-irb4600-40-255",
+    "abb-irb6700-235-265",
+    "kuka-kr120-r2700-2",
+    "kuka-kr210-r3100-2",
+    "kuka-kr300-r2700-2",
+    "motoman-gp25",
+    "motoman-gp50",
+    "motoman-gp180",
+    "motoman-ar1440",
+    "motoman-ar2010",
+    "staubli-tx2-60",
+    "staubli-tx2-90xl",
 }
 
 
@@ -33,7 +63,9 @@ def test_there_are_all_that_were_asked_for():
 
 def segment(frame):
     rpy = np.radians(frame["rpy"]).tolist()
-    return kdl.Segment(kdl.Joint(), kdl.Frame(kdl.Rotation.RPY(*rpy), kdl.Vector(*map(float, frame["origin"]))))
+    return kdl.Segment(
+        kdl.Joint(), kdl.Frame(kdl.Rotation.RPY(*rpy), kdl.Vector(*map(float, frame["origin"])))
+    )
 
 
 def poses(file, rows):
@@ -42,7 +74,9 @@ def poses(file, rows):
     for joint in file["joints"]:
         chain.addSegment(segment(joint))
         axis = kdl.Vector(*map(float, joint["axis"]))
-        chain.addSegment(kdl.Segment(kdl.Joint("q", kdl.Vector(), axis, kdl.Joint.RotAxis), kdl.Frame()))
+        chain.addSegment(
+            kdl.Segment(kdl.Joint("q", kdl.Vector(), axis, kdl.Joint.RotAxis), kdl.Frame())
+        )
     chain.addSegment(segment(file["flange"]))
     solver, frame, angles = kdl.ChainFkSolverPos_recursive(chain), kdl.Frame(), kdl.JntArray(6)
     found = []
@@ -58,26 +92,44 @@ def poses(file, rows):
 def test_a_file_says_what_it_has_from_where_and_is_right(name):
     file, arm = FILES[name], machine.load(name)
     given = [np.column_stack([pose["rotation"], pose["origin"]]) for pose in file["check_poses"]]
-    np.testing.assert_allclose(poses(file, [pose["q"] for pose in file["check_poses"]]), given, atol=1e-8, rtol=0)
+    np.testing.assert_allclose(
+        poses(file, [pose["q"] for pose in file["check_poses"]]), given, atol=1e-8, rtol=0
+    )
     # any pose is given back by the inverse that was found, and the joints among the solutions
     q = np.random.default_rng(2).uniform(-170.0, 170.0, (2, 6))
     wanted = poses(file, q)
-    found = arm.arm.inverse(np.concatenate([wanted, np.tile([[[0.0, 0.0, 0.0, 1.0]]], (2, 1, 1))], axis=1))
-    assert np.nanmin(np.abs(np.exp(1j * found) - np.exp(1j * np.radians(q))).max(axis=-1), axis=0).max() < 1e-6
+    found = arm.arm.inverse(
+        np.concatenate([wanted, np.tile([[[0.0, 0.0, 0.0, 1.0]]], (2, 1, 1))], axis=1)
+    )
+    assert (
+        np.nanmin(
+            np.abs(np.exp(1j * found) - np.exp(1j * np.radians(q))).max(axis=-1), axis=0
+        ).max()
+        < 1e-6
+    )
     first = found[np.isfinite(found[:, 0]).all(axis=1), 0]
     assert np.abs(poses(file, np.degrees(first)) - wanted[0]).max() < 1e-6
     assert all(PINNED.fullmatch(source) or "manual" in source for source in file["sources"])
-    assert (arm.limits("maker").upper > arm.limits("maker").lower).all() and file["limits"]["maker"]["source"]
+    assert (arm.limits("maker").upper > arm.limits("maker").lower).all() and file["limits"][
+        "maker"
+    ]["source"]
     assert all(10.0 < joint["max_speed"] < 1500.0 for joint in file["joints"])
     assert all(key in file["reach"] for key in ("mm", "source"))
     assert "payload" not in file or (file["payload"]["kg"] > 0 and file["payload"]["source"])
     maker = name.split("-")[0]
-    assert [joint.get("label") for joint in file["joints"]] == LABELS[maker] if maker in LABELS else True
+    assert (
+        [joint.get("label") for joint in file["joints"]] == LABELS[maker]
+        if maker in LABELS
+        else True
+    )
     if maker == "fanuc":  # the pendant's J3 is against the horizontal
         assert file["controller"]["matrix"][2] == [0, -1, 1, 0, 0, 0]
 
 
-@pytest.mark.parametrize("name", [name for name in ROBOTS if re.search(r"-r\d{3,4}", name) and name.startswith("kuka-kr")])
+@pytest.mark.parametrize(
+    "name",
+    [name for name in ROBOTS if re.search(r"-r\d{3,4}", name) and name.startswith("kuka-kr")],
+)
 def test_the_reach_of_a_kuka_is_that_of_its_name(name):
     """KUKA's name tells payload and reach; here reach comes out of joint frames and limits."""
     file = FILES[name]
@@ -87,8 +139,15 @@ def test_the_reach_of_a_kuka_is_that_of_its_name(name):
 
 
 def test_the_catalogue_tells_what_files_tell_and_leaves_out_what_they_do_not(tmp_path):
-    content = {**FILES["fanuc-m710ic-50"], "id": "mine", "title": "Mine 1", "payload": {"kg": 50, "source": "plate"}}
-    content["controller"] = {key: value for key, value in content["controller"].items() if key != "posts"}
+    content = {
+        **FILES["fanuc-m710ic-50"],
+        "id": "mine",
+        "title": "Mine 1",
+        "payload": {"kg": 50, "source": "plate"},
+    }
+    content["controller"] = {
+        key: value for key, value in content["controller"].items() if key != "posts"
+    }
     (tmp_path / "mine.json").write_text(json.dumps(content), encoding="utf-8")
     (tmp_path / "broken.json").write_text("{", encoding="utf-8")
     known = machine_catalogue.entries([tmp_path])

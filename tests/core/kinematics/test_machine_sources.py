@@ -46,7 +46,9 @@ def test_a_machine_as_urdf_is_the_same_machine(name, tmp_path):
     np.testing.assert_allclose(found.lower, limits.lower[:count], rtol=1e-14)
     np.testing.assert_allclose(found.upper, limits.upper[:count], rtol=1e-14)
     np.testing.assert_allclose(found.max_speed, given.max_speed, rtol=1e-14)
-    np.testing.assert_allclose(np.eye(4) if found.base is None else found.base, given.base, atol=1e-9)
+    np.testing.assert_allclose(
+        np.eye(4) if found.base is None else found.base, given.base, atol=1e-9
+    )
 
 
 @pytest.mark.parametrize("name,modified", list(itertools.product(NAMES, (False, True))))
@@ -54,25 +56,43 @@ def test_a_machine_as_table_is_the_same_machine(name, modified):
     given = machine.load(name)
     table = dh.table_of(given.chain, modified)
     q = joints(40, len(given.axes))
-    np.testing.assert_allclose(dh.chain_of(table).forward(q), KdlArm(given).forward(q), atol=1e-9, rtol=0)
+    np.testing.assert_allclose(
+        dh.chain_of(table).forward(q), KdlArm(given).forward(q), atol=1e-9, rtol=0
+    )
     # a table's own formula, written out
     pose = table.before
     for row, value in zip(table.rows, q[0]):
         theta, d = (row.theta, row.d + value) if row.sliding else (row.theta + value, row.d)
         ca, sa, ct, st = np.cos(row.alpha), np.sin(row.alpha), np.cos(theta), np.sin(theta)
-        standard = [[ct, -st * ca, st * sa, row.a * ct], [st, ct * ca, -ct * sa, row.a * st], [0, sa, ca, d], [0, 0, 0, 1]]
-        craig = [[ct, -st, 0, row.a], [st * ca, ct * ca, -sa, -sa * d], [st * sa, ct * sa, ca, ca * d], [0, 0, 0, 1]]
+        standard = [
+            [ct, -st * ca, st * sa, row.a * ct],
+            [st, ct * ca, -ct * sa, row.a * st],
+            [0, sa, ca, d],
+            [0, 0, 0, 1],
+        ]
+        craig = [
+            [ct, -st, 0, row.a],
+            [st * ca, ct * ca, -sa, -sa * d],
+            [st * sa, ct * sa, ca, ca * d],
+            [0, 0, 0, 1],
+        ]
         pose = pose @ np.array(craig if modified else standard)
-    np.testing.assert_allclose(pose @ table.after, KdlArm(given).forward(q[:1])[0], atol=1e-9, rtol=0)
+    np.testing.assert_allclose(
+        pose @ table.after, KdlArm(given).forward(q[:1])[0], atol=1e-9, rtol=0
+    )
 
 
 def test_signs_of_a_table_turn_its_joints():
     table = dh.table_of(machine.load("staubli-tx60").chain)
     signs = (1, -1, -1, 1, -1, 1)
-    rows = tuple(dh.Row(row.theta, row.d, row.a, row.alpha, sign) for row, sign in zip(table.rows, signs))
+    rows = tuple(
+        dh.Row(row.theta, row.d, row.a, row.alpha, sign) for row, sign in zip(table.rows, signs)
+    )
     turned = dh.Table(rows, table.before, table.after)
     q = joints(20, 6)
-    np.testing.assert_allclose(dh.chain_of(turned).forward(q), dh.chain_of(table).forward(q * signs), atol=1e-9)
+    np.testing.assert_allclose(
+        dh.chain_of(turned).forward(q), dh.chain_of(table).forward(q * signs), atol=1e-9
+    )
     with pytest.raises(InputError, match=r"row 2: 3 is not a sign"):
         dh.chain_of(dh.Table((table.rows[0], dh.Row(0, 0, 0, 0, 3)), np.eye(4), np.eye(4)))
 
@@ -80,9 +100,15 @@ def test_signs_of_a_table_turn_its_joints():
 @pytest.mark.parametrize("name", ROBOTS)
 def test_the_closed_form_of_a_chain_is_that_of_its_file(name):
     given = machine.load(name)
-    for chain in (given.chain, dh.chain_of(dh.table_of(given.chain)), opw_recognition.chain_of(given.opw)):
+    for chain in (
+        given.chain,
+        dh.chain_of(dh.table_of(given.chain)),
+        opw_recognition.chain_of(given.opw),
+    ):
         found = opw_recognition.recognise(chain)
-        assert found.signs == given.opw.signs and np.allclose(found.offsets, given.opw.offsets, atol=1e-12)
+        assert found.signs == given.opw.signs and np.allclose(
+            found.offsets, given.opw.offsets, atol=1e-12
+        )
         for length in LENGTHS:
             assert getattr(found, length) == pytest.approx(getattr(given.opw, length), abs=1e-9)
 
@@ -92,8 +118,13 @@ def random_arm(rng, square):
     to_flange = rng.uniform(-50, 200)
     if np.cos(offsets[4]) < 1e-9:  # a flange behind a wrist that is folded back points into it
         to_flange = abs(to_flange)
-    return OpwArm(*rng.uniform(-300, 300, 3), *rng.uniform(100, 900, 3), to_flange, tuple(offsets.tolist()),
-                  tuple(rng.choice([-1, 1], 6).tolist()))
+    return OpwArm(
+        *rng.uniform(-300, 300, 3),
+        *rng.uniform(100, 900, 3),
+        to_flange,
+        tuple(offsets.tolist()),
+        tuple(rng.choice([-1, 1], 6).tolist()),
+    )
 
 
 @pytest.mark.parametrize("square", [True, False])
@@ -161,14 +192,21 @@ def shift(x=0.0, y=0.0, z=0.0, about=None, deg=0.0):
     return frames.pose(turn, (x, y, z))
 
 
-@pytest.mark.parametrize("index,step,reason", [
-    (4, {"z": 12.0}, r"axis 4 passes 12 mm off"),
-    (5, {"y": 3.0}, r"axis 6 passes 3 mm off"),
-    (1, {"about": 0, "deg": 2.0}, r"axes 1 and 2 are 88 deg apart"),
-    (2, {"about": 2, "deg": 0.01}, r"axes 2 and 3 are not parallel, but 0.01 deg"),
-    (3, {"about": 2, "deg": 90.0}, r"the wrist is not spherical: axis 4 is parallel to axes 2 and 3"),
-    (3, {"about": 2, "deg": 40.0}, r"axes 3 and 4 are 50 deg apart, not 90 deg"),
-])
+@pytest.mark.parametrize(
+    "index,step,reason",
+    [
+        (4, {"z": 12.0}, r"axis 4 passes 12 mm off"),
+        (5, {"y": 3.0}, r"axis 6 passes 3 mm off"),
+        (1, {"about": 0, "deg": 2.0}, r"axes 1 and 2 are 88 deg apart"),
+        (2, {"about": 2, "deg": 0.01}, r"axes 2 and 3 are not parallel, but 0.01 deg"),
+        (
+            3,
+            {"about": 2, "deg": 90.0},
+            r"the wrist is not spherical: axis 4 is parallel to axes 2 and 3",
+        ),
+        (3, {"about": 2, "deg": 40.0}, r"axes 3 and 4 are 50 deg apart, not 90 deg"),
+    ],
+)
 def test_what_is_no_such_arm_is_refused_with_the_reason(index, step, reason):
     chain = machine.load("fanuc-arcmate120ic").chain
     with pytest.raises(InputError, match=reason) as found:
@@ -179,9 +217,13 @@ def test_what_is_no_such_arm_is_refused_with_the_reason(index, step, reason):
 def test_flanges_and_counts_that_will_not_do():
     chain = machine.load("kuka-kr16-2").chain
     with pytest.raises(InputError, match="the Z of the flange does not lie along axis 6"):
-        opw_recognition.recognise(Chain(chain.origins, chain.directions, chain.flange @ shift(about=1, deg=90.0)))
+        opw_recognition.recognise(
+            Chain(chain.origins, chain.directions, chain.flange @ shift(about=1, deg=90.0))
+        )
     with pytest.raises(InputError, match="does not lie on axis 6"):
-        opw_recognition.recognise(Chain(chain.origins, chain.directions, chain.flange @ shift(x=5.0)))
+        opw_recognition.recognise(
+            Chain(chain.origins, chain.directions, chain.flange @ shift(x=5.0))
+        )
     with pytest.raises(InputError, match="it has 5 axes, 3 of which slide"):
         opw_recognition.recognise(machine.load("table-xyzac").chain)
 
@@ -189,7 +231,9 @@ def test_flanges_and_counts_that_will_not_do():
 def test_a_flange_that_points_into_the_wrist_is_told_as_that():
     chain = machine.load("fanuc-arcmate120ic").chain
     with pytest.raises(InputError, match="points back into the wrist, not out of it"):
-        opw_recognition.recognise(Chain(chain.origins, chain.directions, chain.flange @ shift(about=0, deg=180.0)))
+        opw_recognition.recognise(
+            Chain(chain.origins, chain.directions, chain.flange @ shift(about=0, deg=180.0))
+        )
 
 
 # ---- URDF
@@ -227,30 +271,49 @@ def test_a_urdf_is_read_with_fixed_joints_units_rounded_angles_and_meshes(tmp_pa
     assert found.joints == ("turn", "spin") and found.name == "two"
     # 1.5708 is a right angle; both limits are 170 deg, of which one is cut off
     np.testing.assert_allclose(
-        np.degrees([found.lower[0], found.upper[0], found.max_speed[0]]), [-170, 170, 195], atol=1e-12
+        np.degrees([found.lower[0], found.upper[0], found.max_speed[0]]),
+        [-170, 170, 195],
+        atol=1e-12,
     )
     assert np.isinf([found.lower[1], found.upper[1], found.max_speed[1]]).all()
     place = found.chain.forward([np.radians(90.0), 0.0])
     np.testing.assert_allclose(place[:3, 3], [0, 0, 800], atol=1e-9)  # both links up
     np.testing.assert_allclose(found.chain.directions, [[0, 0, 1], [1, 0, 0]])
     looks = found.shapes[0]
-    assert looks.path == folder / "meshes" / "base.stl" and looks.scale == 1.0 and looks.colour == (1.0, 0.5, 0.0)
-    np.testing.assert_allclose(looks.pose, [[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]], atol=1e-12)
-    assert found.shapes[1:] == (None, None) and any("arm.dae cannot be drawn" in note for note in found.notes)
+    assert (
+        looks.path == folder / "meshes" / "base.stl"
+        and looks.scale == 1.0
+        and looks.colour == (1.0, 0.5, 0.0)
+    )
+    np.testing.assert_allclose(
+        looks.pose, [[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]], atol=1e-12
+    )
+    assert found.shapes[1:] == (None, None) and any(
+        "arm.dae cannot be drawn" in note for note in found.notes
+    )
 
 
-@pytest.mark.parametrize(("scale", "words"), [
-    ("0.001 -0.001 0.001", "base.stl is mirrored or flat by its scale 0.001 -0.001 0.001"),
-    ("-1 -1 -1", "base.stl is mirrored"), ("1 0 1", "base.stl is mirrored or flat"),
-    ("0.001 0.001 0.002", "base.stl has unequal scales"),
-])
+@pytest.mark.parametrize(
+    ("scale", "words"),
+    [
+        ("0.001 -0.001 0.001", "base.stl is mirrored or flat by its scale 0.001 -0.001 0.001"),
+        ("-1 -1 -1", "base.stl is mirrored"),
+        ("1 0 1", "base.stl is mirrored or flat"),
+        ("0.001 0.001 0.002", "base.stl has unequal scales"),
+    ],
+)
 def test_meshes_that_are_mirrored_or_stretched_are_told_and_not_drawn(tmp_path, scale, words):
     folder = tmp_path / "two_support" / "meshes"
     folder.mkdir(parents=True)
     (folder / "base.stl").touch()
-    found = read(folder, ARM.replace('scale="0.001 0.001 0.001"', f'scale="{scale}"'), "base_link", "hand")
+    found = read(
+        folder, ARM.replace('scale="0.001 0.001 0.001"', f'scale="{scale}"'), "base_link", "hand"
+    )
     assert found.shapes[0] is None
-    assert any(note.startswith(f"line 6: {words}") and "base_link is drawn plain" in note for note in found.notes)
+    assert any(
+        note.startswith(f"line 6: {words}") and "base_link is drawn plain" in note
+        for note in found.notes
+    )
 
 
 def test_links_to_choose_from(tmp_path):
@@ -266,21 +329,30 @@ def with_links(text, **poses):
     """The URDF of a machine with tool0 under other names: links fixed to the last one, each turned against it by rpy."""
     text = text.replace("tool0", "plate")
     for link, (rpy, xyz) in poses.items():
-        text = text.replace("</robot>", f'''<link name="{link}"/><joint name="to_{link}" type="fixed"><parent link="plate"/>
-<child link="{link}"/><origin xyz="{xyz}" rpy="{rpy}"/></joint></robot>''')
+        text = text.replace(
+            "</robot>",
+            f'''<link name="{link}"/><joint name="to_{link}" type="fixed"><parent link="plate"/>
+<child link="{link}"/><origin xyz="{xyz}" rpy="{rpy}"/></joint></robot>''',
+        )
     return text
 
 
 OUT, UP, BACK = "0 0 0", "0 -1.5707963267948966 0", "3.141592653589793 0 0"
 
 
-@pytest.mark.parametrize("poses,tip", [
-    # those of FANUC: X out of `flange`, Z out of fanuc_flange
-    ({"flange": (UP, "0 0 0"), "fanuc_flange": (OUT, "0 0 0")}, "fanuc_flange"),
-    ({"flange": (BACK, "0 0 0"), "fanuc_flange": (OUT, "0 0 0")}, "fanuc_flange"),  # R-2000: Z into the wrist
-    ({"tool0": (OUT, "0 0 0"), "flange": (UP, "0 0 0")}, "tool0"),
-    ({"flange": (OUT, "0 0 0"), "ee_link": (OUT, "0 0 0.1")}, "flange"),
-])
+@pytest.mark.parametrize(
+    "poses,tip",
+    [
+        # those of FANUC: X out of `flange`, Z out of fanuc_flange
+        ({"flange": (UP, "0 0 0"), "fanuc_flange": (OUT, "0 0 0")}, "fanuc_flange"),
+        (
+            {"flange": (BACK, "0 0 0"), "fanuc_flange": (OUT, "0 0 0")},
+            "fanuc_flange",
+        ),  # R-2000: Z into the wrist
+        ({"tool0": (OUT, "0 0 0"), "flange": (UP, "0 0 0")}, "tool0"),
+        ({"flange": (OUT, "0 0 0"), "ee_link": (OUT, "0 0 0.1")}, "flange"),
+    ],
+)
 def test_the_tip_whose_z_points_out_along_the_last_axis_is_proposed(poses, tip, tmp_path):
     given = machine.load("fanuc-arcmate120ic")
     path = tmp_path / "arm.urdf"
@@ -288,12 +360,16 @@ def test_the_tip_whose_z_points_out_along_the_last_axis_is_proposed(poses, tip, 
     robot = urdf.Urdf(path)
     # "plate", where the machine file has its flange, and which comes first in the file, is as good by its Z
     assert robot.tips("base_link")[0] == tip
-    np.testing.assert_allclose(robot.between("base_link", tip).chain.forward(Q6), given.chain.forward(Q6), atol=1e-9)
+    np.testing.assert_allclose(
+        robot.between("base_link", tip).chain.forward(Q6), given.chain.forward(Q6), atol=1e-9
+    )
 
 
 def test_an_x_that_points_out_is_turned_to_be_the_z_and_told(tmp_path):
     given = machine.load("fanuc-arcmate120ic")
-    (tmp_path / "arm.urdf").write_text(with_links(urdf_text.text(given), flange=(UP, "0 0 0")), encoding="utf-8")
+    (tmp_path / "arm.urdf").write_text(
+        with_links(urdf_text.text(given), flange=(UP, "0 0 0")), encoding="utf-8"
+    )
     found = urdf.Urdf(tmp_path / "arm.urdf").between("base_link", "flange")
     np.testing.assert_allclose(found.chain.forward(Q6), given.chain.forward(Q6), atol=1e-9)
     assert any("X of flange points out of the flange" in note for note in found.notes)
@@ -316,33 +392,60 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
         found = machine.load(name)
         np.testing.assert_allclose(found.chain.forward(Q6), KdlArm(given).forward(Q6), atol=1e-9)
         np.testing.assert_allclose(found.base, given.base, atol=1e-9)
-        np.testing.assert_allclose(found.limits("maker").lower, given.limits("maker").lower[:6], rtol=1e-14)
+        np.testing.assert_allclose(
+            found.limits("maker").lower, given.limits("maker").lower[:6], rtol=1e-14
+        )
         assert found.axes == given.axes and found.posts == () and found.free
         assert "does not say what the controller shows" in found.controller_remark
     for name, words in (
-        (f"{path} tip=hand", "arm.urdf has no link 'hand'; name one of base_link"), (f"{path} base=tool0", "moves anything"),
-        (f"{path} tip=link_5", "from base_link to link_5: .* it has 5 axes"), (tmp_path / "no.urdf", "there is no URDF"),
+        (f"{path} tip=hand", "arm.urdf has no link 'hand'; name one of base_link"),
+        (f"{path} base=tool0", "moves anything"),
+        (f"{path} tip=link_5", "from base_link to link_5: .* it has 5 axes"),
+        (tmp_path / "no.urdf", "there is no URDF"),
     ):
         with pytest.raises(InputError, match=words):
             machine.load(name)
 
 
-@pytest.mark.parametrize("old,new,line,words", [
-    ('"0 0 2"', '"0 0 x"', 14, "'x', which is not a number"),
-    ('"0 0 2"', '"0 0"', 14, "is not 3 numbers"),
-    ('"0 0 2"', '"0 0 0"', 14, "has no direction"),
-    ('type="revolute"', 'type="floating"', 13, "is floating"),
-    ('<limit lower="-2.967" upper="2.9671" velocity="3.4034" effort="0"/>', "", 13, "the joint 'turn' has no <limit>"),
-    ('lower="-2.967" upper="2.9671"', "", 15, "run from 0 to 0; give the lower one first"),
-    ('lower="-2.967" upper="2.9671"', 'lower="1" upper="-1"', 15, "give the lower one first"),
-    ('<child link="hand"/>', '<child link="arm"/>', 17, "is moved by 'turn' already"),
-    ('<child link="hand"/>', '<child link="fist"/>', 17, "there is no link 'fist'"),
-    ('<child link="hand"/>', "", 17, "<joint> 'spin' has no <child>"),
-    ('name="bolted" ', "", 16, "<joint> has no name"),
-    ('<link name="hand"/>', '<link name="arm"/>', 10, "there is a link 'arm' already, in line 8"),
-    ("</joint>\n  <joint name=\"bolted\"", "\n  <joint name=\"bolted\"", 20, "this is not XML: mismatched tag"),
-    ('<?xml version="1.0"?>', '<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b "c">]>', 1, "entities such as 'b'"),
-])
+@pytest.mark.parametrize(
+    "old,new,line,words",
+    [
+        ('"0 0 2"', '"0 0 x"', 14, "'x', which is not a number"),
+        ('"0 0 2"', '"0 0"', 14, "is not 3 numbers"),
+        ('"0 0 2"', '"0 0 0"', 14, "has no direction"),
+        ('type="revolute"', 'type="floating"', 13, "is floating"),
+        (
+            '<limit lower="-2.967" upper="2.9671" velocity="3.4034" effort="0"/>',
+            "",
+            13,
+            "the joint 'turn' has no <limit>",
+        ),
+        ('lower="-2.967" upper="2.9671"', "", 15, "run from 0 to 0; give the lower one first"),
+        ('lower="-2.967" upper="2.9671"', 'lower="1" upper="-1"', 15, "give the lower one first"),
+        ('<child link="hand"/>', '<child link="arm"/>', 17, "is moved by 'turn' already"),
+        ('<child link="hand"/>', '<child link="fist"/>', 17, "there is no link 'fist'"),
+        ('<child link="hand"/>', "", 17, "<joint> 'spin' has no <child>"),
+        ('name="bolted" ', "", 16, "<joint> has no name"),
+        (
+            '<link name="hand"/>',
+            '<link name="arm"/>',
+            10,
+            "there is a link 'arm' already, in line 8",
+        ),
+        (
+            '</joint>\n  <joint name="bolted"',
+            '\n  <joint name="bolted"',
+            20,
+            "this is not XML: mismatched tag",
+        ),
+        (
+            '<?xml version="1.0"?>',
+            '<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b "c">]>',
+            1,
+            "entities such as 'b'",
+        ),
+    ],
+)
 def test_mistakes_in_a_urdf_are_told_with_their_line(tmp_path, old, new, line, words):
     assert old in ARM
     with pytest.raises(InputError) as found:
@@ -362,6 +465,8 @@ def test_chains_that_cannot_be_are_refused(tmp_path):
         urdf.Urdf(tmp_path / "arm.xacro")
     with pytest.raises(InputError, match="cannot be read"):
         urdf.Urdf(tmp_path / "missing.urdf")
-    loop = ARM.replace('<parent link="base_link"/><child link="arm"/>', '<parent link="hand"/><child link="arm"/>')
+    loop = ARM.replace(
+        '<parent link="base_link"/><child link="arm"/>', '<parent link="hand"/><child link="arm"/>'
+    )
     with pytest.raises(InputError, match="carries itself"):
         read(tmp_path, loop, "arm", "hand")

@@ -24,7 +24,11 @@ from tests.core.kinematics.arms import (
 
 pytest.importorskip("PyKDL")
 ARMS = {
-    "CRX-10iA": CRX_10IA, "HC10": HC10, "GoFa 5": GOFA_5, "crooked": CROOKED_CRX, "GoFa 10": GOFA_10,
+    "CRX-10iA": CRX_10IA,
+    "HC10": HC10,
+    "GoFa 5": GOFA_5,
+    "crooked": CROOKED_CRX,
+    "GoFa 10": GOFA_10,
     "M-710iC/50E": M710IC_50E,
 }
 
@@ -42,7 +46,9 @@ def _check(arm, q, exact=1e-6):
     _, inverse, kdl = arm
     poses = kdl.forward(q)
     found, words = inverse.solutions(poses)
-    assert found.shape == (16, len(q), 6) and np.array_equal(inverse.inverse(poses), found, equal_nan=True)
+    assert found.shape == (16, len(q), 6) and np.array_equal(
+        inverse.inverse(poses), found, equal_nan=True
+    )
     reached = np.isfinite(found).all(axis=2)
     assert np.array_equal(reached, words >= 0) and (reached == np.isfinite(found).any(axis=2)).all()
     assert np.nanmax(np.abs(found)) <= np.pi + 1e-12
@@ -62,8 +68,11 @@ def test_every_pose_is_given_back_under_its_words(arm):
     *_, own = _check(arm, q)
     assert np.array_equal(arm[1].branch_of(q), own)
     for branch in (0, 5):
-        assert np.array_equal(arm[1].inverse_branch(arm[0].forward(q[:50]), branch), arm[1].inverse(
-            arm[0].forward(q[:50]))[branch], equal_nan=True)
+        assert np.array_equal(
+            arm[1].inverse_branch(arm[0].forward(q[:50]), branch),
+            arm[1].inverse(arm[0].forward(q[:50]))[branch],
+            equal_nan=True,
+        )
 
 
 @pytest.mark.long
@@ -101,7 +110,11 @@ def test_solutions_stay_near_singularities(arm, near):
         low, high = around[where[0]], around[where[0] + 1]
         for _ in range(60):
             middle = 0.5 * (low + high)
-            same = np.linalg.det(kdl.jacobian(middle[None]))[0] * np.linalg.det(kdl.jacobian(low[None]))[0] > 0.0
+            same = (
+                np.linalg.det(kdl.jacobian(middle[None]))[0]
+                * np.linalg.det(kdl.jacobian(low[None]))[0]
+                > 0.0
+            )
             low, high = (middle, high) if same else (low, middle)
         row[:] = low
         row[4] += near
@@ -146,7 +159,12 @@ def test_solutions_stay_where_the_wrist_is_on_axis_1(arm, away):
     q[:, 2] = np.arctan2(sin, cos) + np.arccos(np.clip(share, -1.0, 1.0))
     fore = inverse.point - elbow
     upper = elbow - rest.origins[1]
-    folded = np.abs(np.sin(q[:, 2] + np.arctan2(np.cross(upper, fore) @ rest.directions[2], upper @ fore))) < 0.01
+    folded = (
+        np.abs(
+            np.sin(q[:, 2] + np.arctan2(np.cross(upper, fore) @ rest.directions[2], upper @ fore))
+        )
+        < 0.01
+    )
     q = q[reached & ~folded]
     assert len(q) > 60
     poses = kdl.forward(q)
@@ -180,10 +198,13 @@ def test_words_change_at_singularities_alone(arm):
         assert np.array_equal((words[1:] != words[:-1])[same], (size[1:] * size[:-1] < 0.0)[same])
 
 
-@pytest.mark.parametrize(("joint", "shift", "reason"), [
-    (3, (0, 12, 0), "axis 4 passes 12 mm off axis 1"),
-    (4, (0, 0, 5), "neither is the wrist spherical nor do axes 4 and 5 meet"),
-])
+@pytest.mark.parametrize(
+    ("joint", "shift", "reason"),
+    [
+        (3, (0, 12, 0), "axis 4 passes 12 mm off axis 1"),
+        (4, (0, 0, 5), "neither is the wrist spherical nor do axes 4 and 5 meet"),
+    ],
+)
 def test_what_does_not_hold_is_told(joint, shift, reason):
     of = chain(CRX_10IA)
     origins = of.origins.copy()
@@ -192,7 +213,16 @@ def test_what_does_not_hold_is_told(joint, shift, reason):
         recognition.arm_of(Chain(origins, of.directions, of.flange))
 
 
-NEAR = (0.0, 1e-9, 1e-7, 1e-6, 1e-5, 3e-5, 1e-4, 1e-3)  # rad of axis 5 from where two solutions meet
+NEAR = (
+    0.0,
+    1e-9,
+    1e-7,
+    1e-6,
+    1e-5,
+    3e-5,
+    1e-4,
+    1e-3,
+)  # rad of axis 5 from where two solutions meet
 
 
 def meeting(of, count, seed):
@@ -200,7 +230,9 @@ def meeting(of, count, seed):
     rng = np.random.default_rng(seed)
     q = rng.uniform(-np.pi, np.pi, (count, 6))
     grid = np.linspace(-np.pi, np.pi, 73)
-    size = np.stack([determinant(of, np.insert(np.delete(q, 4, 1), 4, angle, 1)) for angle in grid], axis=1)
+    size = np.stack(
+        [determinant(of, np.insert(np.delete(q, 4, 1), 4, angle, 1)) for angle in grid], axis=1
+    )
     changes = size[:, 1:] * size[:, :-1] < 0.0
     kept = np.flatnonzero(changes.any(axis=1))
     q, step = q[kept], changes[kept].argmax(axis=1)
@@ -227,7 +259,10 @@ def determinant(of, q):
         turn[:, :3, :3] += sine * cross + (1.0 - cosine) * (cross @ cross)
         place = place @ turn
     tip = (place @ of.flange)[:, :3, 3]
-    columns = [np.concatenate([np.cross(axis, (tip - origin) / 500.0), axis], axis=1) for axis, origin in zip(axes, origins)]
+    columns = [
+        np.concatenate([np.cross(axis, (tip - origin) / 500.0), axis], axis=1)
+        for axis, origin in zip(axes, origins)
+    ]
     return np.linalg.det(np.stack(columns, axis=2))
 
 
@@ -243,5 +278,7 @@ def test_none_is_lost_where_two_solutions_meet(arm, count):
     away = np.nan_to_num(apart(found, q), nan=np.pi).min(axis=0)
     assert (away < 1e-4).all()
     reached = np.isfinite(found).all(axis=2)
-    off = np.abs(inverse.chain.forward(found[reached]) - np.broadcast_to(poses, (16, *poses.shape))[reached])
+    off = np.abs(
+        inverse.chain.forward(found[reached]) - np.broadcast_to(poses, (16, *poses.shape))[reached]
+    )
     assert off[:, :3, 3].max() < 1e-6 and off[:, :3, :3].max() < 1e-9

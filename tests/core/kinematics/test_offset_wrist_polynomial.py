@@ -24,7 +24,11 @@ pytest.importorskip("PyKDL")
 
 TWINS = 1e-4  # rad
 ARMS = {
-    "CRX-10iA": CRX_10IA, "HC10": HC10, "GoFa 5": GOFA_5, "GoFa 10": GOFA_10, "M-710iC/50E": M710IC_50E,
+    "CRX-10iA": CRX_10IA,
+    "HC10": HC10,
+    "GoFa 5": GOFA_5,
+    "GoFa 10": GOFA_10,
+    "M-710iC/50E": M710IC_50E,
     "crooked": CROOKED_CRX,
 }
 
@@ -47,16 +51,34 @@ def _curves(arm, q):
 
 def _rows(zeros):
     """Pose, side, elbow, angle in [0, 2 pi), sine of the elbow, whether the slope is positive; in order."""
-    rows = np.stack([zeros.pose, zeros.side, zeros.elbow, zeros.angle % (2 * np.pi), zeros.bent[0], zeros.slope > 0], axis=1)
+    rows = np.stack(
+        [
+            zeros.pose,
+            zeros.side,
+            zeros.elbow,
+            zeros.angle % (2 * np.pi),
+            zeros.bent[0],
+            zeros.slope > 0,
+        ],
+        axis=1,
+    )
     return rows[np.lexsort(rows.T[3::-1])]
 
 
 def test_only_arms_of_its_kind_have_the_same_zeros_on_both_sides():
     for figures, wanted in (
-        (CRX_10IA, True), (HC10, True), (GOFA_5, False), (GOFA_10, False), (M710IC_50E, False), (CROOKED_CRX, False),
+        (CRX_10IA, True),
+        (HC10, True),
+        (GOFA_5, False),
+        (GOFA_10, False),
+        (M710IC_50E, False),
+        (CROOKED_CRX, False),
     ):
         of = chain(figures)
-        assert polynomial.is_even(recognition.arm_of(of)._curves(of.forward(np.zeros((1, 6))))) == wanted
+        assert (
+            polynomial.is_even(recognition.arm_of(of)._curves(of.forward(np.zeros((1, 6)))))
+            == wanted
+        )
 
 
 def test_zeros_are_those_of_the_search(arm, most, monkeypatch):
@@ -64,9 +86,13 @@ def test_zeros_are_those_of_the_search(arm, most, monkeypatch):
     expected = _rows(search.zeros(curves))
     asked = []
     real = search.zeros
-    monkeypatch.setattr(search, "zeros", lambda some: asked.append(some.point.shape[2]) or real(some))
+    monkeypatch.setattr(
+        search, "zeros", lambda some: asked.append(some.point.shape[2]) or real(some)
+    )
     found = _rows(polynomial.zeros(curves))
-    assert found.shape == expected.shape and np.array_equal(found[:, [0, 1, 2, 5]], expected[:, [0, 1, 2, 5]])
+    assert found.shape == expected.shape and np.array_equal(
+        found[:, [0, 1, 2, 5]], expected[:, [0, 1, 2, 5]]
+    )
     assert np.abs(found[:, 3:5] - expected[:, 3:5]).max() < 1e-9
     assert sum(asked) < most
 
@@ -84,7 +110,9 @@ def test_zeros_that_meet_are_found(arm):
         where = np.flatnonzero(size[1:] * size[:-1] < 0.0)
         if len(where):
             at = where[0]
-            row[4] = around[at, 4] + (around[1, 4] - around[0, 4]) * size[at] / (size[at] - size[at + 1])
+            row[4] = around[at, 4] + (around[1, 4] - around[0, 4]) * size[at] / (
+                size[at] - size[at + 1]
+            )
             met.append(row)
     assert len(met) > 100
     for off in (0.0, 1e-5, 1e-3, 1e-2):
@@ -93,10 +121,15 @@ def test_zeros_that_meet_are_found(arm):
         zeros, expected = polynomial.zeros(curves), _rows(search.zeros(curves))
         found = _rows(zeros)
         same = (found[:, None, :3] == expected[:, :3]).all(axis=2)
-        away = np.where(same, np.abs(np.exp(1j * found[:, 3, None]) - np.exp(1j * expected[:, 3])), 9.0)
+        away = np.where(
+            same, np.abs(np.exp(1j * found[:, 3, None]) - np.exp(1j * expected[:, 3])), 9.0
+        )
         assert away.min(axis=0).max() < 1e-6
         # what the search has not is a solution too, and rare
-        assert np.abs(search.values(curves, zeros.pose, zeros.angle, zeros.side, zeros.elbow)).max() < 1e-7
+        assert (
+            np.abs(search.values(curves, zeros.pose, zeros.angle, zeros.side, zeros.elbow)).max()
+            < 1e-7
+        )
         extra = away.min(axis=1)
         assert (extra > TWINS).sum() <= 8
         # where two meet they are known to the root of the last digit: a zero may be told as two, next to each other
@@ -111,15 +144,24 @@ def test_the_polynomial_is_the_condition_on_axis_5_of_both_elbows(arm):
     rng = np.random.default_rng(13)
     curves = _curves(arm, rng.uniform(-np.pi, np.pi, (300, 6)))
     length = 1.0 / (curves.upper + curves.fore)
-    of = polynomial._Lengths(curves.upper * length, curves.fore * length, curves.ahead * length, *curves.lean, curves.square)
+    of = polynomial._Lengths(
+        curves.upper * length,
+        curves.fore * length,
+        curves.ahead * length,
+        *curves.lean,
+        curves.square,
+    )
     parts = np.stack([curves.point * length, curves.five])
     each, one = np.arange(300), np.ones(300)
     angles = 2.0 * np.pi / 64 * np.arange(64)
-    terms = {side: [polynomial._terms(of, parts, angle * one, side * one) for angle in angles] for side in (1.0, -1.0)}
+    terms = {
+        side: [polynomial._terms(of, parts, angle * one, side * one) for angle in angles]
+        for side in (1.0, -1.0)
+    }
     front, back = (np.stack([at.value for at in terms[side]]) for side in (1.0, -1.0))
     radius = np.stack([at.radius for at in terms[1.0]])
     for value, degree in ((front + back, 4), ((front - back) / radius, 3), (front * back, 8)):
-        assert np.abs(np.fft.rfft(value, axis=0)[degree + 1:]).max() < 1e-11 * np.abs(front).max()
+        assert np.abs(np.fft.rfft(value, axis=0)[degree + 1 :]).max() < 1e-11 * np.abs(front).max()
     even = polynomial.is_even(curves)
     product = polynomial._coefficients(of, parts, even)
     rows = trigonometric.harmonics(len(product) // 2, angles).T
@@ -129,14 +171,26 @@ def test_the_polynomial_is_the_condition_on_axis_5_of_both_elbows(arm):
         for side in (1.0, -1.0):
             at = terms[side][index]
             inside = at.squared - at.common**2 > 1e-3
-            both = np.prod([search.values(curves, each, angle * one, side * one, elbow * one) for elbow in (1.0, -1.0)],
-                           axis=0)
-            np.testing.assert_allclose((both * (at.radius**2 * at.squared))[inside], at.value[inside], atol=1e-12)
+            both = np.prod(
+                [
+                    search.values(curves, each, angle * one, side * one, elbow * one)
+                    for elbow in (1.0, -1.0)
+                ],
+                axis=0,
+            )
+            np.testing.assert_allclose(
+                (both * (at.radius**2 * at.squared))[inside], at.value[inside], atol=1e-12
+            )
             assert (at.value[at.squared < at.common**2] > 0.0).all()
             step = 1e-5
-            ahead, behind = (polynomial._terms(of, parts, (angle + way) * one, side * one).value for way in (step, -step))
+            ahead, behind = (
+                polynomial._terms(of, parts, (angle + way) * one, side * one).value
+                for way in (step, -step)
+            )
             smooth = np.abs(at.radius) > 0.05
-            np.testing.assert_allclose(((ahead - behind) / (2.0 * step))[smooth], at.slope[smooth], atol=1e-7)
+            np.testing.assert_allclose(
+                ((ahead - behind) / (2.0 * step))[smooth], at.slope[smooth], atol=1e-7
+            )
             seen += inside.sum()
     assert seen > 10000
 

@@ -34,7 +34,12 @@ def test_forward_agrees_with_the_joint_frames(arm):
     q = random_joints(arm, 500)
     assert np.abs(arm.opw.forward(q) - arm.chain.forward(q)).max() < 1e-9
     assert arm.opw.forward(q[0]).shape == (4, 4)
-    assert np.abs(arm.opw.forward(q.reshape(5, 100, 6)) - arm.chain.forward(q.reshape(5, 100, 6))).max() < 1e-9
+    assert (
+        np.abs(
+            arm.opw.forward(q.reshape(5, 100, 6)) - arm.chain.forward(q.reshape(5, 100, 6))
+        ).max()
+        < 1e-9
+    )
 
 
 def test_inverse_finds_the_joints_and_every_branch_gives_the_pose(arm):
@@ -63,7 +68,9 @@ def test_one_branch_is_the_same_as_in_all(arm):
     poses = arm.chain.forward(random_joints(arm, 300))
     solutions = arm.opw.inverse(poses)
     for branch in range(8):
-        assert np.array_equal(arm.opw.inverse_branch(poses, branch), solutions[branch], equal_nan=True)
+        assert np.array_equal(
+            arm.opw.inverse_branch(poses, branch), solutions[branch], equal_nan=True
+        )
 
 
 def test_pieces_do_not_show(arm):
@@ -189,7 +196,9 @@ def meeting_point(frames, first, second):
     o1, o2 = frames.origins[:, first], frames.origins[:, second]
     normal = np.cross(d1, d2)
     squared = (normal**2).sum(axis=-1)
-    along = (np.cross(o2 - o1, d2) * normal).sum(axis=-1) / np.where(squared > 1e-12, squared, np.nan)
+    along = (np.cross(o2 - o1, d2) * normal).sum(axis=-1) / np.where(
+        squared > 1e-12, squared, np.nan
+    )
     point = o1 + along[:, None] * d1
     # axes 5 and 6 meet wherever q5 is; their meeting point also lies on axis 6
     gap = np.cross(point - o2, d2)

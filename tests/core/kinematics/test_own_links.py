@@ -39,17 +39,18 @@ def clouds(robot, rods, q):
 @pytest.mark.always("ur-ur5e")
 def test_what_is_told_is_near_and_what_is_near_is_told(name):
     from scipy.spatial import cKDTree
+
     robot, limits, rods, own = own_of(name)
-    q = np.random.default_rng(5).uniform(np.maximum(limits.lower, -np.pi), np.minimum(limits.upper, np.pi), (1500, 6))
+    q = np.random.default_rng(5).uniform(
+        np.maximum(limits.lower, -np.pi), np.minimum(limits.upper, np.pi), (1500, 6)
+    )
     outer, inner = own.touches(robot.chain.links(q))
     told = np.flatnonzero(outer != NONE)
     assert len(told) > 20
     for k in [*told[:25], *np.flatnonzero(outer == NONE)[:40]]:
         points = clouds(robot, rods, q[k])
         trees = [cKDTree(cloud) for cloud in points]
-        apart = {
-            (one, other): trees[other].query(points[one])[0].min() for one, other in own.pairs
-        }
+        apart = {(one, other): trees[other].query(points[one])[0].min() for one, other in own.pairs}
         if outer[k] != NONE:
             assert apart[outer[k], inner[k]] < CLEARANCE + 2.0 * SPACING
         else:
@@ -79,8 +80,14 @@ def test_positions_are_in_all_parts_of_all_ranges_and_keep_coupled_limits():
 
 def test_links_of_each_other_have_names_and_leave_no_distance():
     """A wrist that is folded onto the forearm."""
-    cell = cells.resolve(CellParameters(machine="ur-ur5e", setup="tool-on-robot",
-                                        deposition_point=(400.0, 0.0, 0.0, 0.0, 0.0, 0.0)), np.eye(4))
+    cell = cells.resolve(
+        CellParameters(
+            machine="ur-ur5e",
+            setup="tool-on-robot",
+            deposition_point=(400.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        ),
+        np.eye(4),
+    )
     rods = link_rods.of_robot(cell.robot.chain)
     contact = ArmContact(cell, rods)
     q = np.random.default_rng(7).uniform(-np.pi, np.pi, (600, 6))
@@ -89,4 +96,6 @@ def test_links_of_each_other_have_names_and_leave_no_distance():
     assert {("Elbow", "base"), ("Wrist 3", "link Elbow")} <= told
     near = met.what >= len(contact.groups)
     assert near.sum() > 20 and all(
-        least_distance(contact, q[[k]], np.zeros(1, dtype=np.int64), 500.0) == 0.0 for k in np.flatnonzero(near)[:5])
+        least_distance(contact, q[[k]], np.zeros(1, dtype=np.int64), 500.0) == 0.0
+        for k in np.flatnonzero(near)[:5]
+    )

@@ -11,7 +11,15 @@ from freecad_am.core.kinematics.chain import Chain
 from freecad_am.core.kinematics.inverse import opw, recognition
 from freecad_am.core.kinematics.inverse.five_axis import is_five_axis
 from freecad_am.core.kinematics.inverse.parallel_axes import CHUNK, ParallelAxesArm
-from tests.core.kinematics.arms import CROOKED_UR, UR5E, UR10E, apart, chain, numeric, second_opinion
+from tests.core.kinematics.arms import (
+    CROOKED_UR,
+    UR5E,
+    UR10E,
+    apart,
+    chain,
+    numeric,
+    second_opinion,
+)
 
 pytest.importorskip("PyKDL")
 ARMS = {"UR5e": UR5E, "UR10e": UR10E, "crooked": CROOKED_UR}
@@ -80,7 +88,7 @@ def test_solutions_stay_near_singularities(arm, near):
     rng = np.random.default_rng(6)
     theta = rng.uniform(-np.pi, np.pi, (300, 6))
     theta[:200, 4] = near * rng.choice((-1.0, 1.0), 200) + np.pi * rng.integers(0, 2, 200)
-    theta[100 if near in (0.0, 1e-3) else 200:, 2] = near
+    theta[100 if near in (0.0, 1e-3) else 200 :, 2] = near
     poses = kdl.forward((theta - inverse.zeros) * inverse.signs)
     found = inverse.inverse(poses)
     reached = np.isfinite(found).all(axis=2)
@@ -105,7 +113,9 @@ def test_poses_out_of_reach_and_pieces(arm):
 def test_words_mean_what_the_arm_looks_like():
     of = chain(UR10E)
     inverse = recognition.arm_of(of)
-    q = np.radians([[0, -120, 110, -80, -90, 0], [0, -60, -110, -10, -90, 0], [0, -120, 110, -80, 90, 0]])
+    q = np.radians(
+        [[0, -120, 110, -80, -90, 0], [0, -60, -110, -10, -90, 0], [0, -120, 110, -80, 90, 0]]
+    )
     words = [opw.branch_name(int(index)) for index in inverse.branch_of(q)]
     elbows = of.frames(q).origins[:, 2:4]
     for (_, elbow, wrist), joints, angles in zip(words, elbows, q, strict=True):
@@ -123,7 +133,9 @@ def test_seven_axes_are_refused():
     of = chain(UR10E)
     again = [0, 1, 2, 3, 4, 5, 0]
     seven = Chain(of.origins[again], of.directions[again], of.flange)
-    with pytest.raises(InputError, match="it has 7 axes, 0 of which slide; choose a robot with six that turn"):
+    with pytest.raises(
+        InputError, match="it has 7 axes, 0 of which slide; choose a robot with six that turn"
+    ):
         recognition.arm_of(seven)
 
 
@@ -131,10 +143,15 @@ def test_a_sliding_axis_before_six_that_turn_is_a_track_and_five_axis_machines_a
     of = chain(UR10E)
     again = [0, 0, 1, 2, 3, 4, 5]
     rail = Chain(of.origins[again], of.directions[again], of.flange, np.arange(7) == 0)
-    with pytest.raises(InputError, match=r"slides and carries the six that turn, as a track does; .*`cell\.external`"):
+    with pytest.raises(
+        InputError,
+        match=r"slides and carries the six that turn, as a track does; .*`cell\.external`",
+    ):
         recognition.arm_of(rail)
     last = Chain(of.origins[again], of.directions[again], of.flange, np.arange(7) == 6)
-    with pytest.raises(InputError, match="it has 7 axes, 1 of which slide; choose a robot with six that turn"):
+    with pytest.raises(
+        InputError, match="it has 7 axes, 1 of which slide; choose a robot with six that turn"
+    ):
         recognition.arm_of(last)
     for count, sliding in itertools.product(range(1, 9), repeat=2):
         slides = np.arange(count) < sliding

@@ -27,7 +27,9 @@ def test_every_robot_holds_a_dome_there_within_its_limits(name):
     cell = resolve(parameters, np.eye(4))
     random = np.random.default_rng(1)
     tilt, round_about = np.radians(random.uniform(0, 85, 60)), random.uniform(-np.pi, np.pi, 60)
-    axes = np.column_stack([np.sin(tilt) * np.cos(round_about), np.sin(tilt) * np.sin(round_about), np.cos(tilt)])
+    axes = np.column_stack(
+        [np.sin(tilt) * np.cos(round_about), np.sin(tilt) * np.sin(round_about), np.cos(tilt)]
+    )
     phi = np.linspace(-np.pi, np.pi, 91)[:, None]
     poses = cell.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (91, 60))).reshape(-1, 4, 4)
     joints = cell.machine.opw.inverse_branch(poses, cell.branch)
@@ -44,18 +46,32 @@ def test_every_robot_deposits_round_a_dome_on_the_platform_that_is_proposed(name
     """With a torch of 45 deg it reaches a dome of 50 mm from all sides, leaning by up to 28 deg."""
     tool = (80.0, 0.0, 250.0, 0.0, np.radians(45.0), 0.0)
     parameters = cell_of(name, setup="tool-on-robot", tool=tool)
-    assert parameters.setup == "tool-on-robot" and parameters.nozzle.tool == tool and parameters.deposition_point[2] >= 0.0
+    assert (
+        parameters.setup == "tool-on-robot"
+        and parameters.nozzle.tool == tool
+        and parameters.deposition_point[2] >= 0.0
+    )
     cell = resolve(parameters, np.eye(4))
     random = np.random.default_rng(2)
     tilt, round_about = np.radians(random.uniform(0, 28, 40)), random.uniform(-np.pi, np.pi, 40)
-    axes = np.column_stack([np.sin(tilt) * np.cos(round_about), np.sin(tilt) * np.sin(round_about), np.cos(tilt)])
+    axes = np.column_stack(
+        [np.sin(tilt) * np.cos(round_about), np.sin(tilt) * np.sin(round_about), np.cos(tilt)]
+    )
     phi = np.linspace(-np.pi, np.pi, 73)[:, None]
     poses = cell.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (73, 40))).reshape(-1, 4, 4)
     joints = cell.machine.opw.inverse_branch(poses, cell.branch)
     good = np.isfinite(joints).all(axis=1)
     tips = cell.machine.chain.forward(joints[good]) @ frames.bryant(tool)
-    placed = np.broadcast_to(BALL * axes, (73, 40, 3)).reshape(-1, 3)[good] + parameters.deposition_point[:3]
-    assert np.abs(tips[:, :3, 3] - (placed @ cell.machine.base[:3, :3].T + cell.machine.base[:3, 3])).max() < 1e-6
+    placed = (
+        np.broadcast_to(BALL * axes, (73, 40, 3)).reshape(-1, 3)[good]
+        + parameters.deposition_point[:3]
+    )
+    assert (
+        np.abs(
+            tips[:, :3, 3] - (placed @ cell.machine.base[:3, :3].T + cell.machine.base[:3, 3])
+        ).max()
+        < 1e-6
+    )
     within = (cell.limits.margin(joints) > 0.0).all(axis=1) & good
     assert within.reshape(73, 40).any(axis=0).all()
 
@@ -100,18 +116,26 @@ def clear_rotations(parameters, tilt):
     """(k,) whether rotations keep an axis leaning by `tilt` within the limits and the platform out of links 0 to 4."""
     cell = resolve(parameters, np.eye(4))
     chain = cell.machine.chain
-    hulls = [[ConvexHull(one.points).equations for one in link] for link in robot_links.solids(chain)]
+    hulls = [
+        [ConvexHull(one.points).equations for one in link] for link in robot_links.solids(chain)
+    ]
     axis = np.array([[np.sin(tilt), 0.0, np.cos(tilt)]])
     poses = cell.pose_frames(BALL * axis, axis).at(np.linspace(-np.pi, np.pi, 16)[:, None])[:, 0]
     joints = cell.machine.opw.inverse_branch(poses, cell.branch)
     good = np.isfinite(joints).all(axis=1)
     good[good] &= (cell.limits.margin(joints[good])[:, :5] > 0.0).all(axis=1)
-    radius, angle = np.meshgrid(np.linspace(0.0, 0.5 * cell.platform_diameter + 10.0, 5), np.linspace(0.0, 2 * np.pi, 24))
-    disc = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0.0 * radius, 0.0 * radius + 1.0], axis=-1)
+    radius, angle = np.meshgrid(
+        np.linspace(0.0, 0.5 * cell.platform_diameter + 10.0, 5), np.linspace(0.0, 2 * np.pi, 24)
+    )
+    disc = np.stack(
+        [radius * np.cos(angle), radius * np.sin(angle), 0.0 * radius, 0.0 * radius + 1.0], axis=-1
+    )
     disc = disc.reshape(-1, 4)
     for k in np.flatnonzero(good):
         links = chain.links(joints[k])
         platform = disc @ (links[-1] @ chain.flange @ cell.carried).T
         seen = [(platform @ frames.inverse(links[number]).T)[:, :3] for number in range(5)]
-        good[k] = not any(hulls[number] and inside_hulls(seen[number], hulls[number]).any() for number in range(5))
+        good[k] = not any(
+            hulls[number] and inside_hulls(seen[number], hulls[number]).any() for number in range(5)
+        )
     return good

@@ -11,7 +11,14 @@ from scipy.spatial.transform import Rotation
 from freecad_am.core.kinematics.inverse import rotary_pair
 
 X, Y, Z = np.eye(3)
-PAIRS = [(X, Z), (Y, Z), (X, Y), (Z, X), (Y, X), (np.array([math.sqrt(0.5), 0.0, math.sqrt(0.5)]), Z)]
+PAIRS = [
+    (X, Z),
+    (Y, Z),
+    (X, Y),
+    (Z, X),
+    (Y, X),
+    (np.array([math.sqrt(0.5), 0.0, math.sqrt(0.5)]), Z),
+]
 
 
 def directions(seed, n=400):
@@ -30,10 +37,15 @@ def test_both_branches_take_source_to_target(first, second):
     found = rotary_pair.between(first, second, source, target)
     real = np.isfinite(found.first[0])
     for branch in range(2):
-        met = turned(first, found.first[branch][real], turned(second, found.second[branch][real], source[real]))
+        met = turned(
+            first,
+            found.first[branch][real],
+            turned(second, found.second[branch][real], source[real]),
+        )
         np.testing.assert_allclose(met, target[real], atol=1e-12)
     apart = np.abs(np.exp(1j * found.first[0]) - np.exp(1j * found.first[1])) + np.abs(
-        np.exp(1j * found.second[0]) - np.exp(1j * found.second[1]))
+        np.exp(1j * found.second[0]) - np.exp(1j * found.second[1])
+    )
     assert (apart[real] > 1e-6).all()
     # where none is given there is none: a fine search over the second axis never brings the source near enough
     for k in np.flatnonzero(~real)[:20]:
@@ -46,7 +58,10 @@ def test_both_branches_take_source_to_target(first, second):
 def test_one_of_the_three_pairs_always_has_a_solution():
     # the paper's proof; X with Y alone, or any other pair alone, does not do for all
     source, target = directions(3), directions(4)
-    real = [np.isfinite(rotary_pair.between(a, b, source, target).first[0]) for a, b in ((X, Z), (Y, Z), (X, Y))]
+    real = [
+        np.isfinite(rotary_pair.between(a, b, source, target).first[0])
+        for a, b in ((X, Z), (Y, Z), (X, Y))
+    ]
     assert np.any(real, axis=0).all()
     assert not any(np.all(one) for one in real)
 
@@ -57,8 +72,11 @@ def test_solution_2_agrees_with_solution_1_where_the_target_is_vertical():
     second = rotary_pair.by_vertical(source, Z)
     np.testing.assert_allclose(np.abs(second.alpha_back), 0.0, atol=1e-15)
     gap = np.abs(np.exp(1j * first.first) - np.exp(1j * second.alpha)) + np.abs(
-        np.exp(1j * first.second) - np.exp(1j * second.gamma))
-    np.testing.assert_allclose(gap.min(axis=0), 0.0, atol=1e-9)  # one branch is it; the other has -alpha
+        np.exp(1j * first.second) - np.exp(1j * second.gamma)
+    )
+    np.testing.assert_allclose(
+        gap.min(axis=0), 0.0, atol=1e-9
+    )  # one branch is it; the other has -alpha
 
 
 def test_solution_2_goes_from_any_direction_to_any_other():
@@ -66,7 +84,9 @@ def test_solution_2_goes_from_any_direction_to_any_other():
     found = rotary_pair.by_vertical(source, target)
     up = turned(X, found.alpha, turned(Z, found.gamma, source))
     np.testing.assert_allclose(up, np.tile(Z, (len(source), 1)), atol=1e-12)
-    np.testing.assert_allclose(turned(Z, found.gamma_back, turned(X, found.alpha_back, up)), target, atol=1e-12)
+    np.testing.assert_allclose(
+        turned(Z, found.gamma_back, turned(X, found.alpha_back, up)), target, atol=1e-12
+    )
 
 
 def test_poles_are_told():
@@ -84,7 +104,9 @@ def test_a_hub_on_the_turning_axis_needs_one_tilt():
     # R = 60, H = 200: normals stand 73.3 deg off the axis all round, so the tilt can be locked without loss (ERRATA)
     theta = np.linspace(-3.0, 3.0, 50)
     a = math.atan2(60.0, 200.0)
-    normal = np.stack([math.cos(a) * np.cos(theta), math.cos(a) * np.sin(theta), np.full(50, math.sin(a))], axis=1)
+    normal = np.stack(
+        [math.cos(a) * np.cos(theta), math.cos(a) * np.sin(theta), np.full(50, math.sin(a))], axis=1
+    )
     assert math.degrees(math.pi / 2 - a) == pytest.approx(73.3, abs=0.01)
     locked = rotary_pair.with_first_locked(X, Z, math.pi / 2 - a, normal, Z)
     np.testing.assert_allclose(locked.residual, 0.0, atol=1e-7)
@@ -98,16 +120,27 @@ def test_no_other_angle_of_the_axis_left_comes_nearer(first, second):
     source, target = directions(8, 12), directions(9, 12)
     for k in range(len(source)):
         for locks, forward in (
-            (rotary_pair.with_first_locked, lambda a, s: turned(first, [0.4], turned(second, [a], s))),
-            (rotary_pair.with_second_locked, lambda a, s: turned(first, [a], turned(second, [0.4], s))),
+            (
+                rotary_pair.with_first_locked,
+                lambda a, s: turned(first, [0.4], turned(second, [a], s)),
+            ),
+            (
+                rotary_pair.with_second_locked,
+                lambda a, s: turned(first, [a], turned(second, [0.4], s)),
+            ),
         ):
             found = locks(first, second, 0.4, source[k : k + 1], target[k : k + 1])
 
             def missed(a, forward=forward, k=k):
-                return math.acos(max(-1.0, min(1.0, float((forward(a, source[k : k + 1]) @ target[k])[0]))))
+                return math.acos(
+                    max(-1.0, min(1.0, float((forward(a, source[k : k + 1]) @ target[k])[0])))
+                )
 
             assert missed(found.angle[0]) == pytest.approx(found.residual[0], abs=1e-6)
-            best = min(minimize_scalar(missed, bounds=(low, low + 2.2), method="bounded").fun for low in (-3.2, -1.1, 1.0))
+            best = min(
+                minimize_scalar(missed, bounds=(low, low + 2.2), method="bounded").fun
+                for low in (-3.2, -1.1, 1.0)
+            )
             assert found.residual[0] <= best + 1e-6
 
 

@@ -22,8 +22,13 @@ NOZZLE = NozzleParameters(half_angle=np.radians(30.0), diameter=4.0, length=50.0
 def put(*bodies):
     """Several bodies as one."""
     starts = np.cumsum([0, *(len(body.vertices) for body in bodies)])
-    return Body("torch", np.concatenate([body.vertices for body in bodies]),
-                np.concatenate([body.triangles + start for body, start in zip(bodies, starts, strict=False)]))
+    return Body(
+        "torch",
+        np.concatenate([body.vertices for body in bodies]),
+        np.concatenate(
+            [body.triangles + start for body, start in zip(bodies, starts, strict=False)]
+        ),
+    )
 
 
 def at(size, x, y, z):
@@ -39,7 +44,9 @@ def samples(body, count=4000, seed=7):
     """Points on the triangles of a body, by their areas."""
     rng = np.random.default_rng(seed)
     corners = body.corners()
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    area = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
     some = corners[rng.choice(len(corners), count, p=area / area.sum())]
     share = rng.dirichlet([1.0, 1.0, 1.0], count)
     return np.einsum("nk,nkj->nj", share, some)
@@ -49,12 +56,16 @@ def test_rods_hold_what_is_beyond_the_nozzle():
     found = torch.torch(put(NECK, CAMERA), NOZZLE)
     points = samples(found.body)
     beyond = points[points[:, 2] > NOZZLE.length]
-    assert len(beyond) > 3000 and beyond[:, 2].max() > 214.0 and beyond[:, 0].max() > 154.0  # Z into the torch, X as it was
+    assert (
+        len(beyond) > 3000 and beyond[:, 2].max() > 214.0 and beyond[:, 0].max() > 154.0
+    )  # Z into the torch, X as it was
     held = np.zeros(len(beyond), dtype=bool)
     for rod in found.cylinders:
         held |= rod.holds(beyond)
     assert held.all()
-    assert sum(np.pi * rod.length * rod.radius**2 for rod in found.cylinders) < 3.2 * (165.0 * 12.0**2 + 149.0 * 30.0 * 40.0)
+    assert sum(np.pi * rod.length * rod.radius**2 for rod in found.cylinders) < 3.2 * (
+        165.0 * 12.0**2 + 149.0 * 30.0 * 40.0
+    )
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -71,21 +82,29 @@ def test_what_is_cut_is_all_there(seed):
         return np.array([area.sum(), *(0.5 * normal.sum(axis=0)), *(area @ corners.mean(axis=1))])
 
     parts = [torch.cut(points, triangles, 3.0, above) for above in (True, False)]
-    assert np.allclose(sum(moments(*part) for part in parts), moments(points, triangles), rtol=1e-12, atol=1e-8)
+    assert np.allclose(
+        sum(moments(*part) for part in parts), moments(points, triangles), rtol=1e-12, atol=1e-8
+    )
     for (cut, left), sign in zip(parts, (1.0, -1.0), strict=True):
         assert (sign * (cut[np.unique(left)][:, 2] - 3.0)).min() >= -1e-9
 
 
-@pytest.mark.parametrize(("body", "says"), [
-    (Body("torch", NECK.vertices, NECK.triangles[1:]), "it is open"),
-    (at((12.0, 12.0, 100.0), 0.0, 0.0, -111.0), r"it is 61 mm from its origin"),
-    (at((12.0, 12.0, 100.0), 90.0, 0.0, -20.0), r"it is 84 mm from its origin"),
-    (at((12.0, 12.0, 100.0), 0.0, 0.0, 55.0), r"it reaches 105 mm beyond its origin along Z"),
-    (at((3.0, 3.0, 100.0), 0.0, 0.0, -48.0), r"it reaches 2 mm beyond its origin"),
-    (at((30.0, 30.0, 100.0), 0.0, 0.0, -65.0), r"15 mm over its tip it reaches 21.2\d mm from its axis, .* as a cone 10.66 "
-     r"mm, .*half_angle of 52.1 deg at least"),
-    (at((30.0, 30.0, 100.0), 0.0, 0.0, -50.0), r"give a larger cell.nozzle.diameter"),
-])
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        (Body("torch", NECK.vertices, NECK.triangles[1:]), "it is open"),
+        (at((12.0, 12.0, 100.0), 0.0, 0.0, -111.0), r"it is 61 mm from its origin"),
+        (at((12.0, 12.0, 100.0), 90.0, 0.0, -20.0), r"it is 84 mm from its origin"),
+        (at((12.0, 12.0, 100.0), 0.0, 0.0, 55.0), r"it reaches 105 mm beyond its origin along Z"),
+        (at((3.0, 3.0, 100.0), 0.0, 0.0, -48.0), r"it reaches 2 mm beyond its origin"),
+        (
+            at((30.0, 30.0, 100.0), 0.0, 0.0, -65.0),
+            r"15 mm over its tip it reaches 21.2\d mm from its axis, .* as a cone 10.66 "
+            r"mm, .*half_angle of 52.1 deg at least",
+        ),
+        (at((30.0, 30.0, 100.0), 0.0, 0.0, -50.0), r"give a larger cell.nozzle.diameter"),
+    ],
+)
 def test_what_is_refused(body, says):
     with pytest.raises(InputError, match=says) as error:
         torch.torch(body, NOZZLE)
@@ -104,10 +123,15 @@ def test_a_contact_is_where_torch_and_box_are(setup):
     """At random poses: what has no point of the torch within the clearance of a body is not told by more than cylinders are
     larger, and what has one is; with the torch on the robot and with the part on it."""
     settings = CellParameters(
-        machine="fanuc-arcmate120ic", setup=setup, deposition_point=(900.0, 0.0, 200.0, 0.0, 0.0, 0.0),
-        platform_diameter=0.0, nozzle=dataclasses.replace(NOZZLE, tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0)),
+        machine="fanuc-arcmate120ic",
+        setup=setup,
+        deposition_point=(900.0, 0.0, 200.0, 0.0, 0.0, 0.0),
+        platform_diameter=0.0,
+        nozzle=dataclasses.replace(NOZZLE, tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0)),
     )
-    cell = dataclasses.replace(cells.resolve(settings, np.eye(4)), torch=torch.torch(put(NECK, CAMERA), NOZZLE))
+    cell = dataclasses.replace(
+        cells.resolve(settings, np.eye(4)), torch=torch.torch(put(NECK, CAMERA), NOZZLE)
+    )
     rng = np.random.default_rng(3)
     points, size = samples(cell.torch.body, 6000), np.array([200.0, 160.0, 120.0])
     beyond = points[points[:, 2] > NOZZLE.length + 1.0]
@@ -115,19 +139,32 @@ def test_a_contact_is_where_torch_and_box_are(setup):
     joints = np.array([0.3, 0.4, -0.2, 0.5, 0.8, -0.4]) + rng.uniform(-0.12, 0.12, (2000, 6))
     _, seen = ArmContact(cell, [[] for _ in rods]).seen(joints)
     in_part = np.linalg.inv(seen["part"]) @ seen["nozzle"]
-    there = frames.pose(np.eye(3), in_part[0] @ [250.0, 0.0, 120.0, 1.0] @ np.eye(4, 3))  # beside the camera, at first
+    there = frames.pose(
+        np.eye(3), in_part[0] @ [250.0, 0.0, 120.0, 1.0] @ np.eye(4, 3)
+    )  # beside the camera, at first
     body = box(tuple(size), there, "block")
     contact = ArmContact(cell, [[] for _ in rods], (body,), None, 10.0)
-    away = np.array([
-        np.linalg.norm(np.maximum(
-            np.abs(beyond @ pose[:3, :3].T + pose[:3, 3] - there[:3, 3]) - 0.5 * size, 0.0
-        ), axis=1).min() for pose in in_part
-    ])
+    away = np.array(
+        [
+            np.linalg.norm(
+                np.maximum(
+                    np.abs(beyond @ pose[:3, :3].T + pose[:3, 3] - there[:3, 3]) - 0.5 * size, 0.0
+                ),
+                axis=1,
+            ).min()
+            for pose in in_part
+        ]
+    )
     met = contact.touches(joints)
     told = met.link != NONE
     nozzle = np.array([contact.links[k] == "nozzle" if k != NONE else False for k in met.link])
     assert {contact.links[k] for k in met.link[told]} <= {TORCH, "nozzle"}
     assert (told | (away > 10.0)).all() and 60 < (away < 10.0).sum() < 1900
     assert (~told | nozzle | (away < 35.0)).all()
-    assert not ArmContact(dataclasses.replace(cell, torch=None), [[] for _ in rods], (body,), None, 10.0).touches(
-        joints[told & ~nozzle]).any.any()
+    assert (
+        not ArmContact(
+            dataclasses.replace(cell, torch=None), [[] for _ in rods], (body,), None, 10.0
+        )
+        .touches(joints[told & ~nozzle])
+        .any.any()
+    )

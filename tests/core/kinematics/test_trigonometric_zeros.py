@@ -25,11 +25,17 @@ def test_each_zero_is_in_a_step_of_its_own(degree):
         zeros = rng.uniform(0.0, 2.0 * np.pi, (real, 400))
         if real:  # pairs at all distances, down to where rounding parts them no more
             zeros[1] = (zeros[0] + 10.0 ** rng.uniform(-9.0, 0.0, 400)) % (2.0 * np.pi)
-        found = trigonometric.parted(_with_zeros(zeros, rng.uniform(0.0, 2.0 * np.pi, (degree - real // 2, 400))))
+        found = trigonometric.parted(
+            _with_zeros(zeros, rng.uniform(0.0, 2.0 * np.pi, (degree - real // 2, 400)))
+        )
         assert (~found.close).sum() > 150
         for number in np.flatnonzero(~found.close):
-            low, high, near = (column[found.number == number] for column in (found.low, found.high, found.near))
+            low, high, near = (
+                column[found.number == number] for column in (found.low, found.high, found.near)
+            )
             assert len(low) == real and (low <= near).all() and (near <= high).all()
             # rounding of the coefficients moves zeros of near pairs
-            inside = (zeros[:, number] >= low[:, None] - 1e-6) & (zeros[:, number] <= high[:, None] + 1e-6)
+            inside = (zeros[:, number] >= low[:, None] - 1e-6) & (
+                zeros[:, number] <= high[:, None] + 1e-6
+            )
             assert inside.any(axis=0).all() and inside.any(axis=1).all()

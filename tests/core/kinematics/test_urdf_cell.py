@@ -36,15 +36,25 @@ def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positio
     assert (reference(machine).base, reference(machine).tip) == ("robot_base_link", "robot_tool0")
     named = externals(beside)
     assert [one.carries for one in named] == ["robot"] * track + ["part"] * positioner
-    cell = cells.resolve(CellParameters(machine=machine, setup="tool-on-robot", external=beside, platform=0.0), np.eye(4))
+    cell = cells.resolve(
+        CellParameters(machine=machine, setup="tool-on-robot", external=beside, platform=0.0),
+        np.eye(4),
+    )
     count = cell.machine.chain.axes
     assert count == 6 + track + 2 * positioner
     joints = np.random.default_rng(14).uniform(-1.0, 1.0, (20, count))
-    names = [name for name in text.split('"') if name.startswith("robot_") and f'joint name="{name}" type="rev' in text]
+    names = [
+        name
+        for name in text.split('"')
+        if name.startswith("robot_") and f'joint name="{name}" type="rev' in text
+    ]
     names += ["track_E1"] * track + ["positioner_E1", "positioner_E2"] * positioner
     for row in joints:
         row[6 : 6 + track] *= 900.0
-        values = {name: value * (0.001 if name.startswith("track") else 1.0) for name, value in zip(names, row, strict=True)}
+        values = {
+            name: value * (0.001 if name.startswith("track") else 1.0)
+            for name, value in zip(names, row, strict=True)
+        }
         at = placed(text, {"left": 0.0, "right": 0.0, **values})
         # seen from where the machine's chain begins: the face, or the world, the robot's base with the track at zero
         # what stands for it where there are no external axes is base_link
@@ -55,16 +65,33 @@ def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positio
         np.testing.assert_allclose(cell.machine.chain.forward(row[None])[0], expected, atol=1e-7)
 
 
-@pytest.mark.parametrize(("text", "words"), [
-    (whole_cell(more=SEVENTH), "there is no robot in it: no chain has six turning axes"),
-    (whole_cell(more=with_prefix(external.load("motoman-motopos-d500"), "second_") + fixed("world", "second_base_link")),
-     "2 chains move beside the robot .positioner_E1 - positioner_E2, second_E1 - second_E2"),
-    (whole_cell().replace('<parent link="world"/><child link="positioner_base_link"/>',
-                          '<parent link="track_tool0"/><child link="positioner_base_link"/>'),
-     "'positioner_E2' is carried by 'track_E1', as the robot is"),
-    (whole_cell().replace('<parent link="world"/><child link="track_base_link"/>',
-                          '<parent link="robot_tool0"/><child link="track_base_link"/>'), "carries itself"),
-])
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (whole_cell(more=SEVENTH), "there is no robot in it: no chain has six turning axes"),
+        (
+            whole_cell(
+                more=with_prefix(external.load("motoman-motopos-d500"), "second_")
+                + fixed("world", "second_base_link")
+            ),
+            "2 chains move beside the robot .positioner_E1 - positioner_E2, second_E1 - second_E2",
+        ),
+        (
+            whole_cell().replace(
+                '<parent link="world"/><child link="positioner_base_link"/>',
+                '<parent link="track_tool0"/><child link="positioner_base_link"/>',
+            ),
+            "'positioner_E2' is carried by 'track_E1', as the robot is",
+        ),
+        (
+            whole_cell().replace(
+                '<parent link="world"/><child link="track_base_link"/>',
+                '<parent link="robot_tool0"/><child link="track_base_link"/>',
+            ),
+            "carries itself",
+        ),
+    ],
+)
 def test_what_cannot_be_told_apart_is_refused(tmp_path, text, words):
     with pytest.raises(InputError, match=words) as found:
         UrdfCell(written(tmp_path, text))
@@ -73,8 +100,12 @@ def test_what_cannot_be_told_apart_is_refused(tmp_path, text, words):
 
 def test_two_robots_are_named(tmp_path):
     text = whole_cell(track=False)
-    second = with_prefix(external.load("kuka-kr8-r2100-2-arc-hw"), "other_") + fixed("world", "other_base_link", "0 3 0")
-    with pytest.raises(InputError, match=r"there are 2 robots in it, the last axes of which are other_.*, robot_"):
+    second = with_prefix(external.load("kuka-kr8-r2100-2-arc-hw"), "other_") + fixed(
+        "world", "other_base_link", "0 3 0"
+    )
+    with pytest.raises(
+        InputError, match=r"there are 2 robots in it, the last axes of which are other_.*, robot_"
+    ):
         UrdfCell(written(tmp_path, text.replace("</robot>", second + "</robot>")))
 
 
@@ -96,7 +127,9 @@ def test_a_mechanism_of_a_urdf_needs_no_cell_of_its_own(tmp_path):
     np.testing.assert_allclose(alone.max_speed, given.max_speed, rtol=1e-12)
     with pytest.raises(InputError, match="no link 'face'"):
         external.load(f"{path} base=positioner_base_link tip=face")
-    refused = dataclasses.replace(CellParameters(), machine=f"{path} base=positioner_base_link tip=positioner_tool0")
+    refused = dataclasses.replace(
+        CellParameters(), machine=f"{path} base=positioner_base_link tip=positioner_tool0"
+    )
     with pytest.raises(InputError, match="it has 2 axes, 0 of which slide") as found:
         cells.resolve(refused, np.eye(4))
     assert found.value.code == "NO_CLOSED_FORM"

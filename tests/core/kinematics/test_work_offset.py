@@ -19,7 +19,10 @@ POINTS = np.array([[0.0, 0.0, 0.0], [120.0, 0.0, 5.0], [0.0, 80.0, 0.0], [110.0,
 
 
 def pairs(part, robot):
-    return tuple(Touched(tuple(one), tuple(other)) for one, other in zip(part.tolist(), robot.tolist(), strict=True))
+    return tuple(
+        Touched(tuple(one), tuple(other))
+        for one, other in zip(part.tolist(), robot.tolist(), strict=True)
+    )
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -31,7 +34,10 @@ def test_the_best_rigid_motion_and_what_is_left(seed):
     found = module.work_offset(pairs(part, robot), 5.0)
     best, _ = Rotation.align_vectors(robot - robot.mean(axis=0), part - part.mean(axis=0))
     assert np.abs(found.pose[:3, :3] - best.as_matrix()).max() < 1e-9
-    assert np.abs(found.pose[:3, 3] - (robot.mean(axis=0) - best.apply(part.mean(axis=0)))).max() < 1e-7
+    assert (
+        np.abs(found.pose[:3, 3] - (robot.mean(axis=0) - best.apply(part.mean(axis=0)))).max()
+        < 1e-7
+    )
     left = np.linalg.norm(best.apply(part - part.mean(axis=0)) + robot.mean(axis=0) - robot, axis=1)
     assert np.allclose(found.residual, left, atol=1e-9)
     assert np.linalg.det(found.pose[:3, :3]) == pytest.approx(1.0)
@@ -46,18 +52,29 @@ def test_plane_points_are_not_mirrored():
     assert np.abs(found.pose[:3, :3] - turn.as_matrix()).max() < 1e-9
 
 
-@pytest.mark.parametrize(("part", "robot", "says"), [
-    (POINTS[:2], POINTS[:2], "2 point"),
-    (POINTS[[0, 1, 1]] * [[1], [1], [2]], POINTS[[0, 1, 1]] * [[1], [1], [2]], "points of the part are on a line"),
-    (POINTS, POINTS[[0, 1, 1, 1]] * [[1], [1], [2], [3]], "points touched are on a line"),
-    (POINTS, POINTS * 25.4, "25.4 times as large as what is planned; one of them is in inches"),
-    (POINTS, POINTS * 1e-3, "one of them is in m,"),
-    (POINTS, POINTS * 1.3, "points of another part"),
-    (POINTS, POINTS * [1.0, 1.0, -1.0], r"point \d is \d\.\d+ mm from where it was touched"),
-    (POINTS, POINTS[[1, 0, 2, 3]], r"point \d is \d+\.?\d* mm from where it was touched"),
-    (POINTS, POINTS + [[0, 0, 0], [0, 0, 0], [0, 0, 6.0], [0, 0, 0]], r"point \d is 1\.\d+ mm .* more than "
-     "cell.touched_tolerance of 1 mm"),
-])
+@pytest.mark.parametrize(
+    ("part", "robot", "says"),
+    [
+        (POINTS[:2], POINTS[:2], "2 point"),
+        (
+            POINTS[[0, 1, 1]] * [[1], [1], [2]],
+            POINTS[[0, 1, 1]] * [[1], [1], [2]],
+            "points of the part are on a line",
+        ),
+        (POINTS, POINTS[[0, 1, 1, 1]] * [[1], [1], [2], [3]], "points touched are on a line"),
+        (POINTS, POINTS * 25.4, "25.4 times as large as what is planned; one of them is in inches"),
+        (POINTS, POINTS * 1e-3, "one of them is in m,"),
+        (POINTS, POINTS * 1.3, "points of another part"),
+        (POINTS, POINTS * [1.0, 1.0, -1.0], r"point \d is \d\.\d+ mm from where it was touched"),
+        (POINTS, POINTS[[1, 0, 2, 3]], r"point \d is \d+\.?\d* mm from where it was touched"),
+        (
+            POINTS,
+            POINTS + [[0, 0, 0], [0, 0, 0], [0, 0, 6.0], [0, 0, 0]],
+            r"point \d is 1\.\d+ mm .* more than "
+            "cell.touched_tolerance of 1 mm",
+        ),
+    ],
+)
 def test_what_is_refused(part, robot, says):
     with pytest.raises(InputError, match=says) as error:
         module.work_offset(pairs(part, robot + 700.0), 1.0)
@@ -69,7 +86,9 @@ def test_points_of_the_toolpath_are_met_where_they_were_touched():
     turn = Rotation.from_euler("xyz", [2.0, -3.0, 25.0], degrees=True)
     move = np.array([880.0, 60.0, -120.0])
     text = "; ".join(map(str, pairs(POINTS, turn.apply(POINTS) + move)))
-    assert touched(text) == pairs(*(np.array([getattr(one, side) for one in touched(text)]) for side in ("part", "robot")))
+    assert touched(text) == pairs(
+        *(np.array([getattr(one, side) for one in touched(text)]) for side in ("part", "robot"))
+    )
     settings = CellParameters(setup="tool-on-robot", branch=("front", "up", "flip"), touched=text)
     cell = cells.resolve(settings, frames.pose(np.eye(3), [3.0, -4.0, 10.0]))
     position, tool = POINTS + [0.0, 0.0, 20.0], np.tile([0.0, 0.0, 1.0], (4, 1))
@@ -83,9 +102,13 @@ def test_points_of_the_toolpath_are_met_where_they_were_touched():
         assert np.abs(pose[:3, 3] - point).max() < 1e-6
 
 
-@pytest.mark.parametrize("values", [
-    {"setup": "part-on-robot"}, {"external": "motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"setup": "part-on-robot"},
+        {"external": "motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"},
+    ],
+)
 def test_only_a_part_that_stands_is_touched(values):
     text = "; ".join(map(str, pairs(POINTS, POINTS + 700.0)))
     settings = dataclasses.replace(CellParameters(setup="tool-on-robot", touched=text), **values)

@@ -23,20 +23,30 @@ FINGERS = """\
 
 def with_prefix(one, prefix):
     """The links and joints of a machine, each with a prefix."""
-    text = re.sub(r'<\?xml.*?\?>\n<robot name="[^"]*">\n', "", urdf_text.text(one)).replace("</robot>\n", "")
-    return re.sub(r'(link|joint name|link name)="([^"]+)"', lambda found: f'{found[1]}="{prefix}{found[2]}"', text)
+    text = re.sub(r'<\?xml.*?\?>\n<robot name="[^"]*">\n', "", urdf_text.text(one)).replace(
+        "</robot>\n", ""
+    )
+    return re.sub(
+        r'(link|joint name|link name)="([^"]+)"',
+        lambda found: f'{found[1]}="{prefix}{found[2]}"',
+        text,
+    )
 
 
 def fixed(parent, child, xyz="0 0 0", rpy="0 0 0"):
-    return (f'<joint name="{parent}-{child}" type="fixed"><parent link="{parent}"/><child link="{child}"/>'
-            f'<origin xyz="{xyz}" rpy="{rpy}"/></joint>\n')
+    return (
+        f'<joint name="{parent}-{child}" type="fixed"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="{xyz}" rpy="{rpy}"/></joint>\n'
+    )
 
 
 def whole_cell(track=True, positioner=True, more=""):
     """A robot on a track, or on the floor, and a positioner, all on a link `world`."""
     text = '<link name="world"/>\n' + with_prefix(machine.load(ROBOT), "robot_")
     if track:
-        text += with_prefix(external.load(TRACK), "track_") + fixed("world", "track_base_link", *WHERE_TRACK)
+        text += with_prefix(external.load(TRACK), "track_") + fixed(
+            "world", "track_base_link", *WHERE_TRACK
+        )
         text += fixed("track_tool0", "robot_base_link", "0 0 0", f"0 0 {-math.pi / 2!r}")
     else:
         text += fixed("world", "robot_base_link", "0.1 0 0.5", "0 0 0.2")
@@ -53,7 +63,12 @@ def placed(text, values):
     above = {joint.find("child").get("link"): joint for joint in top.findall("joint")}
 
     def numbers(element, key, default):
-        return np.array([float(word) for word in (default if element is None else element.get(key, default)).split()])
+        return np.array(
+            [
+                float(word)
+                for word in (default if element is None else element.get(key, default)).split()
+            ]
+        )
 
     def turned(axis, angle):
         x, y, z = axis

@@ -30,13 +30,17 @@ def moving(text):
         while link in above and above[link] not in way:
             way.append(above[link])
             link = above[link].find("parent").get("link")
-        longest = max(longest, [joint for joint in way[::-1] if joint.get("type") != "fixed"], key=len)
+        longest = max(
+            longest, [joint for joint in way[::-1] if joint.get("type") != "fixed"], key=len
+        )
     return longest
 
 
 def is_six_axis_arm(axes):
     """Whether what moves in a file are six joints that turn."""
-    return len(axes) == 6 and all(joint.get("type") in TURNS and joint.find("mimic") is None for joint in axes)
+    return len(axes) == 6 and all(
+        joint.get("type") in TURNS and joint.find("mimic") is None for joint in axes
+    )
 
 
 def assert_pose(text, robot, found, arm):
@@ -49,12 +53,18 @@ def assert_pose(text, robot, found, arm):
     joint_of = {joint.find("child").get("link"): joint for joint in joints_of(text)}
     last = next(joint for joint in joint_of.values() if joint.get("name") == found.joints[-1])
     makers = joint_of.get("base") if base != "base" else None
-    makers = makers is not None and makers.get("type") == "fixed" and makers.find("parent").get("link") == base
+    makers = (
+        makers is not None
+        and makers.get("type") == "fixed"
+        and makers.find("parent").get("link") == base
+    )
     for row in joints:
         links = placed(text, collections.defaultdict(float, zip(found.joints, row)))
         # the chain begins where axis 1 is the Z; `found.base` is the maker's base, or that of the file, from there
         begins = links["base" if makers else base] @ np.linalg.inv(found.base)
-        axis = links[last.find("child").get("link")][:3, :3] @ np.array(last.find("axis").get("xyz").split(), float)
+        axis = links[last.find("child").get("link")][:3, :3] @ np.array(
+            last.find("axis").get("xyz").split(), float
+        )
         z, x = links[tip][:3, 2], links[tip][:3, 0]
         out = z if np.linalg.norm(np.cross(z, axis)) < STRAIGHT else x
         assert np.linalg.norm(np.cross(out, axis)) < STRAIGHT
@@ -69,12 +79,18 @@ def assert_pose(text, robot, found, arm):
 
 def squared(text):
     """The file with its right angles whole: 1.571 and 1.57079 are written for one, and 2e-4 rad are a tenth of a mm."""
+
     def whole(found):
         words = [str(float(word)) for word in found[2].split()]
         turns = [round(float(word) / (0.5 * math.pi)) for word in words]
-        exact = [0.5 * math.pi * turn if abs(float(word) - 0.5 * math.pi * turn) < SQUARE else float(word)
-                 for word, turn in zip(words, turns)]
-        return f"{found[1]}{' '.join(map(repr, exact))}\""
+        exact = [
+            0.5 * math.pi * turn
+            if abs(float(word) - 0.5 * math.pi * turn) < SQUARE
+            else float(word)
+            for word, turn in zip(words, turns)
+        ]
+        return f'{found[1]}{" ".join(map(repr, exact))}"'
+
     return re.sub(r'(\brpy=")([^"]+)"', whole, text)
 
 

@@ -13,8 +13,10 @@ def of_squares(cells, unit, depth):
         front = [(x, 0, z), (x + 1, 0, z), (x + 1, 0, z + 1), (x, 0, z + 1)]
         quads += [front, [(a, depth, c) for a, _, c in front[::-1]]]
         for (dx, dz), (one, other) in (
-            ((1, 0), ((x + 1, z), (x + 1, z + 1))), ((-1, 0), ((x, z + 1), (x, z))),
-            ((0, 1), ((x + 1, z + 1), (x, z + 1))), ((0, -1), ((x, z), (x + 1, z))),
+            ((1, 0), ((x + 1, z), (x + 1, z + 1))),
+            ((-1, 0), ((x, z + 1), (x, z))),
+            ((0, 1), ((x + 1, z + 1), (x, z + 1))),
+            ((0, -1), ((x, z), (x + 1, z))),
         ):
             if (x + dx, z + dz) not in cells:
                 (a, c), (b, d) = one, other
@@ -41,16 +43,59 @@ def box(size, pose=None):
 def icosphere(radius, rounds=4):
     """A ball of triangles about the origin, its vertices on the sphere."""
     g = (1.0 + 5.0**0.5) / 2.0
-    vertices = np.array([(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g), (0, 1, -g),
-                         (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)])
-    faces = np.array([(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2),
-                      (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11),
-                      (6, 2, 10), (8, 6, 7), (9, 8, 1)])
+    vertices = np.array(
+        [
+            (-1, g, 0),
+            (1, g, 0),
+            (-1, -g, 0),
+            (1, -g, 0),
+            (0, -1, g),
+            (0, 1, g),
+            (0, -1, -g),
+            (0, 1, -g),
+            (g, 0, -1),
+            (g, 0, 1),
+            (-g, 0, -1),
+            (-g, 0, 1),
+        ]
+    )
+    faces = np.array(
+        [
+            (0, 11, 5),
+            (0, 5, 1),
+            (0, 1, 7),
+            (0, 7, 10),
+            (0, 10, 11),
+            (1, 5, 9),
+            (5, 11, 4),
+            (11, 10, 2),
+            (10, 7, 6),
+            (7, 1, 8),
+            (3, 9, 4),
+            (3, 4, 2),
+            (3, 2, 6),
+            (3, 6, 8),
+            (3, 8, 9),
+            (4, 9, 5),
+            (2, 4, 11),
+            (6, 2, 10),
+            (8, 6, 7),
+            (9, 8, 1),
+        ]
+    )
     for _ in range(rounds):
         n = len(vertices)
-        edges, of = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+        edges, of = np.unique(
+            np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1),
+            axis=0,
+            return_inverse=True,
+        )
         vertices = np.vstack([vertices, vertices[edges].mean(axis=1)])
         a, b, c = (np.ravel(of).reshape(-1, 3) + n).T
         u, v, w = faces.T
-        faces = np.vstack([np.stack(t, axis=1) for t in ((u, a, c), (a, v, b), (c, b, w), (a, b, c))])
-    return radius * vertices / np.linalg.norm(vertices, axis=1, keepdims=True), faces.astype(np.intp)
+        faces = np.vstack(
+            [np.stack(t, axis=1) for t in ((u, a, c), (a, v, b), (c, b, w), (a, b, c))]
+        )
+    return radius * vertices / np.linalg.norm(vertices, axis=1, keepdims=True), faces.astype(
+        np.intp
+    )

@@ -26,7 +26,10 @@ from .shapes import box, icosphere
 def test_nodes_of_a_turned_box_are_those_between_its_planes(seed):
     rng = np.random.default_rng(seed)
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = Rotation.random(random_state=seed).as_matrix(), rng.uniform(-300.0, 300.0, 3)
+    pose[:3, :3], pose[:3, 3] = (
+        Rotation.random(random_state=seed).as_matrix(),
+        rng.uniform(-300.0, 300.0, 3),
+    )
     size = rng.uniform(3.0, 20.0, 3)
     grid = voxels(*box(size, pose), 0.7)
     local = (grid.places(np.arange(grid.solid.size)) - pose[:3, 3]) @ pose[:3, :3]
@@ -38,7 +41,9 @@ def test_bodies_that_overlap_are_one_and_a_cavity_is_left_out():
     one, faces = box([10.0, 10.0, 10.0])
     both = voxels(np.vstack([one, one + 4.0]), np.vstack([faces, faces + len(one)]), 0.5)
     assert both.solid.sum() * 0.5**3 == pytest.approx(2000.0 - 6.0**3, rel=0.02)
-    hollow = voxels(np.vstack([one, 0.5 * one + 2.5]), np.vstack([faces, faces[:, ::-1] + len(one)]), 0.5)
+    hollow = voxels(
+        np.vstack([one, 0.5 * one + 2.5]), np.vstack([faces, faces[:, ::-1] + len(one)]), 0.5
+    )
     assert hollow.solid.sum() * 0.5**3 == pytest.approx(1000.0 - 125.0, rel=0.02)
 
 
@@ -54,7 +59,9 @@ def test_distance_from_a_point_in_free_space():
     seeds = np.flatnonzero(exact < 2.0)
     u = arrival(linked, grid.step, seeds, exact[seeds])
     assert np.abs(u - exact).max() < 0.35 * grid.step
-    slope = np.linalg.norm(np.stack(np.gradient(_on(grid, linked, u)), axis=-1), axis=-1) / grid.step
+    slope = (
+        np.linalg.norm(np.stack(np.gradient(_on(grid, linked, u)), axis=-1), axis=-1) / grid.step
+    )
     assert np.nanquantile(np.abs(slope - 1.0), 0.99) < 0.05
 
 
@@ -77,7 +84,9 @@ def test_in_a_maze_no_way_is_shorter_than_straight_or_longer_than_from_node_to_n
     places = grid.places(linked.nodes)
     start = int(np.argmin(places.sum(axis=1)))
     u = arrival(linked, 1.0, np.array([start]), np.zeros(1))
-    pairs = np.vstack([np.stack([np.arange(len(places)), side], axis=1) for side in linked.neighbours])
+    pairs = np.vstack(
+        [np.stack([np.arange(len(places)), side], axis=1) for side in linked.neighbours]
+    )
     pairs = pairs[pairs[:, 1] < len(places)]
     graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(places),) * 2)
     steps = dijkstra(graph.tocsr(), indices=start)
@@ -92,13 +101,19 @@ def test_levels_are_closed_surfaces_of_the_right_area(seed):
     middle = np.random.default_rng(seed).uniform(-0.5, 0.5, 3)
     axis = np.arange(-14.0, 14.5, 0.7)
     x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
-    cubes = Cubes(np.linalg.norm(np.stack([x, y, z], axis=-1) - middle, axis=-1), np.full(3, -14.0), 0.7)
+    cubes = Cubes(
+        np.linalg.norm(np.stack([x, y, z], axis=-1) - middle, axis=-1), np.full(3, -14.0), 0.7
+    )
     mesh = cubes.level(9.0)
     edges = Edges(mesh.faces)
     assert (edges.count == 2).all()
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
-    assert 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() == pytest.approx(4.0 * np.pi * 81.0, rel=0.01)
-    assert (np.cross(b - a, c - a) * (a - middle)).sum() / 6.0 == pytest.approx(4.0 / 3.0 * np.pi * 729.0, rel=0.01)
+    assert 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() == pytest.approx(
+        4.0 * np.pi * 81.0, rel=0.01
+    )
+    assert (np.cross(b - a, c - a) * (a - middle)).sum() / 6.0 == pytest.approx(
+        4.0 / 3.0 * np.pi * 729.0, rel=0.01
+    )
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
@@ -116,7 +131,12 @@ def test_levels_of_a_rough_field_have_one_side_everywhere(seed):
         a, b, c = (mesh.vertices[mesh.faces[:, k]] - node for k in range(3))
         la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
         over = (np.cross(b, c) * a).sum(axis=1)
-        under = la * lb * lc + (a * b).sum(axis=1) * lc + (b * c).sum(axis=1) * la + (c * a).sum(axis=1) * lb
+        under = (
+            la * lb * lc
+            + (a * b).sum(axis=1) * lc
+            + (b * c).sum(axis=1) * la
+            + (c * a).sum(axis=1) * lb
+        )
         turns = 2.0 * np.arctan2(over, under).sum() / (4.0 * np.pi)
         assert turns == pytest.approx(-1.0 if field[tuple(node)] >= 0.1 else 0.0, abs=1e-6)
 
@@ -138,12 +158,20 @@ def _sheet(wrap, width=30.0, height=20.0, edge=1.0, seed=0):
     flat = np.stack([x.ravel(), y.ravel()], axis=1) + rng.uniform(-0.3, 0.3, (x.size, 2)) * edge
     n, m = x.shape
     corner = (np.arange(n - 1)[:, None] * m + np.arange(m - 1)).ravel()
-    faces = np.vstack([np.stack([corner, corner + m, corner + m + 1], 1), np.stack([corner, corner + m + 1, corner + 1], 1)])
+    faces = np.vstack(
+        [
+            np.stack([corner, corner + m, corner + m + 1], 1),
+            np.stack([corner, corner + m + 1, corner + 1], 1),
+        ]
+    )
     return Mesh(wrap(flat), faces.astype(np.intp)), flat
 
 
 def _cylinder(flat, radius=12.0):
-    return np.stack([radius * np.sin(flat[:, 0] / radius), flat[:, 1], radius * np.cos(flat[:, 0] / radius)], axis=1)
+    return np.stack(
+        [radius * np.sin(flat[:, 0] / radius), flat[:, 1], radius * np.cos(flat[:, 0] / radius)],
+        axis=1,
+    )
 
 
 def _sphere(flat, radius=25.0):
@@ -165,7 +193,9 @@ def test_what_cannot_is_stretched_no_more_than_it_must():
     mesh, _ = _sheet(_sphere)
     found = flattened(mesh)
     half = 0.5 * np.hypot(30.0, 20.0) / 25.0  # angle from the middle to a corner
-    assert found.least.min() > np.sin(half) / half - 0.05 and found.most.max() < 1.05 * half / np.sin(half)
+    assert found.least.min() > np.sin(
+        half
+    ) / half - 0.05 and found.most.max() < 1.05 * half / np.sin(half)
 
 
 @pytest.mark.parametrize("surface", [_cylinder, _sphere])

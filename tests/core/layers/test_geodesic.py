@@ -36,7 +36,10 @@ def layers(through_tee):
             for region in piece.regions:
                 area += region.area
                 ring = region.borders()[0]
-                axes = [np.arange(low + 0.15, high, 0.3) for low, high in zip(ring.min(axis=0), ring.max(axis=0))]
+                axes = [
+                    np.arange(low + 0.15, high, 0.3)
+                    for low, high in zip(ring.min(axis=0), ring.max(axis=0))
+                ]
                 flat = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
                 places.append(piece.chart.wrap(flat[region.contains(flat)]))
         found.append((through_tee.onto(np.vstack(places), number * HEIGHT), area))
@@ -88,14 +91,20 @@ def test_directions_point_from_layer_to_layer(through_tee, layers):
 def test_what_no_way_leads_to_is_told():
     vertices, triangles = tee()
     solids = [SolidMesh(vertices + [x, 0.0, 0.0], triangles) for x in (0.0, 100.0)]
-    assert field(solids, _bottom(vertices, triangles), 1.5).unreached == pytest.approx(0.5, abs=0.01)
+    assert field(solids, _bottom(vertices, triangles), 1.5).unreached == pytest.approx(
+        0.5, abs=0.01
+    )
     with pytest.raises(ValueError):
         field(solids, np.zeros((0, 3, 3)), 1.5)
 
 
 def test_solids_that_touch_are_one():
     low, triangles = box([20.0, 10.0, 6.0])
-    found = field([SolidMesh(low, triangles), SolidMesh(low + [0.0, 0.0, 6.0], triangles)], _bottom(low, triangles), 0.7)
+    found = field(
+        [SolidMesh(low, triangles), SolidMesh(low + [0.0, 0.0, 6.0], triangles)],
+        _bottom(low, triangles),
+        0.7,
+    )
     for distance in (3.0, 6.0, 9.0):
         pieces = list(found.pieces(distance))
         assert len(pieces) == 1 and len(pieces[0].regions) == 1

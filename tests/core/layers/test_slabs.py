@@ -37,7 +37,9 @@ def test_volumes_below_planes_are_those_of_half_spaces(seed):
     body = hull(points)
     heights = np.concatenate([[-26.0, -25.0], np.linspace(-24.0, 28.0, 17), points[4:8, 2]])
     wanted = [clipped(points, height) for height in heights]
-    np.testing.assert_allclose(below(body.vertices, body.triangles, heights), wanted, rtol=1e-9, atol=1e-8)
+    np.testing.assert_allclose(
+        below(body.vertices, body.triangles, heights), wanted, rtol=1e-9, atol=1e-8
+    )
 
 
 def test_layers_of_a_cone_and_a_box_have_their_volumes_whichever_way_they_are_stacked():
@@ -48,7 +50,7 @@ def test_layers_of_a_cone_and_a_box_have_their_volumes_whichever_way_they_are_st
     planes = np.minimum(4.0 * np.arange(9), 30.0)
     radius = 40.0 - 0.5 * planes
     inner = area * 100.0 * np.diff(planes)
-    wanted = -area * np.diff(radius ** 3) * 2.0 / 3.0 - inner
+    wanted = -area * np.diff(radius**3) * 2.0 / 3.0 - inner
     np.testing.assert_allclose(found.part, wanted, rtol=1e-9)
     assert len(found.deposited) == 8 and not found.deposited.any()
     bars = [box((0, 0, 0), (30, 7, 5)), box((0, 20, 0), (10, 27, 5))]
@@ -58,9 +60,14 @@ def test_layers_of_a_cone_and_a_box_have_their_volumes_whichever_way_they_are_st
     points[:, 0] = 30.0 - 4.0 * np.array([0, 1, 6])
     found = slabs(group, 4.0, points, np.array([3.0, 0.0, 5.0]))
     second = 35.0 * np.array([0, 0, 0, 0, 0, 4, 4, 2])
-    np.testing.assert_allclose(found.part, 35.0 * np.array([4, 4, 4, 4, 4, 4, 4, 2]) + second, rtol=1e-9)
+    np.testing.assert_allclose(
+        found.part, 35.0 * np.array([4, 4, 4, 4, 4, 4, 4, 2]) + second, rtol=1e-9
+    )
     assert found.deposited.tolist() == [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0]
-    assert sorted(len(loop) for loop in outline(group, 25.0)) == [7, 7] or len(outline(group, 25.0)) == 2
+    assert (
+        sorted(len(loop) for loop in outline(group, 25.0)) == [7, 7]
+        or len(outline(group, 25.0)) == 2
+    )
     assert len(outline(group, 3.0)) == 1
 
 
@@ -69,7 +76,14 @@ def test_facets_lean_by_their_slope_and_what_stands_does_not():
     for slope in np.radians([10.0, 35.0, 60.0, 80.0]):
         rise = 20.0 * np.tan(0.5 * np.pi - slope)
         # widens upwards from 10 to 50: sides lean out by the slope; the base of 10 x 30 stands
-        points = np.array([[x, y, z] for z, half in ((0.0, 5.0), (rise, 25.0)) for x in (-half, half) for y in (0.0, 30.0)])
+        points = np.array(
+            [
+                [x, y, z]
+                for z, half in ((0.0, 5.0), (rise, 25.0))
+                for x in (-half, half)
+                for y in (0.0, 30.0)
+            ]
+        )
         body = hull(points)
         found = leaning([body], LEVEL, 0.1)
         side = 30.0 * np.hypot(20.0, rise)
@@ -78,25 +92,44 @@ def test_facets_lean_by_their_slope_and_what_stands_does_not():
         assert found.whole == pytest.approx(ConvexHull(points).area, rel=1e-9)
         flying = Body("higher", body.vertices + [100.0, 0.0, 50.0], body.triangles)
         both = leaning([body, flying], LEVEL, 0.1)
-        assert both.beyond(np.radians(85.0))[1] == pytest.approx(300.0, rel=1e-9)  # its underside is a ceiling
+        assert both.beyond(np.radians(85.0))[1] == pytest.approx(
+            300.0, rel=1e-9
+        )  # its underside is a ceiling
         assert (np.diff(both.lean) >= 0.0).all()
 
 
 def elbow(widening):
     """A pipe bent by 90 deg about a radius of 40 mm, 5 mm thick where it stands and wider by a share of the way; a base with
     the arc as its guide."""
-    turn, round_ = np.linspace(0.0, np.pi / 2.0, 91), np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
+    turn, round_ = (
+        np.linspace(0.0, np.pi / 2.0, 91),
+        np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False),
+    )
     way = np.stack([np.sin(turn), np.zeros_like(turn), np.cos(turn)], axis=1)
     out = np.stack([-np.cos(turn), np.zeros_like(turn), np.sin(turn)], axis=1)
     middle = np.array([40.0, 0.0, 0.0]) + 40.0 * out
     radius = 5.0 + widening * 40.0 * turn
-    ring = np.cos(round_)[None, :, None] * out[:, None] + np.sin(round_)[None, :, None] * np.array([0.0, 1.0, 0.0])
+    ring = np.cos(round_)[None, :, None] * out[:, None] + np.sin(round_)[None, :, None] * np.array(
+        [0.0, 1.0, 0.0]
+    )
     points = (middle[:, None] + radius[:, None, None] * ring).reshape(-1, 3)
     a = np.arange(90)[:, None] * 72 + np.arange(72)
     b = np.arange(90)[:, None] * 72 + (np.arange(72) + 1) % 72
-    sides = np.concatenate([np.stack([a, b, a + 72], axis=-1), np.stack([b, b + 72, a + 72], axis=-1)]).reshape(-1, 3)
-    if np.linalg.det(np.stack([points[sides[0, 1]] - points[sides[0, 0]], points[sides[0, 2]] - points[sides[0, 0]],
-                               points[sides[0, 0]] - middle[0]])) < 0.0:
+    sides = np.concatenate(
+        [np.stack([a, b, a + 72], axis=-1), np.stack([b, b + 72, a + 72], axis=-1)]
+    ).reshape(-1, 3)
+    if (
+        np.linalg.det(
+            np.stack(
+                [
+                    points[sides[0, 1]] - points[sides[0, 0]],
+                    points[sides[0, 2]] - points[sides[0, 0]],
+                    points[sides[0, 0]] - middle[0],
+                ]
+            )
+        )
+        < 0.0
+    ):
         sides = sides[:, ::-1]
     return Body("elbow", points, sides), Base("the guide", guide(middle, way), np.eye(4))
 
@@ -108,8 +141,13 @@ def test_facets_lean_from_the_guide_where_they_are(widening):
     body, base = elbow(widening)
     found, upright = leaning([body], base, 0.1), leaning([body], LEVEL, 0.1)
     assert upright.beyond(np.radians(20.0))[1] > 0.2 * upright.whole
-    least, most = (np.arctan(widening * 40.0 / (40.0 + side * (5.0 + widening * 20.0 * np.pi))) for side in (1.0, -1.0))
+    least, most = (
+        np.arctan(widening * 40.0 / (40.0 + side * (5.0 + widening * 20.0 * np.pi)))
+        for side in (1.0, -1.0)
+    )
     flat = np.radians(0.5)  # facets are 5 deg wide
     assert found.beyond(most + flat)[1] < 1e-6 * found.whole
     if widening:
-        assert found.beyond(least - flat)[1] > 0.95 * found.whole  # but for what is near the first plane
+        assert (
+            found.beyond(least - flat)[1] > 0.95 * found.whole
+        )  # but for what is near the first plane

@@ -10,7 +10,9 @@ from freecad_am.core.layers.planes.stacking import best
 from freecad_am.core.parameters.filled import SolidParameters
 
 CORNERS = np.array([[x, y, z] for x in (0, 40) for y in (0, 40) for z in (0, 10)], dtype=float)
-SIDES = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+SIDES = np.array(
+    [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+)
 PLATE = CORNERS[np.vstack([SIDES[:, [0, 1, 2]], SIDES[:, [0, 2, 3]]])]
 
 
@@ -19,7 +21,9 @@ def quartered(corners, times):
     for _ in range(times):
         a, b, c = np.moveaxis(corners, 1, 0)
         ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
-        corners = np.concatenate([np.stack(one, axis=1) for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+        corners = np.concatenate(
+            [np.stack(one, axis=1) for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+        )
     return corners
 
 
@@ -36,5 +40,9 @@ def test_meshes_of_one_part_are_stacked_alike(seed):
     rng = np.random.default_rng(seed)
     turn = Rotation.random(random_state=seed).as_matrix()
     for part in (PLATE, PLATE @ turn.T):
-        few, many = (best([body(quartered(part, times), rng)], SolidParameters())[0] for times in (0, 3))
-        assert few.way == pytest.approx(many.way, abs=2e-4) and few.height == pytest.approx(10.0, abs=0.02)
+        few, many = (
+            best([body(quartered(part, times), rng)], SolidParameters())[0] for times in (0, 3)
+        )
+        assert few.way == pytest.approx(many.way, abs=2e-4) and few.height == pytest.approx(
+            10.0, abs=0.02
+        )

@@ -28,8 +28,11 @@ from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.strategies.revolution import plan as revolution
 from tests.core.planning.conftest import sphere
 
-PROCESS = ProcessParameters(travel_speed=20.0, lead_on=0.3, between_layers=dataclasses.replace(
-    ProcessParameters().between_layers, wait=5.0))
+PROCESS = ProcessParameters(
+    travel_speed=20.0,
+    lead_on=0.3,
+    between_layers=dataclasses.replace(ProcessParameters().between_layers, wait=5.0),
+)
 MARGIN, TIME = 0.02, 0.1  # what the docs tell: of a range, and of the time
 MOVED = {  # a cell whose box has both, what is moved in it, and the box
     "point": (CellParameters(limits="paper"), {"x": 400.0, "y": 400.0, "z": 300.0, "step": 300.0}),
@@ -58,14 +61,20 @@ def dome():
     """A hemisphere in layers of 9 mm."""
     wall = RevolvedWall(Meridian.chained(sphere()), np.eye(4))
     strategy = RevolutionParameters(layer_height=9.0, chord_error=0.1)
-    return revolution.plan(wall, strategy, BuildDirectionParameters(), PROCESS, NozzleParameters(), 113.0)
+    return revolution.plan(
+        wall, strategy, BuildDirectionParameters(), PROCESS, NozzleParameters(), 113.0
+    )
 
 
 def job_of(toolpath):
     return Job(
-        toolpath, lambda settings: cells.resolve(settings, toolpath.frame, toolpath.family),
-        lambda cell: tuple(map(tuple, link_rods.of_robot(cell.robot.chain))) if cell.machine.free else (),
-        PROCESS, JointParameters(),
+        toolpath,
+        lambda settings: cells.resolve(settings, toolpath.frame, toolpath.family),
+        lambda cell: (
+            tuple(map(tuple, link_rods.of_robot(cell.robot.chain))) if cell.machine.free else ()
+        ),
+        PROCESS,
+        JointParameters(),
     )
 
 
@@ -73,7 +82,9 @@ def whole(toolpath, settings):
     """The plan of all points, away from what is tested: its motion, joint path and whether it can be carried out."""
     cell = cells.resolve(settings, toolpath.frame, toolpath.family)
     path = plan_joints(toolpath, cell, JointParameters())
-    motion, rapids = assemble(path, cell, PROCESS, toolpath.surroundings, JointParameters(), toolpath.layer_height)
+    motion, rapids = assemble(
+        path, cell, PROCESS, toolpath.surroundings, JointParameters(), toolpath.layer_height
+    )
     return cell, path, motion, not has_errors([*path.issues, *rapids])
 
 
@@ -93,7 +104,9 @@ def test_what_is_said_of_a_pose_is_what_its_whole_plan_says(dome, case):
         cell, path, motion, feasible = whole(dome, there)
         assert one.feasible or not feasible, (pose, one)
         said.append(feasible)
-        if one.feasible and not feasible:  # between the points looked at; told before it is proposed
+        if (
+            one.feasible and not feasible
+        ):  # between the points looked at; told before it is proposed
             hidden += 1
             assert not every.judged(there).feasible
         if feasible:
@@ -106,12 +119,16 @@ def test_what_is_said_of_a_pose_is_what_its_whole_plan_says(dome, case):
 
 def test_points_that_no_rotation_serves_are_counted_right(dome):
     """Each point with 1,440 rotations in turn: limits with whole turns, and the condition of a Jacobian by differences."""
-    settings = CellParameters(limits="paper", deposition_point=(645.747, -830.155, 453.167, 0.0, 0.0, 0.0))
+    settings = CellParameters(
+        limits="paper", deposition_point=(645.747, -830.155, 453.167, 0.0, 0.0, 0.0)
+    )
     judge = Judge(job_of(dome), 40)
     said = judge.judged(settings)
     cell = cells.resolve(settings, dome.frame)
     parts = [bead for _, _, bead in judge._some.toolpath]
-    position, tool = (np.concatenate([getattr(bead, name) for bead in parts]) for name in ("points", "tool"))
+    position, tool = (
+        np.concatenate([getattr(bead, name) for bead in parts]) for name in ("points", "tool")
+    )
     turns, lower, upper = 2.0 * np.pi * np.arange(-2, 3), cell.limits.lower, cell.limits.upper
     served = np.zeros(len(position), dtype=bool)
     at_zero = np.zeros(len(position))
@@ -122,7 +139,9 @@ def test_points_that_no_rotation_serves_are_counted_right(dome):
         q = cell.machine.arm.inverse_branch(flange, cell.branch)
         reached = np.isfinite(q).all(axis=1)
         condition = np.zeros(len(q))
-        matrix = jacobian.jacobian(cell.robot.chain, q[reached], cell.deposition_point(flange)[reached])
+        matrix = jacobian.jacobian(
+            cell.robot.chain, q[reached], cell.deposition_point(flange)[reached]
+        )
         scaled = matrix.copy()
         scaled[:, :3] /= 1000.0
         sigma = np.linalg.svd(scaled, compute_uv=False)
@@ -140,8 +159,12 @@ def test_points_that_no_rotation_serves_are_counted_right(dome):
 def test_the_best_is_planned_with_all_points_and_nearest_to_where_the_part_stands(dome):
     settings = CellParameters(limits="paper")
     steps = []
-    found = placed(job_of(dome), settings, PlaceParameters(points=60, x=300.0, y=0.0, z=300.0, step=300.0),
-                   lambda share, text: steps.append(share))
+    found = placed(
+        job_of(dome),
+        settings,
+        PlaceParameters(points=60, x=300.0, y=0.0, z=300.0, step=300.0),
+        lambda share, text: steps.append(share),
+    )
     assert isinstance(found, Placed) and len(found.poses) == 9 and steps == sorted(steps)
     assert found.best == next(reversed(found.proven))
     assert whole(dome, dataclasses.replace(settings, **inner(found.entries(found.best))))[3]
@@ -152,8 +175,14 @@ def test_the_best_is_planned_with_all_points_and_nearest_to_where_the_part_stand
     assert times == pytest.approx(sorted(times), abs=0.11)
     assert set(ranked(found, "clearance")) == set(ranked(found, "time"))
     lines = list(table.rows(found))
-    assert len(lines) == 10 and lines[0].startswith("x_mm,") and all(line.count(",") == 13 for line in lines)
-    assert [line.split(",")[6] for line in lines[1:]] == ["yes" if one.feasible else "no" for one in found.judged]
+    assert (
+        len(lines) == 10
+        and lines[0].startswith("x_mm,")
+        and all(line.count(",") == 13 for line in lines)
+    )
+    assert [line.split(",")[6] for line in lines[1:]] == [
+        "yes" if one.feasible else "no" for one in found.judged
+    ]
     assert table.key(found, found.best).startswith("deposition_point: [")
 
 
@@ -176,8 +205,15 @@ def test_cancelling_ends_it(dome):
 
 def test_no_pose_serves(dome):
     far = CellParameters(limits="paper", deposition_point=(5000.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    found = placed(job_of(dome), far, PlaceParameters(x=100.0, y=0.0, z=0.0, step=100.0), lambda share, text: None)
-    assert found.best is None and not found.proven and [one.share for one in found.judged] == [0.0] * 3
+    found = placed(
+        job_of(dome),
+        far,
+        PlaceParameters(x=100.0, y=0.0, z=0.0, step=100.0),
+        lambda share, text: None,
+    )
+    assert (
+        found.best is None and not found.proven and [one.share for one in found.judged] == [0.0] * 3
+    )
 
 
 @pytest.mark.parametrize(("settings", "moves"), [
@@ -197,8 +233,13 @@ def test_too_many_poses_are_refused():
 
 
 def test_a_box_has_where_the_part_stands_in_its_middle():
-    parameters = PlaceParameters(x=250.0, y=0.0, z=100.0, rz=np.pi, step=100.0, angle_step=np.pi / 2)
+    parameters = PlaceParameters(
+        x=250.0, y=0.0, z=100.0, rz=np.pi, step=100.0, angle_step=np.pi / 2
+    )
     about = (10.0, 20.0, 30.0, 0.1, 0.2, 0.3)
     poses = parameters.poses(about)
-    assert len(poses) == 5 * 1 * 3 * 5 and (np.abs(poses - np.array(about)) < 1e-12).all(axis=1).sum() == 1
+    assert (
+        len(poses) == 5 * 1 * 3 * 5
+        and (np.abs(poses - np.array(about)) < 1e-12).all(axis=1).sum() == 1
+    )
     assert np.allclose(np.sort(np.unique(poses[:, 0])), 10.0 + 100.0 * np.arange(-2, 3))

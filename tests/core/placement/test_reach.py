@@ -34,7 +34,9 @@ def test_where_the_tip_can_be_there_is_a_place(volume):
     q = q[(cell.limits.margin(q) >= 0.0).all(axis=1)]
     tip = (KdlArm(cell.machine).forward(q) @ cell.carried)[:, :3, 3]
     away, _ = cKDTree(found.places).query(tip)
-    assert len(q) > 500 and (away <= found.step * np.sqrt(3.0)).all()  # within the cube about it, or the next
+    assert (
+        len(q) > 500 and (away <= found.step * np.sqrt(3.0)).all()
+    )  # within the cube about it, or the next
 
 
 def test_shares_are_those_of_directions_at_random(volume):

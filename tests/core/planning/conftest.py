@@ -20,7 +20,12 @@ R0 = 45.0
 
 def sphere():
     """Eq. 20."""
-    return [sampled(lambda t: (np.c_[R0 * np.cos(t), R0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]), [0, np.pi / 2])]
+    return [
+        sampled(
+            lambda t: (np.c_[R0 * np.cos(t), R0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
+            [0, np.pi / 2],
+        )
+    ]
 
 
 def laval_nozzle():
@@ -56,10 +61,16 @@ def sliced():
     def make(part, layer_height, frame=None, process=None, **strategy):
         key = (part, layer_height, repr(frame), process, tuple(sorted(strategy.items())))
         if key not in made:
-            wall = RevolvedWall(Meridian.chained(PARTS[part]()), np.eye(4) if frame is None else frame)
+            wall = RevolvedWall(
+                Meridian.chained(PARTS[part]()), np.eye(4) if frame is None else frame
+            )
             made[key] = revolution.plan(
-                wall, RevolutionParameters(layer_height=layer_height, **strategy), BuildDirectionParameters(),
-                process or ProcessParameters(), NozzleParameters(), 113.0,
+                wall,
+                RevolutionParameters(layer_height=layer_height, **strategy),
+                BuildDirectionParameters(),
+                process or ProcessParameters(),
+                NozzleParameters(),
+                113.0,
             )
         return made[key]
 
@@ -83,6 +94,8 @@ def with_axis_6():
     def make(cell, half):
         lower, upper = np.array(cell.limits.lower), np.array(cell.limits.upper)
         lower[5], upper[5] = -np.radians(half), np.radians(half)
-        return dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper))
+        return dataclasses.replace(
+            cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper)
+        )
 
     return make

@@ -36,7 +36,9 @@ from tests.kdl_links import KdlLinks
 CLEARANCE = 10.0
 SIZE = np.array([60.0, 60.0, 400.0])  # of a post, mm
 CELL = {
-    "limits": "paper", "setup": "tool-on-robot", "deposition_point": (1000.0, 0.0, -100.0, 0.0, 0.0, 0.0),
+    "limits": "paper",
+    "setup": "tool-on-robot",
+    "deposition_point": (1000.0, 0.0, -100.0, 0.0, 0.0, 0.0),
     "nozzle": NozzleParameters(length=60.0, tool=(120.0, 0.0, 200.0, 0.0, np.radians(45.0), 0.0)),
 }
 DOWN, UP = ("front", "down", "noflip"), ("front", "up", "flip")
@@ -49,15 +51,21 @@ def dome():
     """A hemisphere in layers of 15 mm, the nozzle upright."""
     wall = RevolvedWall(Meridian.chained(sphere()), np.eye(4))
     return revolution.plan(
-        wall, RevolutionParameters(layer_height=15.0, chord_error=0.2), BuildDirectionParameters(mode="fixed"),
-        ProcessParameters(), NozzleParameters(), 113.0,
+        wall,
+        RevolutionParameters(layer_height=15.0, chord_error=0.2),
+        BuildDirectionParameters(mode="fixed"),
+        ProcessParameters(),
+        NozzleParameters(),
+        113.0,
     )
 
 
 def box(low, size, name):
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * size + low
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return Body(name, corners, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]))
+    return Body(
+        name, corners, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
+    )
 
 
 def planned(toolpath, cell, method="layer-by-layer", **more):
@@ -65,7 +73,13 @@ def planned(toolpath, cell, method="layer-by-layer", **more):
     rods, parameters = link_rods.of_robot(cell.robot.chain), JointParameters(method=method, **more)
     path = plan_joints(toolpath, cell, parameters, cylinders=rods)
     motion, rapids = assemble(
-        path, cell, ProcessParameters(), toolpath.surroundings, parameters, toolpath.layer_height, rods
+        path,
+        cell,
+        ProcessParameters(),
+        toolpath.surroundings,
+        parameters,
+        toolpath.layer_height,
+        rods,
     )
     return motion, [*path.issues, *rapids]
 
@@ -82,7 +96,11 @@ def on_rods(rods, spacing=8.0):
         turn = np.linspace(0.0, 2.0 * np.pi, 8 + int(6.3 * rod.radius / spacing))
         ring = np.cos(turn)[:, None] * one + np.sin(turn)[:, None] * other
         points.append((rod.start + along[:, None, None] * axis + rod.radius * ring).reshape(-1, 3))
-        points += [at + share * rod.radius * ring for at in (rod.start, rod.end) for share in (0.25, 0.5, 0.75)]
+        points += [
+            at + share * rod.radius * ring
+            for at in (rod.start, rod.end)
+            for share in (0.25, 0.5, 0.75)
+        ]
     return np.concatenate(points)
 
 
@@ -97,14 +115,23 @@ def nearest_of(joints, cell, low):
     """(k,) the same with joints (k, axes)."""
     arm, found = KdlLinks(cell.machine), []
     mount = cell.station @ np.linalg.inv(cell.mount)
-    links = [(number, on_rods(rods)) for number, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if number and rods]
+    links = [
+        (number, on_rods(rods))
+        for number, rods in enumerate(link_rods.of_robot(cell.robot.chain))
+        if number and rods
+    ]
     for q in joints:
         best = np.inf
         for number, points in links:
             link = arm.frame(q, number)
             place = points @ link[:3, :3].T + link[:3, 3]
             seen = (place - mount[:3, 3]) @ mount[:3, :3]
-            best = min(best, np.linalg.norm(np.maximum(np.maximum(low - seen, seen - low - SIZE), 0.0), axis=1).min())
+            best = min(
+                best,
+                np.linalg.norm(
+                    np.maximum(np.maximum(low - seen, seen - low - SIZE), 0.0), axis=1
+                ).min(),
+            )
         found.append(best)
     return np.array(found)
 
@@ -127,7 +154,9 @@ def test_links_that_met_a_post_keep_clear_of_it(dome, radius, azimuth, branch):
     assert not kept.limits.exceeded(motion.joints).any()
 
 
-@pytest.mark.parametrize(("method", "branch"), [("constant", DOWN), ("constant", UP), ("point-by-point", UP)])
+@pytest.mark.parametrize(
+    ("method", "branch"), [("constant", DOWN), ("constant", UP), ("point-by-point", UP)]
+)
 @pytest.mark.always("constant-branch0", "point-by-point-branch2")
 def test_other_methods_keep_clear_too(dome, method, branch):
     low = np.array([80.0, 80.0 * np.sqrt(3.0), 195.0]) - 0.5 * SIZE
@@ -150,7 +179,9 @@ def test_what_one_rotation_for_all_cannot_clear_is_named_with_what_may_help(dome
         told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
         assert any("back wall" in issue.message and issue.layer is not None for issue in told)
         notes = [issue.message for issue in issues if issue.code == "RZ_CONSTANT"]
-        assert len(notes) == (method == "constant") and all("layer-by-layer" in note for note in notes)
+        assert len(notes) == (method == "constant") and all(
+            "layer-by-layer" in note for note in notes
+        )
 
 
 def test_what_cannot_be_cleared_is_named(dome):
@@ -201,7 +232,9 @@ def test_what_came_too_near_is_refined_again_up_to_the_clearance(dome, monkeypat
     assert taken_back == [(0, 0), (1, 0)] and not has_errors(path.issues)
     assert (free[:2] < 0.97 * back[:2]).all() and (now[2:] == back[2:]).all()
     won = (back[:2] - now[:2]) / (back[:2] - free[:2])
-    assert (won > [0.64, 0.78]).all() and (won < 1.0).all(), won  # along a gap that is known wrongly it is less
+    assert (won > [0.64, 0.78]).all() and (won < 1.0).all(), (
+        won
+    )  # along a gap that is known wrongly it is less
     for bead in path.beads[:2]:
         between = np.linspace(0.0, 1.0, 10)[:, None, None]
         dense = (bead.joints[:-1] + between * np.diff(bead.joints, axis=0)).reshape(-1, 6)
@@ -212,7 +245,8 @@ def test_what_came_too_near_is_refined_again_up_to_the_clearance(dome, monkeypat
 
 # a UR whose wrist is bent onto its own forearm where the nozzle lies across, and one whose forearm meets its base, mm
 ACROSS = {
-    "setup": "tool-on-robot", "platform_diameter": 0.0,
+    "setup": "tool-on-robot",
+    "platform_diameter": 0.0,
     "nozzle": NozzleParameters(length=60.0, tool=(0.0, 0.0, 200.0, 0.0, np.radians(90.0), 0.0)),
 }
 OWN = [("ur-ur5e", (470.0, 20.0, -80.0)), ("ur-ur10e", (590.0, -260.0, -180.0))]
@@ -222,7 +256,10 @@ def apart(motion, cell):
     """The least mm between forearm and last link, by PyKDL, at ten places of each move of a motion."""
     arm = KdlLinks(cell.machine)
     rods = link_rods.of_robot(cell.robot.chain)
-    parts = [motion.joints[:-1] + share * np.diff(motion.joints, axis=0) for share in np.linspace(0.1, 1.0, 10)]
+    parts = [
+        motion.joints[:-1] + share * np.diff(motion.joints, axis=0)
+        for share in np.linspace(0.1, 1.0, 10)
+    ]
     least = np.inf
     for q in np.concatenate(parts)[::17]:
         clouds = []
@@ -248,12 +285,23 @@ def test_links_that_met_each_other_keep_apart(dome, robot, place):
 def test_links_that_cannot_keep_apart_are_named_with_their_place(dome):
     """The forearm meets the base however the tool is turned: told is this, and not what another configuration lacks."""
     nozzle = NozzleParameters(length=60.0, tool=(0.0, 0.0, 100.0, 0.0, np.radians(45.0), 0.0))
-    cell = cells.resolve(CellParameters(
-        machine="ur-ur10e", setup="tool-on-robot", platform_diameter=0.0, nozzle=nozzle, arm_clearance=CLEARANCE,
-        deposition_point=(250.0, 0.0, -200.0, 0.0, 0.0, 0.0)), dome.frame)
+    cell = cells.resolve(
+        CellParameters(
+            machine="ur-ur10e",
+            setup="tool-on-robot",
+            platform_diameter=0.0,
+            nozzle=nozzle,
+            arm_clearance=CLEARANCE,
+            deposition_point=(250.0, 0.0, -200.0, 0.0, 0.0, 0.0),
+        ),
+        dome.frame,
+    )
     _, issues = planned(dome, cell)
     errors = [issue for issue in issues if issue.level == "error"]
-    assert {issue.code for issue in errors} == {"ARM_CLEARANCE"} and (errors[0].layer, errors[0].bead) == (0, 0)
+    assert {issue.code for issue in errors} == {"ARM_CLEARANCE"} and (
+        errors[0].layer,
+        errors[0].bead,
+    ) == (0, 0)
     assert errors[0].message.startswith("link q3 comes nearer than 10 mm to base, or touches it;")
 
 
@@ -282,9 +330,11 @@ def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, m
 
 def counting(asked, own=arm_kept.ArmKept.rotations_near):
     """`rotations_near` that notes how many joint vectors it is asked about."""
+
     def rotations_near(self, joints, bead, places):
         asked.append(joints.shape[0] * joints.shape[1])
         return own(self, joints, bead, places)
+
     return rotations_near
 
 
@@ -295,10 +345,14 @@ def test_pairs_of_links_are_found_once_for_the_same_robot_and_anew_for_another()
     assert OwnLinks.of(robot.chain, limits, link_rods.of_robot(robot.chain), CLEARANCE) is first
     other = machine.load("ur-ur10e")
     thick = [[dataclasses.replace(rod, radius=4.0 * rod.radius) for rod in link] for link in rods]
-    narrow = dataclasses.replace(limits, upper=np.append(limits.upper[:2], [*limits.lower[2:3] + 1e-3, *limits.upper[3:]]))
+    narrow = dataclasses.replace(
+        limits, upper=np.append(limits.upper[:2], [*limits.lower[2:3] + 1e-3, *limits.upper[3:]])
+    )
     for chain, among, links, clearance in [
-        (other.chain, limits, rods, CLEARANCE), (robot.chain, narrow, rods, CLEARANCE),
-        (robot.chain, limits, thick, CLEARANCE), (robot.chain, limits, rods, 8.0 * CLEARANCE),
+        (other.chain, limits, rods, CLEARANCE),
+        (robot.chain, narrow, rods, CLEARANCE),
+        (robot.chain, limits, thick, CLEARANCE),
+        (robot.chain, limits, rods, 8.0 * CLEARANCE),
     ]:
         found = OwnLinks.of(chain, among, links, clearance)
         fresh = own._found.__wrapped__(own._Asked(chain, among, links, clearance))  # not remembered

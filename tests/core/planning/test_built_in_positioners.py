@@ -13,7 +13,9 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from tests.core.planning import test_external_axes as cells
 
-KNOWN = sorted(path.stem for path in MECHANISMS.glob("*.json") if not load(path.stem).chain.sliding.any())
+KNOWN = sorted(
+    path.stem for path in MECHANISMS.glob("*.json") if not load(path.stem).chain.sliding.any()
+)
 STANDS = (1400.0, 120.0, -400.0, 0.0, 0.0, 30.0)
 
 
@@ -36,15 +38,26 @@ def test_a_part_is_carried_and_kept_upright(sliced, name):
     tip = tip @ toolpath.frame[:3, :3].T + toolpath.frame[:3, 3]
     assert np.abs(tip - np.concatenate([path.bead.points for path in planned.beads])).max() < 1e-6
     assert np.degrees(np.arccos(np.clip(upward @ cells.UP, -1.0, 1.0))).max() < 10.0 + 1e-6
-    limits = np.radians(json.loads((MECHANISMS / f"{name}.json").read_text())["limits"]["maker"]["axes"])
+    limits = np.radians(
+        json.loads((MECHANISMS / f"{name}.json").read_text())["limits"]["maker"]["axes"]
+    )
     motion, issues = assemble(planned, cell, ProcessParameters())
     assert not [issue for issue in issues if issue.level == "error"]
-    assert (motion.joints[:, 6:] >= limits[:, 0]).all() and (motion.joints[:, 6:] <= limits[:, 1]).all()
+    assert (motion.joints[:, 6:] >= limits[:, 0]).all() and (
+        motion.joints[:, 6:] <= limits[:, 1]
+    ).all()
     assert np.isfinite(motion.duration).all() and (motion.duration[motion.moves][1:] > 0.0).all()
 
 
 def test_one_whose_speeds_are_known_is_offered_first():
     robot = machines.load("kuka-kr8-r2100-2-arc-hw")
     assert [one.id for one in positioners(robot, 100.0, 50.0)] == [
-        "motoman-motopos-d500", "kuka-dkp-400", "kuka-kp2-hv500", "abb-irbp-a250"]
-    assert [one.id for one in positioners(robot, 450.0, 50.0)] == ["motoman-motopos-d500", "kuka-kp2-hv500"]
+        "motoman-motopos-d500",
+        "kuka-dkp-400",
+        "kuka-kp2-hv500",
+        "abb-irbp-a250",
+    ]
+    assert [one.id for one in positioners(robot, 450.0, 50.0)] == [
+        "motoman-motopos-d500",
+        "kuka-kp2-hv500",
+    ]

@@ -51,13 +51,22 @@ def shortest(task, path):
     """The least eq. 17 over rotations of FINE values at every point of a bead: what a search of pairs finds."""
     points = gather([path.bead], task.cell)
     phi = np.arange(FINE) * 2.0 * np.pi / FINE
-    joints = np.stack([task.raw_joints(points.each(np.full(FINE, i)), phi) for i in range(len(points))])
+    joints = np.stack(
+        [task.raw_joints(points.each(np.full(FINE, i)), phi) for i in range(len(points))]
+    )
     away = np.exp(1j * (joints - task.middle))
-    reachable = np.isfinite(joints).all(axis=2) & (np.abs(np.angle(away)) <= np.where(
-        task.continuous, np.inf, 0.5 * (task.cell.limits.upper - task.cell.limits.lower))).all(axis=2)
-    ratio = np.stack([
-        task.condition_at(points.frames.of(np.full(FINE, i)).at(phi), joints[i]) for i in range(len(points))
-    ])
+    reachable = np.isfinite(joints).all(axis=2) & (
+        np.abs(np.angle(away))
+        <= np.where(
+            task.continuous, np.inf, 0.5 * (task.cell.limits.upper - task.cell.limits.lower)
+        )
+    ).all(axis=2)
+    ratio = np.stack(
+        [
+            task.condition_at(points.frames.of(np.full(FINE, i)).at(phi), joints[i])
+            for i in range(len(points))
+        ]
+    )
     reachable &= ratio >= path.threshold[:, None]
     least = np.where(reachable[0], 0.0, np.inf)
     for before, after, there in zip(joints, joints[1:], reachable[1:]):
@@ -65,7 +74,11 @@ def shortest(task, path):
             weight * np.angle(np.exp(1j * (after[None, :, axis] - before[:, None, axis]))) ** 2
             for axis, weight in enumerate(task.weights)
         )
-        least = np.where(there, np.nanmin(np.where(np.isnan(cost), np.inf, cost) + least[:, None], axis=0), np.inf)
+        least = np.where(
+            there,
+            np.nanmin(np.where(np.isnan(cost), np.inf, cost) + least[:, None], axis=0),
+            np.inf,
+        )
     return float(least.min())
 
 
@@ -116,7 +129,9 @@ def test_what_is_proved_does_not_depend_on_the_path_that_is_asked_about(planned)
     task, paths = planned
     path = min(paths, key=lambda one: len(one.phi))
     phi = path.phi + 0.3 * path.bead.parameter
-    turned = dataclasses.replace(path, phi=phi, joints=task.raw_joints(gather([path.bead], task.cell), phi))
+    turned = dataclasses.replace(
+        path, phi=phi, joints=task.raw_joints(gather([path.bead], task.cell), phi)
+    )
     of_best, of_worse = certificate.certified(task, [path, turned]).bound
     assert of_worse > 0.98 * of_best
 
@@ -130,11 +145,15 @@ def test_the_best_course_closes_the_gap(planned):
         turned = dataclasses.replace(path, phi=phi, joints=task.joints(points, phi))
         best = closing.closed(task, turned)
         value = summed(task.weights, best.joints)
-        assert best.objective == pytest.approx(value, rel=1e-9) and value < 0.8 * summed(task.weights, turned.joints)
+        assert best.objective == pytest.approx(value, rel=1e-9) and value < 0.8 * summed(
+            task.weights, turned.joints
+        )
         (bound,) = certificate.certified(task, [best]).bound
         assert bound <= value < 1.01 * bound
         limits = task.cell.limits
-        assert (best.joints >= limits.lower - 1e-9).all() and (best.joints <= limits.upper + 1e-9).all()
+        assert (best.joints >= limits.lower - 1e-9).all() and (
+            best.joints <= limits.upper + 1e-9
+        ).all()
         assert np.degrees(np.abs(np.diff(best.phi)).max()) < 30.0
         flange = points.frames.at(best.phi)
         np.testing.assert_allclose(task.cell.machine.chain.forward(best.joints), flange, atol=1e-6)
@@ -145,8 +164,15 @@ def test_a_bead_that_joins_up_still_does(planned):
     task, paths = planned
     joined = dataclasses.replace(task, joined=True)
     path = paths[0]
-    phi = path.phi[0] + path.bead.parameter - path.bead.parameter[0] + 0.2 * np.sin(2.0 * path.bead.parameter)
-    turned = dataclasses.replace(path, phi=phi, joints=task.joints(gather([path.bead], task.cell), phi))
+    phi = (
+        path.phi[0]
+        + path.bead.parameter
+        - path.bead.parameter[0]
+        + 0.2 * np.sin(2.0 * path.bead.parameter)
+    )
+    turned = dataclasses.replace(
+        path, phi=phi, joints=task.joints(gather([path.bead], task.cell), phi)
+    )
     if not turned.bead.closed or not (task.rows.margin(turned.joints) >= 0.0).all():
         pytest.skip("this bead does not come round")
     best = closing.closed(joined, turned)
@@ -163,10 +189,15 @@ def test_a_plan_with_its_gap_closed(sliced, cell_of, with_axis_6):
     assert closed.feasible and 0.0 <= closed.optimality["gap"] < 0.005
     assert closed.optimality["bound"] < 0.98 * usual  # lines alone are further off
     total = closed.optimality["with_ways_between"]
-    ways = [after.joints[0] - before.joints[-1] for before, after in zip(closed.beads, closed.beads[1:])]
+    ways = [
+        after.joints[0] - before.joints[-1] for before, after in zip(closed.beads, closed.beads[1:])
+    ]
     weights = Task(cell, 0, JointParameters()).weights
     assert total["objective"] == pytest.approx(
-        sum(bead["objective"] for bead in closed.optimality["beads"]) + sum(way**2 @ weights for way in ways), rel=1e-9)
+        sum(bead["objective"] for bead in closed.optimality["beads"])
+        + sum(way**2 @ weights for way in ways),
+        rel=1e-9,
+    )
     assert closed.optimality["bound"] * 0.97 < total["bound"] <= total["objective"]
 
 
@@ -185,14 +216,18 @@ def wavy(rng, points, count):
     return joints, ~shut
 
 
-@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.long) for k in range(2, 34))])
+@pytest.mark.parametrize(
+    "seed", [0, 1, *(pytest.param(k, marks=pytest.mark.long) for k in range(2, 34))]
+)
 def test_made_up_arms_against_a_search_on_a_much_finer_lattice(seed):
     points, coarse, parts = 9, 180, 4 if seed < 2 else 8
     joints, free = wavy(np.random.default_rng(seed), points, coarse * parts)
     weights = np.random.default_rng(seed + 100).uniform(0.05, 1.0, 3)
     # a cell is possible where one of the fine rotations in it is
     ends = np.concatenate([free, free[:, :1]], axis=1)
-    possible = np.stack([ends[:, k : k + coarse * parts : parts] for k in range(parts + 1)]).any(axis=0)
+    possible = np.stack([ends[:, k : k + coarse * parts : parts] for k in range(parts + 1)]).any(
+        axis=0
+    )
     least = np.where(free[-1], 0.0, np.inf)
     for before, after, there in zip(joints[-2::-1], joints[:0:-1], free[-2::-1]):
         cost = sum(
@@ -218,9 +253,13 @@ def test_sums_that_leap_at_an_edge_hide_no_lower_ones():
         rng = np.random.default_rng(seed)
         joints, _ = wavy(rng, 1, 180)
         phi = np.arange(180) * 2.0 * np.pi / 180
-        waves = (rng.normal() * 4.0 / k * np.cos(k * phi + rng.uniform(0.0, 6.0)) for k in range(1, 6))
+        waves = (
+            rng.normal() * 4.0 / k * np.cos(k * phi + rng.uniform(0.0, 6.0)) for k in range(1, 6)
+        )
         free = np.convolve(rng.random(190) < 0.06, np.ones(11), "valid") == 0
-        first = Lattice(joints, (free & np.roll(free, -1))[None], np.ones(3), np.ones(3, dtype=bool))
+        first = Lattice(
+            joints, (free & np.roll(free, -1))[None], np.ones(3), np.ones(3, dtype=bool)
+        )
         there = first.passable[0]
         edge = there & ~np.roll(there, -1)
         value = np.where(there, np.exp(sum(waves)) * np.where(edge, 30.0, 1.0), np.inf)
@@ -245,7 +284,9 @@ def test_objectives_of_points_one_by_one(planned, objective):
     good = np.isfinite(joints).all(axis=1)
     value, ratio = np.full(len(joints), np.inf), np.zeros(len(joints))
     rows = points.each(every[good])
-    value[good] = criteria.value(task, rows, joints[good], task.jacobian_at(rows.frames, turned[good], joints[good]))
+    value[good] = criteria.value(
+        task, rows, joints[good], task.jacobian_at(rows.frames, turned[good], joints[good])
+    )
     ratio[good] = task.condition_at(flange[good], joints[good])
     kept = (task.given_rows.margin(joints) >= 0.0) & (ratio >= path.threshold[every])
     least = np.where(kept, value, np.inf).reshape(len(points), -1).min(axis=1)

@@ -33,13 +33,25 @@ def test_the_middle_of_uneven_segments_of_a_circle_is_on_it(closed):
     assert np.abs(np.linalg.norm(middle, axis=1) - 45.0).max() < 45.0 * half.max() ** 4 / 8 + 1e-9
     assert np.abs(np.linalg.norm(middle, axis=1) - 45.0).max() < 1e-4
     for share in (0.1, 0.3, 0.8):
-        assert np.abs(np.linalg.norm(curve_points(bead_of(points, closed), share), axis=1) - 45.0).max() < 1e-4
-    assert np.abs(np.angle(np.exp(1j * (np.arctan2(middle[:, 1], middle[:, 0]) - between)))).max() < 1e-9
+        assert (
+            np.abs(
+                np.linalg.norm(curve_points(bead_of(points, closed), share), axis=1) - 45.0
+            ).max()
+            < 1e-4
+        )
+    assert (
+        np.abs(np.angle(np.exp(1j * (np.arctan2(middle[:, 1], middle[:, 0]) - between)))).max()
+        < 1e-9
+    )
 
 
 def test_corners_and_straight_stretches_stay_as_they_are():
-    square = np.array([[0, 0, 0], [5, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [0, 0, 0]], dtype=float)
-    assert np.abs(curve_points(bead_of(square, True)) - 0.5 * (square[1:] + square[:-1])).max() < 1e-12
+    square = np.array(
+        [[0, 0, 0], [5, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [0, 0, 0]], dtype=float
+    )
+    assert (
+        np.abs(curve_points(bead_of(square, True)) - 0.5 * (square[1:] + square[:-1])).max() < 1e-12
+    )
     assert np.abs(curve_points(bead_of(square[:2], False)) - [2.5, 0, 0]).max() < 1e-12
 
 
@@ -56,7 +68,9 @@ def test_added_points_are_on_the_sphere_and_in_the_plane_of_their_layer(sliced, 
     assert added > 100
 
 
-def test_beads_that_are_looked_at_together_get_the_points_that_they_get_alone(sliced, cell_of, monkeypatch):
+def test_beads_that_are_looked_at_together_get_the_points_that_they_get_alone(
+    sliced, cell_of, monkeypatch
+):
     toolpath, found = sliced("sphere", 5.0), []
     for together in (1, 200, 4096):
         monkeypatch.setattr(chord_error, "TOGETHER", together)

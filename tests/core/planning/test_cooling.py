@@ -13,7 +13,11 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.parameters.process import BetweenLayersParameters, CoolingParameters, ProcessParameters
+from freecad_am.core.parameters.process import (
+    BetweenLayersParameters,
+    CoolingParameters,
+    ProcessParameters,
+)
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
@@ -37,8 +41,12 @@ def toolpath(frame, order="around-axis", apart=0.9):
     for number, turn in enumerate((0.0, apart)):
         cos, sin = math.cos(turn), math.sin(turn)
         turned = one.vertices @ np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        bodies.append(dataclasses.replace(one, name=f"blade {number}", vertices=turned @ frame[:3, :3].T))
-    strategy = DevelopableParameters(layer_height=5.0, chord_error=CHORD_ERROR, bead_spacing=6.0, order=order)
+        bodies.append(
+            dataclasses.replace(one, name=f"blade {number}", vertices=turned @ frame[:3, :3].T)
+        )
+    strategy = DevelopableParameters(
+        layer_height=5.0, chord_error=CHORD_ERROR, bead_spacing=6.0, order=order
+    )
     solids = SolidsOnHub("part", (Group(Base("hub", HUB, frame), tuple(bodies)),), 0.0)
     return plan_solids(solids, strategy, BuildDirectionParameters(), ProcessParameters(), None)
 
@@ -57,7 +65,9 @@ def process(cooling=COOLING):
 
 def program(cell, path, found, motion, post, cooling=COOLING, kind="joint", **more):
     parameters = ProgramParameters(post=post, nc=NcParameters(), motion=kind, **more)
-    return build(motion, cell, process(cooling), parameters, "cool", (), returning(path, found.beads))
+    return build(
+        motion, cell, process(cooling), parameters, "cool", (), returning(path, found.beads)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -112,16 +122,28 @@ def test_programs_of_tables_read_the_sensor(on_table, post, kind):
                   "linuxcnc": (b"while [#5399 GE 1.75]", b"")}[post]  # fmt: skip
     assert sum(text.count(told) for text in files.values()) == count
     name = max(name for name, text in files.items() if told in text)
-    changes = [(told, told.replace(b"1.75", b"1.76")), (told, told.replace(b"[3]", b"[2]") if lost else told + b"1")]
+    changes = [
+        (told, told.replace(b"1.75", b"1.76")),
+        (told, told.replace(b"[3]", b"[2]") if lost else told + b"1"),
+    ]
     changes += [(told, lost)] if lost else [(b"M66 E2 L0\no<cool", b"M66 E1 L0\no<cool")]
     for old, new in changes:
         spoilt = {**files, name: files[name].replace(old, new, 1)}
         try:
-            codes = [issue.code for issue in verify(cell, motion, made, spoilt, writer, CHORD_ERROR).issues]
+            codes = [
+                issue.code
+                for issue in verify(cell, motion, made, spoilt, writer, CHORD_ERROR).issues
+            ]
         except InputError as error:
             codes = [error.code]
-        assert codes in (["VERIFY_COOLING"], ["VERIFY_WAIT", "VERIFY_COOLING"], ["UNREADABLE_PROGRAM"]), (old, new)
-    without = program(cell, path, found, motion, post, CoolingParameters(), kind=kind, max_points=60)
+        assert codes in (
+            ["VERIFY_COOLING"],
+            ["VERIFY_WAIT", "VERIFY_COOLING"],
+            ["UNREADABLE_PROGRAM"],
+        ), (old, new)
+    without = program(
+        cell, path, found, motion, post, CoolingParameters(), kind=kind, max_points=60
+    )
     assert not any(isinstance(block, WaitBelow) for block in without.blocks)
     (told,) = verify(cell, motion, without, files, writer, CHORD_ERROR).issues
     assert told.code == "VERIFY_COOLING" and f"{count} of" in told.message
@@ -130,11 +152,15 @@ def test_programs_of_tables_read_the_sensor(on_table, post, kind):
 def test_loops_that_read_once_are_not_understood(on_table):
     cell, path, found, motion = on_table
     writer = catalogue.load("linuxcnc")
-    (name, text), = writer.write(program(cell, path, found, motion, "linuxcnc", max_points=10**6)).items()
+    ((name, text),) = writer.write(
+        program(cell, path, found, motion, "linuxcnc", max_points=10**6)
+    ).items()
     start = text.index(b"M66 E2 L0")
     loop = text[start : text.index(b"endwhile", start)]
     for old, new in (
-        (b"G4 P0.100\nM66 E2 L0\n", b"G4 P0.100\n"), (b"M66 E2 L0\no<", b"o<"), (b"G4 P0.100", b"G1 X0 F5"),
+        (b"G4 P0.100\nM66 E2 L0\n", b"G4 P0.100\n"),
+        (b"M66 E2 L0\no<", b"o<"),
+        (b"G4 P0.100", b"G1 X0 F5"),
         (b"G4 P0.100\nM66 E2 L0", b"G4 P0.100\nM66 E1 L0"),
     ):
         assert old in loop
@@ -155,13 +181,18 @@ def test_robots_wait_or_say_why_not():
     name = next(name for name in files if b"WAIT AI[2]" in files[name])
     for new in (b"WAIT AI[3]<1197", b"WAIT AI[2]<1198", b"WAIT DI[2]=ON"):
         spoilt = {**files, name: files[name].replace(b"WAIT AI[2]<1197", new, 1)}
-        codes = {issue.code for issue in verify(cell, motion, made, spoilt, writer, CHORD_ERROR).issues}
+        codes = {
+            issue.code for issue in verify(cell, motion, made, spoilt, writer, CHORD_ERROR).issues
+        }
         assert codes == {"VERIFY_COOLING", *(["VERIFY_WAIT"] if b"DI[" in new else [])}
     for post, cooling, code in (
-        ("fanuc", COOLING, "ANALOGUE_INPUT"), ("fanuc", CoolingParameters(below=150.0, input=26), "ANALOGUE_INPUT"),
+        ("fanuc", COOLING, "ANALOGUE_INPUT"),
+        ("fanuc", CoolingParameters(below=150.0, input=26), "ANALOGUE_INPUT"),
         ("staubli", whole, "NO_ANALOGUE_INPUT"),
     ):
-        other = dataclasses.replace(program(cell, path, found, motion, "fanuc", cooling), continuous=(False,) * 6)
+        other = dataclasses.replace(
+            program(cell, path, found, motion, "fanuc", cooling), continuous=(False,) * 6
+        )
         with pytest.raises(InputError) as raised:
             catalogue.load(post).write(other)
         assert raised.value.code == code

@@ -33,14 +33,23 @@ def straight(start, end, count=15):
 def wall_between():
     """A wall 24 mm high, and after it one bead on either side of it, at its foot."""
     beads = [straight([0.0, -40.0, z], [0.0, 40.0, z]) for z in np.arange(1.0, 25.0, 1.0)]
-    beads += [straight([-25.0, 30.0, 1.0], [-25.0, 0.0, 1.0]), straight([25.0, 0.0, 1.0], [25.0, 30.0, 1.0])]
-    return Toolpath(tuple(Layer((bead,)) for bead in beads), np.eye(4), 1.0, 0.02, family="developable")
+    beads += [
+        straight([-25.0, 30.0, 1.0], [-25.0, 0.0, 1.0]),
+        straight([25.0, 0.0, 1.0], [25.0, 30.0, 1.0]),
+    ]
+    return Toolpath(
+        tuple(Layer((bead,)) for bead in beads), np.eye(4), 1.0, 0.02, family="developable"
+    )
 
 
 @pytest.fixture(scope="module")
 def on_table():
-    parameters = CellParameters(machine="table-xyzac", setup="rotary-table", platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0),
-                                mount="part")
+    parameters = CellParameters(
+        machine="table-xyzac",
+        setup="rotary-table",
+        platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0),
+        mount="part",
+    )
     cell = cells.resolve(parameters, np.eye(4), "developable")
     path = plan_joints(wall_between(), cell, JointParameters())
     assert path.feasible, path.issues
@@ -71,7 +80,9 @@ def deepest(motion, cell, row, count=60):
         across = np.linalg.norm(laid - tip - height[:, None] * axis, axis=1)
         near = np.linalg.norm(laid - tip, axis=1) <= nozzle.diameter
         inside = 0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - across
-        deep = max(deep, inside[(height > 0.0) & (height < nozzle.length) & ~near].max(initial=-np.inf))
+        deep = max(
+            deep, inside[(height > 0.0) & (height < nozzle.length) & ~near].max(initial=-np.inf)
+        )
     return deep
 
 
@@ -80,7 +91,9 @@ def test_no_retract_distance_lets_the_nozzle_through_a_wall(on_table, lift):
     cell, path = on_table
     motion, issues = assemble(path, cell, lifting(lift))
     # without a retract the tip goes sideways off the wall's last bead and touches it
-    assert [(issue.code, issue.layer) for issue in issues] == [("RAPID_LIFTED", len(path.beads) - (2 if lift == 0.0 else 1))]
+    assert [(issue.code, issue.layer) for issue in issues] == [
+        ("RAPID_LIFTED", len(path.beads) - (2 if lift == 0.0 else 1))
+    ]
     assert not has_errors(issues)
     worst = max(deepest(motion, cell, row) for row in np.flatnonzero(~motion.deposit[1:]) + 1)
     assert worst < 0.1
@@ -96,10 +109,17 @@ def test_beads_have_their_width_where_the_nozzle_goes_over(on_table):
     lift = 24.0
     lines, issues = assemble(path, cell, lifting(lift))
     assert not issues
-    moved, issues = assemble(path, cell, ProcessParameters(
-        between_layers=BetweenLayersParameters(lift=lift), bead_width=8.0), layer_height=4.0)
+    moved, issues = assemble(
+        path,
+        cell,
+        ProcessParameters(between_layers=BetweenLayersParameters(lift=lift), bead_width=8.0),
+        layer_height=4.0,
+    )
     assert [issue.code for issue in issues] == ["RAPID_LIFTED"]
-    over = [np.flatnonzero((m.role == TRAVEL) & (m.layer == len(path.beads) - 1)) for m in (lines, moved)]
+    over = [
+        np.flatnonzero((m.role == TRAVEL) & (m.layer == len(path.beads) - 1))
+        for m in (lines, moved)
+    ]
     assert lines.position[over[0], 2].max() < 28.0 <= moved.position[over[1], 2].min()
 
 
@@ -131,34 +151,48 @@ def within(cell, axis, low, high):
     """The cell with other limits of an axis."""
     lower, upper = cell.limits.lower.copy(), cell.limits.upper.copy()
     lower[axis], upper[axis] = low, high
-    return dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper))
+    return dataclasses.replace(
+        cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper)
+    )
 
 
-def test_a_limit_that_leaves_room_for_less_is_kept_and_told_and_one_that_leaves_none_refuses(on_table):
+def test_a_limit_that_leaves_room_for_less_is_kept_and_told_and_one_that_leaves_none_refuses(
+    on_table,
+):
     cell, path = on_table
     motion, _ = assemble(path, cell, lifting(20.0))
     deposit, every = motion.joints[motion.deposit], motion.joints
     # the axis whose range the retracts widen most
-    wider = np.stack([deposit.min(axis=0) - every.min(axis=0), every.max(axis=0) - deposit.max(axis=0)])
+    wider = np.stack(
+        [deposit.min(axis=0) - every.min(axis=0), every.max(axis=0) - deposit.max(axis=0)]
+    )
     end, axis = np.unravel_index(wider.argmax(), wider.shape)
     low, high = cell.limits.lower[axis], cell.limits.upper[axis]
 
     def leaving(room):
-        ends = (deposit[:, axis].min() - room, high) if end == 0 else (low, deposit[:, axis].max() + room)
+        ends = (
+            (deposit[:, axis].min() - room, high)
+            if end == 0
+            else (low, deposit[:, axis].max() + room)
+        )
         return within(cell, axis, *ends)
 
     short = leaving(8.0)
     motion, issues = assemble(path, short, lifting(20.0))
     assert "RAPID_OTHER" in [issue.code for issue in issues]
     assert (motion.joints[:, axis] >= short.limits.lower[axis]).all() and (
-        motion.joints[:, axis] <= short.limits.upper[axis]).all()
+        motion.joints[:, axis] <= short.limits.upper[axis]
+    ).all()
     none = leaving(0.1)
     _, issues = assemble(path, none, lifting(20.0))
     wrong = [issue for issue in issues if issue.level == ERROR and issue.code == "RAPID_LIMIT"]
     assert wrong and all(issue.layer is not None and issue.bead == 0 for issue in wrong)
     bound = none.limits.lower[axis] if end == 0 else none.limits.upper[axis]
     assert all(f"{none.limits.labels[axis]} would be at" in issue.message for issue in wrong)
-    assert all(f"{bound:g} mm" in issue.message and "process.between_layers.lift" in issue.message for issue in wrong)
+    assert all(
+        f"{bound:g} mm" in issue.message and "process.between_layers.lift" in issue.message
+        for issue in wrong
+    )
 
 
 def test_the_way_off_the_last_bead_is_looked_at_too(on_table):
@@ -167,21 +201,42 @@ def test_the_way_off_the_last_bead_is_looked_at_too(on_table):
     nozzle, end = cell.nozzle, path.beads[-1].bead.points[-1]
     wide = 0.5 * nozzle.diameter
     middle = end + [0.0, 15.0, nozzle.length + 8.0]
-    corners = middle + np.array([[a, b, c] for a in (-2.0, 2.0) for b in (-2.0, 2.0) for c in (-2.0, 2.0)])
-    sides = [(0, 1, 3), (0, 3, 2), (4, 7, 5), (4, 6, 7), (0, 5, 1), (0, 4, 5), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
-             (1, 5, 7), (1, 7, 3)]
+    corners = middle + np.array(
+        [[a, b, c] for a in (-2.0, 2.0) for b in (-2.0, 2.0) for c in (-2.0, 2.0)]
+    )
+    sides = [
+        (0, 1, 3),
+        (0, 3, 2),
+        (4, 7, 5),
+        (4, 6, 7),
+        (0, 5, 1),
+        (0, 4, 5),
+        (2, 3, 7),
+        (2, 7, 6),
+        (0, 2, 6),
+        (0, 6, 4),
+        (1, 5, 7),
+        (1, 7, 3),
+    ]
     free, issues = assemble(path, cell, lifting(20.0))
     motion, found = assemble(path, cell, lifting(20.0), [Body("block", corners, np.array(sides))])
     told = {issue.code for issue in found} - {issue.code for issue in issues}
     assert told and told <= {"RAPID_COLLISION", "RAPID_ASIDE", "RAPID_OTHER"}, found
     first = int(np.flatnonzero(motion.deposit)[-1]) + 1
     same = int(np.flatnonzero(free.deposit)[-1]) + 1
-    assert first == same and np.array_equal(motion.joints[:first], free.joints[:same])  # all before goes as it went
+    assert first == same and np.array_equal(
+        motion.joints[:first], free.joints[:same]
+    )  # all before goes as it went
 
     def deep(of):
         return max(
-            float(np.minimum(wide + height * np.tan(nozzle.half_angle) - across, nozzle.length - height).max())
-            for row in range(first, len(of)) for tip, axis in zip(*places(of, cell, row, 60))
+            float(
+                np.minimum(
+                    wide + height * np.tan(nozzle.half_angle) - across, nozzle.length - height
+                ).max()
+            )
+            for row in range(first, len(of))
+            for tip, axis in zip(*places(of, cell, row, 60))
             for height in [(corners - tip) @ axis]
             for across in [np.linalg.norm(corners - tip - height[:, None] * axis, axis=1)]
         )
@@ -212,7 +267,9 @@ def far_away(sliced, cell_of):
 def retracts(motion):
     """The rows (k,) of each retract, that of the bead it leaves before them."""
     for start in np.flatnonzero((motion.role == RETRACT) & np.r_[False, motion.deposit[:-1]]):
-        yield np.arange(start - 1, start + int(np.argmax(np.r_[motion.role[start:] != RETRACT, True])))
+        yield np.arange(
+            start - 1, start + int(np.argmax(np.r_[motion.role[start:] != RETRACT, True]))
+        )
 
 
 def test_rows_between_the_ends_of_a_retract_keep_within_limits_too(far_away):
@@ -228,9 +285,13 @@ def test_rows_between_the_ends_of_a_retract_keep_within_limits_too(far_away):
     assert over > np.radians(0.05)
     bound, upper = end + 0.4 * over, cell.limits.upper.copy()
     upper[axis] = bound
-    other, issues = made(dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, upper=upper)))
+    other, issues = made(
+        dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, upper=upper))
+    )
     assert "RAPID_OTHER" in [issue.code for issue in issues]
-    some = [other.joints[rows, axis] for rows in retracts(other) if other.joints[rows[0], axis] <= bound]
+    some = [
+        other.joints[rows, axis] for rows in retracts(other) if other.joints[rows[0], axis] <= bound
+    ]
     assert len(some) >= 2 and max(values.max() for values in some) <= bound
 
 
@@ -246,7 +307,9 @@ def test_rapids_keep_the_least_condition_or_it_says_so(far_away):
     assert conditions(arm, cell, motion.joints[off_beads(motion)]).min() >= least - 1e-6
     _, issues = made(least=0.9)
     wrong = [issue for issue in issues if issue.level == ERROR]
-    assert {issue.code for issue in wrong} == {"RAPID_SINGULAR"} and all(issue.layer is not None for issue in wrong)
+    assert {issue.code for issue in wrong} == {"RAPID_SINGULAR"} and all(
+        issue.layer is not None for issue in wrong
+    )
 
 
 def test_an_endless_axis_never_has_half_a_turn_to_go_in_one_move(sliced, cell_of):
@@ -257,7 +320,9 @@ def test_an_endless_axis_never_has_half_a_turn_to_go_in_one_move(sliced, cell_of
     (axis,) = np.flatnonzero(cell.limits.continuous)
     on = np.eye(6)[axis] * 3.0 * np.pi
     beads = tuple(
-        dataclasses.replace(bead, joints=bead.joints + number * on, phi=bead.phi) for number, bead in enumerate(path.beads))
+        dataclasses.replace(bead, joints=bead.joints + number * on, phi=bead.phi)
+        for number, bead in enumerate(path.beads)
+    )
     motion, _ = assemble(dataclasses.replace(path, beads=beads), cell, lifting(20.0))
     turned = np.abs(np.diff(motion.joints[:, axis]))
     assert turned[~motion.deposit[1:]].max() <= np.radians(170.0) + 1e-9
@@ -269,7 +334,9 @@ def test_an_endless_axis_never_has_half_a_turn_to_go_in_one_move(sliced, cell_of
 def test_a_retract_beyond_all_reach_is_refused_with_its_place(sliced, cell_of):
     toolpath = sliced("sphere", 15.0, chord_error=0.3)
     cell = cell_of(toolpath)
-    motion, issues = assemble(plan_joints(toolpath, cell, JointParameters()), cell, lifting(100_000.0))
+    motion, issues = assemble(
+        plan_joints(toolpath, cell, JointParameters()), cell, lifting(100_000.0)
+    )
     wrong = [issue for issue in issues if issue.level == ERROR]
     assert {issue.code for issue in wrong} == {"RAPID_UNREACHABLE"} and not motion.reachable.all()
     assert [issue.layer for issue in wrong] == list(range(len(toolpath.layers)))
@@ -281,8 +348,14 @@ def test_few_looks_find_what_all_of_them_do(on_table, monkeypatch):
     cell, path = on_table
     asked = []
     touched = clearance.RapidObstacles._touched
-    monkeypatch.setattr(clearance.RapidObstacles, "_touched", lambda self, nozzle, looks, moves: (
-        asked.append(len(looks.move)), touched(self, nozzle, looks, moves))[1])
+    monkeypatch.setattr(
+        clearance.RapidObstacles,
+        "_touched",
+        lambda self, nozzle, looks, moves: (
+            asked.append(len(looks.move)),
+            touched(self, nozzle, looks, moves),
+        )[1],
+    )
     beads = [one.bead for one in path.beads]
     obstacles = clearance.RapidObstacles(cell, Beads.of(beads, 8.0, 1.0), ())
     random = np.random.default_rng(3)
@@ -296,7 +369,11 @@ def test_few_looks_find_what_all_of_them_do(on_table, monkeypatch):
     assert (met == (np.bincount(every.move, hit, minlength=80) > 0)).all()
     assert 20 < met.sum() < 70 and few < 0.25 * len(every.move)
     nozzle = obstacles._nozzle(moves, every)
-    hit = [obstacles._deposit_touched(nozzle, every, moves).any(),
-           obstacles._around(every.tip).touched(nozzle.bodies, every.tip, every.axis).any()]
-    assert obstacles.names(moves) == [name for name, one in zip(["the deposit", "the platform"], hit, strict=True) if one]
+    hit = [
+        obstacles._deposit_touched(nozzle, every, moves).any(),
+        obstacles._around(every.tip).touched(nozzle.bodies, every.tip, every.axis).any(),
+    ]
+    assert obstacles.names(moves) == [
+        name for name, one in zip(["the deposit", "the platform"], hit, strict=True) if one
+    ]
     assert obstacles.names(moves.of(np.flatnonzero(~met))) == []

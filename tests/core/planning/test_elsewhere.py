@@ -30,15 +30,26 @@ def test_a_rotation_that_loses_a_bead_is_looked_at_for_all_others(sliced, cell_o
         own = gather([bead], cell, search.POINTS_PER_BEAD)
         alone = search.everywhere(task, own, np.full(len(own), 0.02))
         assert np.array_equal(lost[:, k], np.isinf(alone.objective[:, 0]))
-        assert np.allclose(together.margin[~lost[:, k], k], alone.margin[~lost[:, k], 0], rtol=0.0, atol=1e-9)
-        assert np.allclose(together.objective[~lost[:, k], k], alone.objective[~lost[:, k], 0], rtol=1e-9, atol=1e-12)
+        assert np.allclose(
+            together.margin[~lost[:, k], k], alone.margin[~lost[:, k], 0], rtol=0.0, atol=1e-9
+        )
+        assert np.allclose(
+            together.objective[~lost[:, k], k],
+            alone.objective[~lost[:, k], 0],
+            rtol=1e-9,
+            atol=1e-12,
+        )
 
 
 # with as many points as are looked at by default, and so few that the search is wrong about several beads
-@pytest.mark.parametrize(("part", "branch", "looked"), [
-    ("laval nozzle", ("front", "down", "noflip"), 10), ("sphere", ("front", "up", "noflip"), 4),
-    ("intake funnel", ("back", "up", "flip"), 4),
-])
+@pytest.mark.parametrize(
+    ("part", "branch", "looked"),
+    [
+        ("laval nozzle", ("front", "down", "noflip"), 10),
+        ("sphere", ("front", "up", "noflip"), 4),
+        ("intake funnel", ("back", "up", "flip"), 4),
+    ],
+)
 @pytest.mark.always
 def test_limits_are_kept_at_all_points_and_between_however_few_are_searched(
     sliced, cell_of, with_axis_6, monkeypatch, part, branch, looked
@@ -48,7 +59,11 @@ def test_limits_are_kept_at_all_points_and_between_however_few_are_searched(
     asked = []
     monkeypatch.setattr(search, "POINTS_PER_BEAD", looked)
     others = elsewhere.of_beads
-    monkeypatch.setattr(elsewhere, "of_beads", lambda task, some, *at: asked.append(len(some)) or others(task, some, *at))
+    monkeypatch.setattr(
+        elsewhere,
+        "of_beads",
+        lambda task, some, *at: asked.append(len(some)) or others(task, some, *at),
+    )
     found = plan_joints(toolpath, cell, JointParameters())
     assert sum(asked) > 0 and found.feasible, found.issues
     task, arm = Task(cell, 0, JointParameters()), kdl.KdlArm(cell.machine)
@@ -58,20 +73,33 @@ def test_limits_are_kept_at_all_points_and_between_however_few_are_searched(
         assert not cell.limits.exceeded(between).any()
         flange = arm.forward(between)
         assert (task.condition_at(flange, between) >= 0.99 * path.threshold.min()).all()
-        on = path.bead.points[:-1, None] + INSIDE[:, None] * np.diff(path.bead.points, axis=0)[:, None]
+        on = (
+            path.bead.points[:-1, None]
+            + INSIDE[:, None] * np.diff(path.bead.points, axis=0)[:, None]
+        )
         tip, _ = cell.tip_in_part(flange)
-        assert np.linalg.norm(tip - on.reshape(-1, 3), axis=1).max() < 2.0 * toolpath.chord_error + 1e-6
+        assert (
+            np.linalg.norm(tip - on.reshape(-1, 3), axis=1).max()
+            < 2.0 * toolpath.chord_error + 1e-6
+        )
 
 
-def test_another_rotation_is_taken_before_a_seam_is_moved(sliced, cell_of, with_axis_6, monkeypatch):
+def test_another_rotation_is_taken_before_a_seam_is_moved(
+    sliced, cell_of, with_axis_6, monkeypatch
+):
     toolpath = sliced("sphere", 10.0)
     cell = with_axis_6(cell_of(toolpath, branch=("front", "up", "noflip")), 200.0)
     asked = plan_joints(toolpath, cell, JointParameters())
     monkeypatch.setattr(search, "POINTS_PER_BEAD", 4)
     few = plan_joints(toolpath, cell, JointParameters())
-    moved = [[issue.message for issue in found.issues if issue.code == "SEAM_MOVED"] for found in (asked, few)]
+    moved = [
+        [issue.message for issue in found.issues if issue.code == "SEAM_MOVED"]
+        for found in (asked, few)
+    ]
     assert asked.feasible and few.feasible and moved[0] == moved[1]
-    assert [path.objective for path in few.beads] == pytest.approx([path.objective for path in asked.beads], rel=0.05)
+    assert [path.objective for path in few.beads] == pytest.approx(
+        [path.objective for path in asked.beads], rel=0.05
+    )
 
 
 def test_what_falls_short_between_points_alone_is_seen(sliced, cell_of):
@@ -86,9 +114,19 @@ def test_what_falls_short_between_points_alone_is_seen(sliced, cell_of):
         found = search.everywhere(task, points, task.thresholds(points))
         dense = gather([finer], cell)
         between = search.judge(task, dense, task.thresholds(dense), found.coefficients).margin[:, 0]
-        for k in np.flatnonzero((found.margin[:, 0] >= 0.0) & ((between < -0.02) | (between > 0.0))):
+        for k in np.flatnonzero(
+            (found.margin[:, 0] >= 0.0) & ((between < -0.02) | (between > 0.0))
+        ):
             refined = refine.Refined(found.coefficients[k], np.zeros(1), ("",), (0,))
-            path = judged(task, [bead], [place], points, task.thresholds(points), refined.coefficients, refined)
+            path = judged(
+                task,
+                [bead],
+                [place],
+                points,
+                task.thresholds(points),
+                refined.coefficients,
+                refined,
+            )
             assert path[0].margin >= 0.0
             assert elsewhere.lost(task, [bead], path) == ([0] if between[k] < 0.0 else [])
             wrong += between[k] < 0.0

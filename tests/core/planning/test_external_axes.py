@@ -28,11 +28,20 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 def cell_for(toolpath, positioner=POSITIONER, stands=STANDS, **more):
-    return cells.resolve(CellParameters(**{
-        "machine": ROBOT, "setup": "tool-on-robot", "branch": "auto", "platform": PLATFORM,
-        "external": f"{positioner} at {' '.join(map(str, stands))} carries part",
-        "nozzle": NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))), **more,
-    }), toolpath.frame)
+    return cells.resolve(
+        CellParameters(
+            **{
+                "machine": ROBOT,
+                "setup": "tool-on-robot",
+                "branch": "auto",
+                "platform": PLATFORM,
+                "external": f"{positioner} at {' '.join(map(str, stands))} carries part",
+                "nozzle": NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))),
+                **more,
+            }
+        ),
+        toolpath.frame,
+    )
 
 
 def kdl_pose(xyz, rpy_deg=(0.0, 0.0, 0.0)):
@@ -47,7 +56,9 @@ def kdl_chain(path):
         chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(joint["origin"], joint["rpy"])))
         axis = PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis)
         chain.addSegment(PyKDL.Segment(axis, PyKDL.Frame()))
-    chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(told["flange"]["origin"], told["flange"]["rpy"])))
+    chain.addSegment(
+        PyKDL.Segment(PyKDL.Joint(), kdl_pose(told["flange"]["origin"], told["flange"]["rpy"]))
+    )
     base = told.get("base", {"origin": (0, 0, 0), "rpy": (0, 0, 0)})
     return chain, kdl_pose(base["origin"], base["rpy"]).Inverse()
 
@@ -130,7 +141,10 @@ def test_between_the_points_too(hemisphere, planned):
             along = np.diff(path.bead.points, axis=0)
             gap = tip - path.bead.points[:-1]
             part = np.clip((gap * along).sum(1) / (along * along).sum(1), 0.0, 1.0)
-            assert np.linalg.norm(gap - part[:, None] * along, axis=1).max() <= hemisphere.chord_error + 1e-6
+            assert (
+                np.linalg.norm(gap - part[:, None] * along, axis=1).max()
+                <= hemisphere.chord_error + 1e-6
+            )
             assert np.degrees(np.arccos(np.clip(upward @ UP, -1.0, 1.0))).max() < 10.5
 
 
@@ -142,12 +156,17 @@ def test_rapids_keep_the_limits_and_the_positioner_stands_still_on_retracts(hemi
     upper = np.r_[cell.robot.limits("maker").upper, np.radians([134.9946, 199.9966])]
     assert (motion.joints >= lower - 1e-9).all() and (motion.joints <= upper + 1e-9).all()
     retracts = np.flatnonzero(motion.role == 1)
-    assert len(retracts) and np.abs(motion.joints[retracts, 6:] - motion.joints[retracts - 1, 6:]).max() < 1e-12
+    assert (
+        len(retracts)
+        and np.abs(motion.joints[retracts, 6:] - motion.joints[retracts - 1, 6:]).max() < 1e-12
+    )
 
 
 def test_nothing_turns_that_need_not(sliced):
     toolpath = sliced("sphere", 10.0, chord_error=0.1)  # any angle is allowed
-    external = plan_joints(toolpath, cell_for(toolpath), JointParameters(method="constant")).joints[:, 6:]
+    external = plan_joints(toolpath, cell_for(toolpath), JointParameters(method="constant")).joints[
+        :, 6:
+    ]
     assert (external == external[0]).all()
 
 
@@ -160,10 +179,24 @@ def test_a_turntable_turns_no_less(planned):
 
 
 SKEW = {
-    "id": "skew", "title": "Skew positioner", "sources": ["made up"],
+    "id": "skew",
+    "title": "Skew positioner",
+    "sources": ["made up"],
     "joints": [
-        {"name": "tilt", "origin": [10, -20, 400], "rpy": [3, 0, 5], "axis": [0, 1, 0], "max_speed": 90},
-        {"name": "turn", "origin": [35, 12, 60], "rpy": [0, 8, 0], "axis": [0, 0, 1], "max_speed": 180},
+        {
+            "name": "tilt",
+            "origin": [10, -20, 400],
+            "rpy": [3, 0, 5],
+            "axis": [0, 1, 0],
+            "max_speed": 90,
+        },
+        {
+            "name": "turn",
+            "origin": [35, 12, 60],
+            "rpy": [0, 8, 0],
+            "axis": [0, 0, 1],
+            "max_speed": 180,
+        },
     ],
     "flange": {"origin": [2, -3, 70], "rpy": [1, 0, 40]},
     "controller": {"matrix": [[1, 0], [0, 1]], "offset": [0, 0], "remark": "as it is", "posts": []},
@@ -180,9 +213,13 @@ def skew(tmp_path_factory):
     poses = []
     for values in ((0.0, 0.0), (40.0, -70.0), (-90.0, 300.0)):
         at = base.Inverse() * driven(chain, np.radians(values))
-        poses.append({
-            "q": values, "origin": list(at.p), "rotation": [[at.M[row, column] for column in range(3)] for row in range(3)],
-        })
+        poses.append(
+            {
+                "q": values,
+                "origin": list(at.p),
+                "rotation": [[at.M[row, column] for column in range(3)] for row in range(3)],
+            }
+        )
     path.write_text(json.dumps({**SKEW, "check_poses": poses}), encoding="utf-8")
     return path
 
@@ -200,7 +237,9 @@ def test_what_cannot_be_brought_upright_is_told(hemisphere, skew, tmp_path):
     told["limits"]["maker"]["axes"] = [[-20, 20], [-400, 400]]
     path = tmp_path / "short.json"
     path.write_text(json.dumps(told), encoding="utf-8")
-    planned = plan_joints(hemisphere, cell_for(hemisphere, positioner=path), JointParameters(method="constant"))
+    planned = plan_joints(
+        hemisphere, cell_for(hemisphere, positioner=path), JointParameters(method="constant")
+    )
     assert not planned.feasible
     assert {"NOT_LEVEL", "LIMIT"} & {issue.code for issue in planned.issues}
 
@@ -210,16 +249,30 @@ def test_what_leans_is_told_where_nothing_turns_the_part(hemisphere, setup, hold
     """With the tool on the robot its axis leans as the wall does, on a slanted platform by as much less or more; a part on
     the robot is always brought under the torch as it stands."""
     stands = (1300.0, 0.0, 300.0, 0.0, *np.radians([25.0, 0.0]))
-    cell = cells.resolve(CellParameters(
-        machine=ROBOT, setup=setup, branch="auto", deposition_point=stands, world_up="0 0 2",
-        nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0)),
-    ), hemisphere.frame)
+    cell = cells.resolve(
+        CellParameters(
+            machine=ROBOT,
+            setup=setup,
+            branch="auto",
+            deposition_point=stands,
+            world_up="0 0 2",
+            nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0)),
+        ),
+        hemisphere.frame,
+    )
     planned = plan_joints(levelled_to(hemisphere, 40.0), cell, JointParameters(method="constant"))
     told = {(one.layer, one.bead): one for one in planned.issues if one.code == "NOT_LEVEL"}
-    slant = np.array(math.sin(math.radians(25.0)) * np.array([1.0, 0.0, 0.0]) + math.cos(math.radians(25.0)) * UP)
+    slant = np.array(
+        math.sin(math.radians(25.0)) * np.array([1.0, 0.0, 0.0]) + math.cos(math.radians(25.0)) * UP
+    )
     for layer, number, bead in hemisphere:
-        turned = np.array([[math.cos(math.radians(25.0)), 0.0, math.sin(math.radians(25.0))], [0.0, 1.0, 0.0],
-                           [-math.sin(math.radians(25.0)), 0.0, math.cos(math.radians(25.0))]])
+        turned = np.array(
+            [
+                [math.cos(math.radians(25.0)), 0.0, math.sin(math.radians(25.0))],
+                [0.0, 1.0, 0.0],
+                [-math.sin(math.radians(25.0)), 0.0, math.cos(math.radians(25.0))],
+            ]
+        )
         axes = slant[None] if holds else bead.tool @ hemisphere.frame[:3, :3] @ turned.T
         leans = math.degrees(math.acos(float(np.clip((axes @ UP).min(), -1.0, 1.0))))
         assert ((layer, number) in told) == (leans > 40.0)
@@ -229,14 +282,17 @@ def test_what_leans_is_told_where_nothing_turns_the_part(hemisphere, setup, hold
     assert bool(told) != holds
 
 
-@pytest.mark.parametrize(("changed", "code"), [
-    ({"external": "no-such-table at 0 0 0 0 0 0 carries part"}, "UNKNOWN_MACHINE"),
-    ({"external": f"{POSITIONER} at 0 0 0 0 0 0 carries robot"}, "NOT_YET"),
-    ({"external": "kuka-kr16-2 at 0 0 0 0 0 0 carries part"}, "NOT_YET"),
-    ({"external": f"{ROBOT} at 0 0 0 0 0 0 carries part"}, "BAD_VALUE"),
-    ({"external": f"{ROBOT} at 0 0 0 0 0 0 carries robot"}, "BAD_VALUE"),
-    ({"setup": "part-on-robot"}, "WRONG_SETUP"),
-])
+@pytest.mark.parametrize(
+    ("changed", "code"),
+    [
+        ({"external": "no-such-table at 0 0 0 0 0 0 carries part"}, "UNKNOWN_MACHINE"),
+        ({"external": f"{POSITIONER} at 0 0 0 0 0 0 carries robot"}, "NOT_YET"),
+        ({"external": "kuka-kr16-2 at 0 0 0 0 0 0 carries part"}, "NOT_YET"),
+        ({"external": f"{ROBOT} at 0 0 0 0 0 0 carries part"}, "BAD_VALUE"),
+        ({"external": f"{ROBOT} at 0 0 0 0 0 0 carries robot"}, "BAD_VALUE"),
+        ({"setup": "part-on-robot"}, "WRONG_SETUP"),
+    ],
+)
 def test_refused_with_a_reason(hemisphere, changed, code):
     with pytest.raises(InputError) as error:
         cell_for(hemisphere, **changed)
@@ -245,41 +301,75 @@ def test_refused_with_a_reason(hemisphere, changed, code):
 
 def test_two_mechanisms_of_one_name(hemisphere, skew, tmp_path):
     told = json.loads(Path(skew).read_text(encoding="utf-8"))
-    one_axis = {**told, "joints": told["joints"][:1], "limits": {"maker": {"axes": [[-90, 90]], "source": "made up"}},
-                "controller": {"matrix": [[1]], "offset": [0], "remark": "as it is"}}
+    one_axis = {
+        **told,
+        "joints": told["joints"][:1],
+        "limits": {"maker": {"axes": [[-90, 90]], "source": "made up"}},
+        "controller": {"matrix": [[1]], "offset": [0], "remark": "as it is"},
+    }
     chain = PyKDL.Chain()
     joint = told["joints"][0]
     chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(joint["origin"], joint["rpy"])))
-    chain.addSegment(PyKDL.Segment(
-        PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis), PyKDL.Frame()))
-    chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(told["flange"]["origin"], told["flange"]["rpy"])))
+    chain.addSegment(
+        PyKDL.Segment(
+            PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis),
+            PyKDL.Frame(),
+        )
+    )
+    chain.addSegment(
+        PyKDL.Segment(PyKDL.Joint(), kdl_pose(told["flange"]["origin"], told["flange"]["rpy"]))
+    )
     one_axis["check_poses"] = [
-        {"q": [degrees], "origin": list(at.p), "rotation": [[at.M[i, k] for k in range(3)] for i in range(3)]}
-        for degrees in (0.0, 30.0, -80.0) for at in [driven(chain, [math.radians(degrees)])]
+        {
+            "q": [degrees],
+            "origin": list(at.p),
+            "rotation": [[at.M[i, k] for k in range(3)] for i in range(3)],
+        }
+        for degrees in (0.0, 30.0, -80.0)
+        for at in [driven(chain, [math.radians(degrees)])]
     ]
     other = tmp_path / "other.json"
     other.write_text(json.dumps(one_axis), encoding="utf-8")
     at = " ".join(map(str, STANDS))
-    with pytest.raises(InputError, match="are two mechanisms of one name, 'skew'; give one of the files another id"):
-        cell_for(hemisphere, external=f"{other} at {at} carries part; {skew} at 1400 0 300 0 0 0 carries part")
+    with pytest.raises(
+        InputError, match="are two mechanisms of one name, 'skew'; give one of the files another id"
+    ):
+        cell_for(
+            hemisphere,
+            external=f"{other} at {at} carries part; {skew} at 1400 0 300 0 0 0 carries part",
+        )
     twice = f"{other} at {at} carries part"
     with pytest.raises(InputError, match="'skew' stands there twice"):
         cell_for(hemisphere, external=f"{twice}; {twice}")
     # two of a kind, one on the other, are no mistake
-    assert cell_for(hemisphere, external=f"{twice}; {other} at 1400 0 400 0 0 90 carries part").machine.chain.axes == 8
+    assert (
+        cell_for(
+            hemisphere, external=f"{twice}; {other} at 1400 0 400 0 0 90 carries part"
+        ).machine.chain.axes
+        == 8
+    )
 
 
-@pytest.mark.parametrize("text", [
-    "motoman-motopos-d500", "d500 at 1 2 3 carries part", "d500 at 1 2 3 4 5 x carries part",
-    "d500 at 1 2 3 4 5 6 carries nozzle", "d500 at 1 2 3 4 5 inf carries part",
-])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "motoman-motopos-d500",
+        "d500 at 1 2 3 carries part",
+        "d500 at 1 2 3 4 5 x carries part",
+        "d500 at 1 2 3 4 5 6 carries nozzle",
+        "d500 at 1 2 3 4 5 inf carries part",
+    ],
+)
 def test_texts_that_name_no_axes(text):
     with pytest.raises(InputError):
         CellParameters(external=text)
 
 
 def test_text_and_back():
-    named = (External("d500", (1500.25, 0.0, -3.0, 0.0, 0.1, math.pi)), External("track", (0.0,) * 6, "robot"))
+    named = (
+        External("d500", (1500.25, 0.0, -3.0, 0.0, 0.1, math.pi)),
+        External("track", (0.0,) * 6, "robot"),
+    )
     again = externals("; ".join(map(str, named)))
     assert [one.machine for one in again] == ["d500", "track"] and again[1].carries == "robot"
     assert np.allclose([one.pose for one in again], [one.pose for one in named], atol=1e-9)

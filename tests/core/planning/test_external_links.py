@@ -24,7 +24,9 @@ from tests.core.kinematics.test_external_links import STEP, bodies_of, points_wi
 from tests.core.planning.test_external_axes import POSITIONER, cell_for, levelled_to
 
 CLEAR = 10.0  # mm
-SHORT = NozzleParameters(tool=(0.0, 0.0, 90.0, 0.0, 0.6, 0.0))  # the arm comes near to the table with it
+SHORT = NozzleParameters(
+    tool=(0.0, 0.0, 90.0, 0.0, 0.6, 0.0)
+)  # the arm comes near to the table with it
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +55,13 @@ def nearest(cell, joints, rods):
     for points in bodies_of(POSITIONER):
         some = [points[k : k + 200] for k in range(0, len(points), 200)]
         middles = np.array([one.mean(axis=0) for one in some])
-        balls.append((some, middles, [np.linalg.norm(one - at, axis=1).max() for one, at in zip(some, middles)]))
+        balls.append(
+            (
+                some,
+                middles,
+                [np.linalg.norm(one - at, axis=1).max() for one, at in zip(some, middles)],
+            )
+        )
     least = np.inf
     for k in range(len(joints)):
         for body, (some, middles, radii) in enumerate(balls):
@@ -77,7 +85,9 @@ def test_with_clearance_the_links_stay_off_a_positioner_that_they_touch_without(
     kept = dataclasses.replace(cell, arm_clearance=CLEAR)
     path = plan_joints(hemisphere, kept, JointParameters(), cylinders=rods)
     assert path.feasible and nearest(cell, path.joints[::5], rods) > CLEAR - 0.5
-    motion, rapids = assemble(path, kept, ProcessParameters(), hemisphere.surroundings, None, 10.0, rods)
+    motion, rapids = assemble(
+        path, kept, ProcessParameters(), hemisphere.surroundings, None, 10.0, rods
+    )
     assert not rapids and nearest(cell, motion.joints[~motion.deposit][::7], rods) > CLEAR - 0.5
 
 
@@ -88,7 +98,9 @@ def turned(joints, count, axis, angle):
     return found
 
 
-def test_a_nozzle_driven_into_the_positioner_is_told_with_its_link_and_on_the_preflight(hemisphere, cell):
+def test_a_nozzle_driven_into_the_positioner_is_told_with_its_link_and_on_the_preflight(
+    hemisphere, cell
+):
     """The plan, with the table left as it is, and the arm lowered: the nozzle goes through the table."""
     path = plan_joints(hemisphere, cell, JointParameters())
     motion, _ = assemble(path, cell, ProcessParameters(), hemisphere.surroundings, None, 10.0)
@@ -102,7 +114,9 @@ def test_a_nozzle_driven_into_the_positioner_is_told_with_its_link_and_on_the_pr
     seen = cell.external_link_frames(lowered)[:, 2]
     tip = cell.machine.chain.forward(lowered) @ cell.carried
     at = (np.linalg.inv(seen) @ tip)[:, :3, 3]
-    pieces = json.loads((MECHANISMS / f"{POSITIONER}.json").read_text(encoding="utf-8"))["bodies"]["joint_2"]
+    pieces = json.loads((MECHANISMS / f"{POSITIONER}.json").read_text(encoding="utf-8"))["bodies"][
+        "joint_2"
+    ]
     within = np.concatenate([points_within(piece) for piece in pieces])
     gap = np.linalg.norm(at[:, None] - within[None], axis=2).min(axis=1)
     assert (gap < STEP).any()  # it does go in
@@ -122,12 +136,19 @@ def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
     assert [one.ok for one in clearance.external_links(motion, far, touches, True, ())] == [True]
     # whether issues are about them is known by values, not by words: a name within a sentence, or another name, is none
     name = far.external_links[-1].name
-    for message, ok in ((Text("the nozzle would meet {}", Text.joined(", ", ("post", name))), False),
-                        (f"the nozzle touches the cover of {name}", True), (Text("it meets {}", f"{name} cover"), True)):
+    for message, ok in (
+        (Text("the nozzle would meet {}", Text.joined(", ", ("post", name))), False),
+        (f"the nozzle touches the cover of {name}", True),
+        (Text("it meets {}", f"{name} cover"), True),
+    ):
         issue = Issue(ERROR, "RAPID_COLLISION", message)
-        assert [one.ok for one in clearance.external_links(motion, far, touches, True, (issue,))] == [ok]
+        assert [
+            one.ok for one in clearance.external_links(motion, far, touches, True, (issue,))
+        ] == [ok]
     (drawn,) = clearance.external_links(motion, far, touches, False, ())
-    assert drawn.ok is None and drawn.how.startswith("not checked in full, for links of the robot are drawn")
+    assert drawn.ok is None and drawn.how.startswith(
+        "not checked in full, for links of the robot are drawn"
+    )
     blank = dataclasses.replace(far, external_links=())
     touches = arm_touches(motion, ArmContact(blank, [[] for _ in range(7)]))
     (none,) = clearance.external_links(motion, blank, touches, True, ())

@@ -29,7 +29,9 @@ def test_a_limited_axis_6_is_solved(sliced, cell_of, with_axis_6, part, half):
     # every point of every bead is still deposited, wherever the bead now starts
     for layer, planned in enumerate(toolpath.layers):
         points = np.concatenate([path.bead.points for path in found.beads if path.layer == layer])
-        distance = np.linalg.norm(planned.beads[0].points[:, None] - points[None], axis=2).min(axis=1)
+        distance = np.linalg.norm(planned.beads[0].points[:, None] - points[None], axis=2).min(
+            axis=1
+        )
         assert distance.max() < 1e-9
 
 
@@ -57,7 +59,11 @@ def test_beads_are_split_only_where_the_stroke_is_less_than_a_turn(sliced, cell_
         pieces = [path.bead for path in found.beads if path.layer == layer]
         radius = np.hypot(planned.beads[0].points[:, 0], planned.beads[0].points[:, 1]).max()
         # points may have been added between those planned, on the circle
-        assert planned.beads[0].length - 1e-6 < sum(piece.length for piece in pieces) < 2 * np.pi * radius
+        assert (
+            planned.beads[0].length - 1e-6
+            < sum(piece.length for piece in pieces)
+            < 2 * np.pi * radius
+        )
         for before, after in zip(pieces, pieces[1:]):
             assert np.abs(before.points[-1] - after.points[0]).max() < 1e-9
 
@@ -69,13 +75,18 @@ def test_beads_of_few_points_are_cut_no_finer_than_that(sliced, cell_of, with_ax
     """An axis with hardly any stroke asks for more pieces of a coarse bead than it has segments."""
     whole = sliced("sphere", 15.0)
     beads = [layer.beads[0] for layer in whole.layers[:3]]
-    coarse = [bead.thinned(np.round(np.linspace(0, len(bead) - 1, kept + 1)).astype(int)) for bead in beads]
+    coarse = [
+        bead.thinned(np.round(np.linspace(0, len(bead) - 1, kept + 1)).astype(int))
+        for bead in beads
+    ]
     toolpath = dataclasses.replace(whole, layers=tuple(Layer((bead,)) for bead in coarse))
     cell = with_axis_6(cell_of(toolpath), half)
     found = plan_joints(toolpath, cell, JointParameters())
     assert min(len(path.bead) for path in found.beads) >= 2
-    assert found.feasible == (not cell.limits.exceeded(found.joints).any() and not {"error"} & {
-        issue.level for issue in found.issues})
+    assert found.feasible == (
+        not cell.limits.exceeded(found.joints).any()
+        and not {"error"} & {issue.level for issue in found.issues}
+    )
     length = sum(bead.length for bead in coarse)
     assert length - 1e-6 < sum(path.bead.length for path in found.beads) < 1.3 * length
 
@@ -85,7 +96,10 @@ def test_an_endless_axis_accumulates(sliced, cell_of):
     found = plan_joints(toolpath, cell_of(toolpath), JointParameters())
     turned = np.abs(found.beads[-1].joints[-1, 5] - found.beads[0].joints[0, 5])
     assert turned == pytest.approx(2 * np.pi * len(toolpath.layers), abs=2 * np.pi)
-    jumps = [np.abs(after.joints[0] - before.joints[-1])[5] for before, after in zip(found.beads, found.beads[1:])]
+    jumps = [
+        np.abs(after.joints[0] - before.joints[-1])[5]
+        for before, after in zip(found.beads, found.beads[1:])
+    ]
     assert max(jumps) <= np.pi + 1e-9
 
 
@@ -95,7 +109,9 @@ def test_turns_never_cost_margin(sliced, cell_of):
     found = plan_joints(toolpath, cell, JointParameters())
     half = 0.5 * (cell.limits.upper - cell.limits.lower)
     for path in found.beads:
-        margin = (np.minimum(path.joints - cell.limits.lower, cell.limits.upper - path.joints) / half).min()
+        margin = (
+            np.minimum(path.joints - cell.limits.lower, cell.limits.upper - path.joints) / half
+        ).min()
         assert margin >= path.margin - 1e-6
 
 

@@ -22,10 +22,15 @@ from tests.programs import build
 CHORD_ERROR = 0.05
 CONE = Developable(60.0, 200.0)
 CELLS = {
-    "part-on-robot": CellParameters(platform=20.0, mount="part", branch=("front", "down", "noflip")),
+    "part-on-robot": CellParameters(
+        platform=20.0, mount="part", branch=("front", "down", "noflip")
+    ),
     "tool-on-robot": CellParameters(
-        setup="tool-on-robot", deposition_point=(1150.0, 0.0, 250.0, 0.0, 0.0, math.pi), mount="part",
-        branch=("front", "down", "flip"), nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
+        setup="tool-on-robot",
+        deposition_point=(1150.0, 0.0, 250.0, 0.0, 0.0, math.pi),
+        mount="part",
+        branch=("front", "down", "flip"),
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
     ),
 }
 
@@ -37,7 +42,9 @@ def bead(surface, flat, closed):
         points[-1] = points[0]
     up = surface.normals(points)
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    return Bead(points, up, up, 2.0 * math.pi * length / length[-1], np.full(len(points), 8.0), closed)
+    return Bead(
+        points, up, up, 2.0 * math.pi * length / length[-1], np.full(len(points), 8.0), closed
+    )
 
 
 def blade(layers=2, half=12.0, width=5.0):
@@ -50,7 +57,9 @@ def blade(layers=2, half=12.0, width=5.0):
         angle = np.linspace(0.0, 2.0 * math.pi, 61)
         ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         across = np.linspace(-1.0, 1.0, 21)[:, None] * [half - 2.0 * width, 0.0]
-        beads = [bead(surface, middle + (half - share * width) * ring, True) for share in (0.0, 1.0)]
+        beads = [
+            bead(surface, middle + (half - share * width) * ring, True) for share in (0.0, 1.0)
+        ]
         made.append(Layer((*beads, bead(surface, middle + across, False))))
     return Toolpath(tuple(made), np.eye(4), 2.5, CHORD_ERROR, family="developable")
 
@@ -73,7 +82,12 @@ def test_the_torch_is_where_the_beads_are(planned):
     # along the cone's normals, wherever planning put further points in
     surface = [CONE.offset(2.5 * (k // 3)) for k in range(len(beads))]
     for one, cone in zip(beads, surface):
-        assert np.degrees(np.arccos(np.clip((one.tool * cone.normals(one.points)).sum(axis=1), -1, 1))).max() < 0.3
+        assert (
+            np.degrees(
+                np.arccos(np.clip((one.tool * cone.normals(one.points)).sum(axis=1), -1, 1))
+            ).max()
+            < 0.3
+        )
 
 
 def read_back(cell, motion, kind):
@@ -87,4 +101,8 @@ def test_programs_are_read_back_to_the_plan(planned):
     # FANUC takes no positions with a fixed torch
     for kind in ("joint",) if cell.setup == "part-on-robot" else ("joint", "cartesian"):
         result = read_back(cell, motion, kind)
-        assert result.issues == () and result.solvers == ("chain", "pykdl") and result.at_points_mm <= result.bound_mm
+        assert (
+            result.issues == ()
+            and result.solvers == ("chain", "pykdl")
+            and result.at_points_mm <= result.bound_mm
+        )

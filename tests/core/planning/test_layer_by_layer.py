@@ -25,7 +25,9 @@ def ranges(joint_path):
     return np.degrees([np.ptp(path.joints, axis=0) for path in joint_path.beads])
 
 
-@pytest.mark.parametrize(("part", "layers"), [("sphere", 71), ("laval nozzle", 137), ("intake funnel", 71)])
+@pytest.mark.parametrize(
+    ("part", "layers"), [("sphere", 71), ("laval nozzle", 137), ("intake funnel", 71)]
+)
 def test_the_papers_parts(sliced, cell_of, part, layers):
     toolpath = sliced(part, 1.0)
     assert len(toolpath.layers) == layers
@@ -60,11 +62,15 @@ def test_no_constant_rz_is_feasible(sliced, cell_of, part):
 def test_degrees_one_to_three_coincide_on_a_part_of_revolution(sliced, cell_of):
     toolpath = sliced("sphere", 5.0)
     cell = cell_of(toolpath)
-    first, *others = [plan_joints(toolpath, cell, JointParameters(degree=degree)) for degree in (1, 2, 3)]
+    first, *others = [
+        plan_joints(toolpath, cell, JointParameters(degree=degree)) for degree in (1, 2, 3)
+    ]
     for other in others:
         assert other.feasible
         assert np.abs(ranges(other) - ranges(first)).max() < 1e-3
-        assert [path.objective for path in other.beads] == pytest.approx([path.objective for path in first.beads], abs=1e-9)
+        assert [path.objective for path in other.beads] == pytest.approx(
+            [path.objective for path in first.beads], abs=1e-9
+        )
 
 
 def test_no_candidate_of_a_much_finer_grid_is_better(sliced, cell_of):
@@ -80,12 +86,16 @@ def test_no_candidate_of_a_much_finer_grid_is_better(sliced, cell_of):
         points = gather([bead], cell, 40)
         grid = search.everywhere(task, points, task.thresholds(points), np.linspace(-2, 2, 161), 90)
         best = grid.objective[grid.margin[:, 0] >= 0.0].min()
-        here = search.judge(task, points, task.thresholds(points), path.coefficients[None, None]).objective[0, 0]
+        here = search.judge(
+            task, points, task.thresholds(points), path.coefficients[None, None]
+        ).objective[0, 0]
         assert here <= best * 1.02
 
 
 @pytest.mark.parametrize("min_condition", ["auto", 0.25])
-def test_the_best_candidates_are_the_same_where_nothing_else_is_asked_for(sliced, cell_of, min_condition):
+def test_the_best_candidates_are_the_same_where_nothing_else_is_asked_for(
+    sliced, cell_of, min_condition
+):
     toolpath = sliced("sphere", 5.0)
     beads, cell, kept = [bead for _, _, bead in toolpath], cell_of(toolpath), []
     points = gather(beads, cell, search.POINTS_PER_BEAD)
@@ -133,24 +143,38 @@ def test_the_valley_is_settled_where_the_margin_is_largest(sliced, cell_of):
 @pytest.mark.always
 def test_gradients_against_differences(sliced, cell_of, objective, parameter):
     toolpath = sliced("sphere", 20.0)
-    task = Task(cell_of(toolpath), FLIP, JointParameters(objective=objective, degree=2, parameter=parameter))
+    task = Task(
+        cell_of(toolpath), FLIP, JointParameters(objective=objective, degree=2, parameter=parameter)
+    )
     points = gather([bead for _, _, bead in toolpath][1:2], task.cell)
     threshold = task.thresholds(points)
     rng = np.random.default_rng(7)
     checked = smooth = 0
     for _ in range(40):
-        coefficients = np.array([[rng.uniform(-3, 3), rng.uniform(-1.2, -0.8), rng.uniform(-0.02, 0.02)]])
+        coefficients = np.array(
+            [[rng.uniform(-3, 3), rng.uniform(-1.2, -0.8), rng.uniform(-0.02, 0.02)]]
+        )
         state = refine_state.state_of(task, points, threshold, coefficients)
         if not np.isfinite(state.objective).all() or state.constraints.min() < 0.001:
             continue
         for k in range(3):
             step = np.zeros((1, 3))
             step[0, k] = 1e-6
-            later, earlier = (refine_state.state_of(task, points, threshold, coefficients + s * step) for s in (1, -1))
+            later, earlier = (
+                refine_state.state_of(task, points, threshold, coefficients + s * step)
+                for s in (1, -1)
+            )
             slope = (later.objective - earlier.objective) / 2e-6
-            assert state.gradient[0, k] == pytest.approx(slope[0], rel=2e-4, abs=1e-6 * max(1.0, abs(state.objective[0])))
+            assert state.gradient[0, k] == pytest.approx(
+                slope[0], rel=2e-4, abs=1e-6 * max(1.0, abs(state.objective[0]))
+            )
             # a maximum over points has a kink where two points tie: any slope between the two sides is right
-            sides = np.stack([later.constraints - state.constraints, state.constraints - earlier.constraints])[:, 0] / 1e-6
+            sides = (
+                np.stack(
+                    [later.constraints - state.constraints, state.constraints - earlier.constraints]
+                )[:, 0]
+                / 1e-6
+            )
             room = 1e-3 * max(1.0, np.abs(sides).max())
             assert (state.constraint_rates[0, :, k] > sides.min(axis=0) - room).all()
             assert (state.constraint_rates[0, :, k] < sides.max(axis=0) + room).all()
@@ -169,7 +193,10 @@ def test_all_criteria_are_reported_whatever_was_optimised(sliced, cell_of):
     told = comparison.criteria_values(task, found.beads)
     q, stroke = found.joints, cell.limits.upper - cell.limits.lower
     shown = np.c_[q, q[:, 2] - q[:, 1]]
-    low, high = np.r_[cell.limits.lower, cell.limits.coupled_lower], np.r_[cell.limits.upper, cell.limits.coupled_upper]
+    low, high = (
+        np.r_[cell.limits.lower, cell.limits.coupled_lower],
+        np.r_[cell.limits.upper, cell.limits.coupled_upper],
+    )
     off = np.abs(shown - (low + high) / 2) / (high - low)
     assert told["limits-klein"] == pytest.approx(off.max())
     assert told["limits-fournier"] == pytest.approx((off**2).sum(axis=1).mean())
@@ -189,7 +216,11 @@ def test_all_criteria_are_reported_whatever_was_optimised(sliced, cell_of):
 
 def test_an_unreachable_point_is_named(sliced, cell_of):
     toolpath = sliced("sphere", 10.0)
-    found = plan_joints(toolpath, cell_of(toolpath, deposition_point=(1850.0, 0.0, 300.0, 0, 0, 0)), JointParameters())
+    found = plan_joints(
+        toolpath,
+        cell_of(toolpath, deposition_point=(1850.0, 0.0, 300.0, 0, 0, 0)),
+        JointParameters(),
+    )
     assert not found.feasible
     issue = next(issue for issue in found.issues if issue.code == "UNREACHABLE")
     assert issue.layer is not None and issue.point is not None
@@ -201,10 +232,14 @@ def test_a_branch_is_found_where_none_is_given(sliced, cell_of):
     assert found.feasible
 
 
-def test_other_branches_are_planned_whole_where_they_serve_the_beads_that_failed(sliced, cell_of, monkeypatch):
+def test_other_branches_are_planned_whole_where_they_serve_the_beads_that_failed(
+    sliced, cell_of, monkeypatch
+):
     toolpath = sliced("sphere", 10.0)
     cell = cell_of(toolpath, branch="auto")
-    lower = np.where(np.arange(6) == 4, 0.01, cell.limits.lower)  # no more than one way of the wrist
+    lower = np.where(
+        np.arange(6) == 4, 0.01, cell.limits.lower
+    )  # no more than one way of the wrist
     cell = dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower))
     alone = {}
     for branch in range(8):
@@ -215,8 +250,14 @@ def test_other_branches_are_planned_whole_where_they_serve_the_beads_that_failed
     assert good and len(bad) >= 2
     monkeypatch.setattr(planner, "SCREENED", 3)
     calls, planned = [], planner._planned
-    monkeypatch.setattr(planner, "_planned", lambda task, path, beads, *rest: (
-        calls.append((task.branch, len(beads))), planned(task, path, beads, *rest))[1])
+    monkeypatch.setattr(
+        planner,
+        "_planned",
+        lambda task, path, beads, *rest: (
+            calls.append((task.branch, len(beads))),
+            planned(task, path, beads, *rest),
+        )[1],
+    )
     whole = toolpath.bead_count
     for order in ([good[0], bad[0]], [bad[0], bad[1], good[0]], [bad[0], bad[1]]):
         calls.clear()
@@ -226,7 +267,9 @@ def test_other_branches_are_planned_whole_where_they_serve_the_beads_that_failed
         wanted = alone[served[0] if served else order[0]]
         assert found.branch == wanted.branch and found.issues == wanted.issues
         np.testing.assert_array_equal(found.joints, wanted.joints)
-        assert [branch for branch, count in calls if count == whole] == list(dict.fromkeys([order[0], *served]))
+        assert [branch for branch, count in calls if count == whole] == list(
+            dict.fromkeys([order[0], *served])
+        )
         tried = [branch for branch, count in calls if count < whole]
         assert tried == ([] if order[0] in good else order[1:])
 
@@ -265,7 +308,9 @@ def test_progress_goes_on_layer_by_layer_and_may_cancel_between_them(sliced, cel
     cell, parameters = cell_of(toolpath, limits="maker"), JointParameters()
     plan_joints(toolpath, cell, parameters, lambda fraction, text: seen.append((fraction, text)))
     fractions = [fraction for fraction, text in seen if text == "refining layers"]
-    assert len(set(fractions)) >= 3 and fractions == sorted(fractions)  # one for each layer that is refined
+    assert len(set(fractions)) >= 3 and fractions == sorted(
+        fractions
+    )  # one for each layer that is refined
 
     def cancel(fraction, text):
         if fraction == fractions[-1]:
@@ -292,7 +337,10 @@ def test_beads_after_one_that_is_out_of_reach_are_told_as_they_are(sliced, cell_
     (first,), rest = toolpath.layers[1].beads, toolpath.layers[2:]
     away = dataclasses.replace(first, points=first.points + np.array([0.0, 0.0, 1e4]))
     lost = dataclasses.replace(toolpath.layers[1], beads=(away,))
-    torn, cell = dataclasses.replace(toolpath, layers=(toolpath.layers[0], lost, *rest)), cell_of(toolpath)
+    torn, cell = (
+        dataclasses.replace(toolpath, layers=(toolpath.layers[0], lost, *rest)),
+        cell_of(toolpath),
+    )
     found = plan_joints(torn, cell, JointParameters())
     assert planned.feasible and not found.feasible
     assert [path.reachable for path in found.beads] == [k != 1 for k in range(len(found.beads))]

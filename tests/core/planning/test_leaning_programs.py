@@ -29,10 +29,19 @@ from tests.programs import build
 
 CHORD_ERROR, LEAN, MOST = 0.05, 20.0, 3.0  # mm; deg; deg/mm, what max_turn is on hubs
 HUB = Developable(60.0)
-UP = np.array([[0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])  # X of the hub to Z
-TABLE = CellParameters(machine="table-xyzac", setup="rotary-table", platform=(5.0, -8.0, 20.0, 0.0, 0.0, 0.3), mount="part")
+UP = np.array(
+    [[0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
+)  # X of the hub to Z
+TABLE = CellParameters(
+    machine="table-xyzac",
+    setup="rotary-table",
+    platform=(5.0, -8.0, 20.0, 0.0, 0.0, 0.3),
+    mount="part",
+)
 ON_ROBOT = CellParameters(
-    setup="tool-on-robot", deposition_point=(1000.0, 0.0, 200.0, 0.0, 0.0, 0.0), mount="part",
+    setup="tool-on-robot",
+    deposition_point=(1000.0, 0.0, 200.0, 0.0, 0.0, 0.0),
+    mount="part",
     nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
 )
 
@@ -43,8 +52,12 @@ def toolpath(held, frame, **changes):
     body = dataclasses.replace(body, vertices=body.vertices @ frame[:3, :3].T)
     model = bead_table.load("csw")
     given = {"deflection": math.radians(LEAN)} if held == "deflected" else {}
-    strategy = DevelopableParameters(layer_height=8.0, chord_error=CHORD_ERROR, bead_spacing=6.0, **given)
-    turned = BuildDirectionParameters(**{"tilt": math.radians(LEAN) if held == "tilted" else 0.0, **changes})
+    strategy = DevelopableParameters(
+        layer_height=8.0, chord_error=CHORD_ERROR, bead_spacing=6.0, **given
+    )
+    turned = BuildDirectionParameters(
+        **{"tilt": math.radians(LEAN) if held == "tilted" else 0.0, **changes}
+    )
     process = ProcessParameters(bead_width=9.5, wire=WireParameters(feed=model.wire_feed))
     solid = SolidsOnHub("part", (Group(Base("hub", HUB, frame), (body,)),), 0.0)
     return plan_solids(solid, strategy, turned, process, model)
@@ -59,7 +72,9 @@ def motion_of(cell, path):
 
 
 def read_back(cell, motion, post, kind):
-    program = build(motion, cell, ProcessParameters(), ProgramParameters(post=post, motion=kind), "blade")
+    program = build(
+        motion, cell, ProcessParameters(), ProgramParameters(post=post, motion=kind), "blade"
+    )
     writer = catalogue.load(post)
     return verification.verify(cell, motion, program, writer.write(program), writer, CHORD_ERROR)
 
@@ -68,7 +83,9 @@ def looked_at(motion, frame):
     """By the tips and torches of the motion: lean from the hub's normals, and the turn."""
     rows = motion.deposit
     inside = motion.position[rows] @ frame[:3, :3]
-    normal = np.column_stack([inside[:, :2] / np.hypot(inside[:, 0], inside[:, 1])[:, None], np.zeros(len(inside))])
+    normal = np.column_stack(
+        [inside[:, :2] / np.hypot(inside[:, 0], inside[:, 1])[:, None], np.zeros(len(inside))]
+    )
     tool = motion.tool[rows] @ frame[:3, :3]
 
     def angle(a, b):
@@ -118,18 +135,27 @@ def test_corners_without_a_limit_are_slowed_and_that_is_told():
     bead = next(one for one in planned.beads if (one.layer, one.index) == (told.layer, told.bead))
     assert bead.bead.speed[told.point] == min(one.bead.speed.min() for one in planned.beads)
     moves = motion.deposit & (motion.point > 0)
-    rate = np.abs(np.diff(motion.joints, axis=0, prepend=motion.joints[:1]))[moves] / motion.duration[moves, None]
+    rate = (
+        np.abs(np.diff(motion.joints, axis=0, prepend=motion.joints[:1]))[moves]
+        / motion.duration[moves, None]
+    )
     share = (rate / cell.machine.max_speed).max(axis=1)
     assert share.max() <= 1.0 + 1e-9
     assert read_back(cell, motion, "siemens", "joint").issues == ()
-    endless = dataclasses.replace(cell, machine=dataclasses.replace(cell.machine, max_speed=1e6 * cell.machine.max_speed))
+    endless = dataclasses.replace(
+        cell, machine=dataclasses.replace(cell.machine, max_speed=1e6 * cell.machine.max_speed)
+    )
     asked = plan_joints(path, endless, JointParameters(degree=1))
     slowed, total, most = 0.0, 0.0, {"wider": 0.0, "higher": 0.0}
     for one, other in zip(planned.beads, asked.beads, strict=True):
         new, old = one.bead, other.bead
         assert (new.points == old.points).all() and (new.speed <= old.speed).all()
         way = np.linalg.norm(np.diff(new.points, axis=0), axis=1)
-        share = (np.abs(np.diff(one.joints, axis=0)) * (new.speed[1:] / way)[:, None] / cell.machine.max_speed).max(axis=1)
+        share = (
+            np.abs(np.diff(one.joints, axis=0))
+            * (new.speed[1:] / way)[:, None]
+            / cell.machine.max_speed
+        ).max(axis=1)
         slow = new.speed[1:] < 0.999999 * old.speed[1:]
         if not slow.any():
             assert (new.width == old.width).all() and (new.height == old.height).all()
@@ -144,18 +170,26 @@ def test_corners_without_a_limit_are_slowed_and_that_is_told():
         # as wide and as high as table 1 of Dai 2020 says of the slower speed, whatever the radius
         root = np.cbrt(1.0 / (60.0 * new.speed[1:])) - np.cbrt(1.0 / (60.0 * old.speed[1:]))
         more = 0.5 * (root[1:] + root[:-1])
-        np.testing.assert_allclose((new.width - old.width)[1:-1], 85.55 * more, rtol=1e-3, atol=1e-9)
+        np.testing.assert_allclose(
+            (new.width - old.width)[1:-1], 85.55 * more, rtol=1e-3, atol=1e-9
+        )
         model = bead_table.load("csw")
         height = model.heights(new.speed[1:], np.inf) - model.heights(old.speed[1:], np.inf)
-        np.testing.assert_allclose((new.height - old.height)[1:-1], 0.5 * (height[1:] + height[:-1]), atol=1e-9)
-        most = {"wider": max(most["wider"], (new.width - old.width).max()),
-                "higher": max(most["higher"], (new.height - old.height).max())}
+        np.testing.assert_allclose(
+            (new.height - old.height)[1:-1], 0.5 * (height[1:] + height[:-1]), atol=1e-9
+        )
+        most = {
+            "wider": max(most["wider"], (new.width - old.width).max()),
+            "higher": max(most["higher"], (new.height - old.height).max()),
+        }
         slowed, total = slowed + way[slow].sum(), total + way.sum()
     assert 0.0 < slowed < 0.15 * total
     for word, value in most.items():
         assert f"{value:.2g} mm {word}" in told.message and value > 0.1
     rows = motion.deposit & np.isfinite(motion.width)
-    np.testing.assert_allclose(motion.width[rows], np.concatenate([one.bead.width for one in planned.beads]))
+    np.testing.assert_allclose(
+        motion.width[rows], np.concatenate([one.bead.width for one in planned.beads])
+    )
 
 
 def along_the_pole(speed, width=None, turn=math.pi, over=20.0):
@@ -165,22 +199,35 @@ def along_the_pole(speed, width=None, turn=math.pi, over=20.0):
     points = np.column_stack([np.linspace(-20.0, 20.0, n), np.full(n, 30.0), np.full(n, 10.0)])
     about = turn * np.clip(0.5 + 0.5 * points[:, 0] / over, 0.0, 1.0)
     sine = math.sin(math.radians(30.0))
-    tool = np.column_stack([sine * np.cos(about), sine * np.sin(about), np.full(n, math.cos(math.radians(30.0)))])
-    widths, heights = (None, None) if width is None else (np.full(n, width), np.full(n, 3.0))  # as a bead model predicts
+    tool = np.column_stack(
+        [sine * np.cos(about), sine * np.sin(about), np.full(n, math.cos(math.radians(30.0)))]
+    )
+    widths, heights = (
+        (None, None) if width is None else (np.full(n, width), np.full(n, 3.0))
+    )  # as a bead model predicts
     along = np.linspace(0.0, 2.0 * math.pi, n)
     bead = Bead(points, tool, tool, along, np.full(n, speed), False, widths, height=heights)
     return Toolpath((Layer((bead,)),), np.eye(4), 3.0, CHORD_ERROR, family="developable")
 
 
-@pytest.mark.parametrize(("width", "advice"), [(None, "lower the travel speed to 40.00 mm/s"), (9.5, "process.bead_width")])
+@pytest.mark.parametrize(
+    ("width", "advice"),
+    [(None, "lower the travel speed to 40.00 mm/s"), (9.5, "process.bead_width")],
+)
 def test_what_would_pile_up_is_refused(width, advice):
     """C goes at 180 deg/s at most: 40 mm, half a turn, take a second."""
     cell = cells.resolve(TABLE, np.eye(4), "developable")
     planned = plan_joints(along_the_pole(80.0, width), cell, JointParameters())
     (told,) = [issue for issue in planned.issues if issue.code == "SPEED"]
-    assert told.level == "error" and "axis c would move at 360 deg/s" in told.message and advice in told.message
+    assert (
+        told.level == "error"
+        and "axis c would move at 360 deg/s" in told.message
+        and advice in told.message
+    )
     assert not [issue for issue in planned.issues if issue.code == "SLOWED"]
-    slower = plan_joints(along_the_pole(45.0, width), cell, JointParameters())  # 5 mm too much: less than a bead's width
+    slower = plan_joints(
+        along_the_pole(45.0, width), cell, JointParameters()
+    )  # 5 mm too much: less than a bead's width
     assert slower.feasible and [issue.code for issue in slower.issues] == ["SLOWED"]
     assert slower.beads[0].bead.speed[1:] == pytest.approx(40.0)
 
@@ -190,13 +237,23 @@ def test_what_piles_up_on_ramps_counts():
     cell = cells.resolve(TABLE, np.eye(4), "developable")
     path = along_the_pole(30.0, 8.0, math.radians(20.0), 1.0)
     for acceleration, serves in ((1e6, True), (20.0, False)):
-        planned = plan_joints(dataclasses.replace(path, law=SpeedLaw(0.0, 0.0, 5.0, acceleration)), cell, JointParameters())
+        planned = plan_joints(
+            dataclasses.replace(path, law=SpeedLaw(0.0, 0.0, 5.0, acceleration)),
+            cell,
+            JointParameters(),
+        )
         assert planned.feasible == serves
         assert [issue.code for issue in planned.issues] == ["SLOWED" if serves else "SPEED"]
-    wider = dataclasses.replace(path, layers=along_the_pole(30.0, 14.0, math.radians(20.0), 1.0).layers)
-    planned = plan_joints(dataclasses.replace(wider, law=SpeedLaw(0.0, 0.0, 5.0, 20.0)), cell, JointParameters())
+    wider = dataclasses.replace(
+        path, layers=along_the_pole(30.0, 14.0, math.radians(20.0), 1.0).layers
+    )
+    planned = plan_joints(
+        dataclasses.replace(wider, law=SpeedLaw(0.0, 0.0, 5.0, 20.0)), cell, JointParameters()
+    )
     bead = planned.beads[0].bead
     assert planned.feasible and bead.speed.min() == pytest.approx(18.0, rel=0.02)
     way = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     pile = float((way * (30.0 / bead.speed[1:] - 1.0)).sum())
-    assert 8.0 < pile < 14.0 and f"up to {pile:.2g} mm of the bead more" in planned.issues[0].message
+    assert (
+        8.0 < pile < 14.0 and f"up to {pile:.2g} mm of the bead more" in planned.issues[0].message
+    )

@@ -20,7 +20,16 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rapids.clearance import Moves as Driven
 from freecad_am.core.planning.rapids.clearance import RapidObstacles
 from freecad_am.core.planning.task import Task
-from freecad_am.core.program import FIRST_TIME, Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
+from freecad_am.core.program import (
+    FIRST_TIME,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Wait,
+    WaitInput,
+)
 from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl import chain as kdl
 from freecad_am.objects.checks.controllers import check_controller
@@ -88,7 +97,9 @@ def test_overlap_runs_on_over_the_beginning_and_survives_the_read_back(planned, 
         assert run == pytest.approx(bead.length + min(overlap, bead.length), abs=0.02)
     program = build(motion, cell, process, ProgramParameters(), "overlap")
     files = catalogue.load("fanuc").write(program)
-    checked = verify.verify(cell, motion, program, files, catalogue.load("fanuc"), toolpath.chord_error)
+    checked = verify.verify(
+        cell, motion, program, files, catalogue.load("fanuc"), toolpath.chord_error
+    )
     assert not has_errors(checked.issues), checked.issues
 
 
@@ -101,10 +112,16 @@ def test_a_rapid_through_the_part_is_refused(planned):
         moved = [dataclasses.replace(bead, points=bead.points + [0.0, 0.0, up]) for bead in beads]
         return rapid_look.looked_at(motion, moved, cell, (), 8.0, 1.0, 20_000)
 
-    assert not len(met(0.0).rows) and met(0.0).place is None and met(0.0).moves == (~motion.deposit[1:]).sum()
+    assert (
+        not len(met(0.0).rows)
+        and met(0.0).place is None
+        and met(0.0).moves == (~motion.deposit[1:]).sum()
+    )
     assert not len(met(-500.0).rows)
     raised = met(25.0)
-    assert raised.place is not None and not motion.deposit[raised.rows].any() and len(raised.rows) > 5
+    assert (
+        raised.place is not None and not motion.deposit[raised.rows].any() and len(raised.rows) > 5
+    )
 
 
 @pytest.mark.parametrize(
@@ -123,14 +140,25 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     _, cell, path, motion = planned()
     some = motion.deposit
     flat = np.zeros(int(some.sum()))
-    deposit = Beads(motion.position[some], motion.build[some], motion.tool[some], flat, flat, motion.point[some] == 0)
+    deposit = Beads(
+        motion.position[some],
+        motion.build[some],
+        motion.tool[some],
+        flat,
+        flat,
+        motion.point[some] == 0,
+    )
     surroundings = RapidObstacles(cell, deposit, ())
-    poses = cell.machine.opw.inverse(cell.flange_poses(np.array([tip]), np.array([axis]), np.zeros(1)))[:, 0]
+    poses = cell.machine.opw.inverse(
+        cell.flange_poses(np.array([tip]), np.array([axis]), np.zeros(1))
+    )[:, 0]
     joints = poses[np.isfinite(poses).all(axis=1)][:1]
     moves = Driven(joints, joints, np.zeros(1, dtype=int))
     assert surroundings.met(moves)[0] == met
     assert surroundings.names(moves) == ["the platform"] * met
-    lost = Driven(np.r_[joints, np.nan * joints], np.r_[joints, joints], np.zeros(2, dtype=int))  # one cannot be reached
+    lost = Driven(
+        np.r_[joints, np.nan * joints], np.r_[joints, joints], np.zeros(2, dtype=int)
+    )  # one cannot be reached
     assert surroundings.names(lost) == ["the platform"] * met
     assert surroundings.names(lost.of(np.array([1]))) == []
     # what looks at rapids alone finds it too, by a row of its own, and by a platform alone
@@ -139,7 +167,9 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     led[: row + 1] = joints[0]
     there = dataclasses.replace(motion, joints=led)
     for one, expected in ((cell, met), (dataclasses.replace(cell, platform_diameter=0.0), False)):
-        looked = rapid_look.looked_at(there, [bead.bead for bead in path.beads], one, (), 0.0, 0.0, 20_000)
+        looked = rapid_look.looked_at(
+            there, [bead.bead for bead in path.beads], one, (), 0.0, 0.0, 20_000
+        )
         assert (row in looked.rows) == expected
 
 
@@ -187,7 +217,9 @@ def test_resuming_runs_the_same_motion_from_there(planned):
     process = ProcessParameters()
     toolpath, cell, _, motion = planned(process)
     whole = build(motion, cell, process, ProgramParameters(), "job")
-    later = build(motion, cell, process, ProgramParameters(start_at=StartParameters(layer=2)), "job")
+    later = build(
+        motion, cell, process, ProgramParameters(start_at=StartParameters(layer=2)), "job"
+    )
     starts = [block.layer for block in later.blocks if isinstance(block, LayerStart)]
     assert starts == list(range(2, len(toolpath.layers)))
     deposit = [m for m in whole.moves if m.kind == "deposit" and m.layer >= 2]
@@ -208,17 +240,27 @@ def test_controller_values_are_those_of_the_pendant(planned):
     assert np.abs(joints[:, [0, 1, 3, 4, 5]] - serial[:, [0, 1, 3, 4, 5]]).max() < 1e-12
 
 
-def test_cartesian_positions_with_the_part_on_the_robot_are_those_of_the_deposition_point_on_the_platform(planned):
+def test_cartesian_positions_with_the_part_on_the_robot_are_those_of_the_deposition_point_on_the_platform(
+    planned,
+):
     _, cell, _, motion = planned()
-    program = build(motion, cell, ProcessParameters(), ProgramParameters(motion="cartesian"), "gauge")
+    program = build(
+        motion, cell, ProcessParameters(), ProgramParameters(motion="cartesian"), "gauge"
+    )
     rows = motion.moves
     platform = cell.machine.chain.forward(motion.joints[rows]) @ cell.carried
     position = np.concatenate([moves.position for moves in program.moves])
     rotation = np.concatenate([moves.rotation for moves in program.moves])
     # carried along by the platform each of them comes to lie where the deposit comes out, Z to the nozzle
     place = platform[:, :3, :3] @ position[:, :, None] + platform[:, :3, 3:]
-    np.testing.assert_allclose(place[:, :, 0], np.tile(cell.station[:3, 3], (len(place), 1)), atol=1e-9)
-    np.testing.assert_allclose(platform[:, :3, :3] @ rotation, np.tile(cell.station[:3, :3], (len(place), 1, 1)), atol=1e-12)
+    np.testing.assert_allclose(
+        place[:, :, 0], np.tile(cell.station[:3, 3], (len(place), 1)), atol=1e-9
+    )
+    np.testing.assert_allclose(
+        platform[:, :3, :3] @ rotation,
+        np.tile(cell.station[:3, :3], (len(place), 1, 1)),
+        atol=1e-12,
+    )
     # and in part coordinates they are the points of the part
     in_part = position @ cell.mount[:3, :3].T + cell.mount[:3, 3]
     np.testing.assert_allclose(in_part, motion.position[rows], atol=1e-6)
@@ -239,8 +281,11 @@ def test_points_are_added_where_joint_motion_leaves_the_bead(sliced, cell_of):
 
     toolpath = sliced("sphere", 15.0)
     cell = cell_of(
-        toolpath, setup="tool-on-robot", deposition_point=(1100.0, 0.0, 100.0, 0, 0, 0),
-        nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, np.radians(45.0), 0.0)), branch="auto",
+        toolpath,
+        setup="tool-on-robot",
+        deposition_point=(1100.0, 0.0, 100.0, 0, 0, 0),
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, np.radians(45.0), 0.0)),
+        branch="auto",
     )
     found = plan_joints(toolpath, cell, JointParameters())
     assert found.feasible, found.issues
@@ -254,6 +299,9 @@ def test_points_are_added_where_joint_motion_leaves_the_bead(sliced, cell_of):
         origin, along = path.bead.points[:-1, None], np.diff(path.bead.points, axis=0)[:, None]
         offset = tip.reshape(len(origin), -1, 3) - origin
         where = np.clip((offset * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
-        assert np.linalg.norm(offset - where[..., None] * along, axis=-1).max() < toolpath.chord_error * 1.05
+        assert (
+            np.linalg.norm(offset - where[..., None] * along, axis=-1).max()
+            < toolpath.chord_error * 1.05
+        )
         again, issues = refined_to_chord_error(task, path, toolpath.chord_error)
         assert len(again.bead) == len(path.bead) and not issues

@@ -16,13 +16,25 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.obstacles import Obstacle, obstacles
 from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl.chain import KdlArm
-from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, DOWN, SIZE, dome, on_rods, planned
+from tests.core.planning.test_arm_clearance import (
+    CELL,
+    CLEARANCE,
+    DOWN,
+    SIZE,
+    dome,
+    on_rods,
+    planned,
+)
 from tests.kdl_links import KdlLinks
 
 __all__ = ["dome"]  # a fixture
 
-CARRIED = {"limits": "paper", "platform": 150.0, "platform_diameter": 0.0,
-           "deposition_point": (1045.0, -630.0, 653.0, 0.0, 0.0, 0.0)}
+CARRIED = {
+    "limits": "paper",
+    "platform": 150.0,
+    "platform_diameter": 0.0,
+    "deposition_point": (1045.0, -630.0, 653.0, 0.0, 0.0, 0.0),
+}
 
 
 def cell_with(dome, pose, name="post", size=SIZE, **values):
@@ -35,8 +47,14 @@ def nearest(motion, cell, pose, carried, size=SIZE, every=23):
     flange, at places of a motion ten times as dense as its rows."""
     arm, found = KdlLinks(cell.machine), []
     joints = motion.joints
-    dense = np.concatenate([joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)])
-    links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if k and rods]
+    dense = np.concatenate(
+        [joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)]
+    )
+    links = [
+        (k, on_rods(rods))
+        for k, rods in enumerate(link_rods.of_robot(cell.robot.chain))
+        if k and rods
+    ]
     to_box = np.linalg.inv(cell.machine.base @ pose)
     half = 0.5 * np.asarray(size)
     for q in dense[::every]:
@@ -54,7 +72,9 @@ def nozzle_points(cell):
     nozzle, turn = cell.nozzle, np.linspace(0.0, 2.0 * np.pi, 48)
     height = np.linspace(0.0, nozzle.length, 30)[:, None]
     radius = 0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle)
-    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), -height + 0.0 * turn], axis=-1).reshape(-1, 3)
+    points = np.stack(
+        [radius * np.cos(turn), radius * np.sin(turn), -height + 0.0 * turn], axis=-1
+    ).reshape(-1, 3)
     return points @ cell.carried[:3, :3].T + cell.carried[:3, 3]
 
 
@@ -62,7 +82,11 @@ def part_points(dome, cell):
     """Points about all beads of a part that the flange carries, by half their width and height."""
     points = np.concatenate([bead.points for _, _, bead in dome])
     seen = cell.carried @ np.linalg.inv(cell.mount)
-    around = [points + [0.5 * dome.layer_height * a, 0.5 * dome.layer_height * b, 0.0] for a in (-1, 1) for b in (-1, 1)]
+    around = [
+        points + [0.5 * dome.layer_height * a, 0.5 * dome.layer_height * b, 0.0]
+        for a in (-1, 1)
+        for b in (-1, 1)
+    ]
     return np.concatenate(around) @ seen[:3, :3].T + seen[:3, 3]
 
 
@@ -70,13 +94,18 @@ def test_links_keep_clear_of_an_obstacle_in_a_cell_that_is_turned(dome):
     """Part and post of a job that meets it without, both turned about the robot's first axis."""
     turned = frames.bryant((0.0, 0.0, 0.0, 0.0, 0.0, np.radians(40.0)))
     turn = np.radians(60.0)
-    middle = frames.pose(np.eye(3), np.array([900.0 + 160.0 * np.cos(turn), 160.0 * np.sin(turn), 95.0]))
+    middle = frames.pose(
+        np.eye(3), np.array([900.0 + 160.0 * np.cos(turn), 160.0 * np.sin(turn), 95.0])
+    )
     pose = turned @ middle
     x, y, z = (turned @ frames.bryant(CELL["deposition_point"]))[:3, 3]
     values = {**CELL, "deposition_point": (x, y, z, 0.0, 0.0, np.radians(40.0)), "branch": DOWN}
     without = cell_with(dome, pose, **values)
     motion, issues = planned(dome, without)
-    assert not has_errors(issues) and nearest(motion, without, pose, nozzle_points(without)).min() < CLEARANCE
+    assert (
+        not has_errors(issues)
+        and nearest(motion, without, pose, nozzle_points(without)).min() < CLEARANCE
+    )
     kept = cell_with(dome, pose, **values, arm_clearance=CLEARANCE)
     motion, issues = planned(dome, kept)
     assert not has_errors(issues)
@@ -89,7 +118,9 @@ def test_links_keep_clear_of_an_obstacle_in_a_cell_that_is_turned(dome):
 @pytest.mark.always("0.0")
 def test_a_part_that_the_robot_carries_keeps_clear_of_an_obstacle(dome, azimuth):
     turn = np.radians(azimuth)
-    pose = frames.pose(np.eye(3), np.array([1045.0 + 100.0 * np.cos(turn), -630.0 + 100.0 * np.sin(turn), 900.0]))
+    pose = frames.pose(
+        np.eye(3), np.array([1045.0 + 100.0 * np.cos(turn), -630.0 + 100.0 * np.sin(turn), 900.0])
+    )
     without = cell_with(dome, pose, **CARRIED)
     part = part_points(dome, without)
     motion, issues = planned(dome, without)
@@ -104,15 +135,31 @@ def test_rapids_of_a_carried_nozzle_go_over_an_obstacle_that_links_are_not_kept_
     """Between beads that begin on opposite sides of a low bar the straight way would take the nozzle through it."""
     first = dome.layers[0].beads[0]
     half = len(first) // 2
-    ends = [dataclasses.replace(first, **{
-        name: getattr(first, name)[some] for name in ("points", "build", "tool", "parameter", "speed")
-    }, tangents=None, closed=False) for some in (slice(0, 4), slice(half, half + 4))]
-    job = dataclasses.replace(dome, layers=(dataclasses.replace(dome.layers[0], beads=tuple(ends)),))
+    ends = [
+        dataclasses.replace(
+            first,
+            **{
+                name: getattr(first, name)[some]
+                for name in ("points", "build", "tool", "parameter", "speed")
+            },
+            tangents=None,
+            closed=False,
+        )
+        for some in (slice(0, 4), slice(half, half + 4))
+    ]
+    job = dataclasses.replace(
+        dome, layers=(dataclasses.replace(dome.layers[0], beads=tuple(ends)),)
+    )
     size = (20.0, 60.0, 60.0)
     pose = frames.pose(np.eye(3), np.array([1000.0, 0.0, -60.0]))
     values = {**CELL, "branch": DOWN}
-    for obstacles_, low in (((), 0.0), (cell_with(dome, pose, size=size, **values).obstacles, 1e-3)):
-        cell = dataclasses.replace(cells.resolve(CellParameters(**values), dome.frame), obstacles=obstacles_)
+    for obstacles_, low in (
+        ((), 0.0),
+        (cell_with(dome, pose, size=size, **values).obstacles, 1e-3),
+    ):
+        cell = dataclasses.replace(
+            cells.resolve(CellParameters(**values), dome.frame), obstacles=obstacles_
+        )
         motion, issues = planned(job, cell)
         assert not has_errors(issues)
         near = nearest(motion, cell, pose, nozzle_points(cell)[48:], size, every=1).min()
@@ -136,7 +183,11 @@ def test_a_floor_is_a_box_that_the_elbow_stays_above(dome):
         motion, issues = planned(dome, cell)
         assert not has_errors(issues)
         arm, above = KdlLinks(cell.machine), np.inf
-        links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if k and rods]
+        links = [
+            (k, on_rods(rods))
+            for k, rods in enumerate(link_rods.of_robot(cell.robot.chain))
+            if k and rods
+        ]
         joints, shares = motion.joints, np.linspace(0.1, 1.0, 10)
         dense = np.concatenate([joints[:-1] + share * np.diff(joints, axis=0) for share in shares])
         for q in dense[::23]:
@@ -149,20 +200,30 @@ def test_a_floor_is_a_box_that_the_elbow_stays_above(dome):
 
 def test_an_impossible_one_is_refused_by_name(dome):
     pose = frames.pose(np.eye(3), np.array([450.0, 0.0, 0.0]))
-    cell = cell_with(dome, pose, "screen", (40.0, 3000.0, 3000.0), **CELL, branch=DOWN, arm_clearance=CLEARANCE)
+    cell = cell_with(
+        dome, pose, "screen", (40.0, 3000.0, 3000.0), **CELL, branch=DOWN, arm_clearance=CLEARANCE
+    )
     _, issues = planned(dome, cell)
     told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
     assert {issue.layer for issue in told} == set(range(len(dome.layers)))
-    assert all(issue.message.startswith("link q") and "10 mm to screen" in issue.message for issue in told)
+    assert all(
+        issue.message.startswith("link q") and "10 mm to screen" in issue.message for issue in told
+    )
 
 
 def test_texts_of_obstacles_say_what_they_are():
     text = "table = /a b/table.step at 0 0 -200 0 0 90; box 60 60 400 at 900, 200, 0, 0, 0, 0; post.stl at 1 2 3 0 0 0"
     table, beam, post = found = obstacles(text)
-    assert (table.name, table.file, table.pose) == ("table", "/a b/table.step", (0, 0, -200, 0, 0, np.radians(90.0)))
+    assert (table.name, table.file, table.pose) == (
+        "table",
+        "/a b/table.step",
+        (0, 0, -200, 0, 0, np.radians(90.0)),
+    )
     assert (beam.name, beam.file, beam.size) == ("box 2", "", (60.0, 60.0, 400.0))
     assert (post.name, post.file) == ("post", "post.stl")
-    assert obstacles("; ".join(map(str, found))) == found and obstacles("none") == obstacles("") == ()
+    assert (
+        obstacles("; ".join(map(str, found))) == found and obstacles("none") == obstacles("") == ()
+    )
 
 
 @pytest.mark.parametrize(("text", "told"), [
@@ -195,9 +256,18 @@ def row_of_beads(dome):
     for high in (0.0, 15.0):
         points = np.column_stack([x, 0.0 * x, high + 0.0 * x])
         up = np.tile([0.0, 0.0, 1.0], (5, 1))
-        beads.append(dataclasses.replace(
-            bead, points=points, build=up, tool=up, parameter=np.linspace(0.0, 6.0, 5), speed=np.full(5, 8.0), tangents=None,
-            closed=False))
+        beads.append(
+            dataclasses.replace(
+                bead,
+                points=points,
+                build=up,
+                tool=up,
+                parameter=np.linspace(0.0, 6.0, 5),
+                speed=np.full(5, 8.0),
+                tangents=None,
+                closed=False,
+            )
+        )
     layers = tuple(dataclasses.replace(dome.layers[0], beads=(one,)) for one in beads)
     return dataclasses.replace(dome, layers=layers, family="surface")
 
@@ -213,9 +283,12 @@ def test_a_nozzle_that_runs_into_an_obstacle_within_a_bead_is_refused(dome, asid
     free = dataclasses.replace(cell, arm_clearance=clearance)
     motion, issues = planned(job, free)
     laid = np.flatnonzero(motion.deposit[1:] & motion.deposit[:-1]) + 1
-    dense = np.concatenate([
-        motion.joints[laid - 1] + share * (motion.joints[laid] - motion.joints[laid - 1])
-        for share in np.linspace(0.0, 1.0, 60)])
+    dense = np.concatenate(
+        [
+            motion.joints[laid - 1] + share * (motion.joints[laid] - motion.joints[laid - 1])
+            for share in np.linspace(0.0, 1.0, 60)
+        ]
+    )
     arm, to_box = KdlArm(cell.machine), np.linalg.inv(cell.machine.base @ pose)
     cone = np.c_[nozzle_points(cell), np.ones(len(nozzle_points(cell)))]
     seen = np.einsum("nij,kj->nki", (to_box @ arm.forward(dense))[:, :3], cone)
@@ -224,4 +297,6 @@ def test_a_nozzle_that_runs_into_an_obstacle_within_a_bead_is_refused(dome, asid
     assert deep == (aside == 0.0)
     assert ("CLEARANCE" in told) == deep
     (found,) = [issue for issue in issues if issue.code == "CLEARANCE"] or [None]
-    assert found is None or ("the nozzle touches post on " in found.message and found.layer in (0, 1))
+    assert found is None or (
+        "the nozzle touches post on " in found.message and found.layer in (0, 1)
+    )

@@ -17,7 +17,14 @@ from freecad_am.core.planning.external.rule import least_margin
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
 
-from .test_external_axes import POSITIONER, UP, cell_for, file_of_built_in, in_the_world, levelled_to
+from .test_external_axes import (
+    POSITIONER,
+    UP,
+    cell_for,
+    file_of_built_in,
+    in_the_world,
+    levelled_to,
+)
 
 MOST = 20.0  # deg from the vertical
 BESIDE = f"{POSITIONER} at 1400 120 -50 0 0 30 carries part; kuka-kl100-2 at 0 0 -356 0 0 90 carries robot"
@@ -31,7 +38,10 @@ def hemisphere(sliced):
 @pytest.fixture(scope="module")
 def both(hemisphere):
     cell = cell_for(hemisphere)
-    return [plan_joints(hemisphere, cell, JointParameters(external_axes=rule)) for rule in ("level", "optimised")]
+    return [
+        plan_joints(hemisphere, cell, JointParameters(external_axes=rule))
+        for rule in ("level", "optimised")
+    ]
 
 
 def motion(cell, path):
@@ -44,10 +54,15 @@ def motion(cell, path):
 def share_left(cell, path):
     """The least share of a range that is left to a limit, and of the condition to the one asked for."""
     reserve = math.radians(0.05)  # docs/decisions/0009
-    half, middle = 0.5 * (cell.limits.upper - cell.limits.lower) - reserve, 0.5 * (cell.limits.upper + cell.limits.lower)
+    half, middle = (
+        0.5 * (cell.limits.upper - cell.limits.lower) - reserve,
+        0.5 * (cell.limits.upper + cell.limits.lower),
+    )
     ends = np.isfinite(half)
     off = np.abs(path.joints[:, ends] - middle[ends]) / half[ends]
-    return min(1.0 - off.max(), min((1.0 - one.threshold / one.condition).min() for one in path.beads))
+    return min(
+        1.0 - off.max(), min((1.0 - one.threshold / one.condition).min() for one in path.beads)
+    )
 
 
 def test_less_motion_and_a_larger_least_margin(hemisphere, both):
@@ -56,7 +71,9 @@ def test_less_motion_and_a_larger_least_margin(hemisphere, both):
     assert level.feasible and better.feasible and level.of_level is None
     assert motion(cell, better) < 0.9 * motion(cell, level)
     assert share_left(cell, better) > share_left(cell, level) + 0.01
-    assert better.of_level["objective_value"] == pytest.approx(sum(path.objective for path in level.beads), rel=1e-12)
+    assert better.of_level["objective_value"] == pytest.approx(
+        sum(path.objective for path in level.beads), rel=1e-12
+    )
     assert better.of_level["least_margin"] == pytest.approx(share_left(cell, level), abs=1e-9)
     task = Task(cell, opw.branch_index(better.branch), JointParameters())
     assert least_margin(task, better.beads) == pytest.approx(share_left(cell, better), abs=1e-9)
@@ -79,7 +96,10 @@ def test_every_point_is_met_and_the_tool_is_upright_enough(hemisphere, both):
             along = np.diff(one.bead.points, axis=0)
             gap = tip @ frame[:3, :3].T + frame[:3, 3] - one.bead.points[:-1]
             part = np.clip((gap * along).sum(1) / (along * along).sum(1), 0.0, 1.0)
-            assert np.linalg.norm(gap - part[:, None] * along, axis=1).max() <= hemisphere.chord_error + 1e-6
+            assert (
+                np.linalg.norm(gap - part[:, None] * along, axis=1).max()
+                <= hemisphere.chord_error + 1e-6
+            )
             assert np.degrees(np.arccos(np.clip(upward @ UP, -1.0, 1.0))).max() < MOST + 0.05
 
 
@@ -101,7 +121,8 @@ def test_a_track_and_a_positioner_together(sliced):
     hemisphere = levelled_to(sliced("sphere", 20.0, chord_error=0.2), MOST)
     cell = cell_for(hemisphere, external=BESIDE)
     level, better = (
-        plan_joints(hemisphere, cell, JointParameters(external_axes=rule)) for rule in ("level", "optimised")
+        plan_joints(hemisphere, cell, JointParameters(external_axes=rule))
+        for rule in ("level", "optimised")
     )
     assert better.feasible
     assert motion(cell, better) < 0.9 * motion(cell, level)
@@ -115,10 +136,16 @@ def test_derivatives(hemisphere, external, objective):
     """By all numbers of the rotation and of every external axis, against central differences."""
     cell = cell_for(hemisphere, **({} if external is None else {"external": external}))
     planned = plan_joints(hemisphere, cell, JointParameters())
-    task = Task(cell, opw.branch_index(planned.branch), JointParameters(degree=2, objective=objective))
+    task = Task(
+        cell, opw.branch_index(planned.branch), JointParameters(degree=2, objective=objective)
+    )
     path = planned.beads[3]
-    freedom = optimised._freedom(task, path, path.coefficients, lambda tool: on_face(cell, tool), math.radians(MOST))
-    x = 0.01 * np.random.default_rng(5).normal(size=(1 + cell.external.axes) * freedom.shape.shape[1])
+    freedom = optimised._freedom(
+        task, path, path.coefficients, lambda tool: on_face(cell, tool), math.radians(MOST)
+    )
+    x = 0.01 * np.random.default_rng(5).normal(
+        size=(1 + cell.external.axes) * freedom.shape.shape[1]
+    )
     here, step = freedom.look(x), 1e-6
     of_condition = np.arange(len(here.margins)) >= len(here.margins) - len(freedom.points)
     told = ~(of_condition & (here.margins >= AMPLE))
@@ -126,39 +153,70 @@ def test_derivatives(hemisphere, external, objective):
     for number in range(len(x)):
         change = np.where(np.arange(len(x)) == number, step, 0.0)
         more, less = freedom.look(x + change), freedom.look(x - change)
-        assert (more.objective - less.objective) / (2 * step) == pytest.approx(here.slope[number], rel=1e-4, abs=1e-6)
-        np.testing.assert_allclose(
-            ((more.margins - less.margins) / (2 * step))[told], here.margin_slopes[told, number], rtol=1e-4, atol=1e-6
+        assert (more.objective - less.objective) / (2 * step) == pytest.approx(
+            here.slope[number], rel=1e-4, abs=1e-6
         )
-        np.testing.assert_allclose((more.hard - less.hard) / (2 * step), here.hard_slopes[:, number], rtol=1e-4, atol=1e-5)
+        np.testing.assert_allclose(
+            ((more.margins - less.margins) / (2 * step))[told],
+            here.margin_slopes[told, number],
+            rtol=1e-4,
+            atol=1e-6,
+        )
+        np.testing.assert_allclose(
+            (more.hard - less.hard) / (2 * step), here.hard_slopes[:, number], rtol=1e-4, atol=1e-5
+        )
 
 
 def test_what_is_no_better_stays(hemisphere, both, monkeypatch):
     """Whatever the descent brings: turned by half, beads have less margin or none."""
-    monkeypatch.setattr(optimised, "_climbed", lambda freedom, path: (
-        freedom, np.full((1 + freedom.external.axes) * freedom.shape.shape[1], 0.5), 0))
+    monkeypatch.setattr(
+        optimised,
+        "_climbed",
+        lambda freedom, path: (
+            freedom,
+            np.full((1 + freedom.external.axes) * freedom.shape.shape[1], 0.5),
+            0,
+        ),
+    )
     path = plan_joints(hemisphere, cell_for(hemisphere), JointParameters(external_axes="optimised"))
     level = both[0]
     for one, other in zip(path.beads, level.beads, strict=True):
-        assert one.objective <= other.objective and one.margin >= min(other.margin, optimised.ENOUGH)
+        assert one.objective <= other.objective and one.margin >= min(
+            other.margin, optimised.ENOUGH
+        )
     assert motion(cell_for(hemisphere), path) <= motion(cell_for(hemisphere), level)
 
 
 def test_given_polynomials_stay(hemisphere, both):
     level, better = both
-    given = tuple(given_text((one.layer, one.index), tuple(one.coefficients)) for one in level.beads[2:])
-    path = plan_joints(hemisphere, cell_for(hemisphere), JointParameters(external_axes="optimised", given=given))
+    given = tuple(
+        given_text((one.layer, one.index), tuple(one.coefficients)) for one in level.beads[2:]
+    )
+    path = plan_joints(
+        hemisphere, cell_for(hemisphere), JointParameters(external_axes="optimised", given=given)
+    )
     assert path.feasible
     for one, other in zip(path.beads[2:], level.beads[2:], strict=True):
         assert np.allclose(one.bead.external, other.bead.external, rtol=0.0, atol=0.0)
-    assert any(not np.allclose(one.bead.external, other.bead.external) for one, other in zip(better.beads, level.beads))
+    assert any(
+        not np.allclose(one.bead.external, other.bead.external)
+        for one, other in zip(better.beads, level.beads)
+    )
 
 
 def test_what_it_cannot_serve_is_told(hemisphere):
     with pytest.raises(InputError, match="layer-by-layer") as error:
-        plan_joints(hemisphere, cell_for(hemisphere), JointParameters(external_axes="optimised", method="constant"))
+        plan_joints(
+            hemisphere,
+            cell_for(hemisphere),
+            JointParameters(external_axes="optimised", method="constant"),
+        )
     assert error.value.code == "NOT_FOR_SETUP"
-    alone = cell_for(hemisphere, external="none", deposition_point=(1400.0, 0.0, 300.0, 0.0, 0.0, 0.0))
+    alone = cell_for(
+        hemisphere, external="none", deposition_point=(1400.0, 0.0, 300.0, 0.0, 0.0, 0.0)
+    )
     free = dataclasses.replace(hemisphere, max_from_vertical=math.pi)
     path = plan_joints(free, alone, JointParameters(external_axes="optimised"))
-    assert [issue.code for issue in path.issues if "joints.external_axes" in issue.message] == ["NOT_USED"]
+    assert [issue.code for issue in path.issues if "joints.external_axes" in issue.message] == [
+        "NOT_USED"
+    ]

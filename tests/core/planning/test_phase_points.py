@@ -18,13 +18,17 @@ LONG, STEP = 400.0, 1e-6
 
 def condition(arm, cell, joints):
     """The ratio of the singular values of the Jacobian of the tip of a tool on the robot, by differences."""
+
     def at(values):
         return arm.forward(values[None])[0] @ cell.carried
 
     here, columns = at(joints), []
     for axis in STEP * np.eye(6):
         up, down = at(joints + axis), at(joints - axis)
-        turn, way = (up - down)[:3, :3] @ here[:3, :3].T / (2.0 * STEP), (up - down)[:3, 3] / (2.0 * STEP) / LENGTH
+        turn, way = (
+            (up - down)[:3, :3] @ here[:3, :3].T / (2.0 * STEP),
+            (up - down)[:3, 3] / (2.0 * STEP) / LENGTH,
+        )
         columns.append([*way, turn[2, 1], turn[0, 2], turn[1, 0]])
     values = np.linalg.svd(np.array(columns), compute_uv=False)
     return values[-1] / values[0]
@@ -46,13 +50,17 @@ def test_points_of_phases_have_the_condition_of_where_they_are():
     (bead,) = path.beads
     assert len(bead.bead) - len(planned()[1].beads[0].bead) == 2
     arm = kdl.KdlArm(cell.machine)
-    np.testing.assert_allclose([condition(arm, cell, row) for row in bead.joints], bead.condition, atol=1e-7)
+    np.testing.assert_allclose(
+        [condition(arm, cell, row) for row in bead.joints], bead.condition, atol=1e-7
+    )
     at = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.bead.points, axis=0), axis=1))]
     for border in (90.0, at[-1] - 140.0):
         new = int(np.abs(at - border).argmin())
         assert abs(at[new] - border) < 0.02 and bead.condition[new] > 0.0
         between = np.interp(at[new], at[[new - 1, new + 1]], bead.condition[[new - 1, new + 1]])
-        assert abs(bead.condition[new] - between) > 1e-6  # what lies between its neighbours would be another one
+        assert (
+            abs(bead.condition[new] - between) > 1e-6
+        )  # what lies between its neighbours would be another one
     flange = arm.forward(bead.joints)
     tip = (cell.mount @ np.linalg.inv(cell.station) @ flange @ cell.carried)[:, :3, 3]
     np.testing.assert_allclose(tip, bead.bead.points, atol=1e-6)
@@ -64,9 +72,13 @@ def test_an_end_that_axes_cannot_follow_is_found():
     (bead,) = path.beads
     turned = np.abs(np.diff(bead.joints, axis=0))
     length = np.linalg.norm(np.diff(bead.bead.points, axis=0), axis=1)
-    able = (cell.machine.max_speed / np.maximum(turned / length[:, None], 1e-12)).min(axis=1)  # mm/s on each segment
+    able = (cell.machine.max_speed / np.maximum(turned / length[:, None], 1e-12)).min(
+        axis=1
+    )  # mm/s on each segment
     late = 1.05 * able[-1]
     cell, path = planned(0.0, 0.0, 40.0, float(late))
     (issue,) = [issue for issue in path.issues if issue.level == ERROR]
-    assert issue.code == "SPEED" and f"lower the travel speed to {able[-1]:.2f} mm/s" in issue.message
+    assert (
+        issue.code == "SPEED" and f"lower the travel speed to {able[-1]:.2f} mm/s" in issue.message
+    )
     assert planned(0.0, 0.0, 40.0, float(0.99 * able[-1]))[1].feasible

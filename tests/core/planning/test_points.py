@@ -11,8 +11,15 @@ from freecad_am.core.planning.points import UNPOSED, Points, unwrapped, unwrappe
 def points_of(counts, sliding=None):
     first, total = np.cumsum([0, *counts[:-1]]), sum(counts)
     return Points(
-        np.zeros((total, 3)), np.zeros((total, 3)), np.zeros(total), first, np.repeat(np.arange(len(counts)), counts),
-        np.zeros(len(counts), dtype=bool), UNPOSED, None, sliding,
+        np.zeros((total, 3)),
+        np.zeros((total, 3)),
+        np.zeros(total),
+        first,
+        np.repeat(np.arange(len(counts)), counts),
+        np.zeros(len(counts), dtype=bool),
+        UNPOSED,
+        None,
+        sliding,
     )
 
 

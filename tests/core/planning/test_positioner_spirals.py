@@ -8,7 +8,14 @@ import pytest
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from tests.core.planning.test_external_axes import levelled_to
-from tests.core.planning.test_positioner_stroke import MOST, cell_with, codes, in_the_world, of_text, off_beads
+from tests.core.planning.test_positioner_stroke import (
+    MOST,
+    cell_with,
+    codes,
+    in_the_world,
+    of_text,
+    off_beads,
+)
 
 __all__ = ["cell_with"]  # a fixture
 
@@ -33,12 +40,17 @@ def test_a_spiral_is_cut_where_the_axis_rewinds(spiral, cell_with, turn, pieces)
     cell = cell_with(spiral, 134.0, turn)
     planned = plan_joints(spiral, cell, JointParameters())
     assert planned.feasible, [issue.message for issue in planned.issues]
-    assert (codes(planned) & {"SEAM_MOVED", "BEAD_SPLIT"}) == (set() if pieces == 1 else {"BEAD_SPLIT"})
+    assert (codes(planned) & {"SEAM_MOVED", "BEAD_SPLIT"}) == (
+        set() if pieces == 1 else {"BEAD_SPLIT"}
+    )
     mine = [path.bead for path in planned.beads]
     rewinds = [issue.message for issue in planned.issues if issue.code == "UNWIND"]
     assert len(mine) == pieces
     # it turns back between pieces alone, by as much as the axis has room for; more than three quarters of a turn are told
-    back = [abs(after.joints[0, -1] - piece.joints[-1, -1]) for piece, after in zip(planned.beads, planned.beads[1:])]
+    back = [
+        abs(after.joints[0, -1] - piece.joints[-1, -1])
+        for piece, after in zip(planned.beads, planned.beads[1:])
+    ]
     assert min(back, default=np.pi) > np.radians(90.0) and len(back) == pieces - 1, np.degrees(back)
     told = sum(way > 1.5 * np.pi for way in back)
     assert told == (pieces - 1 if turn > 135.0 else 0) and len(rewinds) == (told > 0)
@@ -62,5 +74,7 @@ def test_a_spiral_is_cut_where_the_axis_rewinds(spiral, cell_with, turn, pieces)
 def test_a_spiral_that_no_cut_helps_is_refused_by_the_axis(spiral, cell_with, tilt, turn, axis):
     planned = plan_joints(spiral, cell_with(spiral, tilt, turn), JointParameters(method="constant"))
     assert not planned.feasible
-    assert any(issue.code in ("LIMIT", "NOT_LEVEL") and issue.message.startswith(axis) for issue in planned.issues), [
-        i.message for i in planned.issues]
+    assert any(
+        issue.code in ("LIMIT", "NOT_LEVEL") and issue.message.startswith(axis)
+        for issue in planned.issues
+    ), [i.message for i in planned.issues]

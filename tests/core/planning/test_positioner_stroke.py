@@ -35,7 +35,9 @@ from tests.core.planning.test_external_axes import (
 )
 from tests.programs import build
 
-TURNED = math.radians(70.0)  # of the part on the table: its seam is not where the table is in its middle
+TURNED = math.radians(
+    70.0
+)  # of the part on the table: its seam is not where the table is in its middle
 OVERLAP, MOST = 4.0, 10.0  # mm, deg
 ROBOT = "abb-irb4600-20-250"
 
@@ -55,11 +57,17 @@ def cell_with(tmp_path_factory):
         told["limits"]["maker"]["axes"] = [[-tilt, tilt], [-turn, turn]]
         path = folder / f"{tilt}-{turn}.json"
         path.write_text(json.dumps({**told, "id": f"short-{tilt}-{turn}"}), encoding="utf-8")
-        return cells.resolve(CellParameters(
-            machine=ROBOT, setup="tool-on-robot", branch="auto", platform=(0.0, 0.0, PLATFORM, 0.0, 0.0, TURNED),
-            external=f"{path} at {' '.join(map(str, STANDS))} carries part",
-            nozzle=NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))),
-        ), toolpath.frame)
+        return cells.resolve(
+            CellParameters(
+                machine=ROBOT,
+                setup="tool-on-robot",
+                branch="auto",
+                platform=(0.0, 0.0, PLATFORM, 0.0, 0.0, TURNED),
+                external=f"{path} at {' '.join(map(str, STANDS))} carries part",
+                nozzle=NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))),
+            ),
+            toolpath.frame,
+        )
 
     return make
 
@@ -86,7 +94,9 @@ def off_beads(points, beads):
         start, along = bead.points[:-1], np.diff(bead.points, axis=0)
         gap = points[:, None] - start
         share = np.clip((gap * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
-        nearest = np.minimum(nearest, np.linalg.norm(gap - share[..., None] * along, axis=-1).min(axis=1))
+        nearest = np.minimum(
+            nearest, np.linalg.norm(gap - share[..., None] * along, axis=-1).min(axis=1)
+        )
     return nearest
 
 
@@ -95,9 +105,15 @@ def of_text(cell, toolpath, planned):
     motion, issues = assemble(planned, cell, ProcessParameters())
     assert not [issue for issue in issues if issue.level == "error"]
     program = build(motion, cell, ProcessParameters(), ProgramParameters(post="abb"), "job")
-    text = "".join(content.decode("ascii") for name, content in abb.write(program).items() if name.endswith(".mod"))
+    text = "".join(
+        content.decode("ascii")
+        for name, content in abb.write(program).items()
+        if name.endswith(".mod")
+    )
     targets = re.findall(r"MoveAbsJ \[\[([^\]]*)\],\[([^\]]*)\]\]", text)
-    values = np.array([[float(x) for x in (robot + "," + beside).split(",")[:8]] for robot, beside in targets])
+    values = np.array(
+        [[float(x) for x in (robot + "," + beside).split(",")[:8]] for robot, beside in targets]
+    )
     joints = np.array([cell.machine.from_controller(row) for row in np.radians(values)])
     assert len(joints) == motion.moves.sum()
     return joints[motion.deposit[motion.moves]], joints
@@ -107,10 +123,16 @@ def codes(planned):
     return {issue.code for issue in planned.issues}
 
 
-@pytest.mark.parametrize(("tilt", "turn", "said"), [
-    (134.0, 185.0, "SEAM_MOVED"), (134.0, 170.0, "SEAM_MOVED"), (48.0, 172.0, "SEAM_MOVED"), (134.0, 120.0, "BEAD_SPLIT"),
-    (134.0, 80.0, "BEAD_SPLIT"),
-])
+@pytest.mark.parametrize(
+    ("tilt", "turn", "said"),
+    [
+        (134.0, 185.0, "SEAM_MOVED"),
+        (134.0, 170.0, "SEAM_MOVED"),
+        (48.0, 172.0, "SEAM_MOVED"),
+        (134.0, 120.0, "BEAD_SPLIT"),
+        (134.0, 80.0, "BEAD_SPLIT"),
+    ],
+)
 @pytest.mark.always("134.0-170.0-SEAM_MOVED", "134.0-80.0-BEAD_SPLIT")
 def test_the_text_keeps_the_limits_and_lies_on_the_beads(hemisphere, cell_with, tilt, turn, said):
     cell = cell_with(hemisphere, tilt, turn)
@@ -123,7 +145,9 @@ def test_the_text_keeps_the_limits_and_lies_on_the_beads(hemisphere, cell_with, 
     assert ((moves >= least - 1e-9) & (moves <= most + 1e-9)).all()
     tips, leans = in_the_world(hemisphere, deposit)
     beads = [bead for _, _, bead in hemisphere]
-    assert off_beads(tips, beads).max() < hemisphere.chord_error + 0.01  # the last digits of the text
+    assert (
+        off_beads(tips, beads).max() < hemisphere.chord_error + 0.01
+    )  # the last digits of the text
     assert leans.max() < MOST + 0.01
     # and every point of every bead is met, by bead or piece
     for layer, bead in enumerate(bead for _, _, bead in hemisphere):
@@ -132,25 +156,35 @@ def test_the_text_keeps_the_limits_and_lies_on_the_beads(hemisphere, cell_with, 
         assert sum(piece.length for piece in mine) == pytest.approx(bead.length, rel=2e-3)
         for piece, after in zip(mine, mine[1:]):
             assert np.abs(piece.points[-1] - after.points[0]).max() < 1e-9
-        assert [path.index for path in planned.beads if path.layer == layer] == list(range(len(mine)))
+        assert [path.index for path in planned.beads if path.layer == layer] == list(
+            range(len(mine))
+        )
 
 
 @pytest.mark.parametrize("turn", [170.0, 200.0])
 @pytest.mark.long
 def test_beads_that_begin_elsewhere_and_the_last_pieces_run_on_as_asked(sliced, cell_with, turn):
-    toolpath = dataclasses.replace(levelled_to(sliced("sphere", 10.0, chord_error=0.1), MOST), overlap=OVERLAP)
+    toolpath = dataclasses.replace(
+        levelled_to(sliced("sphere", 10.0, chord_error=0.1), MOST), overlap=OVERLAP
+    )
     planned = plan_joints(toolpath, cell_with(toolpath, 134.0, turn), JointParameters())
-    assert planned.feasible and "BEAD_SPLIT" in codes(planned)  # small rings have no room for the overlap too
+    assert planned.feasible and "BEAD_SPLIT" in codes(
+        planned
+    )  # small rings have no room for the overlap too
     moved = 0
     for layer, bead in enumerate(bead for _, _, bead in toolpath):
         mine = [path for path in planned.beads if path.layer == layer]
-        assert sum(path.bead.length for path in mine) == pytest.approx(bead.length + min(OVERLAP, bead.length), rel=3e-3)
+        assert sum(path.bead.length for path in mine) == pytest.approx(
+            bead.length + min(OVERLAP, bead.length), rel=3e-3
+        )
         if len(mine) == 1 and np.ptp(mine[0].joints[:, 7]) > math.radians(330.0):
             moved += 1
             assert np.abs(mine[0].joints[:, 7]).max() <= math.radians(turn)
             if turn < 180.0:
                 assert np.linalg.norm(mine[0].bead.points[0] - bead.points[0]) > 10.0
-                assert np.abs(np.diff(mine[0].joints[-3:, 7])).max() < 1e-12  # it waits at its limit
+                assert (
+                    np.abs(np.diff(mine[0].joints[-3:, 7])).max() < 1e-12
+                )  # it waits at its limit
     assert moved > 2
     tips, leans = in_the_world(toolpath, planned.joints)
     assert off_beads(tips, [bead for _, _, bead in toolpath]).max() < 2.0 * toolpath.chord_error
@@ -170,9 +204,14 @@ def test_a_wide_axis_is_left_alone(hemisphere, cell_with, monkeypatch):
 @pytest.mark.long
 def test_what_no_cut_helps_is_refused_by_name(sliced, cell_with, tilt, turn, axis):
     toolpath = levelled_to(sliced("sphere", 10.0, chord_error=0.1), MOST)
-    planned = plan_joints(toolpath, cell_with(toolpath, tilt, turn), JointParameters(method="constant"))
+    planned = plan_joints(
+        toolpath, cell_with(toolpath, tilt, turn), JointParameters(method="constant")
+    )
     assert not planned.feasible
-    assert any(issue.code == "LIMIT" and issue.message.startswith(f"{axis} would be at") for issue in planned.issues)
+    assert any(
+        issue.code == "LIMIT" and issue.message.startswith(f"{axis} would be at")
+        for issue in planned.issues
+    )
 
 
 def test_no_pieces_where_no_way_leads_on(hemisphere, cell_with):
@@ -188,7 +227,9 @@ def test_pieces_are_as_few_and_as_equal_as_may_be():
         reach = np.minimum(np.maximum.accumulate(np.arange(12) + random.integers(1, 6, 12)), 11)
         cuts = stroke._cuts(reach, 0, 11)
         fewest = next(
-            count for count in range(1, 12) for ends in _ways(11, count)
+            count
+            for count in range(1, 12)
+            for ends in _ways(11, count)
             if all(reach[a] >= b for a, b in zip(ends, ends[1:]))
         )
         assert len(cuts) - 1 == fewest

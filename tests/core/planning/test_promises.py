@@ -29,7 +29,9 @@ ROW = 300  # of the deposit, of which something is changed
 def sound(sliced, cell_of):
     """A cell, joint path, and evidence of a sound job with the whole motion."""
     toolpath = sliced("sphere", HEIGHT)
-    toolpath = dataclasses.replace(toolpath, on_part=(500.0, 0.01, 0.2), unsupported=0.0, wire_feed=None, bead_width=WIDTH)
+    toolpath = dataclasses.replace(
+        toolpath, on_part=(500.0, 0.01, 0.2), unsupported=0.0, wire_feed=None, bead_width=WIDTH
+    )
     cell = cell_of(toolpath)
     path = plan_joints(toolpath, cell, JointParameters())
     process = dataclasses.replace(ProcessParameters(), bead_width=WIDTH)
@@ -37,18 +39,34 @@ def sound(sliced, cell_of):
     assert not issues and path.feasible
     n = len(motion)
     fed = WIDTH * HEIGHT * process.travel_speed / process.wire.section
-    return cell, path, Evidence(
-        dataclasses.replace(toolpath, wire_feed=fed), process, (), cell, motion, np.full(n, 0.3), np.full(n, 0.1),
-        ArmTouches(np.full(n, -1), np.full(n, -1), ("platform",), 0.02, LINKS), True,
-        ReadBack(True, 1e-3, 0.01, 2e-3, 0.05, 2),
-        ("UFRAME 1",), None, Balance("Part", 1e5, 0.0, 1e5, 0.0, twice=0.0), clearance_look.Looked(100, 0, None),
-        driven(cell, path, motion),
+    return (
+        cell,
+        path,
+        Evidence(
+            dataclasses.replace(toolpath, wire_feed=fed),
+            process,
+            (),
+            cell,
+            motion,
+            np.full(n, 0.3),
+            np.full(n, 0.1),
+            ArmTouches(np.full(n, -1), np.full(n, -1), ("platform",), 0.02, LINKS),
+            True,
+            ReadBack(True, 1e-3, 0.01, 2e-3, 0.05, 2),
+            ("UFRAME 1",),
+            None,
+            Balance("Part", 1e5, 0.0, 1e5, 0.0, twice=0.0),
+            clearance_look.Looked(100, 0, None),
+            driven(cell, path, motion),
+        ),
     )
 
 
 def driven(cell, path, motion, up=0.0):
     """What is looked at on rapids, the beads raised by so much."""
-    beads = [dataclasses.replace(one.bead, points=one.bead.points + [0.0, 0.0, up]) for one in path.beads]
+    beads = [
+        dataclasses.replace(one.bead, points=one.bead.points + [0.0, 0.0, up]) for one in path.beads
+    ]
     return looked_at(motion, beads, cell, (), WIDTH, HEIGHT, 20_000)
 
 
@@ -87,7 +105,9 @@ def test_a_row_beyond_a_limit(sound, role):
     joints[1] = cell.limits.upper[1] + np.radians(0.5)
     found = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=joints)))
     entry = found["Every axis stays within its limits"]
-    assert tuple(entry.place) == place_of(motion, row) and entry.worst == pytest.approx(-0.5, abs=1e-6)
+    assert tuple(entry.place) == place_of(motion, row) and entry.worst == pytest.approx(
+        -0.5, abs=1e-6
+    )
 
 
 def test_joints_that_lead_elsewhere(sound):
@@ -112,16 +132,19 @@ def test_an_axis_asked_for_too_much(sound, rapid):
     share = (np.abs(motion.joints[row] - motion.joints[row - 1]) / cell.machine.max_speed).max()
     found = broken(dataclasses.replace(evidence, motion=changed(motion, row, duration=share / 1.1)))
     assert set(found) == {"No axis is asked for more than its largest speed"}
-    entry, = found.values()
+    (entry,) = found.values()
     assert tuple(entry.place) == place_of(motion, row) and entry.worst == pytest.approx(110.0)
 
 
 def test_a_nozzle_that_meets_deposit_on_rapids_though_planning_found_nothing(sound):
     cell, path, evidence = sound
-    assert evidence.rapids.moves == int((~evidence.motion.deposit[1:]).sum()) and evidence.rapids.step <= 2.0
+    assert (
+        evidence.rapids.moves == int((~evidence.motion.deposit[1:]).sum())
+        and evidence.rapids.step <= 2.0
+    )
     found = broken(dataclasses.replace(evidence, rapids=driven(cell, path, evidence.motion, 25.0)))
     assert set(found) == {"The nozzle stays clear on the rapids"}
-    entry, = found.values()
+    (entry,) = found.values()
     assert entry.worst >= 5.0 and entry.place is not None
 
 
@@ -131,16 +154,27 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
     for share in (0.5, -0.4):
         way = share * HEIGHT * np.array([0.0, 0.0, 1.0])
         layers = tuple(
-            dataclasses.replace(layer, beads=tuple(
-                dataclasses.replace(bead, points=bead.points + way, tangents=None) for bead in layer.beads
-            )) if number >= 3 else layer for number, layer in enumerate(evidence.toolpath.layers)
+            dataclasses.replace(
+                layer,
+                beads=tuple(
+                    dataclasses.replace(bead, points=bead.points + way, tangents=None)
+                    for bead in layer.beads
+                ),
+            )
+            if number >= 3
+            else layer
+            for number, layer in enumerate(evidence.toolpath.layers)
         )
         issue = Issue(WARNING, "SPACING", "layers are not one layer height apart", 3)
-        found = broken(dataclasses.replace(
-            evidence, toolpath=dataclasses.replace(evidence.toolpath, layers=layers), issues=(issue,),
-        ))
+        found = broken(
+            dataclasses.replace(
+                evidence,
+                toolpath=dataclasses.replace(evidence.toolpath, layers=layers),
+                issues=(issue,),
+            )
+        )
         assert set(found) == {"Layers lie one layer height apart"}
-        entry, = found.values()
+        (entry,) = found.values()
         below, above = (np.vstack([bead.points for bead in layers[k].beads]) for k in (2, 3))
         away = cKDTree(below).query(above)[0]
         assert entry.place[0] == 3 and entry.unit == "mm"
@@ -184,27 +218,46 @@ def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound)
     evidence = sound[2]
     found = broken(dataclasses.replace(evidence, read=dataclasses.replace(evidence.read, ok=False)))
     assert set(found) == {
-        "The text takes the tool to the planned points", "Between its points the text keeps to the planned path"}
+        "The text takes the tool to the planned points",
+        "Between its points the text keeps to the planned path",
+    }
 
 
-@pytest.mark.parametrize(("promise", "level", "codes"), [
-    ("The nozzle stays clear on the rapids", "error", (
-        "RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")),
-    ("The nozzle stays clear of deposit, part and platform while it deposits", "error", ("CLEARANCE", "OVER_PLATFORM")),
-    ("All of the part is deposited", "warning", ("NOT_DEPOSITED",)),
-    ("Nothing is deposited outside the part", "warning", ("DEPOSITED_BESIDE",)),
-    ("Little is deposited twice", "warning", ("DEPOSITED_TWICE",)),
-    ("Every bead is carried by what lies below it", "warning", ("UNSUPPORTED",)),
-])
-def test_what_planning_has_found_breaks_its_promise_whatever_the_figures_say(sound, promise, level, codes):
+@pytest.mark.parametrize(
+    ("promise", "level", "codes"),
+    [
+        (
+            "The nozzle stays clear on the rapids",
+            "error",
+            ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR"),
+        ),
+        (
+            "The nozzle stays clear of deposit, part and platform while it deposits",
+            "error",
+            ("CLEARANCE", "OVER_PLATFORM"),
+        ),
+        ("All of the part is deposited", "warning", ("NOT_DEPOSITED",)),
+        ("Nothing is deposited outside the part", "warning", ("DEPOSITED_BESIDE",)),
+        ("Little is deposited twice", "warning", ("DEPOSITED_TWICE",)),
+        ("Every bead is carried by what lies below it", "warning", ("UNSUPPORTED",)),
+    ],
+)
+def test_what_planning_has_found_breaks_its_promise_whatever_the_figures_say(
+    sound, promise, level, codes
+):
     for code in codes:
-        found = broken(dataclasses.replace(sound[2], issues=(Issue(level, code, "as planning says", 3, 0),)))
+        found = broken(
+            dataclasses.replace(sound[2], issues=(Issue(level, code, "as planning says", 3, 0),))
+        )
         assert set(found) == {promise}, code
 
 
 def without(evidence, **parts):
     """The evidence with parts of its toolpath, or of its cell, replaced."""
-    return {name: dataclasses.replace(getattr(evidence, name), **values) for name, values in parts.items()}
+    return {
+        name: dataclasses.replace(getattr(evidence, name), **values)
+        for name, values in parts.items()
+    }
 
 
 @pytest.mark.parametrize(
@@ -214,25 +267,43 @@ def without(evidence, **parts):
         ("All of the part is deposited", lambda e: {"balance": None}),
         ("Nothing is deposited outside the part", lambda e: {"balance": None}),
         ("Nothing is deposited outside the part", lambda e: without(e, balance={"outside": None})),
-        ("All of the part is deposited", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=0.0, lines=True)}),
+        (
+            "All of the part is deposited",
+            lambda e: {"balance": Balance("Part", None, None, 1e5, twice=0.0, lines=True)},
+        ),
         ("Little is deposited twice", lambda e: without(e, balance={"twice": None})),
-        ("Every bead is carried by what lies below it", lambda e: without(e, toolpath={"unsupported": None})),
+        (
+            "Every bead is carried by what lies below it",
+            lambda e: without(e, toolpath={"unsupported": None}),
+        ),
         ("The wire feeds what the beads take", lambda e: without(e, toolpath={"wire_feed": None})),
         ("The wire feeds what the beads take", lambda e: without(e, process={"bead_model": "csw"})),
-        ("The nozzle stays clear of deposit, part and platform while it deposits", lambda e: {"looked": None}),
+        (
+            "The nozzle stays clear of deposit, part and platform while it deposits",
+            lambda e: {"looked": None},
+        ),
         ("Every axis stays within its limits", lambda e: {"cell": None}),
         ("The joints bring the tool to every point", lambda e: {"motion": None}),
         ("No axis is asked for more than its largest speed", lambda e: {"motion": None}),
         ("The tool keeps away from singularities while it deposits", lambda e: {"condition": None}),
         ("The nozzle stays clear on the rapids", lambda e: {"rapids": None}),
-        ("The arm stays clear of part, deposit, platform, nozzle and itself", lambda e: {"arm": None}),
-        ("The arm stays clear of part, deposit, platform, nozzle and itself", lambda e: {"true_shapes": False}),
+        (
+            "The arm stays clear of part, deposit, platform, nozzle and itself",
+            lambda e: {"arm": None},
+        ),
+        (
+            "The arm stays clear of part, deposit, platform, nozzle and itself",
+            lambda e: {"true_shapes": False},
+        ),
         ("The text takes the tool to the planned points", lambda e: {"read": None}),
         ("Between its points the text keeps to the planned path", lambda e: {"read": None}),
     ],
 )
 def test_what_nobody_has_looked_at_is_neither_kept_nor_broken_and_says_so(sound, promise, change):
-    entries = {entry.promise: entry for entry in promises(dataclasses.replace(sound[2], **change(sound[2])))}
+    entries = {
+        entry.promise: entry
+        for entry in promises(dataclasses.replace(sound[2], **change(sound[2])))
+    }
     assert entries[promise].ok is None and entries[promise].how.startswith("not checked")
     assert entries["UFRAME 1"].ok is None
 
@@ -242,15 +313,24 @@ def test_what_a_machine_file_does_not_tell_is_not_kept(sound):
     cell = evidence.cell
     n = cell.machine.chain.axes
     bare = dataclasses.replace(
-        cell, machine=dataclasses.replace(cell.machine, max_speed=np.full(n, np.inf)),
+        cell,
+        machine=dataclasses.replace(cell.machine, max_speed=np.full(n, np.inf)),
         limits=dataclasses.replace(
-            cell.limits, lower=np.full(n, -np.inf), upper=np.full(n, np.inf), coefficients=np.zeros((0, n)),
-            coupled_lower=np.zeros(0), coupled_upper=np.zeros(0), labels=cell.limits.labels[:n],
+            cell.limits,
+            lower=np.full(n, -np.inf),
+            upper=np.full(n, np.inf),
+            coefficients=np.zeros((0, n)),
+            coupled_lower=np.zeros(0),
+            coupled_upper=np.zeros(0),
+            labels=cell.limits.labels[:n],
         ),
     )
     unknown = np.full(len(evidence.motion), np.nan)
     changed_ = dataclasses.replace(evidence, cell=bare, condition=unknown)
     entries = {entry.promise: entry.ok for entry in promises(changed_)}
-    for name in ("Every axis stays within its limits", "No axis is asked for more than its largest speed",
-                 "The tool keeps away from singularities while it deposits"):
+    for name in (
+        "Every axis stays within its limits",
+        "No axis is asked for more than its largest speed",
+        "The tool keeps away from singularities while it deposits",
+    ):
         assert entries[name] is None, name

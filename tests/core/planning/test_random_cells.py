@@ -23,7 +23,9 @@ from tests.batch import row_limits
 from tests.programs import build
 
 MACHINES = {
-    "fanuc-arcmate120ic": (1100.0, 600.0), "kuka-kr16-2": (1100.0, 800.0), "staubli-tx60l": (550.0, 300.0),
+    "fanuc-arcmate120ic": (1100.0, 600.0),
+    "kuka-kr16-2": (1100.0, 800.0),
+    "staubli-tx60l": (550.0, 300.0),
 }
 FILES = Path(__file__).parents[3] / "freecad_am" / "machines"
 POSTS = {"fanuc-arcmate120ic": "fanuc", "staubli-tx60l": "staubli"}
@@ -35,10 +37,23 @@ def random_cell(seed):
     rng = np.random.default_rng(seed)
     name = list(MACHINES)[seed % len(MACHINES)]
     ahead, high = MACHINES[name]
-    point = np.array([ahead, 0.0, high]) + rng.uniform(-1.0, 1.0, 3) * [0.25 * ahead, 0.3 * ahead, 0.3 * ahead]
+    point = np.array([ahead, 0.0, high]) + rng.uniform(-1.0, 1.0, 3) * [
+        0.25 * ahead,
+        0.3 * ahead,
+        0.3 * ahead,
+    ]
     leaning = np.radians(rng.uniform(-40.0, 40.0, 3))
-    lift = 0.0 if seed % 12 == 5 else float(rng.uniform(0.0, 200.0) if seed % 2 else rng.uniform(0.0, 40.0))
-    return {"machine": name, "limits": "maker", "deposition_point": (*point, *leaning), "branch": "auto"}, lift
+    lift = (
+        0.0
+        if seed % 12 == 5
+        else float(rng.uniform(0.0, 200.0) if seed % 2 else rng.uniform(0.0, 40.0))
+    )
+    return {
+        "machine": name,
+        "limits": "maker",
+        "deposition_point": (*point, *leaning),
+        "branch": "auto",
+    }, lift
 
 
 def within(machine, joints):
@@ -59,7 +74,9 @@ def within(machine, joints):
 def conditions(arm, cell, joints):
     """(n,) the ratio of the singular values of the arm's Jacobian at the point of deposit, by differences."""
     step = 1e-6
-    moved = [arm.forward(joints + sign * step * np.eye(6)[axis]) for axis in range(6) for sign in (1, -1)]
+    moved = [
+        arm.forward(joints + sign * step * np.eye(6)[axis]) for axis in range(6) for sign in (1, -1)
+    ]
     here = arm.forward(joints)
     found = []
     for k in range(len(joints)):
@@ -86,22 +103,37 @@ def driven(seed, sliced, cell_of):
     if not planned.feasible:
         return "no plan", issues
     if has_errors(issues):
-        assert all(issue.layer is not None and issue.bead is not None for issue in issues if issue.level == ERROR)
+        assert all(
+            issue.layer is not None and issue.bead is not None
+            for issue in issues
+            if issue.level == ERROR
+        )
         return "refused", issues
     assert np.isfinite(motion.joints).all()
     assert within(parameters["machine"], motion.joints).all(), (seed, lift)
     if parameters["machine"] in POSTS:
         settings = ProgramParameters(post=POSTS[parameters["machine"]], motion="joint")
         files = catalogue.load(settings.post).write(build(motion, cell, process, settings, "job"))
-        told = row_limits.told_joints({name: text.decode() for name, text in files.items()}, parameters["machine"])
-        assert len(told) >= motion.moves.sum() and within(parameters["machine"], np.radians(told)).all(), (seed, lift)
+        told = row_limits.told_joints(
+            {name: text.decode() for name, text in files.items()}, parameters["machine"]
+        )
+        assert (
+            len(told) >= motion.moves.sum()
+            and within(parameters["machine"], np.radians(told)).all()
+        ), (seed, lift)
     arm = kdl.KdlArm(cell.machine)
     flange = arm.forward(motion.joints)
     in_part = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
     assert np.abs(in_part[:, :3, 3] - motion.position).max() < 1e-5
     turned = np.abs(np.diff(motion.joints, axis=0)).max(axis=1) > 1e-9
-    fastest = np.radians([joint["max_speed"] for joint in json.loads(
-        (FILES / f"{parameters['machine']}.json").read_text(encoding="utf-8"))["joints"]])
+    fastest = np.radians(
+        [
+            joint["max_speed"]
+            for joint in json.loads(
+                (FILES / f"{parameters['machine']}.json").read_text(encoding="utf-8")
+            )["joints"]
+        ]
+    )
     speed = np.abs(np.diff(motion.joints, axis=0))[turned] / motion.duration[1:][turned, None]
     assert (speed <= fastest * (1.0 + 1e-9)).all()
     rapid = np.flatnonzero(~motion.deposit)

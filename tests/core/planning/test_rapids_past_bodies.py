@@ -27,7 +27,9 @@ def planned(sliced, cell_of):
 
 def collisions(motion, cell, path, bodies):
     """(layer, bead) of the beads on the rapid way to which something is met, driven by what did not plan them."""
-    looked = rapid_look.looked_at(motion, [one.bead for one in path.beads], cell, bodies, 0.0, 0.0, 200_000)
+    looked = rapid_look.looked_at(
+        motion, [one.bead for one in path.beads], cell, bodies, 0.0, 0.0, 200_000
+    )
     assert looked.step == 0.5
     return {(int(motion.layer[row]), int(motion.bead[row])) for row in looked.rows}
 
@@ -49,7 +51,11 @@ def inside(point, tip, axis, nozzle):
     offset = point - tip
     x = (offset * axis).sum(axis=1)
     side = np.linalg.norm(offset - x[:, None] * axis, axis=1)
-    return ((x > 0) & (x < nozzle.length) & (side < 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * x)).any()
+    return (
+        (x > 0)
+        & (x < nozzle.length)
+        & (side < 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * x)
+    ).any()
 
 
 def test_a_body_in_the_way_is_found_and_one_beside_it_is_not(planned):
@@ -63,7 +69,8 @@ def test_a_body_in_the_way_is_found_and_one_beside_it_is_not(planned):
         body = spike(at, 0.3, "clamp")
         found = collisions(motion, cell, joint_path, [body])
         wanted = {
-            (int(motion.layer[k]), int(motion.bead[k])) for k in np.flatnonzero(~motion.deposit[1:]) + 1
+            (int(motion.layer[k]), int(motion.bead[k]))
+            for k in np.flatnonzero(~motion.deposit[1:]) + 1
             if any(inside(corner, *looks(motion, cell, k), cell.nozzle) for corner in body.vertices)
         }
         assert (int(motion.layer[row]), int(motion.bead[row])) in wanted and found == wanted

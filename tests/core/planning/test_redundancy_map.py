@@ -16,7 +16,12 @@ from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
-from freecad_am.core.parameters.joints import BRANCHES, JointParameters, given_polynomials, given_text
+from freecad_am.core.parameters.joints import (
+    BRANCHES,
+    JointParameters,
+    given_polynomials,
+    given_text,
+)
 from freecad_am.core.planning import plan
 from freecad_am.core.planning.points import TURN, gather
 from freecad_am.core.planning.redundancy import across as spin_across
@@ -53,7 +58,9 @@ def seen(toolpath, axis=spin_map.RZ, branch=FLIP, rows=61, **more):
     return task, found, spin_map.picture(task, found, branch)
 
 
-@pytest.mark.parametrize("setup", [PART_ON_ROBOT, TOOL_ON_ROBOT], ids=["part on robot", "tool on robot"])
+@pytest.mark.parametrize(
+    "setup", [PART_ON_ROBOT, TOOL_ON_ROBOT], ids=["part on robot", "tool on robot"]
+)
 @pytest.mark.parametrize("axis", [spin_map.RZ, spin_map.ROTATION])
 def test_cells_are_where_pykdl_finds_them(funnel, setup, axis):
     task, found, _ = seen(funnel, axis, setup=setup)
@@ -64,7 +71,9 @@ def test_cells_are_where_pykdl_finds_them(funnel, setup, axis):
     columns = random.integers(0, len(points), 60)
     reached = 0
     for row, column in zip(rows, columns):
-        for branch, q in enumerate(spin_map.joints_at(task, found.columns, int(column), float(found.phi[row, column]))):
+        for branch, q in enumerate(
+            spin_map.joints_at(task, found.columns, int(column), float(found.phi[row, column]))
+        ):
             margin = found.margin[branch, row, column]
             assert (margin > -np.inf) == np.isfinite(q).all()
             if not np.isfinite(q).all():
@@ -76,11 +85,23 @@ def test_cells_are_where_pykdl_finds_them(funnel, setup, axis):
             assert np.abs(tool[0] - points.tool[column]).max() < 1e-9
             assert cell.machine.opw.branch_of(q) == branch
             low, high = cell.limits.lower, cell.limits.upper
-            share = [2 * min(v - a, b - v) / (b - a) for v, a, b in zip(q, low, high) if np.isfinite(b - a)]
-            share += [2 * min(v - a, b - v) / (b - a) for v, a, b in zip(
-                cell.limits.coefficients @ q, cell.limits.coupled_lower, cell.limits.coupled_upper)]
+            share = [
+                2 * min(v - a, b - v) / (b - a)
+                for v, a, b in zip(q, low, high)
+                if np.isfinite(b - a)
+            ]
+            share += [
+                2 * min(v - a, b - v) / (b - a)
+                for v, a, b in zip(
+                    cell.limits.coefficients @ q,
+                    cell.limits.coupled_lower,
+                    cell.limits.coupled_upper,
+                )
+            ]
             assert margin == pytest.approx(min(share), abs=1e-9)
-            if axis == spin_map.RZ:  # the last Bryant angle of the same rotation, from the flange that PyKDL finds
+            if (
+                axis == spin_map.RZ
+            ):  # the last Bryant angle of the same rotation, from the flange that PyKDL finds
                 mounted = np.eye(3) if setup is not PART_ON_ROBOT else None
                 platform = flange[0] @ cell.carried
                 turned = (cell.station[:3, :3].T @ platform[:3, :3]) if mounted is None else None
@@ -99,7 +120,12 @@ def test_cells_are_what_the_planner_says_of_points(funnel, branch):
         phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), found.values[row]))
         assert np.abs(np.exp(1j * phi) - np.exp(1j * found.phi[row])).max() < 1e-7
         joints = task.joints(points, phi)
-        assert np.abs(picture.margin[row] - task.given_rows.margin(joints))[picture.reachable[row]].max(initial=0.0) < 1e-7
+        assert (
+            np.abs(picture.margin[row] - task.given_rows.margin(joints))[
+                picture.reachable[row]
+            ].max(initial=0.0)
+            < 1e-7
+        )
         assert np.abs(picture.condition[row] - task.condition(points, phi, joints)).max() < 1e-7
     assert np.array_equal(picture.threshold, threshold)
 
@@ -113,22 +139,31 @@ def test_a_wrist_turned_over_is_as_near_to_a_singularity(dome):
 @pytest.mark.parametrize("part", ["dome", "funnel"])
 @pytest.mark.parametrize("rz", [-2.0, -0.4, 0.9, 2.6])
 @pytest.mark.always
-def test_a_constant_rz_lies_in_good_cells_just_when_the_planner_finds_it_feasible(request, part, rz):
+def test_a_constant_rz_lies_in_good_cells_just_when_the_planner_finds_it_feasible(
+    request, part, rz
+):
     """But for axes that run out of turns along a bead, which no cell can know."""
     toolpath = request.getfixturevalue(part)
     beads, places = beads_of(toolpath)
     verdicts = []
     for branch in range(8):
-        cell = cells.resolve(CellParameters(limits="paper", branch=opw.branch_name(branch)), toolpath.frame)
+        cell = cells.resolve(
+            CellParameters(limits="paper", branch=opw.branch_name(branch)), toolpath.frame
+        )
         task = Task(cell, branch, JointParameters(method="constant", rz=rz))
         paths, issues = plan.METHODS["constant"](task, beads, places, lambda *_: None)
         issues = [issue for path in paths for issue in spin_curve.findings(task, path)]
         at = spin_map.columns(beads, cell, 10**6)
         assert len(at) == sum(map(len, beads))
-        picture = spin_map.picture(task, spin_map.redundancy_map(task, at, values=np.array([rz])), branch)
+        picture = spin_map.picture(
+            task, spin_map.redundancy_map(task, at, values=np.array([rz])), branch
+        )
         points = gather(beads, cell)
         followed = spin_curve.follow(
-            task, points, task.thresholds(points), spin_curve.durations(beads),
+            task,
+            points,
+            task.thresholds(points),
+            spin_curve.durations(beads),
             np.concatenate([path.phi for path in paths]),
         )
         feasible = not any(issue.level == ERROR for issue in issues)
@@ -138,13 +173,18 @@ def test_a_constant_rz_lies_in_good_cells_just_when_the_planner_finds_it_feasibl
         if followed.wound.any():
             k = int(np.flatnonzero(followed.wound)[0])
             off = followed.joints[k] - spin_map.joints_at(task, at, k, followed.phi[k])[branch]
-            assert np.abs(off - TURN * np.round(off / TURN)).max() < 1e-6 and np.abs(off[~task.continuous]).max() > 6.0
+            assert (
+                np.abs(off - TURN * np.round(off / TURN)).max() < 1e-6
+                and np.abs(off[~task.continuous]).max() > 6.0
+            )
         verdicts.append(feasible)
     assert len(set(verdicts)) == 2 or part == "funnel"
 
 
 def test_what_the_job_does_not_allow_is_outside(dome):
-    _, found, picture = seen(dome, spin_map.ROTATION, rotation_range=(np.radians(-30.0), np.radians(200.0)))
+    _, found, picture = seen(
+        dome, spin_map.ROTATION, rotation_range=(np.radians(-30.0), np.radians(200.0))
+    )
     turned = np.degrees(found.values)
     allowed = (turned >= -30.0) | (turned <= -160.0)
     assert np.array_equal(~found.outside, np.repeat(allowed[:, None], len(found.columns), axis=1))
@@ -161,7 +201,11 @@ def test_columns_with_a_body_under_the_nozzle_are_forbidden(dome):
     clear, touching = (spin_map.redundancy_map(task, at, bodies=bodies) for bodies in ((), (body,)))
     assert not clear.touching.any() and touching.touching[20] and not touching.touching.all()
     # where the nozzle stands on a part it may touch it beside its tip
-    floor = Body("floor", at.points.position[20] + 0.3 * at.points.tool[20] + 0.2 * (corners - here), body.triangles)
+    floor = Body(
+        "floor",
+        at.points.position[20] + 0.3 * at.points.tool[20] + 0.2 * (corners - here),
+        body.triangles,
+    )
     assert not spin_map.redundancy_map(task, at, bodies=(floor,)).touching[20]
     assert spin_map.picture(task, touching, FLIP).forbidden[:, 20].all()
 
@@ -192,8 +236,13 @@ def test_values_and_rotations_are_each_others_inverse(funnel):
     for axis in (spin_map.RZ, spin_map.ROTATION):
         phi = spin_map.rotation_of(cell, tool, random, axis)
         assert np.abs(spin_map.value_of(cell, tool, phi, axis) - random).max() < 1e-7
-    assert np.abs(np.exp(1j * spin_map.rotation_of(cell, tool, random, spin_map.RZ))
-                  - np.exp(1j * cell.phi_of_rz(tool, random)[0])).max() < 1e-7
+    assert (
+        np.abs(
+            np.exp(1j * spin_map.rotation_of(cell, tool, random, spin_map.RZ))
+            - np.exp(1j * cell.phi_of_rz(tool, random)[0])
+        ).max()
+        < 1e-7
+    )
 
 
 # ---- given polynomials
@@ -206,11 +255,16 @@ def planned(toolpath, **joints):
 
 def test_what_the_planner_found_can_be_given_back_to_it(dome):
     _, free = planned(dome)
-    given = tuple(given_text((path.layer, path.index), tuple(path.coefficients)) for path in free.beads)
+    given = tuple(
+        given_text((path.layer, path.index), tuple(path.coefficients)) for path in free.beads
+    )
     _, again = planned(dome, given=given)
     assert again.feasible and [path.reason for path in again.beads] == ["given"] * len(free.beads)
     for one, other in zip(free.beads, again.beads):
-        assert np.abs(one.phi - other.phi).max() < 1e-9 and np.abs(one.joints - other.joints).max() < 1e-7
+        assert (
+            np.abs(one.phi - other.phi).max() < 1e-9
+            and np.abs(one.joints - other.joints).max() < 1e-7
+        )
         assert other.objective == pytest.approx(one.objective, rel=1e-6)
 
 
@@ -221,7 +275,9 @@ def test_some_beads_may_be_given_and_the_rest_is_searched(dome):
     _, mixed = planned(dome, given=(text,))
     assert mixed.feasible
     assert np.allclose(mixed.beads[2].coefficients, [constant + 0.1, slope], atol=1e-9)
-    assert [path.reason == "given" for path in mixed.beads] == [k == 2 for k in range(len(mixed.beads))]
+    assert [path.reason == "given" for path in mixed.beads] == [
+        k == 2 for k in range(len(mixed.beads))
+    ]
     assert mixed.beads[0].objective == pytest.approx(free.beads[0].objective, rel=1e-6)
 
 
@@ -232,12 +288,13 @@ def test_what_is_given_is_judged_like_all_else(dome):
     points = gather(beads, cell)
     task = Task(cell, FLIP, JointParameters())
     followed = spin_curve.follow(
-        task, points, task.thresholds(points), spin_curve.durations(beads), np.zeros(len(points)))
+        task, points, task.thresholds(points), spin_curve.durations(beads), np.zeros(len(points))
+    )
     assert path.feasible == followed.good.all()
     ends = np.append(points.first, len(points))
     lost = {issue.layer for issue in path.issues if issue.level == ERROR}
     for k, (layer, _) in enumerate(places):
-        assert (layer in lost) == (not followed.good[ends[k]:ends[k + 1]].all())
+        assert (layer in lost) == (not followed.good[ends[k] : ends[k + 1]].all())
     assert np.allclose(followed.displacement, [one.objective for one in path.beads], rtol=1e-9)
 
 
@@ -254,13 +311,27 @@ def test_given_texts_are_read_back():
         text = given_text((12, 3), values)
         assert given_polynomials((text,))[12, 3] == pytest.approx(values, abs=1e-9)
     assert given_polynomials(("*:90:-360", "4:10")) == {
-        None: pytest.approx((np.pi / 2, -1.0)), (4, 0): pytest.approx((np.radians(10),))}
+        None: pytest.approx((np.pi / 2, -1.0)),
+        (4, 0): pytest.approx((np.radians(10),)),
+    }
 
 
-@pytest.mark.parametrize("given", [
-    ("1/0",), ("1/0:",), ("a:1",), ("1/0:x",), ("-1:3",), ("1:nan",), ("1:inf",), ("1:1:1:1:1:1:1:1:1",), ("2:1", "2/0:3"),
-    ("*:1", "*:2"), ("",),
-])
+@pytest.mark.parametrize(
+    "given",
+    [
+        ("1/0",),
+        ("1/0:",),
+        ("a:1",),
+        ("1/0:x",),
+        ("-1:3",),
+        ("1:nan",),
+        ("1:inf",),
+        ("1:1:1:1:1:1:1:1:1",),
+        ("2:1", "2/0:3"),
+        ("*:1", "*:2"),
+        ("",),
+    ],
+)
 def test_what_cannot_be_read_is_refused(given):
     with pytest.raises(InputError) as refused:
         JointParameters(given=given)
@@ -269,7 +340,9 @@ def test_what_cannot_be_read_is_refused(given):
 
 def test_beads_that_are_not_there_are_told(dome):
     _, path = planned(dome, given=("99/0:10",))
-    assert path.feasible and [issue.message for issue in path.issues if issue.code == "GIVEN_NOT_USED"]
+    assert path.feasible and [
+        issue.message for issue in path.issues if issue.code == "GIVEN_NOT_USED"
+    ]
     _, path = planned(dome, method="constant", given=("*:10",))
     assert [issue.code for issue in path.issues if issue.code == "GIVEN_NOT_USED"]
 
@@ -284,14 +357,33 @@ def test_a_curve_follows_what_the_planner_planned(funnel):
     points = gather(beads, cell)
     coefficients = np.array([one.coefficients for one in path.beads])
     followed = spin_curve.follow(
-        task, points, task.thresholds(points), spin_curve.durations(beads), points.polynomial(coefficients))
+        task,
+        points,
+        task.thresholds(points),
+        spin_curve.durations(beads),
+        points.polynomial(coefficients),
+    )
     assert np.allclose(followed.displacement, [one.objective for one in path.beads], rtol=1e-9)
     sums = spin_curve.sums(followed)
-    figures = plan.comparison.of_path(dataclasses.replace(path, beads=tuple(
+    figures = plan.comparison.of_path(
         dataclasses.replace(
-            one, bead=bead, joints=followed.joints[a:b], condition=followed.condition[a:b], phi=followed.phi[a:b])
-        for one, bead, a, b in zip(path.beads, beads, points.first, np.append(points.first[1:], len(points)))
-    )), cell, JointParameters())
+            path,
+            beads=tuple(
+                dataclasses.replace(
+                    one,
+                    bead=bead,
+                    joints=followed.joints[a:b],
+                    condition=followed.condition[a:b],
+                    phi=followed.phi[a:b],
+                )
+                for one, bead, a, b in zip(
+                    path.beads, beads, points.first, np.append(points.first[1:], len(points))
+                )
+            ),
+        ),
+        cell,
+        JointParameters(),
+    )
     assert sums.lost == 0
     assert sums.ratio == pytest.approx(max(figures["speed_ratio_max"]), rel=1e-9)
     assert sums.condition == pytest.approx(figures["condition_min"], rel=1e-9)
@@ -324,7 +416,9 @@ def test_a_handle_moves_alone(funnel, joined):
         for handle in range(len(at)):
             after = start + 0.3 * spin_curve.pull(task, points, 1, degree, handle)
             value = np.polynomial.polynomial.polyval(at, after) - start[0]
-            assert value == pytest.approx(np.where(np.arange(len(at)) == handle, 0.3, 0.0), abs=1e-6)
+            assert value == pytest.approx(
+                np.where(np.arange(len(at)) == handle, 0.3, 0.0), abs=1e-6
+            )
             if joined:
                 low, high = (end[1] for end in points.ends)
                 ends = np.polynomial.polynomial.polyval(np.array([low, high]), after)
@@ -334,15 +428,23 @@ def test_a_handle_moves_alone(funnel, joined):
 def test_methods_side_by_side_are_those_of_the_planner(dome):
     beads, places = beads_of(dome)
     cell, path = planned(dome)
-    found = spin_curve.compared(Task(cell, FLIP, JointParameters(given=("*:0",))), beads, places, lambda *_: None)
+    found = spin_curve.compared(
+        Task(cell, FLIP, JointParameters(given=("*:0",))), beads, places, lambda *_: None
+    )
     assert [one.name for one in found] == list(plan.METHODS)
     by_layer = found[0]
     assert by_layer.feasible
-    assert by_layer.sums.displacement == pytest.approx(sum(one.objective for one in path.beads), rel=1e-6)
-    assert by_layer.sums.displacement < 1.001 * min(one.sums.displacement for one in found[1:] if one.feasible)
+    assert by_layer.sums.displacement == pytest.approx(
+        sum(one.objective for one in path.beads), rel=1e-6
+    )
+    assert by_layer.sums.displacement < 1.001 * min(
+        one.sums.displacement for one in found[1:] if one.feasible
+    )
 
 
-@pytest.mark.parametrize("setup", [PART_ON_ROBOT, TOOL_ON_ROBOT], ids=["part on robot", "tool on robot"])
+@pytest.mark.parametrize(
+    "setup", [PART_ON_ROBOT, TOOL_ON_ROBOT], ids=["part on robot", "tool on robot"]
+)
 def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setup):
     # a wall beside the part, in the way of one robot or the other
     wall = disc(900.0, frames.pose(frames.about_y(np.pi / 2), (260.0, 0.0, 200.0)), "wall")
@@ -357,12 +459,16 @@ def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setu
     looked = picture.reachable & ~picture.beyond & ~picture.outside & ~found.touching
     assert 0 < touched.sum() < looked.sum() and not (touched & ~looked).any()
     random = np.random.default_rng(2)
-    for row, column in zip(random.integers(0, touched.shape[0], 80), random.integers(0, touched.shape[1], 80)):
+    for row, column in zip(
+        random.integers(0, touched.shape[0], 80), random.integers(0, touched.shape[1], 80)
+    ):
         q = spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))[FLIP]
         one = contact.touches(q[None], moment[[column]]).any[0]
         assert touched[row, column] == (bool(one) and looked[row, column])
     shown = dataclasses.replace(picture, arm=touched)
-    assert (shown.hatched == (picture.forbidden | touched)).all() and (picture.hatched == picture.forbidden).all()
+    assert (shown.hatched == (picture.forbidden | touched)).all() and (
+        picture.hatched == picture.forbidden
+    ).all()
     rough = spin_map.arm_touched(task, found, FLIP, contact, moment, 4)
     assert (rough[2::4] == touched[2::4]).all() and (rough != touched).mean() < 0.1
 
@@ -370,7 +476,10 @@ def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setu
 # ---- with external axes
 
 ON_POSITIONER = {
-    "machine": "kuka-kr8-r2100-2-arc-hw", "setup": "tool-on-robot", "branch": "auto", "limits": "maker",
+    "machine": "kuka-kr8-r2100-2-arc-hw",
+    "setup": "tool-on-robot",
+    "branch": "auto",
+    "limits": "maker",
     "external": "kuka-kl100-2 at 0 0 -356 0 0 90 carries robot; motoman-motopos-d500 at 1400 120 -50 0 0 30 carries part",
     "nozzle": NozzleParameters(tool=(20.0, 0.0, 300.0, 0.0, 0.6, 0.0)),
 }
@@ -381,7 +490,9 @@ def on_positioner(dome):
     """A plan with e1 to e3, of which e3 turns all the time; its task and beads."""
     toolpath = dataclasses.replace(dome, max_from_vertical=np.radians(10.0))
     cell = cells.resolve(CellParameters(**ON_POSITIONER), toolpath.frame)
-    planned = plan.plan_joints(toolpath, cell, JointParameters(method="constant", min_condition=0.0))
+    planned = plan.plan_joints(
+        toolpath, cell, JointParameters(method="constant", min_condition=0.0)
+    )
     return Task(cell, 0, JointParameters()), [path.bead for path in planned.beads]
 
 
@@ -389,17 +500,27 @@ def test_two_external_axes_against_each_other_are_as_one_at_a_time(on_positioner
     """Each row is the map of the other axis across, with this one there, at the same rotation; joints are PyKDL's."""
     task, beads = on_positioner
     cell, at, rotation = task.cell, (1, 7), 0.4
-    values = tuple(spin_across.span(task, beads[1], 7, axis, count) for axis, count in ((2, 9), (1, 5)))
+    values = tuple(
+        spin_across.span(task, beads[1], 7, axis, count) for axis, count in ((2, 9), (1, 5))
+    )
     pairs = spin_across.of_two(beads, cell, at, (2, 1), values)
     assert len(pairs) == 45 and (pairs.bead == 1).all() and (pairs.point == 7).all()
     found = spin_map.redundancy_map(task, pairs, spin_map.ROTATION, values=np.array([rotation]))
     shown = spin_across.in_rows(spin_map.picture(task, found, 0), 5)
-    assert shown.margin.shape == shown.condition.shape == shown.singular.shape == shown.forbidden.shape == (5, 9)
+    assert (
+        shown.margin.shape
+        == shown.condition.shape
+        == shown.singular.shape
+        == shown.forbidden.shape
+        == (5, 9)
+    )
     whole, reached = KdlArm(cell.machine), 0
     for row, upwards in enumerate(values[1]):
         external = beads[1].external.copy()
         external[7, 1] = upwards
-        line = spin_across.across([beads[0], dataclasses.replace(beads[1], external=external)], cell, at, 2, values[0])
+        line = spin_across.across(
+            [beads[0], dataclasses.replace(beads[1], external=external)], cell, at, 2, values[0]
+        )
         alone = spin_map.redundancy_map(task, line, spin_map.ROTATION, values=np.array([rotation]))
         picture = spin_map.picture(task, alone, 0)
         np.testing.assert_allclose(shown.margin[row], picture.margin[0], atol=1e-12)
@@ -430,16 +551,22 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
         values = spin_across.span(task, beads[1], 7, across, 21)
         lower, upper = cell.limits.lower[own + across], cell.limits.upper[own + across]
         assert values[0] >= lower - 1e-12 and values[-1] <= upper + 1e-12
-        assert np.ptp(values) == pytest.approx(min(upper - lower, np.inf if across == 0 else TURN), rel=0.5)
+        assert np.ptp(values) == pytest.approx(
+            min(upper - lower, np.inf if across == 0 else TURN), rel=0.5
+        )
         at = spin_across.across(beads, cell, (1, 7), across, values)
         expected = np.tile(beads[1].external[7], (21, 1))
         expected[:, across] = values
         assert (at.bead == 1).all() and (at.point == 7).all()
-    found = spin_map.redundancy_map(task, at, spin_map.ROTATION, values=np.linspace(-np.pi, np.pi, 25))
+    found = spin_map.redundancy_map(
+        task, at, spin_map.ROTATION, values=np.linspace(-np.pi, np.pi, 25)
+    )
     whole, reached = KdlArm(cell.machine), 0
     for row, column in np.random.default_rng(3).integers(0, (25, len(at)), (60, 2)):
         flange = at.points.each(np.array([column])).frames.at(found.phi[row, [column]])
-        for branch, q in enumerate(spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))):
+        for branch, q in enumerate(
+            spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))
+        ):
             margin = found.margin[branch, row, column]
             assert (margin > -np.inf) == np.isfinite(q).all()
             if not np.isfinite(q).all():
@@ -451,9 +578,19 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
             assert np.abs(tip[0] - beads[at.bead[column]].points[at.point[column]]).max() < 1e-6
             assert np.abs(tool[0] - beads[at.bead[column]].tool[at.point[column]]).max() < 1e-9
             low, high = cell.limits.lower, cell.limits.upper
-            share = [2 * min(v - a, b - v) / (b - a) for v, a, b in zip(q, low, high) if np.isfinite(b - a)]
-            share += [2 * min(v - a, b - v) / (b - a) for v, a, b in zip(
-                cell.limits.coefficients @ q, cell.limits.coupled_lower, cell.limits.coupled_upper)]
+            share = [
+                2 * min(v - a, b - v) / (b - a)
+                for v, a, b in zip(q, low, high)
+                if np.isfinite(b - a)
+            ]
+            share += [
+                2 * min(v - a, b - v) / (b - a)
+                for v, a, b in zip(
+                    cell.limits.coefficients @ q,
+                    cell.limits.coupled_lower,
+                    cell.limits.coupled_upper,
+                )
+            ]
             assert margin == pytest.approx(min(share), abs=1e-9)
     assert reached > 60
     shown = spin_map.picture(task, found, 0)
@@ -462,4 +599,5 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
         part = at.points.each(np.array([column]))
         q = spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))[0]
         assert shown.condition[row, column] == pytest.approx(
-            float(task.condition(part, found.phi[row, [column]], q[None])[0]), abs=1e-9)
+            float(task.condition(part, found.phi[row, [column]], q[None])[0]), abs=1e-9
+        )

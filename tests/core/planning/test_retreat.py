@@ -19,11 +19,23 @@ def arc(turn, n=61, closed=False, z=10.0, told=False):
     if closed:
         points[-1] = points[0]
     lean = np.zeros(n) if closed else np.radians(20.0) * np.linspace(0.0, 1.0, n)
-    tool = np.stack([np.sin(lean) * np.cos(angle), np.sin(lean) * np.sin(angle), np.cos(lean)], axis=1)
+    tool = np.stack(
+        [np.sin(lean) * np.cos(angle), np.sin(lean) * np.sin(angle), np.cos(lean)], axis=1
+    )
     along = np.stack([-np.sin(angle), np.cos(angle), np.zeros(n)], axis=1)
     tangents = np.stack([along, along], axis=1) if told else None
     speed = 6.0 + 2.0 * np.sin(angle)
-    return Bead(points, tool, tool, angle, speed, closed, width=5.0 + angle, height=2.0 + 0.1 * angle, tangents=tangents)
+    return Bead(
+        points,
+        tool,
+        tool,
+        angle,
+        speed,
+        closed,
+        width=5.0 + angle,
+        height=2.0 + 0.1 * angle,
+        tangents=tangents,
+    )
 
 
 def steps(points):
@@ -44,8 +56,12 @@ def test_the_end_is_laid_once_more_backwards(length, turn, told):
     angle = np.arctan2(longer.points[:, 1], longer.points[:, 0]) % math.tau
     np.testing.assert_allclose(np.hypot(*longer.points[:, :2].T), RADIUS, atol=2e-6)
     np.testing.assert_allclose(longer.width, 5.0 + angle, atol=1e-3)
-    np.testing.assert_allclose(longer.tool[:, 2], np.cos(np.radians(20.0) * angle / turn), atol=1e-4)
-    assert (np.diff(angle[n - 1 :]) < 0.0).all() and angle[-1] == pytest.approx(turn - back / RADIUS, abs=2e-3)
+    np.testing.assert_allclose(
+        longer.tool[:, 2], np.cos(np.radians(20.0) * angle / turn), atol=1e-4
+    )
+    assert (np.diff(angle[n - 1 :]) < 0.0).all() and angle[-1] == pytest.approx(
+        turn - back / RADIUS, abs=2e-3
+    )
     # the curve between its points is the same circle, everywhere but at none of its corners
     between, tangent = longer.outline.at(np.arange(len(longer) - 1), 0.3)
     np.testing.assert_allclose(np.hypot(*between[:, :2].T), RADIUS, atol=1e-5)

@@ -27,8 +27,12 @@ def wall(lean=0.9):
     angle = np.linspace(0.0, TURN, 61)
     layers = []
     for k in range(4):
-        points = np.c_[(30.0 + 2.0 * k) * np.cos(angle), 24.0 * np.sin(angle), np.full(61, 40.0 + 5.0 * k)]
-        tool = np.c_[np.cos(angle) * np.sin(lean), np.sin(angle) * np.sin(lean), np.full(61, np.cos(lean))]
+        points = np.c_[
+            (30.0 + 2.0 * k) * np.cos(angle), 24.0 * np.sin(angle), np.full(61, 40.0 + 5.0 * k)
+        ]
+        tool = np.c_[
+            np.cos(angle) * np.sin(lean), np.sin(angle) * np.sin(lean), np.full(61, np.cos(lean))
+        ]
         points[-1], tool[-1] = points[0], tool[0]
         layers.append(Layer((Bead(points, tool, tool, angle.copy(), np.full(61, 6.0), True),)))
     return Toolpath(tuple(layers), np.eye(4), 5.0, 1.0, family="surface")
@@ -44,7 +48,9 @@ def changed(toolpath, change):
         columns["parameter"] = one.parameter.copy()
         return dataclasses.replace(one, **columns)
 
-    layers = (dataclasses.replace(layer, beads=tuple(map(bead, layer.beads))) for layer in toolpath.layers)
+    layers = (
+        dataclasses.replace(layer, beads=tuple(map(bead, layer.beads))) for layer in toolpath.layers
+    )
     return dataclasses.replace(toolpath, layers=tuple(layers))
 
 
@@ -81,7 +87,9 @@ def test_copies_elsewhere_in_memory_give_the_same_bytes(lean, degree):
         clutter = [np.empty(size) for size in rng.integers(1, 4000, size=80)]
         del clutter[::2]
         copy = changed(toolpath, lambda array: moved(array, 8 * int(rng.integers(0, 8))))
-        assert bytes_of(motion_of(copy, degree)[1]) == bytes_of(motion_of(changed(toolpath, np.copy), degree)[1])
+        assert bytes_of(motion_of(copy, degree)[1]) == bytes_of(
+            motion_of(changed(toolpath, np.copy), degree)[1]
+        )
         assert bytes_of(motion_of(toolpath, degree)[1]) == wanted
 
 
@@ -90,7 +98,9 @@ def test_the_last_bits_decide_nothing(lean):
     rng = np.random.default_rng(11)
     path, motion = motion_of(wall(lean))
     for _ in range(3):
-        noisy = changed(wall(lean), lambda array: array * (1.0 + 1e-15 * rng.uniform(-1, 1, array.shape)))
+        noisy = changed(
+            wall(lean), lambda array: array * (1.0 + 1e-15 * rng.uniform(-1, 1, array.shape))
+        )
         other, shifted = motion_of(noisy)
         assert other.branch == path.branch and len(shifted) == len(motion)
         assert np.abs(np.nan_to_num(shifted.joints - motion.joints)).max() < 1e-6
@@ -105,7 +115,11 @@ def test_functions_worked_out_in_two_ways_are_given_arrays_in_one_piece(monkeypa
         def call(*args, **more):
             for array in args:
                 strides, shape = np.asarray(array).strides, np.shape(array)
-                steps = [abs(step) for step, count in zip(strides, shape, strict=True) if count > 1 and step]
+                steps = [
+                    abs(step)
+                    for step, count in zip(strides, shape, strict=True)
+                    if count > 1 and step
+                ]
                 if steps and min(steps) > np.asarray(array).itemsize:
                     strided.append(function.__name__)
             return function(*args, **more)

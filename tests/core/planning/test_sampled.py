@@ -26,7 +26,9 @@ def test_a_sample_is_about_as_large_as_asked_and_spread_over_all_layers(dome, mo
     sample = sampled(dome, most)
     points, beads = sample.toolpath.point_count, sample.toolpath.bead_count
     assert 0.3 * most <= points <= 1.3 * most and not sample.whole
-    assert beads == -(-(dome.bead_count - 1) // sample.beads) + 1 or beads == -(-dome.bead_count // sample.beads)
+    assert beads == -(-(dome.bead_count - 1) // sample.beads) + 1 or beads == -(
+        -dome.bead_count // sample.beads
+    )
     assert len(sample.toolpath.layers) == len(dome.layers)
     kept = [number for number, layer in enumerate(sample.toolpath.layers) if layer.beads]
     assert (kept[0], kept[-1]) == (0, len(dome.layers) - 1) and max(np.diff(kept)) == sample.beads
@@ -49,7 +51,9 @@ def rings(layers, beads):
     up, speed = np.tile([0.0, 0.0, 1.0], (101, 1)), np.full(101, 10.0)
 
     def ring(layer, k):
-        points = np.column_stack([(10 + 2 * k) * np.cos(turn), (10 + 2 * k) * np.sin(turn), np.full(101, float(layer))])
+        points = np.column_stack(
+            [(10 + 2 * k) * np.cos(turn), (10 + 2 * k) * np.sin(turn), np.full(101, float(layer))]
+        )
         points[-1] = points[0]
         return Bead(points, up, up, turn, speed, True)
 
@@ -78,7 +82,9 @@ def test_polynomials_that_are_given_stay_with_their_beads(most):
 
 def test_a_polynomial_for_a_bead_that_is_left_out_falls_on_no_other():
     sample = sampled(rings(100, 5), 1000)
-    lost = next((layer, k) for layer in range(100) for k in range(5) if (layer, k) not in sample.places)
+    lost = next(
+        (layer, k) for layer in range(100) for k in range(5) if (layer, k) not in sample.places
+    )
     assert sample.given((f"{lost[0]}/{lost[1]}:1.0", "200/0:3")) == ()
     whole = sampled(rings(2, 2), 10_000)
     assert whole.whole and whole.given(("1/1:2:3", "0:4", "*:5")) == ("1/1:2:3", "0/0:4", "*:5")
@@ -96,7 +102,9 @@ def test_of_a_single_bead_of_many_turns_points_alone_are_left_out(sliced, layer_
     assert (sample.beads, sample.places, sample.toolpath.bead_count) == (1, ((0, 0),), 1)
     assert 0.5 * 400 <= len(kept) <= max(1.1 * 400, 8.0 * turns)
     assert len(kept) == pytest.approx(len(bead) / sample.points, rel=0.15)
-    assert np.abs(np.diff(kept.parameter)).max() < 0.6 * np.pi  # all sides are seen, also where turns have few points
+    assert (
+        np.abs(np.diff(kept.parameter)).max() < 0.6 * np.pi
+    )  # all sides are seen, also where turns have few points
     assert (kept.points[[0, -1]] == bead.points[[0, -1]]).all()
 
 
@@ -116,12 +124,16 @@ def test_points_leave_the_curve_by_no_more_than_the_chord_error_of_the_sample(do
     for number, _, bead in sample.toolpath:
         radius = np.linalg.norm(dome.layers[number].beads[0].points[:, :2], axis=1).mean()
         middle = 0.5 * (bead.points[1:] + bead.points[:-1])
-        assert (radius - np.linalg.norm(middle[:, :2], axis=1)).max() <= sample.toolpath.chord_error * 1.3
+        assert (
+            radius - np.linalg.norm(middle[:, :2], axis=1)
+        ).max() <= sample.toolpath.chord_error * 1.3
 
 
 def test_a_sample_is_feasible_where_the_whole_is_and_nearly_as_near_to_limits(dome, cell_of):
     for limits, method, feasible in (
-        ("paper", "layer-by-layer", True), ("maker", "layer-by-layer", True), ("maker", "constant", False),
+        ("paper", "layer-by-layer", True),
+        ("maker", "layer-by-layer", True),
+        ("maker", "constant", False),
     ):
         cell = cell_of(dome, limits=limits)
         found = []
@@ -131,11 +143,19 @@ def test_a_sample_is_feasible_where_the_whole_is_and_nearly_as_near_to_limits(do
             found.append(judged(planned.beads, cell.limits, cell.machine.max_speed))
         whole, some = found
         assert some.worst_margin.value == pytest.approx(whole.worst_margin.value, abs=0.05)
-        if not feasible:  # beyond limits and through a singularity by how much depends on the points
-            assert some.worst_margin.value < 0.0 and some.worst_margin.label == whole.worst_margin.label
+        if (
+            not feasible
+        ):  # beyond limits and through a singularity by how much depends on the points
+            assert (
+                some.worst_margin.value < 0.0
+                and some.worst_margin.label == whole.worst_margin.label
+            )
             continue
         assert some.worst_condition.value == pytest.approx(whole.worst_condition.value, rel=0.1)
-        assert abs(some.worst_condition.layer - whole.worst_condition.layer) <= 2 * sampled(dome, 400).beads
+        assert (
+            abs(some.worst_condition.layer - whole.worst_condition.layer)
+            <= 2 * sampled(dome, 400).beads
+        )
 
 
 def test_what_is_told_of_planned_beads_is_what_their_joints_say(sliced, cell_of):
@@ -148,21 +168,35 @@ def test_what_is_told_of_planned_beads_is_what_their_joints_say(sliced, cell_of)
         for k, q in enumerate(path.joints):
             half = 0.5 * (cell.limits.upper - cell.limits.lower)
             share = np.minimum(q - cell.limits.lower, cell.limits.upper - q) / half
-            low, high, coupled = cell.limits.coupled_lower, cell.limits.coupled_upper, cell.limits.coefficients @ q
-            both = np.append(share, np.minimum(coupled - low, high - coupled) / (0.5 * (high - low)))
+            low, high, coupled = (
+                cell.limits.coupled_lower,
+                cell.limits.coupled_upper,
+                cell.limits.coefficients @ q,
+            )
+            both = np.append(
+                share, np.minimum(coupled - low, high - coupled) / (0.5 * (high - low))
+            )
             assert found.margin[row] == pytest.approx(np.nanmin(both[np.isfinite(both)]), abs=1e-12)
             if k:
                 way = np.linalg.norm(path.bead.points[k] - path.bead.points[k - 1])
                 speed = np.abs(q - path.joints[k - 1]) / (way / path.bead.speed[k])
-                assert found.ratio[row] == pytest.approx((speed / cell.machine.max_speed).max(), rel=1e-9)
+                assert found.ratio[row] == pytest.approx(
+                    (speed / cell.machine.max_speed).max(), rel=1e-9
+                )
             row += 1
     assert row == len(found.margin)
     worst = int(np.argmin(found.condition))
     q = planned.joints[worst][None]
     flange = cell.machine.chain.forward(q)
-    own = condition(jacobian(cell.machine.chain, q, cell.deposition_point(flange)), JointParameters().characteristic_length)
+    own = condition(
+        jacobian(cell.machine.chain, q, cell.deposition_point(flange)),
+        JointParameters().characteristic_length,
+    )
     assert found.worst_condition.value == pytest.approx(float(own[0]), abs=1e-11)
-    assert found.worst_margin.label in cell.limits.labels and found.worst_ratio.label in cell.limits.labels
+    assert (
+        found.worst_margin.label in cell.limits.labels
+        and found.worst_ratio.label in cell.limits.labels
+    )
 
 
 def test_points_out_of_reach_have_no_figures_and_do_not_hide_the_others(sliced, cell_of):
@@ -172,9 +206,15 @@ def test_points_out_of_reach_have_no_figures_and_do_not_hide_the_others(sliced, 
     first, *rest = planned.beads
     joints = first.joints.copy()
     joints[3] = np.nan
-    found = judged([dataclasses.replace(first, joints=joints), *rest], cell.limits, cell.machine.max_speed)
+    found = judged(
+        [dataclasses.replace(first, joints=joints), *rest], cell.limits, cell.machine.max_speed
+    )
     assert np.isnan(found.margin[3]) and np.isnan(found.condition[3]) and np.isnan(found.ratio[3])
     assert np.isfinite(found.margin[5:]).all() and found.worst_margin is not None
     lost = dataclasses.replace(first, joints=np.full_like(first.joints, np.nan))
     nothing = judged([lost], cell.limits, cell.machine.max_speed)
-    assert nothing.worst_margin is None and nothing.worst_condition is None and nothing.worst_ratio is None
+    assert (
+        nothing.worst_margin is None
+        and nothing.worst_condition is None
+        and nothing.worst_ratio is None
+    )

@@ -29,8 +29,12 @@ def test_points_that_are_added_lie_between_their_neighbours(seed):
     for layer in range(3):
         ends = np.c_[draw.uniform(-60.0, 60.0, (6, 2)), np.full(6, 5.0 + layer)].reshape(3, 2, 3)
         beads += [straight(*pair, int(draw.integers(2, 4))) for pair in ends]
-    toolpath = Toolpath(tuple(Layer((bead,)) for bead in beads), np.eye(4), 1.0, 1e-4, family="surface")
-    parameters = CellParameters(setup="tool-on-robot", deposition_point=(900.0, 0.0, 100.0, 0.0, 0.0, 0.0))
+    toolpath = Toolpath(
+        tuple(Layer((bead,)) for bead in beads), np.eye(4), 1.0, 1e-4, family="surface"
+    )
+    parameters = CellParameters(
+        setup="tool-on-robot", deposition_point=(900.0, 0.0, 100.0, 0.0, 0.0, 0.0)
+    )
     cell = cells.resolve(parameters, toolpath.frame, toolpath.family)
     found = plan_joints(toolpath, cell, JointParameters())
     assert found.feasible, found.issues

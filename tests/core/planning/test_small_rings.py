@@ -23,12 +23,22 @@ from tests.programs import build
 
 def toolpath_of(radius, layer_height, top=np.pi / 2, end=2 * np.pi, process=None):
     process = process or ProcessParameters()
-    meridian = Meridian.chained([sampled(
-        lambda t: (radius * np.c_[np.cos(t), np.sin(t)], np.c_[-np.sin(t), np.cos(t)]), [0, top]
-    )])
+    meridian = Meridian.chained(
+        [
+            sampled(
+                lambda t: (radius * np.c_[np.cos(t), np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
+                [0, top],
+            )
+        ]
+    )
     wall = RevolvedWall(meridian, np.eye(4), 0.0, end, end > 6.28)
     return revolution.plan(
-        wall, RevolutionParameters(layer_height=layer_height), BuildDirectionParameters(), process, NozzleParameters(), 113.0
+        wall,
+        RevolutionParameters(layer_height=layer_height),
+        BuildDirectionParameters(),
+        process,
+        NozzleParameters(),
+        113.0,
     )
 
 
@@ -55,7 +65,9 @@ def test_the_last_ring_of_a_dome_is_run_at_the_speed_the_axes_allow(cell_of):
     speed = speed[ring][1:]
     assert np.ptp(speed) < 1e-6 and 1.0 < speed.min() < 1.3
     length = sum(bead.length for layer, _, bead in toolpath if layer == 47)
-    assert motion.duration[motion.deposit & (motion.layer == 47)].sum() == pytest.approx(length / speed[0])
+    assert motion.duration[motion.deposit & (motion.layer == 47)].sum() == pytest.approx(
+        length / speed[0]
+    )
 
 
 def test_a_ring_wider_than_a_layer_is_not_slowed_but_refused(cell_of):
@@ -77,7 +89,10 @@ def test_half_a_turn_back_to_the_next_start_is_made_in_several_moves(cell_of, li
     assert lift == 0.0 or not has_errors(issues)
     turn = np.abs(np.diff(motion.joints, axis=0))
     assert turn[:, 5].max() < np.radians(170.001)
-    ends = [(before.joints[-1, 5], after.joints[0, 5]) for before, after in zip(planned.beads, planned.beads[1:])]
+    ends = [
+        (before.joints[-1, 5], after.joints[0, 5])
+        for before, after in zip(planned.beads, planned.beads[1:])
+    ]
     assert max(abs(end - start) for end, start in ends) > np.radians(175.0)
     tip, axis = cell.tip_in_part(cell.machine.chain.forward(motion.joints))
     assert np.abs(tip - motion.position).max() < 1e-6 and np.abs(axis - motion.tool).max() < 1e-9
@@ -88,12 +103,21 @@ def test_half_a_turn_back_to_the_next_start_is_made_in_several_moves(cell_of, li
 
 
 def test_the_tip_of_a_spiral_is_slowed_and_the_rest_is_not(cell_of):
-    meridian = Meridian.chained([sampled(
-        lambda t: (45.0 * np.c_[np.cos(t), np.sin(t)], np.c_[-np.sin(t), np.cos(t)]), [0, np.pi / 2]
-    )])
+    meridian = Meridian.chained(
+        [
+            sampled(
+                lambda t: (45.0 * np.c_[np.cos(t), np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
+                [0, np.pi / 2],
+            )
+        ]
+    )
     toolpath = revolution.plan(
-        RevolvedWall(meridian, np.eye(4)), RevolutionParameters(layer_height=1.0, path="spiral"),
-        BuildDirectionParameters(), ProcessParameters(), NozzleParameters(), 113.0,
+        RevolvedWall(meridian, np.eye(4)),
+        RevolutionParameters(layer_height=1.0, path="spiral"),
+        BuildDirectionParameters(),
+        ProcessParameters(),
+        NozzleParameters(),
+        113.0,
     )
     cell = cell_of(toolpath)
     planned = plan_joints(toolpath, cell, JointParameters())

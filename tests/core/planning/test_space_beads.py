@@ -31,7 +31,9 @@ def curve(seed, closed, count):
     angle = TURN * s * (1.0 if closed else 0.6) + phase
     order = np.arange(1, 4)[:, None]
     ripple = (np.cos(order * angle + wave[:, 3:]) * [[4.0], [3.0], [2.0]] * wave[:, :1]).sum(axis=0)
-    height = 40.0 + (np.cos(order * angle + wave[:, 2:3]) * [[5.0], [4.0], [2.0]] * wave[:, 1:2]).sum(axis=0)
+    height = 40.0 + (
+        np.cos(order * angle + wave[:, 2:3]) * [[5.0], [4.0], [2.0]] * wave[:, 1:2]
+    ).sum(axis=0)
     points = np.c_[(45.0 + ripple) * np.cos(angle), (38.0 + ripple) * np.sin(angle), height]
     lean = 0.12 * tilt @ np.cos(order * angle + phase)
     tool = np.c_[lean.T, np.ones(count)]
@@ -44,13 +46,17 @@ def bead_of(seed, closed, count=POINTS, finer=1):
     """A bead; the parameter of a `finer` one is that of the coarse one's points, so that one polynomial serves both."""
     dense, tool = curve(seed, closed, (count - 1) * finer + 1)
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(dense[::finer], axis=0), axis=1))]
-    parameter = np.interp(np.arange(len(dense)) / finer, np.arange(count), TURN * length / length[-1])
+    parameter = np.interp(
+        np.arange(len(dense)) / finer, np.arange(count), TURN * length / length[-1]
+    )
     return Bead(dense, tool, tool, parameter, np.full(len(dense), 6.0), closed)
 
 
 @pytest.fixture(scope="module")
 def cell():
-    return cells.resolve(CellParameters(limits="paper", branch=("front", "up", "flip")), np.eye(4), "surface")
+    return cells.resolve(
+        CellParameters(limits="paper", branch=("front", "up", "flip")), np.eye(4), "surface"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +90,9 @@ def test_a_higher_degree_is_never_worse(optima, seed, closed):
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_closed_bead_joins_up(optima, seed, degree):
     path = optima(seed, True, degree).beads[0]
-    assert np.polynomial.Polynomial(path.coefficients)(path.bead.parameter) == pytest.approx(path.phi, abs=1e-9)
+    assert np.polynomial.Polynomial(path.coefficients)(path.bead.parameter) == pytest.approx(
+        path.phi, abs=1e-9
+    )
     turns = (path.phi[-1] - path.phi[0]) / TURN
     assert abs(turns - np.round(turns)) < 1e-9
     apart = (path.joints[-1] - path.joints[0]) / TURN
@@ -122,14 +130,22 @@ def test_a_second_solver_is_not_better_by_more_than_two_percent(cell, optima, se
         # a polynomial of x in -1 .. 1 with equal ends but for whole turns, written down without our basis
         a, b, c, d = free
         values = a + c * (x * x - 1.0) + d * (x**3 - x) + (np.pi * turns * x if closed else b * x)
-        return np.polynomial.Polynomial.fit(points.parameter, values, degree, domain=[]).convert().coef[None, None]
+        return (
+            np.polynomial.Polynomial.fit(points.parameter, values, degree, domain=[])
+            .convert()
+            .coef[None, None]
+        )
 
     def objective(free, turns):
         found = search.judge(task, points, threshold, coefficients(free, turns))
         return float(np.nan_to_num(found.objective[0, 0], posinf=1e3))
 
     def margin(free, turns):
-        return float(max(search.judge(task, points, threshold, coefficients(free, turns)).margin[0, 0], -10.0))
+        return float(
+            max(
+                search.judge(task, points, threshold, coefficients(free, turns)).margin[0, 0], -10.0
+            )
+        )
 
     rng = np.random.default_rng(100 + seed)
     best = np.inf
@@ -137,7 +153,11 @@ def test_a_second_solver_is_not_better_by_more_than_two_percent(cell, optima, se
         for _ in range(4):
             start = rng.uniform([-np.pi, -np.pi, -0.3, -0.3], [np.pi, np.pi, 0.3, 0.3])
             end = minimize(
-                objective, start, args=(turns,), method="SLSQP", options={"maxiter": 40},
+                objective,
+                start,
+                args=(turns,),
+                method="SLSQP",
+                options={"maxiter": 40},
                 constraints=[{"type": "ineq", "fun": margin, "args": (turns,)}],
             ).x
             if margin(end, turns) >= 0.0:
@@ -163,6 +183,9 @@ def test_gradients_along_what_may_change(cell):
     assert np.linalg.matrix_rank(directions[0]) == 5
     low, high = points.ends
     for bead in (0, 1):
-        values = [np.vander([low[bead], high[bead]], 6, increasing=True) @ column for column in directions[bead].T]
+        values = [
+            np.vander([low[bead], high[bead]], 6, increasing=True) @ column
+            for column in directions[bead].T
+        ]
         apart = [abs(value[1] - value[0]) for value in values]
         assert bead == 1 or max(apart) < 1e-9

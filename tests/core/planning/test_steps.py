@@ -24,10 +24,18 @@ def bead(layer, points, speed=SPEED):
     joints[:, :2] = points[rows, :2] / LEVER
     up = np.tile([0.0, 0.0, 1.0], (len(rows), 1))
     return {
-        "deposit": deposit, "layer": np.full(len(rows), layer), "bead": np.zeros(len(rows), int),
-        "point": np.r_[0, 0, np.arange(len(points))], "position": points[rows], "build": up, "tool": up,
-        "speed": np.where(deposit, speed, 100.0), "width": np.full(len(rows), np.nan), "joints": joints,
-        "duration": np.r_[0.5, 0.1, way / speed], "role": np.r_[TRAVEL, APPROACH, np.full(len(points), DEPOSIT)],
+        "deposit": deposit,
+        "layer": np.full(len(rows), layer),
+        "bead": np.zeros(len(rows), int),
+        "point": np.r_[0, 0, np.arange(len(points))],
+        "position": points[rows],
+        "build": up,
+        "tool": up,
+        "speed": np.where(deposit, speed, 100.0),
+        "width": np.full(len(rows), np.nan),
+        "joints": joints,
+        "duration": np.r_[0.5, 0.1, way / speed],
+        "role": np.r_[TRAVEL, APPROACH, np.full(len(points), DEPOSIT)],
     }
 
 
@@ -55,11 +63,16 @@ def test_others_are_told_all(wild):
 
 def test_what_comes_late_enough_stays_to_the_bit():
     turn = np.linspace(0.0, 6.0, 200)
-    one = motion(bead(0, 8.0 * np.c_[np.cos(turn), np.sin(turn)]), bead(1, [[0.0, 0.0], [0.0401, 0.0], [0.0401, 0.0401]]))
+    one = motion(
+        bead(0, 8.0 * np.c_[np.cos(turn), np.sin(turn)]),
+        bead(1, [[0.0, 0.0], [0.0401, 0.0], [0.0401, 0.0401]]),
+    )
     told, rows = steps.programmed(one, UR, CHORD, 50.0)
     assert (rows == np.arange(len(one))).all()
     for field in dataclasses.fields(Motion):
-        assert np.array_equal(getattr(told, field.name), getattr(one, field.name), equal_nan=True), field.name
+        assert np.array_equal(
+            getattr(told, field.name), getattr(one, field.name), equal_nan=True
+        ), field.name
 
 
 def test_no_move_is_shorter_than_a_step_and_no_point_lies_off_the_way(wild):
@@ -74,8 +87,12 @@ def test_no_move_is_shorter_than_a_step_and_no_point_lies_off_the_way(wild):
         points, line = wild.position[before, :2], told.position[after, :2]
         assert (points[[0, -1]] == line[[0, -1]]).all()
         a, b = line[:-1], line[1:]
-        share = ((points[:, None] - a) * (b - a)).sum(axis=2) / np.maximum(((b - a) ** 2).sum(axis=1), 1e-300)
-        away = np.linalg.norm(points[:, None] - a - np.clip(share, 0.0, 1.0)[..., None] * (b - a), axis=2).min(axis=1)
+        share = ((points[:, None] - a) * (b - a)).sum(axis=2) / np.maximum(
+            ((b - a) ** 2).sum(axis=1), 1e-300
+        )
+        away = np.linalg.norm(
+            points[:, None] - a - np.clip(share, 0.0, 1.0)[..., None] * (b - a), axis=2
+        ).min(axis=1)
         assert away.max() < 0.4 * CHORD + 1e-9
         # the torch is no faster, and slower only by the steps that corners need
         assert wild.duration[before].sum() - 1e-9 <= told.duration[after].sum()
@@ -97,7 +114,11 @@ def test_a_corner_that_is_needed_takes_a_step(wild):
 def test_points_too_near_for_a_blend_go_however_slow():
     one = motion(bead(0, [[0.0, 0.0], [3.0, 0.0], [3.004, 0.0], [8.0, 0.0]], speed=1.0))
     assert steps.programmed(one, UR, CHORD, 50.0)[1].tolist() in ([0, 1, 2, 4, 5], [0, 1, 2, 3, 5])
-    assert len(steps.programmed(one, UR, CHORD, 100.0)[1]) == len(steps.programmed(one, UR, CHORD, 0.0)[1]) == len(one)
+    assert (
+        len(steps.programmed(one, UR, CHORD, 100.0)[1])
+        == len(steps.programmed(one, UR, CHORD, 0.0)[1])
+        == len(one)
+    )
 
 
 def test_points_stay_where_axes_turn_far():
@@ -107,4 +128,8 @@ def test_points_stay_where_axes_turn_far():
     joints[5:, 4] += 0.2
     joints[4, 4] += 0.1
     turned = dataclasses.replace(one, joints=joints)
-    assert len(steps.programmed(one, UR, CHORD, 50.0)[1]) < len(one) == len(steps.programmed(turned, UR, CHORD, 50.0)[1])
+    assert (
+        len(steps.programmed(one, UR, CHORD, 50.0)[1])
+        < len(one)
+        == len(steps.programmed(turned, UR, CHORD, 50.0)[1])
+    )

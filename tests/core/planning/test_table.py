@@ -24,15 +24,26 @@ MACHINES = ["table-xyzac", "table-xyzbc", "head-table-xyzbc"]
 def bead(points, build, closed=False, speed=8.0):
     build = build / np.linalg.norm(build, axis=1)[:, None]
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    return Bead(points, build, build, 2.0 * math.pi * length / length[-1], np.full(len(points), speed), closed)
+    return Bead(
+        points,
+        build,
+        build,
+        2.0 * math.pi * length / length[-1],
+        np.full(len(points), speed),
+        closed,
+    )
 
 
 def toolpath(*beads, chord_error=0.02):
-    return Toolpath(tuple(Layer((one,)) for one in beads), np.eye(4), 2.0, chord_error, family="developable")
+    return Toolpath(
+        tuple(Layer((one,)) for one in beads), np.eye(4), 2.0, chord_error, family="developable"
+    )
 
 
 def resolved(machine="table-xyzac", platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0), **more):
-    parameters = CellParameters(machine=machine, setup="rotary-table", platform=platform, mount="part", **more)
+    parameters = CellParameters(
+        machine=machine, setup="rotary-table", platform=platform, mount="part", **more
+    )
     return cells.resolve(parameters, np.eye(4), "developable")
 
 
@@ -55,8 +66,13 @@ def check(cell, path, chord_error=0.02):
         tip, tool = cell.tip_in_part(forward(axes))
         start, way = one.bead.points[:-1], np.diff(one.bead.points, axis=0)
         tip = tip.reshape(len(way), 12, 3)
-        t = np.clip(((tip - start[:, None]) * way[:, None]).sum(-1) / (way**2).sum(-1)[:, None], 0.0, 1.0)
-        assert np.linalg.norm(tip - start[:, None] - t[..., None] * way[:, None], axis=-1).max() < 1.05 * chord_error
+        t = np.clip(
+            ((tip - start[:, None]) * way[:, None]).sum(-1) / (way**2).sum(-1)[:, None], 0.0, 1.0
+        )
+        assert (
+            np.linalg.norm(tip - start[:, None] - t[..., None] * way[:, None], axis=-1).max()
+            < 1.05 * chord_error
+        )
         at_points = cell.tip_in_part(forward(one.joints))
         np.testing.assert_allclose(at_points[0], one.bead.points, atol=1e-8)
         np.testing.assert_allclose(at_points[1], one.bead.tool, atol=1e-10)
@@ -71,7 +87,8 @@ def test_free_is_what_a_machine_has_beyond_five_axes():
     robot = CellParameters(setup="tool-on-robot", mount="part")
     beside = "motoman-motopos-d500 at 1000 60 -600 0 0 20 carries part"
     for cell, free in [
-        *((resolved(machine), 0) for machine in MACHINES), (cells.resolve(robot, np.eye(4)), 1),
+        *((resolved(machine), 0) for machine in MACHINES),
+        (cells.resolve(robot, np.eye(4)), 1),
         (cells.resolve(dataclasses.replace(robot, external=beside), np.eye(4)), 3),
     ]:
         assert cell.machine.free == free == cell.machine.chain.axes - 5
@@ -97,11 +114,15 @@ def test_random_beads_anywhere(machine):
 def test_over_the_vertical(machine, off):
     # a bead over the top of a ball: straight through the pole, a hair beside it, and near it
     angle = np.linspace(-0.8, 0.8, 81)
-    points = 50.0 * np.stack([np.sin(angle) * np.cos(0.4), np.sin(angle) * np.sin(0.4), np.cos(angle)], axis=1)
+    points = 50.0 * np.stack(
+        [np.sin(angle) * np.cos(0.4), np.sin(angle) * np.sin(0.4), np.cos(angle)], axis=1
+    )
     points += [0.0, off, 0.0]
     cell = resolved(machine)
     path = plan_joints(toolpath(bead(points, points)), cell, JointParameters())
-    if off == 0.3:  # so near the axis has to turn half round in a moment: told, with the speed that would do
+    if (
+        off == 0.3
+    ):  # so near the axis has to turn half round in a moment: told, with the speed that would do
         assert [issue.code for issue in path.issues] == ["SPEED"]
         check(cell, path)
         return
@@ -110,7 +131,9 @@ def test_over_the_vertical(machine, off):
     assert np.abs(np.diff(path.beads[0].joints, axis=0)[:, cell.machine.chain.sliding]).max() < 12.0
     if off < 0.1:  # the tilt goes on to the other side, the table does not turn
         turning = path.beads[0].joints[:, ~cell.machine.chain.sliding]
-        assert np.ptp(turning, axis=0).min() < 1e-5 and np.ptp(turning, axis=0).max() == pytest.approx(1.6, abs=1e-5)
+        assert np.ptp(turning, axis=0).min() < 1e-5 and np.ptp(
+            turning, axis=0
+        ).max() == pytest.approx(1.6, abs=1e-5)
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -126,26 +149,40 @@ def test_beside_the_vertical_the_table_has_the_way_there_to_turn(machine, way):
         lean = np.tan(np.radians(np.interp(x, [20.0, 25.0], [15.0, 0.0])))
         aside = np.tan(np.radians(np.interp(x, [35.0, 40.0], [0.0, 15.0])))
     cell = resolved(machine)
-    asked = bead(np.stack([x, 5.0 + 0.0 * x, 20.0 + 0.0 * x], axis=1), np.stack([lean, aside, np.ones(len(x))], axis=1))
+    asked = bead(
+        np.stack([x, 5.0 + 0.0 * x, 20.0 + 0.0 * x], axis=1),
+        np.stack([lean, aside, np.ones(len(x))], axis=1),
+    )
     path = plan_joints(toolpath(asked), cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
     assert [issue.code for issue in path.issues] == []
     check(cell, path)
     run = path.beads[0]
-    found = np.stack([np.interp(run.bead.points[:, 0], x, column) for column in asked.tool.T], axis=1)
+    found = np.stack(
+        [np.interp(run.bead.points[:, 0], x, column) for column in asked.tool.T], axis=1
+    )
     sine = np.linalg.norm(np.cross(found, run.bead.tool), axis=1) / np.linalg.norm(found, axis=1)
     assert np.degrees(np.arcsin(sine)).max() < 0.41
     turning = ~cell.machine.chain.sliding
-    rate = np.abs(np.diff(run.joints, axis=0))[:, turning] / np.diff(run.bead.points[:, 0])[:, None] * 8.0
+    rate = (
+        np.abs(np.diff(run.joints, axis=0))[:, turning]
+        / np.diff(run.bead.points[:, 0])[:, None]
+        * 8.0
+    )
     assert (rate <= cell.machine.max_speed[turning]).all()
 
 
 def test_a_tilting_axis_without_room_beyond_the_pole_stays_on_its_side():
     """Straight on through the vertical it would come to -15 deg; the table turns beside it then, and the bead is slowed."""
     x = np.linspace(0.0, 60.0, 61)
-    lean, aside = np.tan(np.radians(15.0 * (1.0 - x / 30.0))), np.full(len(x), np.tan(np.radians(0.15)))
+    lean, aside = (
+        np.tan(np.radians(15.0 * (1.0 - x / 30.0))),
+        np.full(len(x), np.tan(np.radians(0.15))),
+    )
     asked = bead(
-        np.stack([x, 5.0 + 0.0 * x, 20.0 + 0.0 * x], axis=1), np.stack([lean, aside, np.ones(len(x))], axis=1), speed=2.5
+        np.stack([x, 5.0 + 0.0 * x, 20.0 + 0.0 * x], axis=1),
+        np.stack([lean, aside, np.ones(len(x))], axis=1),
+        speed=2.5,
     )
     cell = with_limits(resolved("table-xyzac"), 3, -5.0, 100.0)
     path = plan_joints(toolpath(asked), cell, JointParameters())
@@ -153,7 +190,9 @@ def test_a_tilting_axis_without_room_beyond_the_pole_stays_on_its_side():
     assert [issue.code for issue in path.issues] == ["SLOWED"]
     check(cell, path)
     free = plan_joints(toolpath(asked), resolved("table-xyzac"), JointParameters())
-    assert free.feasible and not free.issues and np.degrees(free.beads[0].joints[:, 3].min()) < -10.0
+    assert (
+        free.feasible and not free.issues and np.degrees(free.beads[0].joints[:, 3].min()) < -10.0
+    )
 
 
 def test_round_a_hub_on_the_turning_axis_only_the_table_turns():
@@ -182,23 +221,36 @@ def test_a_limited_axis_unwinds_between_beads():
     cell = resolved("head-table-xyzbc")
     limits = cell.limits
     limited = type(limits)(
-        limits.name, np.where(np.isfinite(limits.lower), limits.lower, -2.1 * math.pi),
-        np.where(np.isfinite(limits.upper), limits.upper, 2.1 * math.pi), limits.coefficients, limits.coupled_lower,
-        limits.coupled_upper, limits.labels, limits.source,
+        limits.name,
+        np.where(np.isfinite(limits.lower), limits.lower, -2.1 * math.pi),
+        np.where(np.isfinite(limits.upper), limits.upper, 2.1 * math.pi),
+        limits.coefficients,
+        limits.coupled_lower,
+        limits.coupled_upper,
+        limits.labels,
+        limits.source,
     )
     cell = dataclasses.replace(cell, limits=limited)
-    path = plan_joints(toolpath(*(around(base, 3.0, 5.0 * k) for k in range(5))), cell, JointParameters())
+    path = plan_joints(
+        toolpath(*(around(base, 3.0, 5.0 * k) for k in range(5))), cell, JointParameters()
+    )
     assert path.feasible, [issue.message for issue in path.issues]
     check(cell, path)
-    back = [abs(b.joints[0, 4] - a.joints[-1, 4]) > 1.5 * math.pi for a, b in zip(path.beads, path.beads[1:])]
+    back = [
+        abs(b.joints[0, 4] - a.joints[-1, 4]) > 1.5 * math.pi
+        for a, b in zip(path.beads, path.beads[1:])
+    ]
     assert any(back) and [issue.message for issue in path.issues] == [
-        f"axis c turns back {sum(back)} times between beads, first before layer {1 + back.index(True)}"]
+        f"axis c turns back {sum(back)} times between beads, first before layer {1 + back.index(True)}"
+    ]
 
 
 def with_limits(cell, axis, low, high):
     lower, upper = cell.limits.lower.copy(), cell.limits.upper.copy()
     lower[axis], upper[axis] = math.radians(low), math.radians(high)
-    return dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper))
+    return dataclasses.replace(
+        cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper)
+    )
 
 
 @pytest.mark.parametrize("overlap", [0.0, 8.0])
@@ -211,11 +263,16 @@ def test_seams_are_moved_where_a_limited_axis_has_room(overlap):
     assert path.feasible, [issue.message for issue in path.issues]
     assert "SEAM_MOVED" in {issue.code for issue in path.issues} and len(path.beads) == len(beads)
     for one, asked in zip(path.beads, beads):
-        assert np.degrees(np.ptp(one.joints[:, 4])) == pytest.approx(360.0 + math.degrees(overlap / 57.0), abs=3.0 + overlap)
+        assert np.degrees(np.ptp(one.joints[:, 4])) == pytest.approx(
+            360.0 + math.degrees(overlap / 57.0), abs=3.0 + overlap
+        )
         # the same ring, begun elsewhere
         assert one.bead.length == pytest.approx(asked.length + overlap, abs=0.03)
         np.testing.assert_allclose(one.bead.points[:, 2], 40.0, atol=1e-9)
-        assert np.degrees(one.joints[:, 4].min()) >= -200.0 and np.degrees(one.joints[:, 4].max()) <= 200.0
+        assert (
+            np.degrees(one.joints[:, 4].min()) >= -200.0
+            and np.degrees(one.joints[:, 4].max()) <= 200.0
+        )
     check(cell, path)
 
 
@@ -225,7 +282,9 @@ def test_beads_are_split_where_no_seam_helps():
     path = plan_joints(toolpath(*beads), cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
     assert "BEAD_SPLIT" in {issue.code for issue in path.issues}
-    assert [(one.layer, one.index) for one in path.beads] == [(k, piece) for k in range(3) for piece in range(2)]
+    assert [(one.layer, one.index) for one in path.beads] == [
+        (k, piece) for k in range(3) for piece in range(2)
+    ]
     for k, asked in enumerate(beads):
         first, second = path.beads[2 * k : 2 * k + 2]
         np.testing.assert_allclose(first.bead.points[-1], second.bead.points[0], atol=1e-12)
@@ -238,17 +297,25 @@ def test_beads_are_split_where_no_seam_helps():
 def test_robots_lock_no_axis():
     cell = cells.resolve(CellParameters(), np.eye(4))
     with pytest.raises(InputError) as caught:
-        plan_joints(toolpath(around(Developable(60.0), 0.0, 40.0)), cell, JointParameters(lock="second"))
+        plan_joints(
+            toolpath(around(Developable(60.0), 0.0, 40.0)), cell, JointParameters(lock="second")
+        )
     assert caught.value.code == "NOT_FOR_SETUP" and caught.value.where == "joints.lock"
 
 
 def test_a_limit_that_cannot_be_kept_is_told_with_axis_and_place():
     base = Developable(60.0, 200.0)
-    cell = resolved(platform=(450.0, 0.0, 30.0, 0.0, 0.0, 0.0))  # far off the table's axis: it swings out of the stroke
+    cell = resolved(
+        platform=(450.0, 0.0, 30.0, 0.0, 0.0, 0.0)
+    )  # far off the table's axis: it swings out of the stroke
     path = plan_joints(toolpath(around(base, 0.0, 40.0)), cell, JointParameters())
     assert not path.feasible
     limit = next(issue for issue in path.issues if issue.code == "LIMIT")
-    assert "mm, its limit is" in limit.message and limit.message[:2] in ("mx", "my", "mz") and limit.point is not None
+    assert (
+        "mm, its limit is" in limit.message
+        and limit.message[:2] in ("mx", "my", "mz")
+        and limit.point is not None
+    )
 
 
 @pytest.mark.parametrize("lock_at", ["auto", math.radians(60.0)])
@@ -262,8 +329,13 @@ def test_four_axes(lock_at):
     tilt = path.beads[0].joints[:, 3]
     assert np.ptp(tilt) == 0.0
     if lock_at == "auto":
-        assert abs(math.degrees(tilt[0])) == pytest.approx(73.3, abs=0.02) and "axis a stands" in note.message
-        missed = np.arccos(np.clip((path.beads[0].bead.tool * path.beads[0].bead.build).sum(axis=1), -1, 1))
+        assert (
+            abs(math.degrees(tilt[0])) == pytest.approx(73.3, abs=0.02)
+            and "axis a stands" in note.message
+        )
+        missed = np.arccos(
+            np.clip((path.beads[0].bead.tool * path.beads[0].bead.build).sum(axis=1), -1, 1)
+        )
         assert np.degrees(missed).max() < 0.02
     else:
         assert "13.3 deg off" in note.message
@@ -275,7 +347,9 @@ def test_four_axes(lock_at):
 
 def test_four_axes_that_miss_too_much_are_refused():
     cell, beads = resolved(), [around(Developable(60.0, 200.0), 0.0, 40.0)]
-    parameters = JointParameters(lock="first", lock_at=math.radians(60.0), max_residual=math.radians(13.0))
+    parameters = JointParameters(
+        lock="first", lock_at=math.radians(60.0), max_residual=math.radians(13.0)
+    )
     path = plan_joints(toolpath(*beads), cell, parameters)
     assert [issue.code for issue in path.issues if issue.level == "error"] == ["FOUR_AXES"]
     assert "13.3 deg off" in path.issues[-1].message and "max_residual" in path.issues[-1].message
@@ -299,8 +373,12 @@ def test_a_cone_and_a_cylinder_on_one_spindle_share_what_is_missed():
 def test_the_locked_axis_stands_within_its_limits():
     cell = resolved()
     cell = with_limits(cell, 3, -40.0, 50.0)
-    path = plan_joints(toolpath(around(Developable(60.0, 200.0), 0.0, 40.0)), cell, JointParameters(lock="first"))
-    assert path.feasible and math.degrees(path.beads[0].joints[0, 3]) == pytest.approx(49.95, abs=0.01)
+    path = plan_joints(
+        toolpath(around(Developable(60.0, 200.0), 0.0, 40.0)), cell, JointParameters(lock="first")
+    )
+    assert path.feasible and math.degrees(path.beads[0].joints[0, 3]) == pytest.approx(
+        49.95, abs=0.01
+    )
 
 
 def test_a_direction_out_of_reach_is_told():
@@ -313,7 +391,10 @@ def test_a_direction_out_of_reach_is_told():
 
 
 def test_a_robot_is_no_table_and_a_table_no_robot():
-    for setup, machine in (("rotary-table", "fanuc-arcmate120ic"), ("part-on-robot", "table-xyzac")):
+    for setup, machine in (
+        ("rotary-table", "fanuc-arcmate120ic"),
+        ("part-on-robot", "table-xyzac"),
+    ):
         with pytest.raises(Exception, match="use ") as caught:
             cells.resolve(CellParameters(machine=machine, setup=setup), np.eye(4))
         assert caught.value.code == "WRONG_SETUP"
@@ -322,7 +403,10 @@ def test_a_robot_is_no_table_and_a_table_no_robot():
 def test_an_overlap_runs_on():
     cell = resolved()
     one = around(Developable(60.0), 0.0, 20.0)
-    path = plan_joints(Toolpath((Layer((one,)),), np.eye(4), 2.0, 0.05, overlap=7.0, family="developable"), cell,
-                       JointParameters())
+    path = plan_joints(
+        Toolpath((Layer((one,)),), np.eye(4), 2.0, 0.05, overlap=7.0, family="developable"),
+        cell,
+        JointParameters(),
+    )
     assert path.beads[0].bead.length - one.length == pytest.approx(7.0, abs=0.02)
     assert np.ptp(path.beads[0].joints[:, 4]) > 2.0 * math.pi

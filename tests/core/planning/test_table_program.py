@@ -35,9 +35,13 @@ def spiral(distance, turn=1.2, n=120, start=0.0):
 
 def planned(machine, layers=2):
     beads = [spiral(3.0 * k, start=0.5 * k) for k in range(layers)]
-    parameters = CellParameters(machine=machine, setup="rotary-table", platform=PLATFORM, mount="part")
+    parameters = CellParameters(
+        machine=machine, setup="rotary-table", platform=PLATFORM, mount="part"
+    )
     cell = cells.resolve(parameters, np.eye(4), "developable")
-    toolpath = Toolpath(tuple(Layer((one,)) for one in beads), np.eye(4), 3.0, 0.02, family="developable")
+    toolpath = Toolpath(
+        tuple(Layer((one,)) for one in beads), np.eye(4), 3.0, 0.02, family="developable"
+    )
     path = plan_joints(toolpath, cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
     motion, issues = assemble(path, cell, ProcessParameters(travel_speed=8.0))
@@ -46,20 +50,38 @@ def planned(machine, layers=2):
 
 
 def program(cell, run, **more):
-    return build(run, cell, ProcessParameters(travel_speed=8.0), ProgramParameters(post="linuxcnc", **more), "cone")
+    return build(
+        run,
+        cell,
+        ProcessParameters(travel_speed=8.0),
+        ProgramParameters(post="linuxcnc", **more),
+        "cone",
+    )
 
 
-@pytest.mark.parametrize(("machine", "names"), [
-    ("table-xyzac", "XYZAC"), ("table-xyzbc", "XYZBC"), ("head-table-xyzbc", None), ("head-xyzab", None),
-])
+@pytest.mark.parametrize(
+    ("machine", "names"),
+    [
+        ("table-xyzac", "XYZAC"),
+        ("table-xyzbc", "XYZBC"),
+        ("head-table-xyzbc", None),
+        ("head-xyzab", None),
+    ],
+)
 def test_axes_go_by_their_letters(machine, names):
-    parameters = CellParameters(machine=machine, setup="rotary-table", platform=PLATFORM, mount="part")
+    parameters = CellParameters(
+        machine=machine, setup="rotary-table", platform=PLATFORM, mount="part"
+    )
     cell = cells.resolve(parameters, np.eye(4), "developable")
     _, motion = planned("table-xyzac")
     made = build(motion, cell, ProcessParameters(), ProgramParameters(post="siemens"), "x")
     assert sorted(made.axis_names) == sorted(set(made.axis_names)) and len(made.axis_names) == 5
-    assert [kind for name, kind in zip(made.axis_names, made.axis_kinds) if name in "XYZ"] == ["linear"] * 3
-    assert [kind for name, kind in zip(made.axis_names, made.axis_kinds) if name in "ABC"] == ["rotary"] * 2
+    assert [kind for name, kind in zip(made.axis_names, made.axis_kinds) if name in "XYZ"] == [
+        "linear"
+    ] * 3
+    assert [kind for name, kind in zip(made.axis_names, made.axis_kinds) if name in "ABC"] == [
+        "rotary"
+    ] * 2
     if names:
         assert "".join(made.axis_names) == names
 
@@ -71,8 +93,12 @@ def test_positions_and_directions_turn_with_the_part(origin):
     on_part = cell.mount if origin == "auto" else frames.bryant(origin)
     seen = frames.inverse(on_part)
     rows = motion.moves
-    position, direction = (np.concatenate([getattr(m, name) for m in made.moves]) for name in ("position", "direction"))
-    np.testing.assert_allclose(position, motion.position[rows] @ seen[:3, :3].T + seen[:3, 3], atol=1e-9)
+    position, direction = (
+        np.concatenate([getattr(m, name) for m in made.moves]) for name in ("position", "direction")
+    )
+    np.testing.assert_allclose(
+        position, motion.position[rows] @ seen[:3, :3].T + seen[:3, 3], atol=1e-9
+    )
     np.testing.assert_allclose(direction, motion.tool[rows] @ seen[:3, :3].T, atol=1e-12)
     # the trunnion's own formulas, with the work offset that the program tells of
     offset = frames.bryant(made.carried)
@@ -81,10 +107,20 @@ def test_positions_and_directions_turn_with_the_part(origin):
     a, c = joints[:, 3], joints[:, 4]
     xr, yr = np.cos(c) * x - np.sin(c) * y, np.sin(c) * x + np.cos(c) * y
     np.testing.assert_allclose(joints[:, 0], xr, atol=1e-8)
-    np.testing.assert_allclose(joints[:, 1], np.cos(a) * (yr - 20.0) - np.sin(a) * (z - 10.0) + 20.0, atol=1e-8)
-    np.testing.assert_allclose(joints[:, 2], np.sin(a) * (yr - 20.0) + np.cos(a) * (z - 10.0) + 10.0, atol=1e-8)
-    turned = frames.rotation_about((1.0, 0.0, 0.0), a) @ frames.rotation_about((0.0, 0.0, 1.0), c) @ offset[:3, :3]
-    np.testing.assert_allclose(np.einsum("nij,nj->ni", turned, direction), np.tile([0.0, 0.0, 1.0], (len(a), 1)), atol=1e-9)
+    np.testing.assert_allclose(
+        joints[:, 1], np.cos(a) * (yr - 20.0) - np.sin(a) * (z - 10.0) + 20.0, atol=1e-8
+    )
+    np.testing.assert_allclose(
+        joints[:, 2], np.sin(a) * (yr - 20.0) + np.cos(a) * (z - 10.0) + 10.0, atol=1e-8
+    )
+    turned = (
+        frames.rotation_about((1.0, 0.0, 0.0), a)
+        @ frames.rotation_about((0.0, 0.0, 1.0), c)
+        @ offset[:3, :3]
+    )
+    np.testing.assert_allclose(
+        np.einsum("nij,nj->ni", turned, direction), np.tile([0.0, 0.0, 1.0], (len(a), 1)), atol=1e-9
+    )
     assert all(m.rotation is None and m.configuration is None for m in made.moves)
 
 
@@ -107,7 +143,9 @@ def test_feed_of_the_linear_axes_keeps_the_speed_at_the_bead():
 
 def test_where_only_the_table_turns_the_linear_axes_have_no_feed():
     kinds = ("linear", "linear", "linear", "rotary", "rotary")
-    joints = np.array([[1.0, 2.0, 3.0, 0.0, 0.1], [1.0, 2.0, 3.0, 0.0, 0.2], [4.0, 6.0, 3.0, 0.0, 0.2]])
+    joints = np.array(
+        [[1.0, 2.0, 3.0, 0.0, 0.1], [1.0, 2.0, 3.0, 0.0, 0.2], [4.0, 6.0, 3.0, 0.0, 0.2]]
+    )
     feeds = slide_feeds(joints[0], joints[1:], np.array([0.5, 0.5]), kinds)
     np.testing.assert_allclose(feeds, [0.0, 10.0])
 
@@ -116,11 +154,16 @@ def test_where_only_the_table_turns_the_linear_axes_have_no_feed():
 def test_waits_of_layers_are_written(between, written):
     cell, motion = planned("table-xyzac", 4)
     process = ProcessParameters(between_layers=BetweenLayersParameters(wait=between))
-    for start, kept in ((StartParameters(), slice(None)), (StartParameters(layer=1), slice(1, None))):
+    for start, kept in (
+        (StartParameters(), slice(None)),
+        (StartParameters(layer=1), slice(1, None)),
+    ):
         parameters = ProgramParameters(post="linuxcnc", start_at=start)
         made = build(motion, cell, process, parameters, "cone", (0.0, 30.0, 0.0, 7.5))
         assert [block.seconds for block in made.blocks if isinstance(block, Wait)] == written[kept]
         # withdrawn from the bead before, then the wait, then the next layer
         for number, block in enumerate(made.blocks):
             if isinstance(block, Wait):
-                assert made.blocks[number - 1].kind == "rapid" and isinstance(made.blocks[number + 1], LayerStart)
+                assert made.blocks[number - 1].kind == "rapid" and isinstance(
+                    made.blocks[number + 1], LayerStart
+                )

@@ -35,7 +35,11 @@ def beside(dome):
     motion, issues = planned(dome, cell)
     assert not has_errors(issues)
     row = int(0.5 * len(motion))
-    flange = np.linalg.inv(cell.machine.base) @ cell.machine.chain.links(motion.joints[row])[-1] @ cell.machine.chain.flange
+    flange = (
+        np.linalg.inv(cell.machine.base)
+        @ cell.machine.chain.links(motion.joints[row])[-1]
+        @ cell.machine.chain.flange
+    )
     camera = flange @ cell.carried @ [140.0, 0.0, -87.5, 1.0]
     pose = frames.pose(np.eye(3), camera[:3])
     return values, cell, pose, motion
@@ -52,12 +56,15 @@ def test_a_camera_keeps_clear_of_a_post(dome, beside):
     values, cell, pose, motion = beside
     assert nearest(motion, cell, pose, carried(cell), POST).min() < CLEARANCE
     kept = dataclasses.replace(
-        cells.resolve(CellParameters(**values, arm_clearance=CLEARANCE), dome.frame), torch=cell.torch,
+        cells.resolve(CellParameters(**values, arm_clearance=CLEARANCE), dome.frame),
+        torch=cell.torch,
         obstacles=(box(tuple(POST), pose, "post"),),
     )
     motion, issues = planned(dome, kept)
     assert not has_errors(issues), [issue for issue in issues if issue.level == "error"]
-    assert nearest(motion, kept, pose, carried(kept), POST).min() > CLEARANCE - 1.0  # points of the rods' box, not all of it
+    assert (
+        nearest(motion, kept, pose, carried(kept), POST).min() > CLEARANCE - 1.0
+    )  # points of the rods' box, not all of it
 
 
 def test_what_the_torch_cannot_get_past_is_named(dome, beside):
@@ -65,11 +72,20 @@ def test_what_the_torch_cannot_get_past_is_named(dome, beside):
     values, cell, _, _ = beside
     x, y, z, *_ = CELL["deposition_point"]
     turn = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
-    middles = np.stack([x + 150.0 * np.cos(turn), y + 150.0 * np.sin(turn), np.full(12, z - 100.0)], axis=1)
-    ring = tuple(box((60.0, 60.0, 420.0), frames.pose(np.eye(3), one), f"post {k}") for k, one in enumerate(middles))
+    middles = np.stack(
+        [x + 150.0 * np.cos(turn), y + 150.0 * np.sin(turn), np.full(12, z - 100.0)], axis=1
+    )
+    ring = tuple(
+        box((60.0, 60.0, 420.0), frames.pose(np.eye(3), one), f"post {k}")
+        for k, one in enumerate(middles)
+    )
     kept = dataclasses.replace(
-        cells.resolve(CellParameters(**values, arm_clearance=CLEARANCE), dome.frame), torch=cell.torch, obstacles=ring,
+        cells.resolve(CellParameters(**values, arm_clearance=CLEARANCE), dome.frame),
+        torch=cell.torch,
+        obstacles=ring,
     )
     _, issues = planned(dome, kept)
     told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
-    assert any(re.match(r"the torch comes nearer than 10 mm to post \d+", issue.message) for issue in told)
+    assert any(
+        re.match(r"the torch comes nearer than 10 mm to post \d+", issue.message) for issue in told
+    )

@@ -32,9 +32,19 @@ ROBOT, ABB = "kuka-kr6-r900-sixx", "abb-irb1200-5-90"
 STANDS = (40.0, -250.0, -420.0, 0.0, 0.0, 80.0)  # mm, deg
 TORCH, PLATFORM = (10.0, 0.0, 150.0, 0.0, 20.0, 0.0), (520.0, 0.0, -100.0, 0.0, 0.0, 90.0)
 TRACK = {
-    "id": "track", "title": "Track of 3 m", "sources": ["made up"],
-    "joints": [{"name": "rail", "type": "prismatic", "origin": [0, 30, 50], "rpy": [0, 0, 10], "axis": [1, 0, 0],
-                "max_speed": 1500}],
+    "id": "track",
+    "title": "Track of 3 m",
+    "sources": ["made up"],
+    "joints": [
+        {
+            "name": "rail",
+            "type": "prismatic",
+            "origin": [0, 30, 50],
+            "rpy": [0, 0, 10],
+            "axis": [1, 0, 0],
+            "max_speed": 1500,
+        }
+    ],
     "flange": {"origin": [5, 0, 300], "rpy": [0, 0, 25]},
     "controller": {"matrix": [[1]], "offset": [0], "remark": "as it is", "posts": []},
     "limits": {"maker": {"axes": [[-1500, 1500]], "source": "made up"}},
@@ -47,8 +57,14 @@ def slid(value):
     joint = TRACK["joints"][0]
     chain = PyKDL.Chain()
     chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(joint["origin"], joint["rpy"])))
-    chain.addSegment(PyKDL.Segment(PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.TransAxis)))
-    chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(TRACK["flange"]["origin"], TRACK["flange"]["rpy"])))
+    chain.addSegment(
+        PyKDL.Segment(
+            PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.TransAxis)
+        )
+    )
+    chain.addSegment(
+        PyKDL.Segment(PyKDL.Joint(), kdl_pose(TRACK["flange"]["origin"], TRACK["flange"]["rpy"]))
+    )
     return driven(chain, [value])
 
 
@@ -58,19 +74,36 @@ def track(tmp_path_factory):
     poses = []
     for value in (0.0, 700.25, -1500.0):
         at = slid(value)
-        poses.append({"q": [value], "origin": list(at.p), "rotation": [[at.M[i, k] for k in range(3)] for i in range(3)]})
+        poses.append(
+            {
+                "q": [value],
+                "origin": list(at.p),
+                "rotation": [[at.M[i, k] for k in range(3)] for i in range(3)],
+            }
+        )
     path.write_text(json.dumps({**TRACK, "check_poses": poses}), encoding="utf-8")
     return path
 
 
 def cell_for(track, **more):
     degrees = (*PLATFORM[:3], *np.radians(PLATFORM[3:]))
-    return cells.resolve(CellParameters(**{
-        "machine": ROBOT, "setup": "tool-on-robot", "branch": ("front", "up", "noflip"), "mount": "part",
-        "deposition_point": degrees,
-        "external": f"{track} at {' '.join(map(str, STANDS))} carries robot", "platform_diameter": 0.0,
-        "nozzle": NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))), **more,
-    }), np.eye(4), "curves")
+    return cells.resolve(
+        CellParameters(
+            **{
+                "machine": ROBOT,
+                "setup": "tool-on-robot",
+                "branch": ("front", "up", "noflip"),
+                "mount": "part",
+                "deposition_point": degrees,
+                "external": f"{track} at {' '.join(map(str, STANDS))} carries robot",
+                "platform_diameter": 0.0,
+                "nozzle": NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))),
+                **more,
+            }
+        ),
+        np.eye(4),
+        "curves",
+    )
 
 
 def wall(length=2000.0, layers=2, step=50.0):
@@ -82,7 +115,9 @@ def wall(length=2000.0, layers=2, step=50.0):
         points = np.stack([x, 40.0 * np.sin(x / 200.0), np.full(len(x), 5.0 * layer)], axis=1)
         tool = np.tile([0.0, math.sin(0.2), math.cos(0.2)], (len(x), 1))
         way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-        beads.append(Bead(points, tool, tool, 2.0 * math.pi * way / way[-1], np.full(len(x), 10.0), False))
+        beads.append(
+            Bead(points, tool, tool, 2.0 * math.pi * way / way[-1], np.full(len(x), 10.0), False)
+        )
     return Toolpath(tuple(Layer((bead,)) for bead in beads), np.eye(4), 5.0, 0.5, family="curves")
 
 
@@ -101,7 +136,13 @@ def in_the_world(joints):
     tips, tools = [], []
     for row in joints:
         stands = start * slid(row[6]) * at_zero
-        seen = bryant(PLATFORM).Inverse() * stands * robot_base * driven(robot, row[:6]) * bryant(TORCH)
+        seen = (
+            bryant(PLATFORM).Inverse()
+            * stands
+            * robot_base
+            * driven(robot, row[:6])
+            * bryant(TORCH)
+        )
         tips.append(list(seen.p))
         tools.append([-component for component in seen.M.UnitZ()])
     return np.array(tips), np.array(tools)
@@ -112,7 +153,9 @@ def test_a_part_of_two_metres_is_met_at_every_point(track, planned):
     assert np.abs(tip - np.concatenate([path.bead.points for path in planned.beads])).max() < 1e-6
     assert np.abs(tool - np.concatenate([path.bead.tool for path in planned.beads])).max() < 1e-9
     cell = cell_for(track)
-    assert (planned.joints >= cell.limits.lower).all() and (planned.joints <= cell.limits.upper).all()
+    assert (planned.joints >= cell.limits.lower).all() and (
+        planned.joints <= cell.limits.upper
+    ).all()
     # the arm alone cannot
     alone = plan_joints(wall(), cell_for(track, external="none"), JointParameters())
     assert not alone.feasible
@@ -121,19 +164,29 @@ def test_a_part_of_two_metres_is_met_at_every_point(track, planned):
 def test_a_long_part_without_a_track_is_told_of_one(track):
     """What is proposed is planned here, by another call than the one that proposes it."""
     settings = CellParameters(
-        machine=ROBOT, setup="tool-on-robot", branch=("front", "up", "noflip"), mount="part", platform_diameter=0.0,
+        machine=ROBOT,
+        setup="tool-on-robot",
+        branch=("front", "up", "noflip"),
+        mount="part",
+        platform_diameter=0.0,
         deposition_point=(*PLATFORM[:3], *np.radians(PLATFORM[3:])),
         nozzle=NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))),
     )
     long, short = wall(1800.0, 1, 100.0), wall(500.0, 1, 100.0)
     assert not list(external_remedies.added(settings, (), short, {"UNREACHABLE"}))
     ((told, changed),) = external_remedies.added(settings, (), long, {"UNREACHABLE"})
-    assert told == ("`cell.external: [{machine: kuka-kl100-2, pose: [0, 0, -356, 0, 0, 90], carries: robot}]` and "
-                    "`cell.branch: auto`")
-    assert not plan_joints(long, cells.resolve(settings, np.eye(4), "curves"), JointParameters(method="constant")).feasible
+    assert told == (
+        "`cell.external: [{machine: kuka-kl100-2, pose: [0, 0, -356, 0, 0, 90], carries: robot}]` and "
+        "`cell.branch: auto`"
+    )
+    assert not plan_joints(
+        long, cells.resolve(settings, np.eye(4), "curves"), JointParameters(method="constant")
+    ).feasible
     found = plan_joints(long, cells.resolve(changed, np.eye(4), "curves"), JointParameters())
     assert found.feasible, [issue.message for issue in found.issues]
-    issues = plan_joints(long, cells.resolve(settings, np.eye(4), "curves"), JointParameters()).issues
+    issues = plan_joints(
+        long, cells.resolve(settings, np.eye(4), "curves"), JointParameters()
+    ).issues
     asked = tried.Tried(lambda: long, settings, (), ProcessParameters(), JointParameters())
     (note,) = remedies.remedies(asked, found, issues, lambda *_: None)
     assert note.code == "REMEDY" and told in note.message
@@ -166,7 +219,9 @@ def test_the_track_goes_along_smoothly_and_no_farther_than_it_needs(track, plann
     ends = np.array([first.joints[0, 6], first.joints[-1, 6]])
     assert np.abs(ends - second.joints[[-1, 0], 6]).max() < 1.0
     told = figures(cell_for(track), planned)
-    assert told["moved_mm"] == {"e1": pytest.approx(np.abs(np.diff(np.r_[first.joints[:, 6]])).sum() * 2.0, rel=1e-6)}
+    assert told["moved_mm"] == {
+        "e1": pytest.approx(np.abs(np.diff(np.r_[first.joints[:, 6]])).sum() * 2.0, rel=1e-6)
+    }
     assert told["turned_deg"] == {}
 
 
@@ -179,7 +234,10 @@ def test_rapids_keep_the_limits_and_speeds(track, planned):
     rate = np.abs(np.diff(motion.joints, axis=0))[moves] / motion.duration[1:][moves, None]
     assert len(moves) > 80 and (rate <= cell.machine.max_speed * (1.0 + 1e-6)).all()
     retracts = np.flatnonzero(motion.role == 1)
-    assert len(retracts) and np.abs(motion.joints[retracts, 6] - motion.joints[retracts - 1, 6]).max() < 1e-12
+    assert (
+        len(retracts)
+        and np.abs(motion.joints[retracts, 6] - motion.joints[retracts - 1, 6]).max() < 1e-12
+    )
 
 
 def test_where_the_arm_reaches_all_of_it_the_track_stands_still(track):
@@ -198,14 +256,27 @@ def test_a_track_that_is_too_short_is_told(track, tmp_path):
     assert values.min() >= -100.0 and values.max() <= 150.0
     level = dataclasses.replace(wall(200.0, 1), max_from_vertical=math.radians(5.0))
     issues = plan_joints(level, cell_for(track), JointParameters()).issues
-    assert any(issue.code == "NOT_LEVEL" and "nothing turns the part" in issue.message for issue in issues)
+    assert any(
+        issue.code == "NOT_LEVEL" and "nothing turns the part" in issue.message for issue in issues
+    )
 
 
-@pytest.mark.parametrize(("external", "code", "says"), [
-    ("motoman-motopos-d500 at 0 0 0 0 0 0 carries robot", "NOT_YET", "carries the robot and is not a track"),
-    ("kuka-kl100-2 at 0 0 0 0 0 0 carries part", "NOT_YET", "slides and carries the part"),
-    ("kuka-kl100-2 at 0 0 0 0 0 0 carries robot; kuka-kl100-2 at 0 900 0 0 0 0 carries robot", "NOT_YET", "2 mechanisms"),
-])
+@pytest.mark.parametrize(
+    ("external", "code", "says"),
+    [
+        (
+            "motoman-motopos-d500 at 0 0 0 0 0 0 carries robot",
+            "NOT_YET",
+            "carries the robot and is not a track",
+        ),
+        ("kuka-kl100-2 at 0 0 0 0 0 0 carries part", "NOT_YET", "slides and carries the part"),
+        (
+            "kuka-kl100-2 at 0 0 0 0 0 0 carries robot; kuka-kl100-2 at 0 900 0 0 0 0 carries robot",
+            "NOT_YET",
+            "2 mechanisms",
+        ),
+    ],
+)
 def test_refused_with_a_reason(track, external, code, says):
     with pytest.raises(InputError) as error:
         cell_for(track, external=external)
@@ -220,18 +291,25 @@ def by_abb(track):
     return cell, path
 
 
-@pytest.mark.parametrize(("post", "kind"), [("kuka", "cartesian"), ("abb", "joint"), ("abb", "cartesian")])
+@pytest.mark.parametrize(
+    ("post", "kind"), [("kuka", "cartesian"), ("abb", "joint"), ("abb", "cartesian")]
+)
 def test_programs_are_read_back_and_driven_by_two_solvers(track, planned, by_abb, post, kind):
     cell, path = (cell_for(track), planned) if post == "kuka" else by_abb
     motion, issues = assemble(path, cell, ProcessParameters())
     assert not [issue for issue in issues if issue.level == "error"]
-    program = build(motion, cell, ProcessParameters(), ProgramParameters(post=post, motion=kind), "job")
+    program = build(
+        motion, cell, ProcessParameters(), ProgramParameters(post=post, motion=kind), "job"
+    )
     writer = catalogue.load(post)
     files = writer.write(program)
     assert not verify(cell, motion, program, files, writer, 0.5).issues
     # a step of 0.5 mm of the track in one move is found
-    (name, data), = files.items()
-    number = re.search(r"E1 (-?[\d.]+)}" if post == "kuka" else r"\[(-?[\d.]+),9E9,9E9,9E9,9E9,9E9\]", data.decode())[1]
+    ((name, data),) = files.items()
+    number = re.search(
+        r"E1 (-?[\d.]+)}" if post == "kuka" else r"\[(-?[\d.]+),9E9,9E9,9E9,9E9,9E9\]",
+        data.decode(),
+    )[1]
     other = {name: data.replace(number.encode(), f"{float(number) + 0.5:.4f}".encode(), 1)}
     found = verify(cell, motion, program, other, writer, 0.5).issues
     assert {issue.code for issue in found} & {"VERIFY_JOINTS", "VERIFY_POINT", "VERIFY_POSE"}

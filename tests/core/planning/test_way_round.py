@@ -35,10 +35,22 @@ WALL = frames.pose(np.eye(3), np.array([1020.0, 0.0, 640.0]))
 def on_sides(dome, *across):
     """A bead along x at each place across it, mm."""
     x, up = np.linspace(-30.0, 30.0, 7), np.tile([0.0, 0.0, 1.0], (7, 1))
-    beads = tuple(dataclasses.replace(
-        dome.layers[0].beads[0], points=np.column_stack([x, 0.0 * x + y, 0.0 * x]), build=up, tool=up, parameter=x + 30.0,
-        speed=np.full(7, 8.0), tangents=None, closed=False) for y in across)
-    return dataclasses.replace(dome, layers=(dataclasses.replace(dome.layers[0], beads=beads),), family="surface")
+    beads = tuple(
+        dataclasses.replace(
+            dome.layers[0].beads[0],
+            points=np.column_stack([x, 0.0 * x + y, 0.0 * x]),
+            build=up,
+            tool=up,
+            parameter=x + 30.0,
+            speed=np.full(7, 8.0),
+            tangents=None,
+            closed=False,
+        )
+        for y in across
+    )
+    return dataclasses.replace(
+        dome, layers=(dataclasses.replace(dome.layers[0], beads=beads),), family="surface"
+    )
 
 
 def looked_at(motion):
@@ -55,7 +67,9 @@ def nozzle_near(motion, cell, poses, sizes):
     many places as plans look at."""
     arm, points, least = KdlLinks(cell.robot), nozzle_points(cell)[48:], np.inf
     joints = looked_at(motion).joints[:, : len(cell.robot.axes)]
-    dense = np.concatenate([joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)])
+    dense = np.concatenate(
+        [joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)]
+    )
     for pose, size in zip(poses, sizes, strict=True):
         to_box = np.linalg.inv(cell.robot.base @ pose)
         for q in dense:
@@ -83,7 +97,10 @@ def test_rapids_are_led_round_a_wall_that_no_retract_gets_over(dome, monkeypatch
     assert (speed < cell.machine.max_speed).all()
     assert len(set(cell.machine.arm.branch_of(motion.joints))) == 1
     if clearance:
-        assert nearest(looked_at(motion), cell, WALL, np.full((1, 3), 1e5), SIZE, every=1).min() >= CLEARANCE
+        assert (
+            nearest(looked_at(motion), cell, WALL, np.full((1, 3), 1e5), SIZE, every=1).min()
+            >= CLEARANCE
+        )
         return
     # the same again, to the last bit
     assert (planned(job, cell)[0].joints == motion.joints).all()
@@ -91,20 +108,31 @@ def test_rapids_are_led_round_a_wall_that_no_retract_gets_over(dome, monkeypatch
     monkeypatch.setattr(sampled, "ROUNDS", 0)
     told = [issue for issue in planned(job, cell)[1] if issue.level == "error"]
     assert {(issue.layer, issue.bead) for issue in told} == {(0, 1)}
-    assert any("the nozzle would meet" in issue.message and "wall" in issue.message for issue in told)
+    assert any(
+        "the nozzle would meet" in issue.message and "wall" in issue.message for issue in told
+    )
 
 
 def test_what_cannot_be_led_round_is_refused_by_name(dome, monkeypatch):
     """Walls on all sides of one of two beads, and no way over them."""
     job = on_sides(dome, -60.0, 60.0)
-    sizes = [(12.0, 112.0, 1500.0), (12.0, 112.0, 1500.0), (132.0, 12.0, 1500.0), (132.0, 12.0, 1500.0)]
+    sizes = [
+        (12.0, 112.0, 1500.0),
+        (12.0, 112.0, 1500.0),
+        (132.0, 12.0, 1500.0),
+        (132.0, 12.0, 1500.0),
+    ]
     at = [(940.0, 60.0), (1060.0, 60.0), (1000.0, 10.0), (1000.0, 116.0)]
     poses = [frames.pose(np.eye(3), np.array([x, y, 640.0])) for x, y in at]
     cell = cell_with(job, poses[0], "west", sizes[0], **CELL)
     names = ("west", "east", "south", "north")
     monkeypatch.setattr(sampled, "ROUNDS", 4)  # there is none however long it is looked for
-    cell = dataclasses.replace(cell, obstacles=tuple(
-        box(size, pose, name) for size, pose, name in zip(sizes, poses, names, strict=True)))
+    cell = dataclasses.replace(
+        cell,
+        obstacles=tuple(
+            box(size, pose, name) for size, pose, name in zip(sizes, poses, names, strict=True)
+        ),
+    )
     _, issues = planned(job, cell)
     (told,) = [issue for issue in issues if issue.level == "error"]
     assert told.code == "RAPID_COLLISION" and (told.layer, told.bead) == (0, 1)
@@ -124,17 +152,31 @@ def test_rapids_over_a_positioner_are_led_past_an_obstacle(monkeypatch):
         there = dataclasses.replace(cell, obstacles=(box(size, pose, "lamp"),))
         if not nozzle_obstacles.findings(motion, there):  # it is in the way of travels alone
             break
-    layers = tuple(Layer(tuple(beads[k:k + len(beads) // 2])) for k in (0, len(beads) // 2))
-    toolpath = Toolpath(layers, np.eye(4), planned_jobs.HEIGHT, planned_jobs.CHORD_ERROR, family="developable",
-                        max_from_vertical=setup.most)
+    layers = tuple(Layer(tuple(beads[k : k + len(beads) // 2])) for k in (0, len(beads) // 2))
+    toolpath = Toolpath(
+        layers,
+        np.eye(4),
+        planned_jobs.HEIGHT,
+        planned_jobs.CHORD_ERROR,
+        family="developable",
+        max_from_vertical=setup.most,
+    )
     path = plan_joints(toolpath, there, JointParameters(degree=1))
 
     def again():
-        return assemble(path, there, planned_jobs.PROCESS, [planned_jobs.body(setup)], layer_height=planned_jobs.HEIGHT)
+        return assemble(
+            path,
+            there,
+            planned_jobs.PROCESS,
+            [planned_jobs.body(setup)],
+            layer_height=planned_jobs.HEIGHT,
+        )
 
     led, issues = again()
     assert not has_errors(issues)
-    assert nozzle_near(motion, cell, [pose], [size]) == 0.0 < nozzle_near(led, there, [pose], [size])
+    assert (
+        nozzle_near(motion, cell, [pose], [size]) == 0.0 < nozzle_near(led, there, [pose], [size])
+    )
     # one that is about all beads is refused by name
     there = dataclasses.replace(cell, obstacles=(box((400.0, 400.0, 400.0), pose, "lamp"),))
     monkeypatch.setattr(sampled, "ROUNDS", 1)
@@ -151,7 +193,9 @@ def test_a_way_is_found_through_gaps_of_two_walls_and_is_short():
         for x, (low, high) in walls:
             across = (start[:, 0] - x) * (end[:, 0] - x) <= 0.0
             step = end[:, 0] - start[:, 0]
-            y = start[:, 1] + (x - start[:, 0]) / np.where(step == 0.0, 1.0, step) * (end[:, 1] - start[:, 1])
+            y = start[:, 1] + (x - start[:, 0]) / np.where(step == 0.0, 1.0, step) * (
+                end[:, 1] - start[:, 1]
+            )
             clear &= ~(across & (y > low) & (y < high))
         return clear
 
@@ -162,7 +206,13 @@ def test_a_way_is_found_through_gaps_of_two_walls_and_is_short():
     assert free(whole[:-1], whole[1:]).all()
     # by the axis that takes longest: 3 s up to the first gap, 6 s down to the second one, 3 s up again
     assert 12.0 <= ranges.lasts(whole[:-1], whole[1:]).sum() < 1.4 * 12.0
-    closed = way_round(start, end, ranges, lambda a, b: (a[:, 0] - 5.0) * (b[:, 0] - 5.0) > 0.0, lambda p: p[:, 0] >= 0.0)
+    closed = way_round(
+        start,
+        end,
+        ranges,
+        lambda a, b: (a[:, 0] - 5.0) * (b[:, 0] - 5.0) > 0.0,
+        lambda p: p[:, 0] >= 0.0,
+    )
     assert closed is None
 
 

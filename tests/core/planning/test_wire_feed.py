@@ -43,7 +43,9 @@ def planned(*beads):
     parameters = CellParameters(machine="table-xyzac", setup="rotary-table", mount="part")
     cell = cells.resolve(parameters, np.eye(4), "developable")
     path = plan_joints(
-        Toolpath((Layer(tuple(beads)),), np.eye(4), 3.0, 0.05, family="developable"), cell, JointParameters()
+        Toolpath((Layer(tuple(beads)),), np.eye(4), 3.0, 0.05, family="developable"),
+        cell,
+        JointParameters(),
     )
     assert path.feasible, path.issues
     return cell, assemble(path, cell, ProcessParameters())[0]
@@ -51,15 +53,23 @@ def planned(*beads):
 
 def program(cell, run, post="linuxcnc", **more):
     nc = NcParameters(wire_output=2, wire_gain=400.0)
-    return build(run, cell, ProcessParameters(), ProgramParameters(post=post, nc=nc, **more), "wire")
+    return build(
+        run, cell, ProcessParameters(), ProgramParameters(post=post, nc=nc, **more), "wire"
+    )
 
 
 def test_columns_of_a_bead_go_with_its_points():
     one = bead()
     back = one.reversed()
-    assert back.wire_share == SHARE and (back.height == one.height[::-1]).all() and (back.width == one.width[::-1]).all()
+    assert (
+        back.wire_share == SHARE
+        and (back.height == one.height[::-1]).all()
+        and (back.width == one.width[::-1]).all()
+    )
     finer = one.halved(np.array([3, 50]))
-    np.testing.assert_allclose(finer.height[[4, 52]], [one.height[3:5].mean(), one.height[50:52].mean()])
+    np.testing.assert_allclose(
+        finer.height[[4, 52]], [one.height[3:5].mean(), one.height[50:52].mean()]
+    )
     np.testing.assert_array_equal(np.delete(finer.height, [4, 52]), one.height)
     ring = np.linspace(0.0, 2.0 * math.pi, 41)
     points = np.stack([np.cos(ring), np.sin(ring), 0.0 * ring], axis=1)
@@ -67,9 +77,13 @@ def test_columns_of_a_bead_go_with_its_points():
     up = np.tile([0.0, 0.0, 1.0], (41, 1))
     height = 2.0 + np.r_[np.arange(40.0), 0.0]
     closed = Bead(points, up, up, ring, np.full(41, 5.0), True, height=height, wire_share=3.0)
-    np.testing.assert_array_equal(closed.started_at(10).height, 2.0 + np.r_[np.arange(10.0, 40.0), np.arange(11.0)])
+    np.testing.assert_array_equal(
+        closed.started_at(10).height, 2.0 + np.r_[np.arange(10.0, 40.0), np.arange(11.0)]
+    )
     longer = closed.run_on(1.0)
-    assert len(longer.height) == len(longer) > 41 and longer.wire_share == 3.0 and longer.width is None
+    assert (
+        len(longer.height) == len(longer) > 41 and longer.wire_share == 3.0 and longer.width is None
+    )
     np.testing.assert_allclose(longer.height[41:46], height[1:6])
     with pytest.raises(ValueError, match="height"):
         dataclasses.replace(closed, height=height[1:])
@@ -84,13 +98,24 @@ def test_a_program_with_a_wire_is_read_back_and_what_is_changed_is_found(post, m
     made = program(cell, run, post, motion=motion)
     files = catalogue.load(post).write(made)
     assert not verify(cell, run, made, files, catalogue.load(post), 0.05).issues
-    (name, content), = files.items()
+    ((name, content),) = files.items()
     values = list(re.finditer(r"(?:A_OUTA\[2\]=|M67 E1 Q)(\d+\.\d+)", content.decode()))
     assert len(values) > 100
-    for tamper in (values[0], values[57], values[-1]):  # one digit of one value, or the value left out
+    for tamper in (
+        values[0],
+        values[57],
+        values[-1],
+    ):  # one digit of one value, or the value left out
         last = content[tamper.end(1) - 1 : tamper.end(1)]
-        other = content[: tamper.end(1) - 1] + (b"4" if last != b"4" else b"7") + content[tamper.end(1) :]
-        line_start, line_end = content.rfind(b"\n", 0, tamper.start()) + 1, content.find(b"\n", tamper.start()) + 1
+        other = (
+            content[: tamper.end(1) - 1]
+            + (b"4" if last != b"4" else b"7")
+            + content[tamper.end(1) :]
+        )
+        line_start, line_end = (
+            content.rfind(b"\n", 0, tamper.start()) + 1,
+            content.find(b"\n", tamper.start()) + 1,
+        )
         for text in (other, content[:line_start] + content[line_end:]):
             found = verify(cell, run, made, {name: text}, catalogue.load(post), 0.05).issues
             assert {issue.code for issue in found} == {"VERIFY_WIRE"}
@@ -99,8 +124,10 @@ def test_a_program_with_a_wire_is_read_back_and_what_is_changed_is_found(post, m
 @pytest.mark.parametrize("post", ["siemens", "linuxcnc"])
 def test_a_text_that_would_stop_within_a_bead_is_not_read(post):
     cell, run = planned(bead())
-    (name, content), = catalogue.load(post).write(program(cell, run, post)).items()
-    within, stops = (b" DO $A_OUTA[2]", b" $A_OUTA[2]") if post == "siemens" else (b"M67 E1", b"M68 E1")
+    ((name, content),) = catalogue.load(post).write(program(cell, run, post)).items()
+    within, stops = (
+        (b" DO $A_OUTA[2]", b" $A_OUTA[2]") if post == "siemens" else (b"M67 E1", b"M68 E1")
+    )
     second = content.replace(within, within.replace(b"2]", b"3]").replace(b"E1", b"E2"), 1)
     for text in (content.replace(within, stops, 1), second):
         assert text != content
@@ -115,7 +142,11 @@ def test_only_what_varies_is_told():
     assert all(block.wire is None for block in made.blocks if isinstance(block, (Moves, DepositOn)))
     assert np.isnan(run.wire).all() and "Wire in proportion" not in " ".join(made.remarks)
     cell, run = planned(bead(share=None), bead())
-    told = [block.wire is not None for block in program(cell, run).blocks if isinstance(block, DepositOn)]
+    told = [
+        block.wire is not None
+        for block in program(cell, run).blocks
+        if isinstance(block, DepositOn)
+    ]
     assert told == [False, True]
     dry = program(cell, run, dry_run=True)
     assert all(block.wire is None for block in dry.blocks if isinstance(block, (Moves, DepositOn)))
@@ -125,7 +156,14 @@ def test_only_what_varies_is_told():
 
 @pytest.mark.parametrize("post", [fanuc, staubli])
 def test_robots_refuse_it_with_the_reason(post):
-    some = Moves("deposit", 0, 0, np.zeros((3, 6)) + np.arange(3.0)[:, None] * 0.01, np.ones(3), np.full(3, 6.0))
+    some = Moves(
+        "deposit",
+        0,
+        0,
+        np.zeros((3, 6)) + np.arange(3.0)[:, None] * 0.01,
+        np.ones(3),
+        np.full(3, 6.0),
+    )
     limits = {"max_speed": (2.0,) * 6, "station": (0.0,) * 6, "carried": (0.0,) * 6}
     plain = Program("part", "a robot", (DepositOn(), some, DepositOff()), (False,) * 6, **limits)
     assert post.write(plain)
@@ -141,6 +179,9 @@ def test_remarks_tell_the_speeds_that_are_in_the_program():
     speed = run.speed[run.deposit & (run.point > 0)]
     remarks = program(cell, run).remarks
     assert f"Travel speed {speed.min():.4g} to {speed.max():.4g} mm/s" in remarks
-    assert f"Wire in proportion to it {SHARE * speed.min():.4g} to {SHARE * speed.max():.4g} mm/s" in remarks
+    assert (
+        f"Wire in proportion to it {SHARE * speed.min():.4g} to {SHARE * speed.max():.4g} mm/s"
+        in remarks
+    )
     cell, run = planned(dataclasses.replace(bead(share=None), speed=np.full(150, 6.0)))
     assert "Travel speed 6 mm/s" in program(cell, run).remarks

@@ -12,9 +12,18 @@ from freecad_am.core.process.model import bead_speed, bead_table
 from freecad_am.core.process.model.bead_model import fit
 
 TABLE = [  # Dai 2020, table 1: radius mm, travel speed mm/min, width mm, height mm
-    (30, 300, 12.52, 3.40), (30, 600, 9.86, 2.68), (30, 900, 9.14, 2.52), (50, 300, 12.44, 3.26), (50, 600, 9.46, 2.50),
-    (50, 900, 8.28, 2.44), (70, 300, 12.10, 3.12), (70, 600, 9.22, 2.52), (70, 900, 8.00, 2.34), (90, 300, 11.34, 3.34),
-    (90, 600, 8.72, 2.42), (90, 900, 7.46, 2.14),
+    (30, 300, 12.52, 3.40),
+    (30, 600, 9.86, 2.68),
+    (30, 900, 9.14, 2.52),
+    (50, 300, 12.44, 3.26),
+    (50, 600, 9.46, 2.50),
+    (50, 900, 8.28, 2.44),
+    (70, 300, 12.10, 3.12),
+    (70, 600, 9.22, 2.52),
+    (70, 900, 8.00, 2.34),
+    (90, 300, 11.34, 3.34),
+    (90, 600, 8.72, 2.42),
+    (90, 900, 7.46, 2.14),
 ]
 
 
@@ -29,8 +38,12 @@ def test_the_refit_of_the_errata():
 def test_a_second_solver_agrees(column):
     table = np.array(TABLE, float)
     found = least_squares(
-        lambda x: x[0] * table[:, 1] ** (-1 / 3) + x[1] / table[:, 0] + x[2] - table[:, column], [50.0, 10.0, 0.0],
-        xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=[100.0, 50.0, 1.0],
+        lambda x: x[0] * table[:, 1] ** (-1 / 3) + x[1] / table[:, 0] + x[2] - table[:, column],
+        [50.0, 10.0, 0.0],
+        xtol=1e-15,
+        ftol=1e-15,
+        gtol=1e-15,
+        x_scale=[100.0, 50.0, 1.0],
     )
     model = bead_table.load("csw")
     ours = (model.width, model.height)[column - 2]
@@ -63,7 +76,12 @@ def test_outside_the_table_the_speed_is_kept_within_and_flagged():
     model = bead_table.load("csw")
     wide, narrow = model.speed_for(20.0, np.array([50.0])), model.speed_for(3.0, np.array([50.0]))
     assert (wide.speed[0], narrow.speed[0]) == (300.0 / 60.0, 900.0 / 60.0)
-    assert (wide.too_slow[0], wide.too_fast[0], narrow.too_slow[0], narrow.too_fast[0]) == (True, False, False, True)
+    assert (wide.too_slow[0], wide.too_fast[0], narrow.too_slow[0], narrow.too_fast[0]) == (
+        True,
+        False,
+        False,
+        True,
+    )
     assert model.speed_for(0.1, np.array([40.0])).too_fast[0]  # narrower than any speed gives
 
 
@@ -72,34 +90,53 @@ def columns(rows):
     return table[:, 0], table[:, 1] / 60.0, table[:, 2], table[:, 3]
 
 
-@pytest.mark.parametrize("rows, code", [
-    (TABLE[:3], "TOO_FEW_ROWS"), ([], "TOO_FEW_ROWS"), (TABLE[::3], "COLLINEAR_TABLE"),
-    (TABLE[:3] + TABLE[:3], "COLLINEAR_TABLE"),
-    (TABLE[:-1] + [(90, 900, -7.46, 2.14)], "BAD_TABLE"), (TABLE[:-1] + [(0, 900, 7.46, 2.14)], "BAD_TABLE"),
-    (TABLE[:-1] + [(90, float("nan"), 7.46, 2.14)], "BAD_TABLE"),
-    ([(r, 1200 - v, w, h) for r, v, w, h in TABLE], "NO_MODEL"),
-    ([(math.inf, 300, w, h) for _, _, w, h in TABLE], "COLLINEAR_TABLE"),
-])
+@pytest.mark.parametrize(
+    "rows, code",
+    [
+        (TABLE[:3], "TOO_FEW_ROWS"),
+        ([], "TOO_FEW_ROWS"),
+        (TABLE[::3], "COLLINEAR_TABLE"),
+        (TABLE[:3] + TABLE[:3], "COLLINEAR_TABLE"),
+        (TABLE[:-1] + [(90, 900, -7.46, 2.14)], "BAD_TABLE"),
+        (TABLE[:-1] + [(0, 900, 7.46, 2.14)], "BAD_TABLE"),
+        (TABLE[:-1] + [(90, float("nan"), 7.46, 2.14)], "BAD_TABLE"),
+        ([(r, 1200 - v, w, h) for r, v, w, h in TABLE], "NO_MODEL"),
+        ([(math.inf, 300, w, h) for _, _, w, h in TABLE], "COLLINEAR_TABLE"),
+    ],
+)
 def test_tables_that_are_none(rows, code):
     with pytest.raises(InputError) as caught:
         fit(*columns(rows), 100.0, "table.csv")
     assert caught.value.code == code
 
 
-@pytest.mark.parametrize("rows, told", [
-    (TABLE[:1], "it has 1 row; measure at least 4 beads"),
-    (TABLE[:3] + TABLE[:3], "all beads have the radius 30 mm; measure at least two speeds and two radii"),
-    (TABLE[1::3], "all beads have the travel speed 600 mm/min; measure"),
-    ([(30, 300, 12, 3), (30, 300, 12.5, 3), (60, 600, 9, 2.5), (60, 600, 9.5, 2.6)], "speeds and radii vary only together;"),
-    (TABLE[:-1] + [(90, -300, 7.46, 2.14)], "travel speed -300 mm/min is not a positive number; mend the row, or leave"),
-    (TABLE[:-1] + [(-90, 300, 7.46, 2.14)], "radius -90 mm is not"),
-    (TABLE[:-1] + [(90, 300, 7.46, -2.5)], "height -2.5 mm is not"),
-])
+@pytest.mark.parametrize(
+    "rows, told",
+    [
+        (TABLE[:1], "it has 1 row; measure at least 4 beads"),
+        (
+            TABLE[:3] + TABLE[:3],
+            "all beads have the radius 30 mm; measure at least two speeds and two radii",
+        ),
+        (TABLE[1::3], "all beads have the travel speed 600 mm/min; measure"),
+        (
+            [(30, 300, 12, 3), (30, 300, 12.5, 3), (60, 600, 9, 2.5), (60, 600, 9.5, 2.6)],
+            "speeds and radii vary only together;",
+        ),
+        (
+            TABLE[:-1] + [(90, -300, 7.46, 2.14)],
+            "travel speed -300 mm/min is not a positive number; mend the row, or leave",
+        ),
+        (TABLE[:-1] + [(-90, 300, 7.46, 2.14)], "radius -90 mm is not"),
+        (TABLE[:-1] + [(90, 300, 7.46, -2.5)], "height -2.5 mm is not"),
+    ],
+)
 def test_tables_that_are_none_are_told_in_the_units_of_the_table(rows, told):
     with pytest.raises(InputError) as caught:
         fit(*columns(rows), 100.0, "table.csv")
     assert caught.value.message.startswith(told) and caught.value.where == (
-        "table.csv row 12" if "positive" in caught.value.message else "table.csv")
+        "table.csv row 12" if "positive" in caught.value.message else "table.csv"
+    )
 
 
 def test_the_height_of_beads_of_one_section():
@@ -116,22 +153,41 @@ def test_the_height_of_beads_of_one_section():
     # asked for outside of the table: the section of the straight bead that is really laid
     slow = model.heights_of_section(widths, 50.0) * widths
     at = np.array([5.0]), np.array([np.inf])
-    np.testing.assert_allclose(slow, float(model.heights(*at)[0] * model.widths(*at)[0]), rtol=1e-12)
+    np.testing.assert_allclose(
+        slow, float(model.heights(*at)[0] * model.widths(*at)[0]), rtol=1e-12
+    )
 
 
 HEAD = "radius_mm,travel_speed_mm_min,width_mm,height_mm,wire_feed_m_min\n"
 
 
-@pytest.mark.parametrize("text, told", [
-    ("radius_mm,width_mm\n1,2\n", "travel_speed_mm_min"),
-    ("", "radius_mm"),
-    (HEAD + "30,300,12,3,6.5\n30,\"4,5\",12,3,6.5\n", "row 2"),
-    (HEAD + "# a remark\n\n30,300,12,3,6.5\n30,,12,3,6.5\n", r"row 2 \(line 5\): there is no travel_speed_mm_min; mend"),
-    (HEAD + "30,300,12,3,6.5\n30,300,12,5,3,6.5\n", r"row 2 \(line 3\): it has more values than there are columns"),
-    (HEAD + "30,300,12,3,6.5\n30,300,12,3,-6.5\n", r"row 2 \(line 3\): wire feed -6.5 m/min is not a positive number"),
-    (HEAD + "\n".join(f"{r},{v},{w},{h},6.5" for r, v, w, h in TABLE).replace("50,600", "50,-600"),
-     r"row 5 \(line 6\): travel speed -600 mm/min is not"),
-])
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        ("radius_mm,width_mm\n1,2\n", "travel_speed_mm_min"),
+        ("", "radius_mm"),
+        (HEAD + '30,300,12,3,6.5\n30,"4,5",12,3,6.5\n', "row 2"),
+        (
+            HEAD + "# a remark\n\n30,300,12,3,6.5\n30,,12,3,6.5\n",
+            r"row 2 \(line 5\): there is no travel_speed_mm_min; mend",
+        ),
+        (
+            HEAD + "30,300,12,3,6.5\n30,300,12,5,3,6.5\n",
+            r"row 2 \(line 3\): it has more values than there are columns",
+        ),
+        (
+            HEAD + "30,300,12,3,6.5\n30,300,12,3,-6.5\n",
+            r"row 2 \(line 3\): wire feed -6.5 m/min is not a positive number",
+        ),
+        (
+            HEAD
+            + "\n".join(f"{r},{v},{w},{h},6.5" for r, v, w, h in TABLE).replace(
+                "50,600", "50,-600"
+            ),
+            r"row 5 \(line 6\): travel speed -600 mm/min is not",
+        ),
+    ],
+)
 def test_files_that_are_no_table(tmp_path, text, told):
     (tmp_path / "mine.csv").write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=told) as caught:
@@ -141,7 +197,9 @@ def test_files_that_are_no_table(tmp_path, text, told):
 
 def test_a_table_of_the_users_own(tmp_path):
     head = "# laid on a Monday\nwidth_mm,radius_mm,height_mm,travel_speed_mm_min,wire_feed_m_min\n"
-    (tmp_path / "mine.csv").write_text(head + "".join(f"{w},{r},{h},{v},6.5\n" for r, v, w, h in TABLE), encoding="utf-8")
+    (tmp_path / "mine.csv").write_text(
+        head + "".join(f"{w},{r},{h},{v},6.5\n" for r, v, w, h in TABLE), encoding="utf-8"
+    )
     assert bead_table.load("mine.csv", tmp_path) == bead_table.load("csw")
     with pytest.raises(InputError) as caught:
         bead_table.load("other.csv", tmp_path)
@@ -153,7 +211,9 @@ def test_a_table_of_the_users_own(tmp_path):
 
 
 def test_beads_that_all_get_the_same_wire_to_a_millimetre_are_no_table(tmp_path):
-    rows = "".join(f"inf,{100 * feed},{w},{h},{feed}\n" for feed, (_, _, w, h) in enumerate(TABLE, 5))
+    rows = "".join(
+        f"inf,{100 * feed},{w},{h},{feed}\n" for feed, (_, _, w, h) in enumerate(TABLE, 5)
+    )
     (tmp_path / "mine.csv").write_text(HEAD + rows, encoding="utf-8")
     with pytest.raises(InputError, match="the same length of wire to each millimetre") as caught:
         bead_table.load("mine.csv", tmp_path)
@@ -166,11 +226,15 @@ def test_radius_of_circles(radius):
     circle = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     circle[-1] = circle[0]
     np.testing.assert_allclose(bead_speed.radii(circle, True, 0.5 * radius), radius, rtol=0.02)
-    np.testing.assert_allclose(bead_speed.radii(circle[:100], False, 0.5 * radius)[10:-10], radius, rtol=0.02)
+    np.testing.assert_allclose(
+        bead_speed.radii(circle[:100], False, 0.5 * radius)[10:-10], radius, rtol=0.02
+    )
 
 
 def test_radius_of_a_straight_way_with_a_corner():
-    way = np.array([[x, 0.0] for x in np.linspace(-50, 0, 51)] + [[0.0, y] for y in np.linspace(1, 50, 50)])
+    way = np.array(
+        [[x, 0.0] for x in np.linspace(-50, 0, 51)] + [[0.0, y] for y in np.linspace(1, 50, 50)]
+    )
     radius = bead_speed.radii(way, False, 8.0)
     assert np.isinf(radius[:40]).all() and np.isinf(radius[62:]).all()
     assert radius[50] == pytest.approx(8.0 / (math.pi / 2.0), rel=0.02)
@@ -191,7 +255,9 @@ def test_speeds_a_machine_can_follow():
         held = np.isclose(got, asked)
         for k in np.flatnonzero(~held):
             sides = [j for j in (k - 1, k + 1) if 0 <= j < len(got)]
-            by_neighbour = [np.isclose(got[k] ** 2 - got[j] ** 2, 40.0 * step[min(j, k)]) for j in sides]
+            by_neighbour = [
+                np.isclose(got[k] ** 2 - got[j] ** 2, 40.0 * step[min(j, k)]) for j in sides
+            ]
             assert any(by_neighbour) or k in (0, len(got) - 1)
         if closed:
             assert got[0] == pytest.approx(got[-1])

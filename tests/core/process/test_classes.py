@@ -13,7 +13,13 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.process.classes import leaning, of_filled, of_wall
 
-KEYS = {"travel_speed": (0.1, 50.0), "lead": (-1.5, 1.5), "tilt": (-1.5, 1.5), "lead_on": (0.0, 9.0), "lead_off": (0.0, 9.0)}
+KEYS = {
+    "travel_speed": (0.1, 50.0),
+    "lead": (-1.5, 1.5),
+    "tilt": (-1.5, 1.5),
+    "lead_on": (0.0, 9.0),
+    "lead_off": (0.0, 9.0),
+}
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -26,18 +32,30 @@ def test_texts_read_back(seed):
     found = classes(text_of(given))
     assert set(found) == {name for name, one in given.items() if one.own_values()}
     for name, one in found.items():
-        assert set(one.own_values()) == set(given[name].own_values()) and one.schedule == given[name].schedule
+        assert (
+            set(one.own_values()) == set(given[name].own_values())
+            and one.schedule == given[name].schedule
+        )
         for key, value in one.own_values().items():
             assert math.isclose(value, given[name].own_values()[key], rel_tol=1e-11, abs_tol=1e-11)
 
 
-@pytest.mark.parametrize(("text", "words"), [
-    ("contour", "is not a class of beads"), ("contour: travel_speed 0", "more than 0"),
-    ("outer: lead 5", "'outer' is not known"),
-    ("contour: lead 5; contour: tilt 5", "contour is there twice"), ("fill: speed 5", "no 'speed'"),
-    ("fill: lead", "has no number"), ("fill: schedule 2.5", "whole number"), ("fill: schedule 0", "at least 1"),
-    ("wall: lead 91", "at most 90 deg"), ("wall: lead_on -1", "at least 0"), ("wall: travel_speed nan", "is not a number"),
-])
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("contour", "is not a class of beads"),
+        ("contour: travel_speed 0", "more than 0"),
+        ("outer: lead 5", "'outer' is not known"),
+        ("contour: lead 5; contour: tilt 5", "contour is there twice"),
+        ("fill: speed 5", "no 'speed'"),
+        ("fill: lead", "has no number"),
+        ("fill: schedule 2.5", "whole number"),
+        ("fill: schedule 0", "at least 1"),
+        ("wall: lead 91", "at most 90 deg"),
+        ("wall: lead_on -1", "at least 0"),
+        ("wall: travel_speed nan", "is not a number"),
+    ],
+)
 def test_what_is_wrong_is_named(text, words):
     with pytest.raises(InputError) as error:
         ProcessParameters(classes=text)
@@ -46,7 +64,9 @@ def test_what_is_wrong_is_named(text, words):
 
 
 def test_a_class_changes_what_it_names_alone():
-    process = ProcessParameters(travel_speed=6.0, schedule=2, lead_on=0.5, classes="fill: travel_speed 9, lead 10")
+    process = ProcessParameters(
+        travel_speed=6.0, schedule=2, lead_on=0.5, classes="fill: travel_speed 9, lead 10"
+    )
     fill, wall = process.for_class("fill"), process.for_class("wall")
     assert (fill.travel_speed, fill.schedule, fill.lead_on) == (9.0, 2, 0.5) and wall is process
     build = BuildDirectionParameters(lead=0.2, tilt=0.1)
@@ -58,5 +78,7 @@ def test_a_class_changes_what_it_names_alone():
 def test_which_class_a_bead_is_of():
     kinds = ("contour", "connected", "line", "zigzag", "spiral", "centre", "closing")
     assert [of_filled(kind, 3) for kind in kinds] == ["contour"] * 2 + ["fill"] * 4 + ["closing"]
-    assert {of_filled(kind, 0) for kind in kinds} == {of_wall(0), of_wall(0, True)} == {"first_layer"}
+    assert (
+        {of_filled(kind, 0) for kind in kinds} == {of_wall(0), of_wall(0, True)} == {"first_layer"}
+    )
     assert (of_wall(2), of_wall(2, True)) == ("wall", "closing")

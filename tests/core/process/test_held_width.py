@@ -34,7 +34,9 @@ def test_a_ring_on_a_cone_bends_to_its_side_as_the_cone_laid_flat_does(lean):
     of the cone of the wall's normals, radius / cos(lean)."""
     points, build = ring(40.0, lean)
     # within a window of 8 mm the heading goes up in steps of 0.35 mm: (0.35 / 8)^2 / 12
-    np.testing.assert_allclose(bead_speed.side_radii(points, build, True, 8.0), 40.0 / math.cos(lean), rtol=2e-4)
+    np.testing.assert_allclose(
+        bead_speed.side_radii(points, build, True, 8.0), 40.0 / math.cos(lean), rtol=2e-4
+    )
 
 
 def test_a_ring_on_a_plane_disc_laid_edgewise_does_not_bend_to_its_side():
@@ -71,7 +73,10 @@ def test_rings_are_as_wide_as_asked_for_at_the_speed_of_the_model():
 
 
 def test_where_a_bead_bends_its_speed_changes_no_faster_than_asked_for():
-    straight, bent = np.linspace([-80.0, -32.0], [0.0, -32.0], 161), np.linspace(-math.pi / 2.0, math.pi / 2.0, 200)[1:]
+    straight, bent = (
+        np.linspace([-80.0, -32.0], [0.0, -32.0], 161),
+        np.linspace(-math.pi / 2.0, math.pi / 2.0, 200)[1:],
+    )
     flat = np.vstack([straight, 32.0 * np.stack([np.cos(bent), np.sin(bent)], axis=1)])
     points = np.c_[flat, np.zeros(len(flat))]
     process = ProcessParameters(bead_model="csw", bead_width=9.5, acceleration=5.0)
@@ -91,13 +96,23 @@ def test_wire_in_proportion_keeps_the_section_of_every_ring():
     sections = np.concatenate([bead.width * bead.height for bead in beads])
     np.testing.assert_allclose(sections, sections[0], rtol=1e-9)
     straight = (M / (9.5 - T)) ** 3 / 60.0
-    assert all(bead.wire_share == pytest.approx(6500.0 / 60.0 / straight, rel=2e-4) for bead in beads)
+    assert all(
+        bead.wire_share == pytest.approx(6500.0 / 60.0 / straight, rel=2e-4) for bead in beads
+    )
 
 
 def li_2025():
     """Wire feed m/min, travel speed mm/min, width and height mm: Li 2025, table 5, at 2 kW, 10 % and 1."""
-    rows = [(7, 600, 8.49, 2.69), (8, 700, 7.14, 2.54), (7, 600, 7.85, 2.60), (7, 600, 8.36, 2.52), (6, 700, 7.25, 2.54),
-            (6, 500, 7.79, 2.56), (8, 500, 10.17, 3.02), (7, 600, 8.49, 2.59)]
+    rows = [
+        (7, 600, 8.49, 2.69),
+        (8, 700, 7.14, 2.54),
+        (7, 600, 7.85, 2.60),
+        (7, 600, 8.36, 2.52),
+        (6, 700, 7.25, 2.54),
+        (6, 500, 7.79, 2.56),
+        (8, 500, 10.17, 3.02),
+        (7, 600, 8.49, 2.59),
+    ]
     return np.array(rows, float).T
 
 
@@ -107,7 +122,9 @@ def test_straight_beads_at_several_wire_feeds_count_by_their_wire():
     model = bead_table.load("li-2025")
     share = np.cbrt(feed / feed.mean() / speed)
     for measured, ours in ((width, model.width), (height, model.height)):
-        slope = ((share - share.mean()) * (measured - measured.mean())).sum() / ((share - share.mean()) ** 2).sum()
+        slope = ((share - share.mean()) * (measured - measured.mean())).sum() / (
+            (share - share.mean()) ** 2
+        ).sum()
         assert ours.m == pytest.approx(slope, rel=1e-9) and ours.p == 0.0
         assert ours.t == pytest.approx(measured.mean() - slope * share.mean(), rel=1e-9)
         off = measured - (slope * share + ours.t)
@@ -115,13 +132,17 @@ def test_straight_beads_at_several_wire_feeds_count_by_their_wire():
     for f, v in ((6, 650.0), (7.5, 600.0), (8, 700.0)):
         there = model.at_feed(f * 1000.0 / 60.0)
         wanted = model.width.m * np.cbrt(f / feed.mean() / v) + model.width.t
-        assert float(there.widths(np.array([v / 60.0]), np.array([np.inf]))[0]) == pytest.approx(wanted, rel=1e-12)
+        assert float(there.widths(np.array([v / 60.0]), np.array([np.inf]))[0]) == pytest.approx(
+            wanted, rel=1e-12
+        )
         assert there.wire_feed == pytest.approx(f * 1000.0 / 60.0)
     # no more wire to a millimetre than was measured, and no speed outside of the table
     low, high = (60.0 * end for end in model.at_feed(8000.0 / 60.0).speeds)
     assert (low, high) == pytest.approx((500.0, 700.0))
     assert 60.0 * model.at_feed(6000.0 / 60.0).speeds[0] == pytest.approx(500.0)
-    assert model.at_feed(9000.0 / 60.0) is model and bead_table.load("csw").at_feed(1.0) == bead_table.load("csw")
+    assert model.at_feed(9000.0 / 60.0) is model and bead_table.load("csw").at_feed(
+        1.0
+    ) == bead_table.load("csw")
 
 
 def test_the_process_says_at_which_feed_the_model_is_asked():

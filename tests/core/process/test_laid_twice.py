@@ -45,7 +45,9 @@ def test_beads_that_cross_share_a_rhombus(angle):
 
 def test_rings_bends_and_turns_share_nothing_with_themselves():
     corner = bead([[0, 0, 0], [60, 0, 0], [60, 60, 0]])
-    assert area(bead(circle(30.0), True)) == area(bead(circle(5.0, 60), True)) == area(corner) == 0.0
+    assert (
+        area(bead(circle(30.0), True)) == area(bead(circle(5.0, 60), True)) == area(corner) == 0.0
+    )
     spiral = circle(30.0, 1200, 3.0)
     spiral[:, 2] = np.linspace(0.0, 3.0 * HEIGHT, len(spiral))
     assert area(bead(spiral)) == 0.0
@@ -55,5 +57,9 @@ def test_a_bead_that_comes_back_beside_itself_shares_that():
     there_and_back = bead([[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 5, 0], [50, 5, 0]])
     # 30 mm beside the first 5 mm apart, less what lies in bends
     assert area(there_and_back) == pytest.approx(30.0 * (WIDTH - 5.0), rel=0.15)
-    assert area(bead(circle(30.0, 800, 2.0))) == pytest.approx(WIDTH * 2.0 * math.pi * 30.0, rel=0.002)  # round twice
-    assert area(bead(circle(30.0, 8000, 2.0))) == pytest.approx(WIDTH * 2.0 * math.pi * 30.0, rel=0.002)  # dense points
+    assert area(bead(circle(30.0, 800, 2.0))) == pytest.approx(
+        WIDTH * 2.0 * math.pi * 30.0, rel=0.002
+    )  # round twice
+    assert area(bead(circle(30.0, 8000, 2.0))) == pytest.approx(
+        WIDTH * 2.0 * math.pi * 30.0, rel=0.002
+    )  # dense points

@@ -25,8 +25,15 @@ def bead(points, build=(0.0, 0.0, 1.0), closed=False, **more):
         points[-1] = points[0]
     up = np.broadcast_to(np.asarray(build, float), points.shape)
     speed = more.pop("speed", np.full(len(points), SPEED))
-    return Bead(points=points, build=up, tool=up, parameter=np.linspace(0.0, 2.0 * math.pi, len(points)), speed=speed,
-                closed=closed, **more)
+    return Bead(
+        points=points,
+        build=up,
+        tool=up,
+        parameter=np.linspace(0.0, 2.0 * math.pi, len(points)),
+        speed=speed,
+        closed=closed,
+        **more,
+    )
 
 
 def straight(start, end, count=40, **more):
@@ -36,23 +43,38 @@ def straight(start, end, count=40, **more):
 
 def ring(radius, height, count=241, **more):
     angle = np.linspace(0.0, 2.0 * math.pi, count)
-    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.full(count, height)], axis=1)
+    points = np.stack(
+        [radius * np.cos(angle), radius * np.sin(angle), np.full(count, height)], axis=1
+    )
     return bead(points, closed=True, **more)
 
 
 def toolpath(layers, height=HIGH, width=WIDE, **more):
-    return Toolpath(tuple(Layer(tuple(beads)) for beads in layers), np.eye(4), height, 0.01, bead_width=width, **more)
+    return Toolpath(
+        tuple(Layer(tuple(beads)) for beads in layers),
+        np.eye(4),
+        height,
+        0.01,
+        bead_width=width,
+        **more,
+    )
 
 
 def deposit(path, process=PROCESS, edge=None):
-    return predicted_deposit(parts_of(path, [process] * len(path.parts)), lambda share, text: None, edge)
+    return predicted_deposit(
+        parts_of(path, [process] * len(path.parts)), lambda share, text: None, edge
+    )
 
 
 def box(low, high):
     """Triangles of a box, outwards."""
-    corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)], float)
+    corners = np.array(
+        [[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)], float
+    )
     squares = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
-    return corners, np.array([(a, b, c) for a, b, c, _ in squares] + [(a, c, d) for a, _, c, d in squares])
+    return corners, np.array(
+        [(a, b, c) for a, b, c, _ in squares] + [(a, c, d) for a, _, c, d in squares]
+    )
 
 
 def tube(inner, outer, height, sides=720):
@@ -60,9 +82,16 @@ def tube(inner, outer, height, sides=720):
     angle = np.linspace(0.0, 2.0 * math.pi, sides, endpoint=False)
     circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=1)
     up = np.array([0.0, 0.0, height])
-    points = np.concatenate([outer * circle, outer * circle + up, inner * circle, inner * circle + up])
+    points = np.concatenate(
+        [outer * circle, outer * circle + up, inner * circle, inner * circle + up]
+    )
     k, following = np.arange(sides), np.roll(np.arange(sides), -1)
-    first = np.concatenate([np.stack([k, following, sides + following], 1), np.stack([k, sides + following, sides + k], 1)])
+    first = np.concatenate(
+        [
+            np.stack([k, following, sides + following], 1),
+            np.stack([k, sides + following, sides + k], 1),
+        ]
+    )
     return points, np.concatenate([first, first[:, ::-1] + 2 * sides])
 
 
@@ -82,8 +111,13 @@ def mixed_layers(rng):
         yield [
             straight(at, at + [50.0, 9.0, 0.0], build=lean, speed=speed),
             straight(at + [0, 9, 0], at + [50, 0, 0], build=lean),
-            bead(ring(14.0, 0.0).points + at + [25.0, 5.0, 0.0], build=lean, closed=True, width=rng.uniform(4.0, 8.0, 241),
-                 height=np.full(241, HIGH)),
+            bead(
+                ring(14.0, 0.0).points + at + [25.0, 5.0, 0.0],
+                build=lean,
+                closed=True,
+                width=rng.uniform(4.0, 8.0, 241),
+                height=np.full(241, HIGH),
+            ),
             straight(at, at + [50.0, 9.0, 0.0], build=lean, speed=speed),
         ]
 
@@ -99,11 +133,23 @@ def test_it_holds_what_is_fed(feed):
         for one in layer.beads:
             for k in range(1, len(one)):
                 step = math.dist(one.points[k - 1], one.points[k])
-                counted = WIDE * HIGH if one.width is None else 0.5 * HIGH * (one.width[k - 1] + one.width[k])
+                counted = (
+                    WIDE * HIGH
+                    if one.width is None
+                    else 0.5 * HIGH * (one.width[k - 1] + one.width[k])
+                )
                 fed += step / one.speed[k] * math.pi * 0.8**2 * feed if feed else step * counted
     edge = found.grid.edge
-    axes = [np.arange(-20.0, 75.0, edge), np.arange(-30.0, 45.0, edge), np.arange(-12.0, 60.0, edge)]
-    lattice = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) + [0.31 * edge, 0.17 * edge, 0.73 * edge]
+    axes = [
+        np.arange(-20.0, 75.0, edge),
+        np.arange(-30.0, 45.0, edge),
+        np.arange(-12.0, 60.0, edge),
+    ]
+    lattice = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) + [
+        0.31 * edge,
+        0.17 * edge,
+        0.73 * edge,
+    ]
     assert abs(edge**3 * found.grid.at(lattice).sum() / fed - 1.0) < 1e-9
     assert abs(found.fed / fed - 1.0) < 1e-9 and abs(found.deposited / fed - 1.0) < 1e-9
     assert found.grid.filled.min() >= 0.0 and found.grid.filled.max() <= 1.0 + 1e-12
@@ -112,7 +158,10 @@ def test_it_holds_what_is_fed(feed):
 @pytest.mark.parametrize("turn", [0.0, 0.5])
 def test_one_bead_alone_is_a_parabola(turn):
     """As wide as it counts, half as high again as its mean; round ends take of it no farther than their own width."""
-    way, side = np.array([math.cos(turn), math.sin(turn), 0.0]), np.array([-math.sin(turn), math.cos(turn), 0.0])
+    way, side = (
+        np.array([math.cos(turn), math.sin(turn), 0.0]),
+        np.array([-math.sin(turn), math.cos(turn), 0.0]),
+    )
     found = deposit(toolpath([[straight(-60.0 * way, 60.0 * way)]]), edge=0.5)
     for aside in (0.0, 0.5, 1.0, 1.5, 2.0):
         up = first_air(found.grid, aside * side, (0, 0, 1), 6.0)
@@ -122,17 +171,32 @@ def test_one_bead_alone_is_a_parabola(turn):
 @pytest.mark.parametrize("turn", [0.0, 0.5])
 def test_a_wall_has_straight_sides_and_a_round_top(turn):
     """Sides half of a width from the middle, every layer one layer height higher, the parabola on top of all."""
-    way, side = np.array([math.cos(turn), math.sin(turn), 0.0]), np.array([-math.sin(turn), math.cos(turn), 0.0])
-    layers = [[straight((0, 0, k * HIGH) - 80.0 * way, (0, 0, k * HIGH) + 80.0 * way)] for k in range(6)]
+    way, side = (
+        np.array([math.cos(turn), math.sin(turn), 0.0]),
+        np.array([-math.sin(turn), math.cos(turn), 0.0]),
+    )
+    layers = [
+        [straight((0, 0, k * HIGH) - 80.0 * way, (0, 0, k * HIGH) + 80.0 * way)] for k in range(6)
+    ]
     found = deposit(toolpath(layers), edge=0.5)
     for height in (2.0, 5.0, 8.0, 9.0):
         for sense in (1.0, -1.0):
-            assert abs(first_air(found.grid, (0, 0, height), sense * side, 6.0) - 0.5 * WIDE) < KNOWN * 0.5
+            assert (
+                abs(first_air(found.grid, (0, 0, height), sense * side, 6.0) - 0.5 * WIDE)
+                < KNOWN * 0.5
+            )
     for aside in (0.0, 1.0, 2.0):
-        tops = [5.0 + first_air(found.grid, np.array([0, 0, 5.0]) + along * way + aside * side, (0, 0, 1), 15.0)
-                for along in np.linspace(-9.0, 9.0, 19)]
+        tops = [
+            5.0
+            + first_air(
+                found.grid, np.array([0, 0, 5.0]) + along * way + aside * side, (0, 0, 1), 15.0
+            )
+            for along in np.linspace(-9.0, 9.0, 19)
+        ]
         formula = 6 * HIGH + 0.5 * HIGH - 1.5 * HIGH * (2.0 * aside / WIDE) ** 2
-        assert abs(np.mean(tops) - formula) < 0.1 * HIGH and (aside > 1.0 or np.ptp(tops) < 0.25 * HIGH)
+        assert abs(np.mean(tops) - formula) < 0.1 * HIGH and (
+            aside > 1.0 or np.ptp(tops) < 0.25 * HIGH
+        )
 
 
 def test_a_tube_is_known_from_both_faces():
@@ -151,6 +215,7 @@ def test_a_tube_is_known_from_both_faces():
 
 def test_layers_on_a_cylinder_grow_by_what_is_fed():
     """Rings side by side along a roller, built outwards: the radius is that of the volume of all rings."""
+
     def layer(k):
         rings = []
         for x in np.arange(2.0, 40.0, 4.0):
@@ -162,9 +227,14 @@ def test_layers_on_a_cylinder_grow_by_what_is_fed():
 
     found = deposit(toolpath([layer(k) for k in range(3)], width=4.0), edge=0.75)
     squared = 40.0**2 + 2.0 * HIGH * sum(40.0 + HIGH * k for k in range(3))
-    ways = [(0.0, math.cos(angle), math.sin(angle)) for angle in np.linspace(0.0, 2.0 * math.pi, 60)]
+    ways = [
+        (0.0, math.cos(angle), math.sin(angle)) for angle in np.linspace(0.0, 2.0 * math.pi, 60)
+    ]
     for x in (14.0, 16.0, 19.0, 22.0, 26.0):
-        outer = [40.5 + first_air(found.grid, np.array([x, 0, 0]) + 40.5 * np.array(way), way, 9.0) for way in ways]
+        outer = [
+            40.5 + first_air(found.grid, np.array([x, 0, 0]) + 40.5 * np.array(way), way, 9.0)
+            for way in ways
+        ]
         assert np.abs(np.array(outer) - math.sqrt(squared)).max() < KNOWN * 0.75
         assert abs(np.mean(outer) - math.sqrt(squared)) < 0.1 * KNOWN * 0.75
 
@@ -178,10 +248,15 @@ def test_the_area_is_kept_where_beads_overlap(pitch, valley):
     real = {"width": np.full(40, WIDE), "height": np.full(40, HIGH)}
     beads = [straight((-60.0, y, 0.0), (60.0, y, 0.0), **real) for y in across * np.arange(-6, 7)]
     found = deposit(toolpath([beads]), edge=0.5)
-    tops = np.array([
-        [first_air(found.grid, (x, y, 0.01), (0, 0, 1), 6.0) for y in np.linspace(-across, across, 21)[:-1]]
-        for x in np.linspace(-15.0, 15.0, 21)
-    ])
+    tops = np.array(
+        [
+            [
+                first_air(found.grid, (x, y, 0.01), (0, 0, 1), 6.0)
+                for y in np.linspace(-across, across, 21)[:-1]
+            ]
+            for x in np.linspace(-15.0, 15.0, 21)
+        ]
+    )
     assert abs(tops.mean() - WIDE * HIGH / across) < 0.03 * HIGH * WIDE / across
     profile = tops.mean(axis=0)
     assert np.ptp(profile) > 0.3 if valley else np.ptp(profile) < 0.1 * KNOWN * 0.5
@@ -200,7 +275,11 @@ def test_what_the_wire_feeds_makes_the_height(share):
     assert abs(np.polyfit(np.arange(9), found.drift, 1)[0] - (share - 1.0) * HIGH) < 0.02 * HIGH
     first = np.arange(9) == 0
     shape = compare.figures(found, compare.compared(found, faces(*tube(38.0, 42.0, 14.0))), 0.0)
-    drift = next(one for one in compare.issues(shape, path.layer_heights, first, "{}") if one.code == compare.DRIFT)
+    drift = next(
+        one
+        for one in compare.issues(shape, path.layer_heights, first, "{}")
+        if one.code == compare.DRIFT
+    )
     assert drift.layer == 8 and ("below" in drift.message) == (share < 1.0)
     told = float(drift.message.split("set strategy.layer_height to ")[1].split(" mm")[0])
     assert abs(told - share * HIGH) < 0.03 * HIGH
@@ -214,10 +293,19 @@ def test_layers_sink_by_what_their_ends_and_overhangs_take():
     assert abs(np.polyfit(np.arange(count), round_about.drift, 1)[0]) < 0.01 * HIGH
 
     def slab(aside):
-        return deposit(toolpath([
-            [straight((0.0, y + aside * k, k * HIGH), (long, y + aside * k, k * HIGH)) for y in wide * np.arange(4)]
-            for k in range(count)
-        ], width=wide), edge=0.5)
+        return deposit(
+            toolpath(
+                [
+                    [
+                        straight((0.0, y + aside * k, k * HIGH), (long, y + aside * k, k * HIGH))
+                        for y in wide * np.arange(4)
+                    ]
+                    for k in range(count)
+                ],
+                width=wide,
+            ),
+            edge=0.5,
+        )
 
     upright = slab(0.0)
     x, _, _ = upright.grid.centres(np.arange(len(upright.grid.filled))).T
@@ -234,33 +322,55 @@ def test_where_the_part_sticks_out_is_told():
     """A block filled to its border but with a boss on one side that no bead lies in: the boss is named, how far it stands
     out of the deposit, and what to do."""
     layers = [
-        [straight((2.5, y, k * HIGH), (57.5, y, k * HIGH)) for y in np.arange(2.5, 40.0, 5.0)] for k in range(8)
+        [straight((2.5, y, k * HIGH), (57.5, y, k * HIGH)) for y in np.arange(2.5, 40.0, 5.0)]
+        for k in range(8)
     ]
     found = deposit(toolpath(layers, width=5.0, family="solid"))
-    inner, boss = box((12.0, 4.0, 0.0), (48.0, 36.0, 13.0)), box((26.0, 36.0, 4.0), (34.0, 46.0, 10.0))
+    inner, boss = (
+        box((12.0, 4.0, 0.0), (48.0, 36.0, 13.0)),
+        box((26.0, 36.0, 4.0), (34.0, 46.0, 10.0)),
+    )
     told = compare.compared(found, faces(*inner))
     assert told.faces.normals[:, 2].min() > -0.5  # what it stands on is not machined
     shape = compare.figures(found, told, 0.5)
-    assert shape.least > 0.5 and not compare.issues(shape, np.full(8, HIGH), np.arange(8) == 0, "{}")
-    both = compare.compared(found, faces(np.vstack([inner[0], boss[0]]), np.vstack([inner[1], boss[1] + 8])))
+    assert shape.least > 0.5 and not compare.issues(
+        shape, np.full(8, HIGH), np.arange(8) == 0, "{}"
+    )
+    both = compare.compared(
+        found, faces(np.vstack([inner[0], boss[0]]), np.vstack([inner[1], boss[1] + 8]))
+    )
     shape = compare.figures(found, both, 0.5)
     # its outer end is at y = 46, and the outermost bead reaches to y = 40
     end = both.faces.normals[:, 1] > 0.9
     end &= both.faces.points[:, 1] > 45.0
     assert np.abs(both.deviation[end] + 6.0).max() < 2.0 * KNOWN
     issue = compare.issues(shape, np.full(8, HIGH), np.arange(8) == 0, "Add {} mm")[-1]
-    assert issue.code == compare.CODE and 1 <= issue.layer <= 5 and "the part sticks out by 6" in issue.message
+    assert (
+        issue.code == compare.CODE
+        and 1 <= issue.layer <= 5
+        and "the part sticks out by 6" in issue.message
+    )
     assert shape.worst[1] > 36.0 and 25.9 < shape.worst[0] < 34.1
     area = both.faces.areas
-    assert abs(shape.outside - area[both.deviation < -compare.KNOWN * found.grid.edge].sum() / area.sum()) < 1e-12
+    assert (
+        abs(
+            shape.outside
+            - area[both.deviation < -compare.KNOWN * found.grid.edge].sum() / area.sum()
+        )
+        < 1e-12
+    )
 
 
 def test_of_an_open_face_the_side_with_less_counts():
     """A sheet 1 mm beside the middle of a wall of 6 mm has 2 mm on its one side and 4 on the other."""
-    found = deposit(toolpath([[straight((-60, 0, k * HIGH), (60, 0, k * HIGH))] for k in range(8)]), edge=0.75)
+    found = deposit(
+        toolpath([[straight((-60, 0, k * HIGH), (60, 0, k * HIGH))] for k in range(8)]), edge=0.75
+    )
     sheet = np.array([(-40, 1, 2), (40, 1, 2), (40, 1, 11), (-40, 1, 11)], float)
     for turned in (1, -1):
-        told = compare.compared(found, faces(sheet, np.array([(0, 1, 2), (0, 2, 3)])[:, ::turned], BOTH))
+        told = compare.compared(
+            found, faces(sheet, np.array([(0, 1, 2), (0, 2, 3)])[:, ::turned], BOTH)
+        )
         assert np.abs(told.deviation - 2.0).max() < KNOWN * 0.75
         assert np.allclose(told.surface[:, 1], 3.0, atol=KNOWN * 0.75)
 

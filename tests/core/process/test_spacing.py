@@ -32,7 +32,10 @@ def test_layers_of_a_sphere_are_as_far_apart_as_the_sphere_says(chord_error):
     radius, step = 45.0, 1.0
     angles = np.arange(70) * step / radius
     rng = np.random.default_rng(5)
-    beads = [circle(radius * np.cos(a), radius * np.sin(a), chord_error, rng.uniform(0, 6)) for a in angles]
+    beads = [
+        circle(radius * np.cos(a), radius * np.sin(a), chord_error, rng.uniform(0, 6))
+        for a in angles
+    ]
     found = spacing.between_layers(path(*beads))
     exact = 2 * radius * np.sin(step / radius / 2)
     assert len(found) == 69
@@ -51,7 +54,9 @@ def test_open_beads_of_uneven_steps():
     below, above = arc(30.0), arc(31.0)
     found = spacing.between_layers(path(below, above))[0]
     largest = np.diff(np.arctan2(below.points[:, 1], below.points[:, 0])).max()
-    assert np.abs(found - 1.0).max() < 30.0 * largest**4  # fourth order in the step, where chords have the second
+    assert (
+        np.abs(found - 1.0).max() < 30.0 * largest**4
+    )  # fourth order in the step, where chords have the second
 
 
 def test_beyond_the_ends_of_an_open_bead():
@@ -63,7 +68,9 @@ def test_beyond_the_ends_of_an_open_bead():
 
 def test_corners_are_kept():
     square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [0, 0, 0]], dtype=float)
-    points = np.array([[13.0, 14.0, 0.0], [5.0, -2.0, 0.0], [5.0, 4.0, 0.0], [-3.0, -4.0, 0.0], [10.0, 10.0, 7.0]])
+    points = np.array(
+        [[13.0, 14.0, 0.0], [5.0, -2.0, 0.0], [5.0, 4.0, 0.0], [-3.0, -4.0, 0.0], [10.0, 10.0, 7.0]]
+    )
     found = spacing.distance(points, spacing.curve_of(Layer((bead(square, True),))))
     np.testing.assert_allclose(found, [5.0, 2.0, 4.0, 5.0, 7.0], atol=1e-12)
 
@@ -96,8 +103,12 @@ def test_nearest_of_all_segments_whatever_their_lengths():
         points = rng.normal(size=(300, 3)) * 15.0 + corners[rng.integers(0, len(corners), 300)]
         found = spacing.distance(points, spacing.curve_of(Layer((bead(corners, False),))))
         start, along = corners[:-1], np.diff(corners, axis=0)
-        share = np.clip(((points[:, None] - start) * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
-        brute = np.linalg.norm(points[:, None] - start - share[..., None] * along, axis=-1).min(axis=1)
+        share = np.clip(
+            ((points[:, None] - start) * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0
+        )
+        brute = np.linalg.norm(points[:, None] - start - share[..., None] * along, axis=-1).min(
+            axis=1
+        )
         np.testing.assert_allclose(found, brute, atol=1e-9)
 
 
@@ -105,11 +116,16 @@ def test_nearest_of_many_segments_whatever_their_lengths():
     """The same of so many that not all pairs are tried: short segments in crowds, long ones among them that are nearest
     although their middles are far away."""
     rng = np.random.default_rng(12)
-    steps = rng.normal(size=(900, 3)) * rng.choice([0.05, 0.3, 25.0], size=(900, 1), p=[0.6, 0.35, 0.05])
+    steps = rng.normal(size=(900, 3)) * rng.choice(
+        [0.05, 0.3, 25.0], size=(900, 1), p=[0.6, 0.35, 0.05]
+    )
     for before, step in zip(steps, steps[1:], strict=False):
         step *= -1.0 if before @ step > 0.0 else 1.0
     corners = np.cumsum(steps, axis=0)
-    points = rng.normal(size=(600, 3)) * rng.choice([0.2, 15.0], size=(600, 1)) + corners[rng.integers(0, 900, 600)]
+    points = (
+        rng.normal(size=(600, 3)) * rng.choice([0.2, 15.0], size=(600, 1))
+        + corners[rng.integers(0, 900, 600)]
+    )
     found = spacing.distance(points, spacing.curve_of(Layer((bead(corners, False),))))
     start, along = corners[:-1], np.diff(corners, axis=0)
     share = np.clip(((points[:, None] - start) * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
@@ -130,10 +146,14 @@ def test_two_beads_in_a_layer_and_one_layer_alone():
 def test_turns_of_a_spiral_are_one_pitch_apart(way):
     radius, pitch, turns = 20.0, 1.5, 6.3
     angle = np.linspace(0.0, 2 * np.pi * turns, 2000)
-    points = np.c_[radius * np.cos(angle), way * radius * np.sin(angle), pitch * angle / (2 * np.pi)]
+    points = np.c_[
+        radius * np.cos(angle), way * radius * np.sin(angle), pitch * angle / (2 * np.pi)
+    ]
     up = np.tile([0.0, 0.0, 1.0], (2000, 1))
     spiral = Bead(points, up, up, way * angle, np.ones(2000), False)
-    found = np.concatenate(spacing.between_layers(Toolpath((Layer((spiral,)),), np.eye(4), 1.5, 0.01)))
+    found = np.concatenate(
+        spacing.between_layers(Toolpath((Layer((spiral,)),), np.eye(4), 1.5, 0.01))
+    )
     assert len(found) == np.count_nonzero(angle >= 2 * np.pi)
     # the nearest point of the helix turn below, by minimising over its angle on a fine grid
     back = np.linspace(-0.1, 0.1, 200_001)
@@ -144,9 +164,13 @@ def test_turns_of_a_spiral_are_one_pitch_apart(way):
 
 def test_local_distances_come_bead_by_bead():
     rng = np.random.default_rng(3)
-    one = bead(np.c_[np.linspace(0, 40, 81), 0.2 * np.sin(np.linspace(0, 6, 81)), np.zeros(81)], False)
+    one = bead(
+        np.c_[np.linspace(0, 40, 81), 0.2 * np.sin(np.linspace(0, 6, 81)), np.zeros(81)], False
+    )
     heights = (rng.uniform(0.8, 1.2), rng.uniform(0.8, 1.2))
-    pieces = [bead(one.points[a:b] + [0, 0, h], False) for (a, b), h in zip(((0, 30), (40, 81)), heights)]
+    pieces = [
+        bead(one.points[a:b] + [0, 0, h], False) for (a, b), h in zip(((0, 30), (40, 81)), heights)
+    ]
     toolpath = Toolpath((Layer((one,)), Layer(tuple(pieces))), np.eye(4), 1.0, 0.01)
     first, *above = spacing.local_distances(toolpath)
     assert np.isnan(first).all() and len(first) == 81
@@ -164,7 +188,9 @@ def test_local_distances_of_a_spiral_are_to_the_turn_before(turns):
     spiral = Bead(points, up, up, angle, np.ones(len(points)), False)
     (found,) = spacing.local_distances(Toolpath((Layer((spiral,)),), np.eye(4), 1.0, 0.01))
     np.testing.assert_array_equal(np.isnan(found), angle < 2 * np.pi)
-    slope = 1.0 / (2 * np.pi * 20)  # nearest point of a helix one turn below, nearly at right angles to it
+    slope = 1.0 / (
+        2 * np.pi * 20
+    )  # nearest point of a helix one turn below, nearly at right angles to it
     np.testing.assert_allclose(found[angle >= 2 * np.pi], 1.0 / np.hypot(1.0, slope), atol=2e-6)
 
 
@@ -184,12 +210,20 @@ def test_known_tangents_keep_corners_however_slight_and_ellipses_exact():
     arriving[24] = onward[0] * [1.0, -1.0, 1.0]
     plain = bead(points, False)
     known = Bead(
-        plain.points, plain.build, plain.tool, plain.parameter, plain.speed, False, tangents=np.stack([arriving, leaving], 1)
+        plain.points,
+        plain.build,
+        plain.tool,
+        plain.parameter,
+        plain.speed,
+        False,
+        tangents=np.stack([arriving, leaving], 1),
     )
     above = np.array([[0.0, 2.0, 0.0], [0.3, 2.0, 0.0], [0.0, -2.0, 0.0]])
     fine = np.linspace(0.0, 1.0, 2_000_001)
-    arch = np.c_[20.0 * np.sin(fine) * cos + 12.0 * (np.cos(fine) - 1.0) * sin,
-                 12.0 * (np.cos(fine) - 1.0) * cos - 20.0 * np.sin(fine) * sin]
+    arch = np.c_[
+        20.0 * np.sin(fine) * cos + 12.0 * (np.cos(fine) - 1.0) * sin,
+        12.0 * (np.cos(fine) - 1.0) * cos - 20.0 * np.sin(fine) * sin,
+    ]
     arch = np.concatenate([arch, arch * [-1.0, 1.0]])
     exact = [np.linalg.norm(arch - point[:2], axis=1).min() for point in above]
     found = spacing.distance(above, spacing.curve_of(Layer((known,))))
@@ -202,10 +236,12 @@ def test_known_tangents_keep_corners_however_slight_and_ellipses_exact():
 def test_between_a_long_and_a_short_segment_at_a_corner_the_curve_counts(copies):
     """A valley of two arcs that meet at a corner, one of long segments, the other of short: a point over the corner's
     bisector is as far from either, though the long chords run nearer to it."""
+
     def arc(count):
         angle = np.linspace(0.0, 0.4, count + 1)
-        return 10.0 * np.c_[np.sin(angle + 0.5) - np.sin(0.5), np.cos(0.5) - np.cos(angle + 0.5)], np.c_[
-            np.cos(angle + 0.5), np.sin(angle + 0.5)]
+        return 10.0 * np.c_[
+            np.sin(angle + 0.5) - np.sin(0.5), np.cos(0.5) - np.cos(angle + 0.5)
+        ], np.c_[np.cos(angle + 0.5), np.sin(angle + 0.5)]
 
     (right, onward), (left, back) = arc(120), arc(4)
     points = np.concatenate([(left * [-1, 1])[::-1], right[1:]])
@@ -214,8 +250,18 @@ def test_between_a_long_and_a_short_segment_at_a_corner_the_curve_counts(copies)
     arriving[4] = onward[0] * [1, -1]
     flat = np.c_[points, np.zeros(len(points))]
     plain = bead(flat, False)
-    tangents = np.stack([np.c_[arriving, 0 * points[:, 0]], np.c_[leaving, 0 * points[:, 0]]], axis=1)
-    low = Bead(plain.points, plain.build, plain.tool, plain.parameter, plain.speed, False, tangents=tangents)
+    tangents = np.stack(
+        [np.c_[arriving, 0 * points[:, 0]], np.c_[leaving, 0 * points[:, 0]]], axis=1
+    )
+    low = Bead(
+        plain.points,
+        plain.build,
+        plain.tool,
+        plain.parameter,
+        plain.speed,
+        False,
+        tangents=tangents,
+    )
     height = np.tile(np.linspace(0.8, 2.0, 30), copies)
     for side in (0.0, 1e-4, -1e-4):
         above = np.c_[np.full_like(height, side), height, 0 * height]

@@ -41,10 +41,16 @@ def test_a_feed_that_does_not_balance_is_told_with_the_one_that_would():
     assert made.wire_feed == 10.0
     (issue,) = made.issues
     assert (issue.level, issue.code) == ("warning", "FEED_BALANCE")
-    assert "11.31 mm3/s" in issue.message and "48 mm3/s" in issue.message and "to 42.44 mm/s" in issue.message
+    assert (
+        "11.31 mm3/s" in issue.message
+        and "48 mm3/s" in issue.message
+        and "to 42.44 mm/s" in issue.message
+    )
 
 
-@pytest.mark.parametrize("off, told", [(0.91, False), (1.09, False), (0.89, True), (1.11, True), (0.0, False)])
+@pytest.mark.parametrize(
+    "off, told", [(0.91, False), (1.09, False), (0.89, True), (1.11, True), (0.0, False)]
+)
 def test_a_tenth_is_tolerated_and_no_wire_is_no_fault(off, told):
     balanced = 48.0 / (math.pi * 0.6**2)
     assert bool(fed(PATH, process(off * balanced), None).issues) == told
@@ -52,7 +58,11 @@ def test_a_tenth_is_tolerated_and_no_wire_is_no_fault(off, told):
 
 def test_beads_of_a_model_are_fed_as_they_were_measured():
     model = bead_table.load("csw")
-    assert fed(PATH, process("auto"), model).wire_feed == model.wire_feed == pytest.approx(6500.0 / 60.0)
+    assert (
+        fed(PATH, process("auto"), model).wire_feed
+        == model.wire_feed
+        == pytest.approx(6500.0 / 60.0)
+    )
     assert fed(PATH, process(50.0), model).wire_feed == 50.0
 
 
@@ -70,7 +80,8 @@ SPEED_OF = {"contour": 9.0, "fill": 6.0}
 def path_of(phase=None, **more):
     """A bead of 100 mm of each class, at the speed of its class, with ends of 20 and 5 mm where asked for."""
     beads = [
-        replace(BEAD, bead_class=name, speed=np.full(2, SPEED_OF[name]), ends=phase or (), **more) for name in SPEED_OF
+        replace(BEAD, bead_class=name, speed=np.full(2, SPEED_OF[name]), ends=phase or (), **more)
+        for name in SPEED_OF
     ]
     return replace(PATH, layers=(Layer((beads[1],)), Layer(tuple(beads))))
 
@@ -82,34 +93,80 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     assert (issue.level, issue.code, issue.layer, issue.bead) == ("warning", "FEED_BALANCE", 1, 0)
     assert "feeds 48 mm3/s" in issue.message and "take contour 72 mm3/s" in issue.message
     promise = deposit.fed(made, of)
-    assert promise.ok is False and promise.worst == pytest.approx(100.0 / 3.0) and tuple(promise.place) == (1, 0, None)
+    assert (
+        promise.ok is False
+        and promise.worst == pytest.approx(100.0 / 3.0)
+        and tuple(promise.place) == (1, 0, None)
+    )
     own = replace(process("auto"), classes="contour: travel_speed 9, schedule 3")
     made = fed(path_of(), own, None)
     assert made.issues == ()
     promise = deposit.fed(made, own)  # what that schedule feeds nobody knows
-    assert promise.ok is None and promise.how.startswith("not checked") and promise.how.endswith("feed of contour")
+    assert (
+        promise.ok is None
+        and promise.how.startswith("not checked")
+        and promise.how.endswith("feed of contour")
+    )
     near = replace(process("auto"), classes="contour: travel_speed 6.5")
     bead = replace(BEAD, bead_class="contour", speed=np.full(2, 6.5))
     made = fed(replace(PATH, layers=(Layer((bead,)),)), near, None)
-    assert made.issues == () and deposit.fed(made, near).worst == pytest.approx(100.0 * (1.0 - 6.0 / 6.5))
+    assert made.issues == () and deposit.fed(made, near).worst == pytest.approx(
+        100.0 * (1.0 - 6.0 / 6.5)
+    )
 
 
 @pytest.mark.parametrize("planned", [False, True])
 def test_starts_and_ends_at_speeds_of_their_own_are_held_against_the_wire(planned):
-    of = replace(process("auto"), start=BeadStart(20.0, 3.0), end=BeadEnd(5.0, 12.0), classes="contour: travel_speed 9")
+    of = replace(
+        process("auto"),
+        start=BeadStart(20.0, 3.0),
+        end=BeadEnd(5.0, 12.0),
+        classes="contour: travel_speed 9",
+    )
     made = fed(path_of((20.0, 3.0, 5.0, 12.0)), of, None)
     (issue,) = made.issues
-    told = {"fill.start": 24.0, "contour.start": 24.0, "contour": 72.0, "contour.end": 96.0, "fill.end": 96.0}
-    assert all(f"{name} {rate:g}" in issue.message for name, rate in told.items()) and " fill 48" not in issue.message
+    told = {
+        "fill.start": 24.0,
+        "contour.start": 24.0,
+        "contour": 72.0,
+        "contour.end": 96.0,
+        "fill.end": 96.0,
+    }
+    assert (
+        all(f"{name} {rate:g}" in issue.message for name, rate in told.items())
+        and " fill 48" not in issue.message
+    )
     if planned:  # with the points of the phases, and their speeds
         at = np.array([0.0, 20.0, 95.0, 100.0])
         points, up = at[:, None] * [1.0, 0.0, 0.0], np.broadcast_to([0.0, 0.0, 1.0], (4, 3))
-        made = replace(made, layers=tuple(replace(layer, beads=tuple(
-            Bead(points, up, up, at, np.array([3.0, 3.0, bead.speed[0], 12.0]), False, bead_class=bead.bead_class,
-                 ends=bead.ends, phase=np.array([1.0, 1.0, 0.0, 2.0])) for bead in layer.beads)) for layer in made.layers))
+        made = replace(
+            made,
+            layers=tuple(
+                replace(
+                    layer,
+                    beads=tuple(
+                        Bead(
+                            points,
+                            up,
+                            up,
+                            at,
+                            np.array([3.0, 3.0, bead.speed[0], 12.0]),
+                            False,
+                            bead_class=bead.bead_class,
+                            ends=bead.ends,
+                            phase=np.array([1.0, 1.0, 0.0, 2.0]),
+                        )
+                        for bead in layer.beads
+                    ),
+                )
+                for layer in made.layers
+            ),
+        )
     rates = {one.name: one.rate for one in wire_taken.taken_of(made)}
     assert rates == pytest.approx(told | {"fill": 48.0})
-    assert deposit.fed(made, of).worst == pytest.approx(100.0)  # twice as much where the torch is half as fast
+    assert deposit.fed(made, of).worst == pytest.approx(
+        100.0
+    )  # twice as much where the torch is half as fast
 
 
 def test_a_schedule_of_a_start_is_not_known_and_no_wire_is_not_checked():
@@ -131,12 +188,21 @@ def test_beads_of_other_widths_and_heights_at_speeds_that_follow_balance():
     one = replace(path, layer_height=2.0, wire_feed=2.0 * path.wire_feed)
     slow = replace(bead, speed=np.full(2, 7.5))
     two = replace(path, layers=(Layer((BEAD,)), Layer((slow,), feature=1)), features=(one, path))
-    assert tuple(deposit.fed(two, ProcessParameters()).place) == (1, 0, None)  # half as much in the second feature
+    assert tuple(deposit.fed(two, ProcessParameters()).place) == (
+        1,
+        0,
+        None,
+    )  # half as much in the second feature
 
 
 def test_starts_and_ends_count_among_the_speeds_of_a_material():
-    of = replace(ProcessParameters(), material=MaterialParameters(name="clay", slowest=4.0, fastest=10.0))
+    of = replace(
+        ProcessParameters(), material=MaterialParameters(name="clay", slowest=4.0, fastest=10.0)
+    )
     assert with_speed_issues(PATH, of).issues == ()
     for ends, low, high in (((5.0, 3.0, 0.0, 0.0), "3", "6"), ((0.0, 0.0, 5.0, 11.0), "6", "11")):
         (issue,) = with_speed_issues(path_of(ends), of).issues
-        assert issue.code == "MATERIAL_SPEED" and f"at {low} to {high.replace('6', '9')} mm/s" in issue.message
+        assert (
+            issue.code == "MATERIAL_SPEED"
+            and f"at {low} to {high.replace('6', '9')} mm/s" in issue.message
+        )

@@ -15,7 +15,10 @@ from tests.programs import build
 def blocks_of():
     """Motion, program, process and waits of a hemisphere of few layers, with leads and waits."""
     process = ProcessParameters(
-        lead_on=0.5, lead_off=0.25, travel_speed=8.0, between_layers=BetweenLayersParameters(lift=15.0, wait=2.0)
+        lead_on=0.5,
+        lead_off=0.25,
+        travel_speed=8.0,
+        between_layers=BetweenLayersParameters(lift=15.0, wait=2.0),
     )
     toolpath, cell, _, motion = planned_dome(15.0, process)
     waits = [3.0 * k for k in range(len(toolpath.layers))]
@@ -32,7 +35,9 @@ def a_motion():
         for layer in range(layers):
             for bead in range(beads):
                 count = 2 if not rows else rapids
-                rows += [(False, layer, bead, k) for k in range(count)] + [(True, layer, bead, k) for k in range(points)]
+                rows += [(False, layer, bead, k) for k in range(count)] + [
+                    (True, layer, bead, k) for k in range(points)
+                ]
         rows.append((False, layers - 1, beads - 1, 0))
         deposit, layer, bead, point = map(np.array, zip(*rows))
         n = len(rows)
@@ -46,8 +51,17 @@ def a_motion():
         length = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
         speed = length / np.where(duration > 0, duration, 1.0)
         return Motion(
-            deposit=deposit, layer=layer, bead=bead, point=point, position=position, build=axis, tool=axis, speed=speed,
-            width=np.full(n, np.nan), joints=joints, duration=duration,
+            deposit=deposit,
+            layer=layer,
+            bead=bead,
+            point=point,
+            position=position,
+            build=axis,
+            tool=axis,
+            speed=speed,
+            width=np.full(n, np.nan),
+            joints=joints,
+            duration=duration,
         )
 
     return make

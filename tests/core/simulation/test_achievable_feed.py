@@ -19,15 +19,25 @@ def run(joints, duration, speed=10.0, bead=None):
     time = np.broadcast_to(np.asarray(duration, float), (n,)).copy()
     time[0] = 0.0
     return Motion(
-        deposit=np.ones(n, dtype=bool), layer=np.zeros(n, dtype=np.int64), bead=bead, point=np.arange(n),
-        position=np.zeros((n, 3)), build=axis, tool=axis, speed=np.full(n, speed), width=np.full(n, np.nan), joints=joints,
+        deposit=np.ones(n, dtype=bool),
+        layer=np.zeros(n, dtype=np.int64),
+        bead=bead,
+        point=np.arange(n),
+        position=np.zeros((n, 3)),
+        build=axis,
+        tool=axis,
+        speed=np.full(n, speed),
+        width=np.full(n, np.nan),
+        joints=joints,
         duration=time,
     )
 
 
 def test_no_axis_is_ever_faster_than_it_can_be_and_the_slowest_is_just_that():
     random = np.random.default_rng(1)
-    motion = run(np.cumsum(random.normal(0.0, 1.0, (2000, 6)), axis=0), random.uniform(0.2, 2.0, 2000))
+    motion = run(
+        np.cumsum(random.normal(0.0, 1.0, (2000, 6)), axis=0), random.uniform(0.2, 2.0, 2000)
+    )
     most = random.uniform(1.0, 4.0, 6)
     found = achievable_feed(motion, most)
     taken = np.abs(np.diff(motion.joints, axis=0)) / found.duration[1:, None] / most
@@ -36,7 +46,9 @@ def test_no_axis_is_ever_faster_than_it_can_be_and_the_slowest_is_just_that():
     assert 100 < slow.sum() < 1900  # both kinds are there
     assert np.allclose(taken[slow].max(axis=1), 1.0)
     assert (taken[slow].argmax(axis=1) == found.axis[1:][slow]).all()
-    assert (found.duration[1:][~slow] == motion.duration[1:][~slow]).all() and (found.axis[1:][~slow] == -1).all()
+    assert (found.duration[1:][~slow] == motion.duration[1:][~slow]).all() and (
+        found.axis[1:][~slow] == -1
+    ).all()
     assert np.allclose(found.achieved * found.duration, motion.speed * motion.duration)
     assert found.lost == pytest.approx(found.duration.sum() - motion.duration.sum())
     asked = np.abs(np.diff(motion.joints, axis=0)) / motion.duration[1:, None] / most
@@ -75,7 +87,9 @@ def test_a_way_too_short_for_its_speed_takes_the_time_of_the_triangle():
 def test_on_a_circle_the_pace_is_where_its_acceleration_is_the_largest():
     count, rate, radius = 20_000, 2.0, 0.7
     angle = np.linspace(0.0, 20.0 * np.pi, count)
-    motion = run(radius * np.column_stack([np.cos(angle), np.sin(angle)]), 20.0 * np.pi / rate / (count - 1))
+    motion = run(
+        radius * np.column_stack([np.cos(angle), np.sin(angle)]), 20.0 * np.pi / rate / (count - 1)
+    )
     acceleration = 1.1
     found = achievable_feed(motion, [9.0, 9.0], [acceleration, acceleration])
     middle = slice(count // 4, 3 * count // 4)

@@ -28,7 +28,9 @@ def test_places_are_on_the_motion_and_no_farther_apart_than_a_step(a_motion):
     joints[11] = np.nan
     seen, row, step = arms.places(joints)
     moves = set(np.flatnonzero(np.diff(joints, axis=0, prepend=joints[:1]).any(axis=1))) - {11}
-    assert step == arms.STEP and (np.diff(row) >= 0).all() and set(row) - {0} == moves  # 12 begins anew
+    assert (
+        step == arms.STEP and (np.diff(row) >= 0).all() and set(row) - {0} == moves
+    )  # 12 begins anew
     for q, k in zip(seen, row):
         before = joints[max(k - 1, 0)] if k != 12 else joints[k]
         way = joints[k] - before
@@ -52,7 +54,9 @@ def test_a_move_that_touches_on_the_way_alone_is_found(a_motion, contact):
     rapid = int(np.flatnonzero(~motion.deposit)[3])
     joints[rapid:, 3] = np.pi / 2
     joints[rapid, 4] = np.radians(139.0)
-    quiet = dataclasses.replace(motion, joints=np.where(np.arange(len(motion))[:, None] < rapid, joints, joints[0]))
+    quiet = dataclasses.replace(
+        motion, joints=np.where(np.arange(len(motion))[:, None] < rapid, joints, joints[0])
+    )
     assert (arms.arm_touches(quiet, contact).link == NONE).all()
     moved = dataclasses.replace(motion, joints=joints)
     found = arms.arm_touches(moved, contact)
@@ -76,7 +80,9 @@ def test_rows_nearer_than_a_step_are_told_too(a_motion, contact):
 
 def with_gaps(joints, random):
     """Joints (n, 6) that bend the wrist to and fro by steps fine and coarse, some rows of them unreachable."""
-    steps = np.radians(random.choice([0.1, 0.7, 4.0, 20.0], len(joints)) * random.choice([-1.0, 1.0], len(joints)))
+    steps = np.radians(
+        random.choice([0.1, 0.7, 4.0, 20.0], len(joints)) * random.choice([-1.0, 1.0], len(joints))
+    )
     bent = np.radians(115.0) + np.radians(40.0) * np.sin(np.cumsum(steps))
     joints = np.tile([0.2, 0.1, 0.1, 0.0, 0.0, 0.0], (len(joints), 1))
     joints[:, 4] = bent
@@ -105,7 +111,10 @@ def test_between_gaps_every_row_is_told_as_looking_everywhere_tells_it(a_motion,
             low, high = way[max(k - 1, 0)], min(way[k] + found.step, way[-1])
             here = bad[(s >= low) & (s <= high)]
             told = found.link[row] != NONE
-            assert here.any() or not told, (seed, row)  # nothing else is told, least of all what is across a gap
+            assert here.any() or not told, (
+                seed,
+                row,
+            )  # nothing else is told, least of all what is across a gap
             # what is bad for a step, or up to the end of the run, cannot be stepped over: it is told here or there
             ahead = bad[(s >= way[k]) & (s <= high)]
             there = start + np.searchsorted(way, high)
@@ -117,7 +126,9 @@ def test_between_gaps_every_row_is_told_as_looking_everywhere_tells_it(a_motion,
 
 def test_the_deposit_of_a_motion_has_the_size_of_its_beads(a_motion):
     motion = a_motion(7)
-    wide = dataclasses.replace(motion, width=np.where(motion.deposit, np.arange(len(motion)) % 5 + 2.0, np.nan))
+    wide = dataclasses.replace(
+        motion, width=np.where(motion.deposit, np.arange(len(motion)) % 5 + 2.0, np.nan)
+    )
     made, plain = arms.deposit_obstacles(wide, 1.0, 0.5), arms.deposit_obstacles(motion, 1.0, 0.5)
     # sections of stadiums half a mm high: round by a quarter, and flat between
     assert np.unique(made.radius) == pytest.approx([0.25])

@@ -8,7 +8,9 @@ from freecad_am.core.simulation.grown import LEAST, heights
 
 def test_each_point_has_the_height_of_the_nearest_piece_of_its_layer():
     rng = np.random.default_rng(4)
-    laid = np.column_stack([rng.uniform(0.0, 50.0, (200, 3)), rng.integers(0, 3, 200), rng.uniform(-1.0, 4.0, 200)])
+    laid = np.column_stack(
+        [rng.uniform(0.0, 50.0, (200, 3)), rng.integers(0, 3, 200), rng.uniform(-1.0, 4.0, 200)]
+    )
     points, layer = rng.uniform(0.0, 50.0, (80, 3)), rng.integers(0, 4, 80)
     found = heights(laid, points, layer)
     for k in range(80):

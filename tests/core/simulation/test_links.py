@@ -34,7 +34,10 @@ def volume(solid):
 
 PRIMITIVES = {
     "cylinder": (solids.cylinder([1, 2, 3], [1, 2, 13], 5.0, bevel=0.0), np.pi * 25 * 10),
-    "cone": (solids.turned([(0, 0), (6, 0), (3, 1), (0, 1)], [5, 0, 0], [0, 12, 0]), np.pi * 13 / 3 * (36 + 18 + 9)),
+    "cone": (
+        solids.turned([(0, 0), (6, 0), (3, 1), (0, 1)], [5, 0, 0], [0, 12, 0]),
+        np.pi * 13 / 3 * (36 + 18 + 9),
+    ),
     "capsule": (solids.capsule([0, 0, 0], [0, 8, 0], 3.0, 3.0), np.pi * 9 * 8 + 4 / 3 * np.pi * 27),
     "box": (solids.box([9, 9, 9], [0, 1, 0], [0, 0, 1], (2.0, 3.0, 4.0)), 24.0),
     "rod": (solids.strut([0, 0, 0], [10, 0, 0], [0, 0, 1], 2.0, 2.0, 3.0), 3.0 * (np.pi * 4 + 40)),
@@ -49,8 +52,14 @@ def test_primitives_are_closed_and_turned_outwards(name):
     places = solid.points.round(6)
     _, which = np.unique(places, axis=0, return_inverse=True)
     corners = which.reshape(-1)[solid.triangles]
-    corners = corners[(corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])]
-    edges = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
+    corners = corners[
+        (corners[:, 0] != corners[:, 1])
+        & (corners[:, 1] != corners[:, 2])
+        & (corners[:, 2] != corners[:, 0])
+    ]
+    edges = np.sort(
+        np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1
+    )
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
 
 
@@ -62,7 +71,10 @@ def test_every_machine_is_drawn_where_its_axes_are(name):
     at = chain.links(np.zeros(chain.axes))
     for pose, link in zip(at, made):
         for solid in link:
-            assert np.isfinite(solid.points).all() and np.abs(np.linalg.norm(solid.normals, axis=1) - 1.0).max() < 1e-9
+            assert (
+                np.isfinite(solid.points).all()
+                and np.abs(np.linalg.norm(solid.normals, axis=1) - 1.0).max() < 1e-9
+            )
             moved = solid.moved(pose)
             assert np.abs(moved.points - (solid.points @ pose[:3, :3].T + pose[:3, 3])).max() < 1e-9
     # the last link reaches the flange and not past it
@@ -78,7 +90,10 @@ def test_neighbouring_links_of_robots_meet_whatever_the_joints(name):
     bones = robot_links.skeleton(loaded.chain)
     for q in np.random.default_rng(3).uniform(-2, 2, (3, 6)):
         at = loaded.chain.links(q)
-        clouds = [np.concatenate([solid.moved(pose).points for solid in link]) for pose, link in zip(at, made)]
+        clouds = [
+            np.concatenate([solid.moved(pose).points for solid in link])
+            for pose, link in zip(at, made)
+        ]
         for axis, (before, after) in enumerate(zip(clouds, clouds[1:])):
             apart = cKDTree(after).query(before)[0].min()
             assert apart < 1.2 * bones.radius(axis), (axis, apart)
@@ -86,8 +101,22 @@ def test_neighbouring_links_of_robots_meet_whatever_the_joints(name):
 
 def test_the_fanuc_s_bones_are_those_of_its_drawing():
     bones = robot_links.skeleton(machine.load("fanuc-arcmate120ic").chain)
-    enter = [[0, 0, 0], [150, 0, 525], [150, 0, 1315], [150, 0, 1565], [985, 0, 1565], [985, 0, 1565]]
-    leave = [[0, 0, 525], [150, 0, 525], [150, 0, 1315], [985, 0, 1565], [985, 0, 1565], [1085, 0, 1565]]
+    enter = [
+        [0, 0, 0],
+        [150, 0, 525],
+        [150, 0, 1315],
+        [150, 0, 1565],
+        [985, 0, 1565],
+        [985, 0, 1565],
+    ]
+    leave = [
+        [0, 0, 525],
+        [150, 0, 525],
+        [150, 0, 1315],
+        [985, 0, 1565],
+        [985, 0, 1565],
+        [1085, 0, 1565],
+    ]
     assert np.abs(bones.enter - enter).max() < 1e-9 and np.abs(bones.leave - leave).max() < 1e-9
     assert bones.size == pytest.approx(525 + 150 + 790 + 250 + 835 + 100)
 
@@ -98,7 +127,9 @@ def test_of_tables_the_bearings_stand_still_and_the_last_axis_turns_the_disc_in_
     chain = loaded.chain
     stands = table_links.standing_link(chain)
     assert chain.sliding[stands - 1] and not chain.sliding[stands:].any()
-    assert made[stands] and all(not link for link in made[int(np.flatnonzero(chain.sliding)[0]) + 1 : stands])
+    assert made[stands] and all(
+        not link for link in made[int(np.flatnonzero(chain.sliding)[0]) + 1 : stands]
+    )
     if stands < chain.axes:
         disc = max(made[-1], key=lambda solid: np.ptp(solid.points, axis=0).max())
         axis = chain.directions[-1]

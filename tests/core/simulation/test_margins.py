@@ -11,7 +11,13 @@ LOWER, UPPER = np.array([-2.0, -np.inf, 0.5, -1.0]), np.array([2.0, np.inf, 1.5,
 
 def test_margin_is_one_in_the_middle_none_at_the_limits_and_less_beyond():
     middle = np.array([0.0, 7e5, 1.0, 1.0])
-    rows = np.stack([middle, np.where(np.isfinite(LOWER), LOWER, -7e5), np.where(np.isfinite(UPPER), UPPER, 0.0)])
+    rows = np.stack(
+        [
+            middle,
+            np.where(np.isfinite(LOWER), LOWER, -7e5),
+            np.where(np.isfinite(UPPER), UPPER, 0.0),
+        ]
+    )
     assert np.array_equal(margins(rows, LOWER, UPPER), [[1, 1, 1, 1], [0, 1, 0, 0], [0, 1, 0, 0]])
     beyond = margins(np.array([[2.5, 0.0, 0.0, -3.0]]), LOWER, UPPER)
     assert np.allclose(beyond, [[-0.25, 1.0, -1.0, -1.0]])
@@ -24,14 +30,19 @@ def test_margin_as_a_loop_finds_it():
     for i, row in enumerate(joints):
         for axis, angle in enumerate(row):
             low, high = LOWER[axis], UPPER[axis]
-            told = 1.0 if np.isinf(low) else 1.0 - abs(angle - (low + high) / 2) / ((high - low) / 2)
+            told = (
+                1.0 if np.isinf(low) else 1.0 - abs(angle - (low + high) / 2) / ((high - low) / 2)
+            )
             assert abs(found[i, axis] - told) < 1e-12
 
 
 def test_unreachable_rows_have_no_numbers():
     joints = np.zeros((3, 4))
     joints[1] = np.nan
-    assert np.isnan(margins(joints, LOWER, UPPER)[1]).all() and np.isfinite(margins(joints, LOWER, UPPER)[[0, 2]]).all()
+    assert (
+        np.isnan(margins(joints, LOWER, UPPER)[1]).all()
+        and np.isfinite(margins(joints, LOWER, UPPER)[[0, 2]]).all()
+    )
     ratios = speed_ratios(joints, np.ones(3), np.array([1.0, 1.0, np.inf, 2.0]))
     assert np.isnan(ratios[1:]).all() and (ratios[0] == 0.0).all()
 
@@ -55,4 +66,6 @@ def test_values_of_beads_stand_on_the_rows_that_deposit():
     point = np.array([0, 0, 1, 0, 0, 1])
     spread = on_deposit(deposit, np.array([1.0, 2.0, 3.0, 4.0]))
     assert np.array_equal(spread, [np.nan, 1, 2, np.nan, 3, 4], equal_nan=True)
-    assert np.array_equal(from_next(deposit, point, spread), [np.nan, 2, 2, np.nan, 4, 4], equal_nan=True)
+    assert np.array_equal(
+        from_next(deposit, point, spread), [np.nan, 2, 2, np.nan, 4, 4], equal_nan=True
+    )

@@ -16,7 +16,8 @@ CELLS = {
     "part on robot": CellParameters(),
     "part on robot, any branch": CellParameters(branch="auto"),
     "tool on robot": CellParameters(
-        setup="tool-on-robot", deposition_point=(900.0, 0.0, -200.0, 0.0, 0.0, 0.3),
+        setup="tool-on-robot",
+        deposition_point=(900.0, 0.0, -200.0, 0.0, 0.0, 0.3),
         nozzle=NozzleParameters(tool=(10.0, 0.0, 250.0, 0.1, -0.3, 0.0)),
     ),
     "trunnion": CellParameters(machine="table-xyzac", setup="rotary-table"),
@@ -37,7 +38,10 @@ def test_nozzle_and_part_are_where_pykdl_puts_them(cell):
     for row, joints in enumerate(q):
         placed = placing(cell, joints)
         seen = frames.inverse(placed.part) @ placed.nozzle
-        assert np.abs(seen[:3, 3] - tip[row]).max() < 1e-9 and np.abs(seen[:3, 2] - axis[row]).max() < 1e-12
+        assert (
+            np.abs(seen[:3, 3] - tip[row]).max() < 1e-9
+            and np.abs(seen[:3, 2] - axis[row]).max() < 1e-12
+        )
         drawn = placed.links[-1] @ cell.machine.chain.flange
         base = placed.links[0]
         assert np.abs(frames.inverse(base) @ drawn - flange[row]).max() < 1e-9

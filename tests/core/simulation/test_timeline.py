@@ -13,7 +13,11 @@ from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.simulation.totals import totals
 
 PROCESS = ProcessParameters(
-    lead_on=0.4, lead_off=0.7, bead_width=5.0, density=2.7, between_layers=BetweenLayersParameters(lift=20.0, wait=3.0)
+    lead_on=0.4,
+    lead_off=0.7,
+    bead_width=5.0,
+    density=2.7,
+    between_layers=BetweenLayersParameters(lift=20.0, wait=3.0),
 )
 
 
@@ -96,7 +100,10 @@ def test_outside_it_stays_at_the_ends_and_unreachable_joints_are_told(a_motion):
     first, last = line.at([-5.0, line.total + 5.0]).row
     assert (first, last) == (0, len(motion) - 1)
     assert np.isnan(line.at(line.arrive[10]).joints).all()
-    assert np.isfinite(line.at(line.arrive[9]).joints).all() and np.isfinite(line.at(line.leave[12]).joints).all()
+    assert (
+        np.isfinite(line.at(line.arrive[9]).joints).all()
+        and np.isfinite(line.at(line.leave[12]).joints).all()
+    )
 
 
 def test_layers_begin_where_their_rapids_do(a_motion):
@@ -104,17 +111,29 @@ def test_layers_begin_where_their_rapids_do(a_motion):
     line = timeline(motion, PROCESS)
     assert line.layers.tolist() == [0, 1, 2, 3]
     assert [int(motion.layer[row]) for row in line.layer_rows] == [0, 1, 2, 3]
-    assert all(row == 0 or motion.layer[row - 1] == motion.layer[row] - 1 for row in line.layer_rows)
-    assert (np.searchsorted(line.layer_rows, range(len(motion)), side="right") - 1).tolist() == motion.layer.tolist()
+    assert all(
+        row == 0 or motion.layer[row - 1] == motion.layer[row] - 1 for row in line.layer_rows
+    )
+    assert (
+        np.searchsorted(line.layer_rows, range(len(motion)), side="right") - 1
+    ).tolist() == motion.layer.tolist()
 
 
 def test_totals_are_sums_over_the_segments(a_motion):
     motion = a_motion(8)
     line = timeline(motion, PROCESS)
-    path = SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=10.0, features=(), fitted=None)
+    path = SimpleNamespace(
+        layer_height=2.0, bead_width=None, wire_feed=10.0, features=(), fitted=None
+    )
     sums = totals(motion, line, PROCESS, path)
-    beads = [np.flatnonzero(motion.deposit & (motion.layer == k) & (motion.bead == b)) for k in range(4) for b in range(2)]
-    length = sum(np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1).sum() for rows in beads)
+    beads = [
+        np.flatnonzero(motion.deposit & (motion.layer == k) & (motion.bead == b))
+        for k in range(4)
+        for b in range(2)
+    ]
+    length = sum(
+        np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1).sum() for rows in beads
+    )
     assert sums.length == pytest.approx(length)
     assert sums.volume == pytest.approx(length * 5.0 * 2.0)
     assert sums.mass == pytest.approx(length * 10.0 / 1000.0 * 2.7)
@@ -131,7 +150,9 @@ def test_a_width_that_varies_counts_by_the_trapezoid(a_motion):
     motion = dataclasses.replace(motion, width=width)
     rows = np.flatnonzero(motion.deposit)
     steps = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
-    path = SimpleNamespace(layer_height=1.5, bead_width=None, wire_feed=None, features=(), fitted=None)
+    path = SimpleNamespace(
+        layer_height=1.5, bead_width=None, wire_feed=None, features=(), fitted=None
+    )
     sums = totals(motion, timeline(motion, PROCESS), PROCESS, path)
     assert sums.fed is None
     assert sums.volume == pytest.approx(1.5 * (2.5 * steps[0] + 3.5 * steps[1]))
@@ -140,9 +161,13 @@ def test_a_width_that_varies_counts_by_the_trapezoid(a_motion):
 def test_the_time_is_that_of_the_programs_blocks(blocks_of):
     motion, program, process, waits = blocks_of
     line = timeline(motion, process, waits)
-    leads = sum(block.lead for block in program.blocks if isinstance(block, (DepositOn, DepositOff)))
+    leads = sum(
+        block.lead for block in program.blocks if isinstance(block, (DepositOn, DepositOff))
+    )
     stands = sum(block.seconds for block in program.blocks if isinstance(block, Wait))
-    moves = sum(float(block.duration.sum()) for block in program.moves) - float(program.moves[0].duration[0])
+    moves = sum(float(block.duration.sum()) for block in program.moves) - float(
+        program.moves[0].duration[0]
+    )
     assert line.total == pytest.approx(leads + stands + moves, rel=1e-12)
     # a wait falls where the program has it: after the move before it
     row, told = -1, {}

@@ -33,7 +33,14 @@ def calm(cell, a_motion):
 def seen(motion, cell, condition=None, issues=()):
     n = len(motion)
     condition = np.full(n, 0.5) if condition is None else condition
-    return watch(motion, cell, achievable_feed(motion, cell.machine.max_speed), condition, np.full(n, 0.1), issues)
+    return watch(
+        motion,
+        cell,
+        achievable_feed(motion, cell.machine.max_speed),
+        condition,
+        np.full(n, 0.1),
+        issues,
+    )
 
 
 def test_a_calm_motion_has_no_findings(calm, cell):
@@ -55,19 +62,27 @@ def test_what_is_made_wrong_is_found_where_it_was_made(calm, cell):
     motion = dataclasses.replace(motion, joints=joints, duration=duration)
     issues = (Issue(ERROR, "X", "made up", 2, 1, 3), Issue(NOTE, "Y", "only a note", 1))
     found = seen(motion, cell, condition, issues)
-    by_kind = {kind: [one for one in found.findings if one.kind == kind] for kind in {one.kind for one in found.findings}}
+    by_kind = {
+        kind: [one for one in found.findings if one.kind == kind]
+        for kind in {one.kind for one in found.findings}
+    }
     assert set(by_kind) == {
-        watching.UNREACHABLE, watching.LIMIT, watching.NEAR_LIMIT, watching.SINGULAR, watching.SLOWED, watching.ISSUE,
+        watching.UNREACHABLE,
+        watching.LIMIT,
+        watching.NEAR_LIMIT,
+        watching.SINGULAR,
+        watching.SLOWED,
+        watching.ISSUE,
     }
     assert [one.row for one in by_kind[watching.UNREACHABLE]] == [20]
-    limit, = by_kind[watching.LIMIT]
+    (limit,) = by_kind[watching.LIMIT]
     assert (limit.row, limit.label) == (6, "q1") and limit.value == pytest.approx(-1.5)
     assert [(one.row, one.label) for one in by_kind[watching.NEAR_LIMIT]] == [(5, "q1"), (7, "q1")]
-    singular, = by_kind[watching.SINGULAR]
+    (singular,) = by_kind[watching.SINGULAR]
     assert (singular.row, singular.value, singular.than) == (41, 0.04, 0.1)  # where it is worst
     slowed = {one.row: one for one in by_kind[watching.SLOWED]}
     assert slowed[30].label == "q4" and slowed[30].value == pytest.approx(motion.speed[30] / 5.0)
-    issue, = by_kind[watching.ISSUE]
+    (issue,) = by_kind[watching.ISSUE]
     assert (motion.layer[issue.row], motion.bead[issue.row], motion.point[issue.row]) == (2, 1, 3)
     assert motion.deposit[issue.row] and issue.label == "made up"
     rows = [one.row for one in found.findings]
@@ -79,11 +94,20 @@ def test_links_are_marked_for_their_own_axis(cell):
     none = np.zeros(6)
     assert not bad_links(cell, shown_margins(cell, q), none, False, True).any()
     q[4] = np.radians(139.8)
-    assert bad_links(cell, shown_margins(cell, q), none, False, True).tolist() == [False] * 5 + [True, False]
+    assert bad_links(cell, shown_margins(cell, q), none, False, True).tolist() == [False] * 5 + [
+        True,
+        False,
+    ]
     q[4], ratios = 0.5, np.array([0, 0, 0, 1.2, 0, 0.9])
-    assert bad_links(cell, shown_margins(cell, q), ratios, False, True).tolist() == [False] * 4 + [True] + [False] * 2
+    assert (
+        bad_links(cell, shown_margins(cell, q), ratios, False, True).tolist()
+        == [False] * 4 + [True] + [False] * 2
+    )
     q[1], q[2] = np.radians([-80.0, 200.0])  # each within its own limits, q3 - q2 past 273
-    assert bad_links(cell, shown_margins(cell, q), none, False, True).tolist() == [False, False, True, True] + [False] * 3
+    assert (
+        bad_links(cell, shown_margins(cell, q), none, False, True).tolist()
+        == [False, False, True, True] + [False] * 3
+    )
     for singular, reachable in ((True, True), (False, False)):
         marked = bad_links(cell, shown_margins(cell, 0.1 * np.ones(6)), none, singular, reachable)
         assert marked.tolist() == [False] + [True] * 6
@@ -97,9 +121,12 @@ def test_runs_of_rows_on_which_a_link_touches_one_thing_are_one_finding(calm, ce
     link[30], what[30] = 0, 2
     arm = ArmTouches(link, what, ("nozzle", "platform", "fixture"), 0.01, LINKS)
     unknown = np.full(n, np.nan)
-    found = watch(calm, cell, achievable_feed(calm, cell.machine.max_speed), unknown, unknown, arm=arm)
+    found = watch(
+        calm, cell, achievable_feed(calm, cell.machine.max_speed), unknown, unknown, arm=arm
+    )
     assert [(one.row, one.kind, one.label, one.other) for one in found.findings] == [
-        (4, watching.TOUCHES, "q5", "platform"), (9, watching.TOUCHES, "q5", "nozzle"),
+        (4, watching.TOUCHES, "q5", "platform"),
+        (9, watching.TOUCHES, "q5", "nozzle"),
         (30, watching.TOUCHES, "base", "fixture"),
     ]
     assert found.arm_known and (found.touching == link).all()

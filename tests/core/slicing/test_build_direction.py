@@ -18,8 +18,12 @@ def test_lead_turns_forward_and_tilt_outward(rising):
     forward = np.array([[0.0, 1.0 if rising else -1.0, 0.0]])
     outward = np.array([[1.0, 0.0, 0.0]])
     lead, tilt = 0.3, 0.2
-    assert directions.held(build, lead, 0.0, rising) == pytest.approx(np.cos(lead) * build + np.sin(lead) * forward)
-    assert directions.held(build, 0.0, tilt, rising) == pytest.approx(np.cos(tilt) * build + np.sin(tilt) * outward)
+    assert directions.held(build, lead, 0.0, rising) == pytest.approx(
+        np.cos(lead) * build + np.sin(lead) * forward
+    )
+    assert directions.held(build, 0.0, tilt, rising) == pytest.approx(
+        np.cos(tilt) * build + np.sin(tilt) * outward
+    )
 
 
 @pytest.mark.parametrize("rising", [True, False])
@@ -27,15 +31,21 @@ def test_lead_and_tilt_keep_their_angles_on_any_wall(rising):
     build, _ = some_builds()
     tool = directions.held(build, 0.3, 0.2, rising)
     assert np.linalg.norm(tool, axis=1) == pytest.approx(np.ones(len(build)), abs=1e-14)
-    assert (tool * build).sum(axis=1) == pytest.approx(np.full(len(build), np.cos(0.3) * np.cos(0.2)))
-    assert tool[:, 1] == pytest.approx(np.full(len(build), (1 if rising else -1) * np.sin(0.3) * np.cos(0.2)))
+    assert (tool * build).sum(axis=1) == pytest.approx(
+        np.full(len(build), np.cos(0.3) * np.cos(0.2))
+    )
+    assert tool[:, 1] == pytest.approx(
+        np.full(len(build), (1 if rising else -1) * np.sin(0.3) * np.cos(0.2))
+    )
 
 
 def test_tilt_back_turns_towards_the_axis_and_stops_there():
     build, angle = some_builds()
     back = np.random.default_rng(4).uniform(0.0, np.pi, len(build))
     turned = directions.tilted_back(build, back)
-    assert directions.from_vertical(turned) == pytest.approx(np.maximum(angle - back, 0.0), abs=1e-12)
+    assert directions.from_vertical(turned) == pytest.approx(
+        np.maximum(angle - back, 0.0), abs=1e-12
+    )
     assert np.abs(turned[:, 1]).max() == 0.0
     assert (turned[:, 0] >= 0.0).all()
 
@@ -64,7 +74,9 @@ def test_one_direction_for_a_part_of_a_turn_is_the_mean_of_the_local_ones():
     at = np.linspace(start, end, 7)
     c, s = np.cos(at), np.sin(at)
     found = directions.layer_mean(tangent, at, start, end)
-    in_space = np.stack([found[:, 0] * c - found[:, 1] * s, found[:, 0] * s + found[:, 1] * c, found[:, 2]], axis=1)
+    in_space = np.stack(
+        [found[:, 0] * c - found[:, 1] * s, found[:, 0] * s + found[:, 1] * c, found[:, 2]], axis=1
+    )
     sine, cosine = np.sin(end) - np.sin(start), np.cos(start) - np.cos(end)
     mean = np.array([-0.6 * sine, -0.6 * cosine, 0.8 * (end - start)])
     assert in_space == pytest.approx(np.tile(mean / np.linalg.norm(mean), (7, 1)), abs=1e-9)

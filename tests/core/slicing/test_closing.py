@@ -19,7 +19,10 @@ class Both:
     """Everything outside a slab with the given sides (point, normal up and down): fronts come from both of them."""
 
     def __init__(self, low, up, high, down):
-        self.sides = HalfSpace(np.array(low), np.array(up)), HalfSpace(np.array(high), np.array(down))
+        self.sides = (
+            HalfSpace(np.array(low), np.array(up)),
+            HalfSpace(np.array(high), np.array(down)),
+        )
 
     def value(self, points):
         (one, up), (other, down) = (side.value(points) for side in self.sides)
@@ -35,7 +38,11 @@ def farthest(wall, curves, away=0.0):
     ends = [rim.points for rim in wall.rims if rim.end]
     if ends:
         points = points[cKDTree(np.vstack(ends)).query(points)[0] > away]
-    return cKDTree(np.vstack([curve.at(curve.refined(30))[0] for curve in curves])).query(points)[0].max()
+    return (
+        cKDTree(np.vstack([curve.at(curve.refined(30))[0] for curve in curves]))
+        .query(points)[0]
+        .max()
+    )
 
 
 def flat(layers):
@@ -44,10 +51,26 @@ def flat(layers):
 
 CASES = {
     "a cap": (lambda: ball(FLOOR, 1500), 2.6, 0.0),
-    "a slanted meeting": (lambda: ball(Both([0, 0, -12.0], [0.1, 0.3, 1], [0, 3.0, 14], [0.3, 0.1, -1]), 3000), 1.6, 0.0),
-    "a meeting head on": (lambda: tube(Both([0, 0, 0.0], [0, 0, 1], [0, 0, 14.8], [0, 0, -1]), 20.0, 1.0, 10.0), 2.0, 0.0),
-    "about holes": (lambda: sheet(SILL, [(2.0, 20.0, 9.0), (-15.0, 25.0, 6.0), (17.0, 37.0, 5.0)]), 1.7, 1.7),
-    "about wide openings": (lambda: sheet(SILL, [(-12.0, 15.0, 11.0), (14.0, 24.0, 13.0)], step=0.8), 2.3, 2.3),
+    "a slanted meeting": (
+        lambda: ball(Both([0, 0, -12.0], [0.1, 0.3, 1], [0, 3.0, 14], [0.3, 0.1, -1]), 3000),
+        1.6,
+        0.0,
+    ),
+    "a meeting head on": (
+        lambda: tube(Both([0, 0, 0.0], [0, 0, 1], [0, 0, 14.8], [0, 0, -1]), 20.0, 1.0, 10.0),
+        2.0,
+        0.0,
+    ),
+    "about holes": (
+        lambda: sheet(SILL, [(2.0, 20.0, 9.0), (-15.0, 25.0, 6.0), (17.0, 37.0, 5.0)]),
+        1.7,
+        1.7,
+    ),
+    "about wide openings": (
+        lambda: sheet(SILL, [(-12.0, 15.0, 11.0), (14.0, 24.0, 13.0)], step=0.8),
+        2.3,
+        2.3,
+    ),
     "by a leaning side": (lambda: sheet(LEANING, [(4.0, 20.0, 6.0)]), 2.1, 2.1),
 }
 
@@ -84,4 +107,6 @@ def test_fronts_from_two_ends_of_a_tube_leave_one_ring_to_close():
 def test_where_beads_lie_close_enough_nothing_is_closed():
     slanted = HalfSpace(np.zeros(3), np.array([0.2, 0.1, 1.0]))
     assert not flat(fronts.layers(tube(slanted, 20.0, 2.0, low=-10.0), 3.0).closing)
-    assert not flat(fronts.layers(ball(FLOOR, 4000), 1.15).closing)  # the last circle is 0.5 heights wide
+    assert not flat(
+        fronts.layers(ball(FLOOR, 4000), 1.15).closing
+    )  # the last circle is 0.5 heights wide

@@ -101,7 +101,9 @@ class Waves:
         x, y, z = np.moveaxis(points, -1, 0)
         turn, pace = np.arctan2(y, x), x**2 + y**2
         lean = -21.0 * np.cos(7.0 * turn) / pace
-        return z - 3.0 * np.sin(7.0 * turn), np.stack([-y * lean, x * lean, 1.0 + 0.0 * lean], axis=-1)
+        return z - 3.0 * np.sin(7.0 * turn), np.stack(
+            [-y * lean, x * lean, 1.0 + 0.0 * lean], axis=-1
+        )
 
 
 # flat fronts: every point below is straight under the one above, and the first node of a curve is met to the last bit
@@ -111,15 +113,40 @@ GROUND = HalfSpace(np.zeros(3), np.array([0.0, 0.0, 1.0]))
 @pytest.mark.parametrize(
     "wall, substrate, reach, end, height, corners",
     [
-        (Torus(60.0, 15.0), Round.cylinder(32.0, [3, 5, -2], [0.2, 1.0, 0.1]), (0.0, 1.5), END, 2.0, 1),
+        (
+            Torus(60.0, 15.0),
+            Round.cylinder(32.0, [3, 5, -2], [0.2, 1.0, 0.1]),
+            (0.0, 1.5),
+            END,
+            2.0,
+            1,
+        ),
         (cylinder(27.0), Round.cylinder(30.0, [0, 2, -30], [1, 0, 0]), (-45.0, 10.0), 40.0, 1.5, 2),
         pytest.param(
-            cylinder(10.0), Round.cone(0.5, [0, 0, 30], [0.3, 0, -1]), (-60.0, 60.0), 60.0, 2.0, 1,
+            cylinder(10.0),
+            Round.cone(0.5, [0, 0, 30], [0.3, 0, -1]),
+            (-60.0, 60.0),
+            60.0,
+            2.0,
+            1,
             marks=pytest.mark.long,
         ),
-        (Cone(20.0, 0.3), Round.cylinder(60.0, [0, 0, -58], [1, 0, 0]), (-40.0, 10.0), 40.0, 3.0, 0),
+        (
+            Cone(20.0, 0.3),
+            Round.cylinder(60.0, [0, 0, -58], [1, 0, 0]),
+            (-40.0, 10.0),
+            40.0,
+            3.0,
+            0,
+        ),
         pytest.param(
-            Torus(60.0, 15.0), Round.sphere(30.0, [4, 5, -10]), (-0.2, 1.2), 1.8, 2.0, 1, marks=pytest.mark.long,
+            Torus(60.0, 15.0),
+            Round.sphere(30.0, [4, 5, -10]),
+            (-0.2, 1.2),
+            1.8,
+            2.0,
+            1,
+            marks=pytest.mark.long,
         ),
         (cylinder(20.0), Waves(), (-40.0, 30.0), 40.0, 1.0, 7),
         (Torus(60.0, 15.0), GROUND, (-0.3, 0.5), 1.5, 2.0, 1),
@@ -127,8 +154,11 @@ GROUND = HalfSpace(np.zeros(3), np.array([0.0, 0.0, 1.0]))
     ],
 )
 @pytest.mark.always(
-    "wall0-substrate0-reach0-1.5707963267948966-2.0-1", "wall1-substrate1-reach1-40.0-1.5-2",
-    "wall3-substrate3-reach3-40.0-3.0-0", "wall5-substrate5-reach5-40.0-1.0-7", "wall7-substrate7-reach7-30.0-2.0-0",
+    "wall0-substrate0-reach0-1.5707963267948966-2.0-1",
+    "wall1-substrate1-reach1-40.0-1.5-2",
+    "wall3-substrate3-reach3-40.0-3.0-0",
+    "wall5-substrate5-reach5-40.0-1.0-7",
+    "wall7-substrate7-reach7-30.0-2.0-0",
 )
 def test_walls_on_substrates(wall, substrate, reach, end, height, corners):
     first = on_implicit(wall, substrate, reach, even_grid(wall, 360))
@@ -159,7 +189,9 @@ def test_a_table_serves_as_the_wall():
     u, v = np.linspace(-0.2, 2.6, 160), np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
     table = Tabulated(u, v, torus.point(*np.meshgrid(u, v, indexing="ij")), 2.0 * np.pi)
     exact = constant_distance.layers(torus, first, 5.0, END)
-    found = constant_distance.layers(table, on_implicit(table, PIPE, (0.0, 1.5), even_grid(table, 360)), 5.0, END)
+    found = constant_distance.layers(
+        table, on_implicit(table, PIPE, (0.0, 1.5), even_grid(table, 360)), 5.0, END
+    )
     assert_spacing(found, 5.0)
     assert exact[-1].curve.nearest(found[-1].curve.points)[0] == pytest.approx(0.0, abs=1e-4)
 

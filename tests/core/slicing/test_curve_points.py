@@ -73,13 +73,17 @@ def test_what_the_points_outline_is_the_curve_where_its_curvature_jumps():
         for place in ends:  # both ends of a straight part have the same tangent
             flat.append(place + radius * np.array([np.cos(a), np.sin(a)]))
             along.append([-np.sin(a), np.cos(a)])
-    flat, along = (np.column_stack([one + one[:1], np.zeros(len(one) + 1)]) for one in (flat, along))
+    flat, along = (
+        np.column_stack([one + one[:1], np.zeros(len(one) + 1)]) for one in (flat, along)
+    )
     w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(flat, axis=0), axis=1))]
     curve = SpaceCurve(w, flat, along, along, True)
 
     def off(points):
         out = np.abs(points[:, :2]) - half
-        return np.abs(np.where((out > 0).all(axis=1), np.linalg.norm(out, axis=1), out.max(axis=1)) - radius)
+        return np.abs(
+            np.where((out > 0).all(axis=1), np.linalg.norm(out, axis=1), out.max(axis=1)) - radius
+        )
 
     assert off(curve.at(curve.refined(7))[0]).max() < 1e-5
     for start in (0.0, 1.7, 9.3):
@@ -88,4 +92,7 @@ def test_what_the_points_outline_is_the_curve_where_its_curvature_jumps():
         slope /= np.linalg.norm(slope, axis=1, keepdims=True)
         drawn = outline(points, np.stack([slope, slope], axis=1))
         segment = np.repeat(np.arange(len(places) - 1), 15)
-        assert off(drawn.at(segment, np.tile(np.arange(1, 16) / 16.0, len(places) - 1))[0]).max() < 1e-4
+        assert (
+            off(drawn.at(segment, np.tile(np.arange(1, 16) / 16.0, len(places) - 1))[0]).max()
+            < 1e-4
+        )

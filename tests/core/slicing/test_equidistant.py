@@ -42,10 +42,14 @@ def winding(loops, theta, z):
 @pytest.mark.always
 def test_a_convex_body_is_cut_where_it_is(seed):
     rng = np.random.default_rng(seed)
-    base = Developable(rng.uniform(5.0, 60.0), math.inf if seed % 3 == 0 else rng.uniform(20.0, 300.0))
+    base = Developable(
+        rng.uniform(5.0, 60.0), math.inf if seed % 3 == 0 else rng.uniform(20.0, 300.0)
+    )
     # near the hub and around it: axis inside, facets pierced, edges crossed twice, contours all the way round
-    vertices, faces, spaces = hull(rng.normal(size=3) * rng.choice([0.0, 20.0, 60.0]) + rng.uniform(5, 60) * rng.normal(
-        size=(rng.integers(5, 40), 3)))
+    vertices, faces, spaces = hull(
+        rng.normal(size=3) * rng.choice([0.0, 20.0, 60.0])
+        + rng.uniform(5, 60) * rng.normal(size=(rng.integers(5, 40), 3))
+    )
     facets = Facets(base, vertices, faces)
     for distance in np.linspace(facets.distances.min(), facets.distances.max(), 9)[1:-1]:
         if base.radius + distance / math.cos(base.taper) <= 0.0:
@@ -56,15 +60,25 @@ def test_a_convex_body_is_cut_where_it_is(seed):
             assert np.abs(base.distance(loop.points) - distance).max() < 1e-9
             assert np.abs((loop.points @ spaces[:, :3].T + spaces[:, 3]).max(axis=1)).max() < 1e-8
             middle = 0.5 * (loop.points + np.roll(loop.points, -1, axis=0))
-            within = middle[(middle @ spaces[:, :3].T + spaces[:, 3]).max(axis=1) < 1e-7]  # on the mesh: nothing cut off
+            within = middle[
+                (middle @ spaces[:, :3].T + spaces[:, 3]).max(axis=1) < 1e-7
+            ]  # on the mesh: nothing cut off
             assert len(within) == len(middle)
             assert np.abs(base.distance(middle) - distance).max() < 1.1e-3
-        theta, z = rng.uniform(-math.pi, math.pi, 300), rng.uniform(vertices[:, 2].min(), vertices[:, 2].max(), 300)
+        theta, z = (
+            rng.uniform(-math.pi, math.pi, 300),
+            rng.uniform(vertices[:, 2].min(), vertices[:, 2].max(), 300),
+        )
         theta, z = theta[z < surface.height], z[z < surface.height]
         rho = surface.radius * (1.0 - z / surface.height)
-        depth = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1) @ spaces[:, :3].T + spaces[:, 3]
+        depth = (
+            np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1) @ spaces[:, :3].T
+            + spaces[:, 3]
+        )
         sure = np.abs(depth.max(axis=1)) > 0.05
-        np.testing.assert_array_equal(winding(loops, theta, z)[sure], (depth.max(axis=1) < 0.0)[sure])
+        np.testing.assert_array_equal(
+            winding(loops, theta, z)[sure], (depth.max(axis=1) < 0.0)[sure]
+        )
 
 
 def box(low, high):
@@ -107,7 +121,9 @@ def test_neighbouring_layers_are_equidistant():
     for index, distance in enumerate(3.0 * np.arange(1, 12)):
         below = base.offset(distance - 3.0)
         for loop in facets.cut(distance, 1e-3):
-            np.testing.assert_allclose(below.distance(loop.points), 3.0, atol=1e-9, err_msg=str(index))
+            np.testing.assert_allclose(
+                below.distance(loop.points), 3.0, atol=1e-9, err_msg=str(index)
+            )
 
 
 def test_an_open_mesh_is_refused_with_the_place():
@@ -122,10 +138,14 @@ def test_the_order_of_faces_does_not_matter():
     rng = np.random.default_rng(8)
     vertices, faces, _ = hull(np.array([50.0, 10.0, 20.0]) + 25.0 * rng.normal(size=(40, 3)))
     order = rng.permutation(len(faces))
-    turned = np.array([np.roll(face, k) for face, k in zip(faces[order], rng.integers(0, 3, len(faces)))])
+    turned = np.array(
+        [np.roll(face, k) for face, k in zip(faces[order], rng.integers(0, 3, len(faces)))]
+    )
     for distance in (2.0, 9.0, 20.0):
         lengths = []
         for some in (faces, turned):
             loops = Facets(base, vertices, some).cut(distance, 1e-4)
-            lengths.append(sorted(np.linalg.norm(np.diff(loop.points, axis=0), axis=1).sum() for loop in loops))
+            lengths.append(
+                sorted(np.linalg.norm(np.diff(loop.points, axis=0), axis=1).sum() for loop in loops)
+            )
         np.testing.assert_allclose(lengths[0], lengths[1], rtol=1e-3)

@@ -37,7 +37,9 @@ def ring(sides, seed=0):
     right, up = (u + 1) % sides * sides + v, u * sides + (v + 1) % sides
     across = (u + 1) % sides * sides + (v + 1) % sides
     here = u * sides + v
-    faces = np.concatenate([np.stack([here, right, across], axis=1), np.stack([here, across, up], axis=1)])
+    faces = np.concatenate(
+        [np.stack([here, right, across], axis=1), np.stack([here, across, up], axis=1)]
+    )
     return points, faces.astype(np.intp)
 
 
@@ -55,7 +57,9 @@ def cost(evaluated, sides, layers):
 def test_cutting_is_linear_in_triangles(evaluated):
     found = np.array([cost(evaluated, sides, 10) for sides in SIDES], dtype=float)
     triangles = 2.0 * np.array(SIDES) ** 2
-    assert (found[:, 0] <= 1.0 * triangles).all()  # once a vertex, and edges that come nearest between their ends
+    assert (
+        found[:, 0] <= 1.0 * triangles
+    ).all()  # once a vertex, and edges that come nearest between their ends
     # cut are the triangles along a line: no more than in proportion to their number
     assert (found[1:, 1] / found[:-1, 1] < triangles[1:] / triangles[:-1]).all()
 

@@ -29,7 +29,11 @@ def test_torus_on_a_pipe_is_equation_3():
         (Round.cylinder(32.0, [3, 5, -2], [0.2, 1.0, 0.1]), TORUS, (0.0, 1.5)),
         (Round.sphere(30.0, [4, 5, -10]), TORUS, (-0.2, 1.2)),
         (Round.cone(0.5, [0, 0, 30], [0.3, 0, -1]), cylinder(10.0), (-60.0, 60.0)),
-        (HalfSpace(np.array([0.0, 0.0, 5.0]), np.array([0.5, 0.2, 1.0])), cylinder(10.0), (-60.0, 60.0)),
+        (
+            HalfSpace(np.array([0.0, 0.0, 5.0]), np.array([0.5, 0.2, 1.0])),
+            cylinder(10.0),
+            (-60.0, 60.0),
+        ),
     ],
 )
 def test_between_the_nodes_too_the_curve_lies_on_wall_and_substrate(substrate, wall, range_):
@@ -59,7 +63,9 @@ def test_corners_of_a_chain_stay_corners():
     wall = cylinder(10.0)
     layer = on_polyline(wall, wall.point(6.0 * np.abs(np.sin(v)), v))
     assert len(layer.curve.corners) == 2
-    assert np.degrees(layer.curve.turns[layer.curve.corners]) == pytest.approx(2 * np.degrees([np.arctan(0.6)] * 2), abs=0.2)
+    assert np.degrees(layer.curve.turns[layer.curve.corners]) == pytest.approx(
+        2 * np.degrees([np.arctan(0.6)] * 2), abs=0.2
+    )
 
 
 def test_a_chain_that_does_not_go_around_is_refused():

@@ -33,7 +33,9 @@ def farthest(wall, layers, away=0.0):
     beads = np.vstack([front.at(front.refined(20))[0] for layer in layers for front in layer])
     points = samples(wall)
     if away > 0.0:
-        points = points[cKDTree(np.vstack([rim.points for rim in wall.rims])).query(points)[0] > away]
+        points = points[
+            cKDTree(np.vstack([rim.points for rim in wall.rims])).query(points)[0] > away
+        ]
     return cKDTree(beads).query(points)[0].max()
 
 
@@ -70,7 +72,9 @@ def test_at_the_end_of_the_wall_the_beads_are_open_and_finish_it(torus):
     wall, layers = torus
     assert [layer[0].closed for layer in layers] == [True] * 10 + [False] * (len(layers) - 10)
     rims = Rims.of(wall.rims)
-    assert [rims.ends_of(layer[0]) for layer in layers] == [False] * 10 + [True] * (len(layers) - 10)
+    assert [rims.ends_of(layer[0]) for layer in layers] == [False] * 10 + [True] * (
+        len(layers) - 10
+    )
     for layer in layers[10:]:
         u = np.arctan2(layer[0].points[[0, -1], 2], layer[0].points[[0, -1], 0] + 60.0)
         assert u == pytest.approx(np.pi / 2, abs=1e-9)
@@ -173,13 +177,17 @@ def test_a_wall_may_begin_at_its_own_edge():
     wall = tube(FLOOR, 12.0, 1.5, low=0.0)
     assert not wall.behind.any()
     layers = fronts.layers(wall, 3.0).fronts
-    assert [layer[0].points[0, 2] for layer in layers] == pytest.approx([0.0, 3.0, 6.0, 9.0, 12.0], abs=1e-9)
+    assert [layer[0].points[0, 2] for layer in layers] == pytest.approx(
+        [0.0, 3.0, 6.0, 9.0, 12.0], abs=1e-9
+    )
 
 
 def test_the_mesh_decides_no_place():
     """A finer mesh gives the same fronts."""
     floor = HalfSpace(np.zeros(3), np.array([0.2, 0.3, 1.0]))
-    coarse, fine = (fronts.layers(tube(floor, 20.0, step, low=-10.0), 2.0).fronts for step in (2.0, 0.9))
+    coarse, fine = (
+        fronts.layers(tube(floor, 20.0, step, low=-10.0), 2.0).fronts for step in (2.0, 0.9)
+    )
     assert [len(layer) for layer in coarse] == [len(layer) for layer in fine]
     for one, other in zip(coarse, fine):
         for front in one:

@@ -17,7 +17,9 @@ CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (-10.0, 10.0) for z i
 
 @pytest.mark.parametrize("turned", [0.0, 0.8, math.pi / 2])
 @pytest.mark.parametrize("off", [-3e-5, -1e-9, 0.0, 1e-9, 3e-5])
-@pytest.mark.parametrize("surface", [Developable(60.0), Developable(60.0, 200.0)], ids=["cylinder", "cone"])
+@pytest.mark.parametrize(
+    "surface", [Developable(60.0), Developable(60.0, 200.0)], ids=["cylinder", "cone"]
+)
 def test_a_flat_top_that_touches_a_layer_does_not_divide_it(surface, off, turned):
     """A box with its top in the tangent plane of the layer at 16 mm, turned about the normal there: one loop with the area
     of its cut, and none of a box that stands on that plane."""
@@ -26,15 +28,20 @@ def test_a_flat_top_that_touches_a_layer_does_not_divide_it(surface, off, turned
     foot[0] = foot[0] or 60.0
     out, up = np.array([cos, 0.0, sin]), np.array([-sin, 0.0, cos])
     side = np.array([0.0, 1.0, 0.0])
-    along, across = math.cos(turned) * up + math.sin(turned) * side, math.cos(turned) * side - math.sin(turned) * up
+    along, across = (
+        math.cos(turned) * up + math.sin(turned) * side,
+        math.cos(turned) * side - math.sin(turned) * up,
+    )
     assert abs(float(surface.distance(foot[None])[0])) < 1e-12
 
     def loops(low, high):
         depth = low + (high - low) * CORNERS[:, :1]
-        vertices, faces, _ = hull(foot + depth * out + CORNERS[:, 1:2] * across + CORNERS[:, 2:] * along)
+        vertices, faces, _ = hull(
+            foot + depth * out + CORNERS[:, 1:2] * across + CORNERS[:, 2:] * along
+        )
         return cut(Facets(surface, vertices, faces), 16.0, 0.0125)
 
-    loop, = loops(-8.0, 16.0 + off)
+    (loop,) = loops(-8.0, 16.0 + off)
     assert loop.turns == 0
     assert np.abs(surface.distance(loop.points) - 16.0).max() < 1e-9
     area = 0.5 * doubled_area(surface.offset(16.0).flat(loop.points))

@@ -43,7 +43,10 @@ def cut(rule, first, points):
     if rule == "iso-parameter":
         return [layer.v for layer in iso_parameter.layers(TORUS, first, 5.0, 0.9)]
     if rule == "smooth":
-        return [smoothed.layer.v for smoothed in smooth_spacing.layers(TORUS, first, 5.0, 0.9, points=points)]
+        return [
+            smoothed.layer.v
+            for smoothed in smooth_spacing.layers(TORUS, first, 5.0, 0.9, points=points)
+        ]
     return [layer.v for layer in constant_distance.layers(TORUS, first, 5.0, 0.9, points)]
 
 
@@ -132,7 +135,9 @@ def small_rings(count):
     angle = np.linspace(0.0, 2.0 * np.pi, 33)
     found = []
     for k in range(count):
-        points = np.column_stack([10.0 * k + 2.0 * np.cos(angle), 2.0 * np.sin(angle), np.zeros(33)])
+        points = np.column_stack(
+            [10.0 * k + 2.0 * np.cos(angle), 2.0 * np.sin(angle), np.zeros(33)]
+        )
         points[-1] = points[0]
         slope = np.column_stack([-2.0 * np.sin(angle), 2.0 * np.cos(angle), np.zeros(33)])
         found.append(SpaceCurve(angle, points, slope, slope, True))

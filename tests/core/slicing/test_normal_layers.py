@@ -13,14 +13,21 @@ from freecad_am.core.slicing.tubes import normal_layers
 from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid, local_distances
 
 
-@pytest.mark.parametrize("bend, tube, height", [(60.0, 15.0, 5.0), (60.0, 25.0, 5.0), (60.0, 15.0, 1.0), (40.0, 5.0, 2.0)])
+@pytest.mark.parametrize(
+    "bend, tube, height",
+    [(60.0, 15.0, 5.0), (60.0, 25.0, 5.0), (60.0, 15.0, 1.0), (40.0, 5.0, 2.0)],
+)
 def test_the_distance_on_a_torus_is_the_closed_form(bend, tube, height):
     torus = Torus(bend, tube)
-    first = on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 90))
+    first = on_implicit(
+        torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 90)
+    )
     layers = normal_layers.layers(torus, first, height, 0.5 * np.pi, 180)
     middles = first.u.min() + np.arange(len(layers)) * height / bend
     for layer, middle in zip(layers, middles):
-        np.testing.assert_allclose(layer.u, middle, atol=1e-7)  # planes through the torus' axis cut it in u = const
+        np.testing.assert_allclose(
+            layer.u, middle, atol=1e-7
+        )  # planes through the torus' axis cut it in u = const
     assert layers[-2].u.min() < 0.5 * np.pi <= layers[-1].u.min()
     angle = height / bend
     for below, above in zip(layers[:-1:5], layers[1::5]):
@@ -68,4 +75,6 @@ def test_what_planes_do_not_cut_in_one_curve_is_refused():
     assert len(normal_layers.layers(turned, first, 2.0, 1.5)) > 5  # tight, yet still cut once
     disc = Cone(20.0, 0.5 * np.pi)  # its sections all have one middle: there is no centreline
     with pytest.raises(InputError, match="centreline"):
-        normal_layers.layers(disc, WallLayer.of(disc, even_grid(disc, 90), still, still, still), 2.0, 9.0)
+        normal_layers.layers(
+            disc, WallLayer.of(disc, even_grid(disc, 90), still, still, still), 2.0, 9.0
+        )

@@ -65,12 +65,18 @@ def test_sections_of_random_hulls(seed):
 def test_sums_over_slabs_are_the_volume():
     points, faces = hull(np.random.default_rng(3).normal(size=(60, 3)) * 20.0)
     edges = np.linspace(points[:, 2].min(), points[:, 2].max(), 4001)
-    areas = [area(loops) for loops in PlaneCuts(points, faces).loops(0.5 * (edges[1:] + edges[:-1]))]
+    areas = [
+        area(loops) for loops in PlaneCuts(points, faces).loops(0.5 * (edges[1:] + edges[:-1]))
+    ]
     assert np.sum(areas) * np.diff(edges)[0] == pytest.approx(volume(points, faces), rel=1e-6)
 
 
 def test_holes_and_islands_have_their_sense():
-    outer, void, far = box((0, 0, 0), (30, 20, 10)), inside_out(box((5, 5, 2), (25, 15, 8))), box((40, 0, 0), (50, 5, 10))
+    outer, void, far = (
+        box((0, 0, 0), (30, 20, 10)),
+        inside_out(box((5, 5, 2), (25, 15, 8))),
+        box((40, 0, 0), (50, 5, 10)),
+    )
     (loops,) = PlaneCuts(*joined(outer, void, far)).loops([5.0])
     assert sorted(round(area([loop]), 9) for loop in loops) == [-200.0, 50.0, 600.0]
 
@@ -79,8 +85,15 @@ def test_holes_and_islands_have_their_sense():
 def test_faces_edges_and_vertices_in_the_plane(height):
     """A step: faces lie in 0, 5 and 15; a roof whose ridge is an edge in 10. Cuts are those from just below."""
     lower, upper = box((0, 0, 0), (30, 20, 5)), box((0, 0, 5), (10, 20, 15))
-    roof = hull(np.array([[40, 0, 0], [60, 0, 0], [60, 10, 0], [40, 10, 0], [40, 5, 10], [60, 5, 10]], dtype=float))
-    spike = hull(np.array([[70, 0, 5], [80, 0, 5], [75, 8, 5], [75, 3, 15], [75, 3, 0]], dtype=float))
+    roof = hull(
+        np.array(
+            [[40, 0, 0], [60, 0, 0], [60, 10, 0], [40, 10, 0], [40, 5, 10], [60, 5, 10]],
+            dtype=float,
+        )
+    )
+    spike = hull(
+        np.array([[70, 0, 5], [80, 0, 5], [75, 8, 5], [75, 3, 15], [75, 3, 0]], dtype=float)
+    )
     solid = joined(lower, upper, roof, spike)
     just_below = next(PlaneCuts(*solid).loops([height - 1e-9]))
     (loops,) = PlaneCuts(*solid).loops([height])
@@ -93,8 +106,12 @@ def test_what_touches_only_closes_all_the_same():
     rng = np.random.default_rng(5)
     points = rng.integers(0, 4, size=(200, 3)).astype(float) * 5.0
     solid = hull(np.unique(points, axis=0))
-    for height, loops in zip((5.0, 10.0, 15.0), PlaneCuts(*solid).loops([5.0, 10.0, 15.0]), strict=True):
-        assert area(loops) == pytest.approx(section_of_hull(solid[0] - (0, 0, 1e-9), height - 2e-9), abs=1e-5)
+    for height, loops in zip(
+        (5.0, 10.0, 15.0), PlaneCuts(*solid).loops([5.0, 10.0, 15.0]), strict=True
+    ):
+        assert area(loops) == pytest.approx(
+            section_of_hull(solid[0] - (0, 0, 1e-9), height - 2e-9), abs=1e-5
+        )
 
 
 def test_a_solid_that_touches_itself_along_an_edge():
@@ -114,10 +131,15 @@ def test_planes_in_blocks_are_the_same(monkeypatch):
     heights = np.linspace(-20.0, 20.0, 50)
     whole = [area(loops) for loops in PlaneCuts(*solid).loops(heights)]
     monkeypatch.setattr(plane_sections, "AT_ONCE", 17)
-    np.testing.assert_array_equal([area(loops) for loops in PlaneCuts(*solid).loops(heights)], whole)
+    np.testing.assert_array_equal(
+        [area(loops) for loops in PlaneCuts(*solid).loops(heights)], whole
+    )
 
 
 def test_nothing_to_cut():
-    flat = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype=float), np.array([[0, 1, 2], [0, 2, 1]])
+    flat = (
+        np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype=float),
+        np.array([[0, 1, 2], [0, 2, 1]]),
+    )
     assert list(PlaneCuts(*flat).loops([-1.0, 0.0, 1.0])) == [[], [], []]
     assert list(PlaneCuts(*box((0, 0, 0), (1, 1, 1))).loops([])) == []

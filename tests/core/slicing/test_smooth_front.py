@@ -21,9 +21,12 @@ WALLS = {
 }
 
 
-@pytest.fixture(scope="module", params=[
-    pytest.param(name, marks=pytest.mark.long if name == "an opening" else ()) for name in WALLS
-])
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(name, marks=pytest.mark.long if name == "an opening" else ()) for name in WALLS
+    ],
+)
 def cut(request):
     make, height = WALLS[request.param]
     wall = make()
@@ -39,7 +42,9 @@ def sharpest(wall, front):
     ahead, back = points[6:] - points[3:-3], points[3:-3] - points[:-6]
     side = np.cross(normal[3:-3], back)
     angle = np.abs(np.arctan2((ahead * side).sum(1), (ahead * back).sum(1)))
-    return (angle / (0.5 * (np.linalg.norm(ahead, axis=1) + np.linalg.norm(back, axis=1)))).max(initial=0.0)
+    return (angle / (0.5 * (np.linalg.norm(ahead, axis=1) + np.linalg.norm(back, axis=1)))).max(
+        initial=0.0
+    )
 
 
 @pytest.mark.always("a half shell")
@@ -49,7 +54,9 @@ def test_the_band_is_held_and_the_wall_kept_between_the_nodes(cut):
         for front in above:
             points = front.at(front.refined(11))[0]
             distance = brute(points, below)
-            assert distance.min() >= (1.0 - BAND) * height and distance.max() <= (1.0 + BAND) * height
+            assert (
+                distance.min() >= (1.0 - BAND) * height and distance.max() <= (1.0 + BAND) * height
+            )
             assert np.linalg.norm(wall.project(points)[0] - points, axis=1).max() < 1e-4
 
 
@@ -60,7 +67,12 @@ def test_corners_are_rounded_to_what_is_asked_or_what_the_band_allows(cut):
     turns = np.array([turn(wall, front) for front in long])
     measured = np.array([sharpest(wall, front) for front in long])
     assert (measured < turns + 1e-3).all()  # and no sharper than they say
-    before = [turn(wall, front) for layer in exact.fronts[1:] for front in layer if front.length > 8.0 * height]
+    before = [
+        turn(wall, front)
+        for layer in exact.fronts[1:]
+        for front in layer
+        if front.length > 8.0 * height
+    ]
     assert sum(rate > LIMIT for rate in before) > 3
     # where two fronts stand against the back of an opening and merge, the band does not suffice
     assert (turns > LIMIT).sum() <= (8 if name == "an opening" else 0)
@@ -87,5 +99,7 @@ def test_where_fronts_turn_little_nothing_is_changed():
     wall = ball(HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0])), 2500)
     exact, smooth = (fronts.layers(wall, 2.0, how).fronts for how in (None, Smoothing(BAND, LIMIT)))
     assert len(exact) == len(smooth)
-    for one, other in zip(exact, smooth):  # circles; the last ones turn more than asked, and by nothing can be helped
+    for one, other in zip(
+        exact, smooth
+    ):  # circles; the last ones turn more than asked, and by nothing can be helped
         assert brute(one[0].at(one[0].refined(4))[0], other) == pytest.approx(0.0, abs=1e-3)

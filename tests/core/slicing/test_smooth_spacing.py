@@ -17,7 +17,9 @@ HEIGHT, BAND = 5.0, 0.2
 
 @pytest.fixture(scope="module")
 def first():
-    return on_implicit(TORUS, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(TORUS, 360))
+    return on_implicit(
+        TORUS, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(TORUS, 360)
+    )
 
 
 @pytest.mark.parametrize("degrees, reached", [(6.0, 6.0), (2.0, 4.0)])
@@ -28,13 +30,17 @@ def test_the_bend_is_built_without_a_corner_within_the_band(first, degrees, reac
         distance = local_distances(smoothed.layer, below, 10)[1]
         assert distance.min() >= (1.0 - BAND) * HEIGHT
         assert distance.max() <= (1.0 + BAND) * HEIGHT
-        assert (smoothed.least, smoothed.most) == pytest.approx((distance.min(), distance.max()), abs=1e-3)
+        assert (smoothed.least, smoothed.most) == pytest.approx(
+            (distance.min(), distance.max()), abs=1e-3
+        )
         assert not len(smoothed.layer.curve.corners)
         assert smoothed.turn <= np.radians(reached)
         below = smoothed.layer
     exact = constant_distance.layers(TORUS, first, HEIGHT, 0.5 * np.pi)
     sharpest = [smooth_spacing.turns_in_wall(TORUS, layer).max() for layer in exact[6:]]
-    assert min(sharpest) > np.radians(200.0)  # a corner of 69 degrees or more over the first arc behind it
+    assert min(sharpest) > np.radians(
+        200.0
+    )  # a corner of 69 degrees or more over the first arc behind it
     assert abs(len(layers) + 1 - len(exact)) <= 1
 
 
@@ -45,13 +51,20 @@ def test_wherever_the_search_begins_it_finds_a_layer_that_keeps_the_limit(first)
         for k in range(len(smooth_spacing.WEIGHTS))
     ]
     assert max(found) <= limit
-    narrow = [smooth_spacing.next_layer(TORUS, first, HEIGHT, grid, 0.01, 1e-3, weight=k) for k in range(0, 12, 4)]
-    assert all(layer.least >= 0.99 * HEIGHT and layer.most <= 1.01 * HEIGHT for layer in narrow)  # the band holds
+    narrow = [
+        smooth_spacing.next_layer(TORUS, first, HEIGHT, grid, 0.01, 1e-3, weight=k)
+        for k in range(0, 12, 4)
+    ]
+    assert all(
+        layer.least >= 0.99 * HEIGHT and layer.most <= 1.01 * HEIGHT for layer in narrow
+    )  # the band holds
     assert min(layer.turn for layer in narrow) > 1e-3  # and it is told what that costs
 
 
 def test_where_the_front_is_smooth_anyway_its_distance_stays(first):
-    (layer,) = smooth_spacing.layers(TORUS, first, HEIGHT, first.u.min() + 1e-6, BAND, np.radians(6.0))
+    (layer,) = smooth_spacing.layers(
+        TORUS, first, HEIGHT, first.u.min() + 1e-6, BAND, np.radians(6.0)
+    )
     assert (layer.least, layer.most) == pytest.approx((HEIGHT, HEIGHT), abs=0.02)
     exact = constant_distance.next_layer(TORUS, first, HEIGHT, even_grid(TORUS, 360))
     assert exact.curve.nearest(layer.layer.curve.points)[0] == pytest.approx(0.0, abs=0.02)
@@ -73,8 +86,12 @@ def test_the_turn_within_the_wall_is_the_geodesic_curvature():
 def test_a_corner_counts_with_its_whole_turn():
     tube, v = cylinder(20.0), even_grid(cylinder(20.0), 180)
     rise = np.where(v[:-1] < np.pi, 8.0, -8.0)
-    zigzag = WallLayer.of(tube, v, 8.0 * np.minimum(v, 2 * np.pi - v), np.r_[rise[-1], rise], np.r_[rise, rise[0]])
-    turns = smooth_spacing.turns_in_wall(tube, zigzag) * np.linalg.norm(np.diff(zigzag.curve.points, axis=0), axis=1)
+    zigzag = WallLayer.of(
+        tube, v, 8.0 * np.minimum(v, 2 * np.pi - v), np.r_[rise[-1], rise], np.r_[rise, rise[0]]
+    )
+    turns = smooth_spacing.turns_in_wall(tube, zigzag) * np.linalg.norm(
+        np.diff(zigzag.curve.points, axis=0), axis=1
+    )
     assert turns[[0, 90]] == pytest.approx(2.0 * np.arctan(0.4), abs=1e-4)
     assert np.delete(turns, [0, 90]) == pytest.approx(0.0, abs=1e-4)
 

@@ -15,17 +15,26 @@ from freecad_am.core.slicing.solids.standing import hub_among, on_hub
 from freecad_am.core.slicing.solids.unrolled import count, cut, opened
 
 LOWER = Base("Face1", Developable(50.0), np.eye(4))
-UPPER = Base("Face2", Developable(30.0), upright(np.array([0.0, 0.0, 100.0]), np.array([0.0, 0.0, 1.0])))
+UPPER = Base(
+    "Face2", Developable(30.0), upright(np.array([0.0, 0.0, 100.0]), np.array([0.0, 0.0, 1.0]))
+)
 SEATS = [Seat(LOWER, (Stretch(0.0, 100.0),)), Seat(UPPER, (Stretch(0.0, 80.0),))]
 
 
 def sector(inner, outer, low, high, start=-0.3, end=0.3, steps=12, name="blade"):
     """A piece of a ring, its foot exactly on the cylinder of radius `inner`."""
     angle = np.linspace(start, end, steps + 1)
-    rows = [np.stack([r * np.cos(angle), r * np.sin(angle), np.full(steps + 1, z)], axis=1)
-            for r, z in ((inner, low), (outer, low), (outer, high), (inner, high))]
+    rows = [
+        np.stack([r * np.cos(angle), r * np.sin(angle), np.full(steps + 1, z)], axis=1)
+        for r, z in ((inner, low), (outer, low), (outer, high), (inner, high))
+    ]
     n = steps + 1
-    faces = [(0, n, 2 * n), (0, 2 * n, 3 * n), (n - 1, 3 * n - 1, 2 * n - 1), (n - 1, 4 * n - 1, 3 * n - 1)]
+    faces = [
+        (0, n, 2 * n),
+        (0, 2 * n, 3 * n),
+        (n - 1, 3 * n - 1, 2 * n - 1),
+        (n - 1, 4 * n - 1, 3 * n - 1),
+    ]
     for k in range(4):
         for j in range(steps):
             a, b, c, d = k * n + j, k * n + j + 1, (k + 1) % 4 * n + j, (k + 1) % 4 * n + j + 1
@@ -34,10 +43,18 @@ def sector(inner, outer, low, high, start=-0.3, end=0.3, steps=12, name="blade")
 
 
 def test_a_solid_stands_where_its_contour_is_longest():
-    low, high = sector(50.0, 70.0, 20.0, 60.0, name="low"), sector(30.0, 60.0, 110.0, 160.0, name="high")
-    through = sector(20.0, 70.0, 90.0, 160.0, 1.0, 1.6, name="both")  # 10 mm of the lower, 60 of the upper, reaching in
+    low, high = (
+        sector(50.0, 70.0, 20.0, 60.0, name="low"),
+        sector(30.0, 60.0, 110.0, 160.0, name="high"),
+    )
+    through = sector(
+        20.0, 70.0, 90.0, 160.0, 1.0, 1.6, name="both"
+    )  # 10 mm of the lower, 60 of the upper, reaching in
     found = on_hub([high, low, through], SEATS, 0.01, "part")
-    assert [[body.name for body in group.bodies] for group in found.groups] == [["low"], ["high", "both"]]
+    assert [[body.name for body in group.bodies] for group in found.groups] == [
+        ["low"],
+        ["high", "both"],
+    ]
     assert [group.base.name for group in found.groups] == ["Face1", "Face2"]
 
 
@@ -50,21 +67,27 @@ def test_a_foot_that_lies_on_the_hub_is_cut_whole():
         assert len(loops) == 1
         assert np.abs(LOWER.surface.distance(loops[0].points)).max() < 1e-9
         flat = opened(LOWER.surface, [loops], 0.0, "here").borders[0][0]
-        area = 0.5 * (flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1]).sum()
+        area = (
+            0.5
+            * (flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1]).sum()
+        )
         assert area == pytest.approx(50.0 * 0.6 * 40.0, rel=1e-3)
 
 
 def test_there_are_as_many_layers_as_fit():
     body = sector(50.0, 70.0, 20.0, 60.0)
     facets = Facets(LOWER.surface, body.vertices, body.triangles)
-    assert count(facets, 2.0, 0.0, 0.01) == 10  # the eleventh would lie on the outer face, with nothing above it
+    assert (
+        count(facets, 2.0, 0.0, 0.01) == 10
+    )  # the eleventh would lie on the outer face, with nothing above it
     assert count(facets, 3.0, 0.0, 0.01) == 7
     assert count(facets, 2.0, 5.0, 0.01) == 13
 
 
 def test_solids_beside_the_hub_are_refused():
     for body, words in (
-        (sector(60.0, 70.0, 20.0, 60.0), "10 mm outside of Face1"), (sector(20.0, 40.0, 20.0, 60.0), "inside of the hub"),
+        (sector(60.0, 70.0, 20.0, 60.0), "10 mm outside of Face1"),
+        (sector(20.0, 40.0, 20.0, 60.0), "inside of the hub"),
         (sector(20.0, 40.0, 200.0, 220.0), "beside the face"),
     ):
         seats = SEATS[:1] if "inside" in words else SEATS
@@ -93,7 +116,10 @@ def test_solids_in_another_unit_are_told_so(factor, unit):
 
 
 def test_the_hub_is_what_others_stand_on():
-    blades = [sector(50.0, 70.0, 20.0, 60.0, start, start + 0.4, name=f"{start}") for start in (0.0, 1.0, 2.0)]
+    blades = [
+        sector(50.0, 70.0, 20.0, 60.0, start, start + 0.4, name=f"{start}")
+        for start in (0.0, 1.0, 2.0)
+    ]
     shaft = sector(10.0, 50.0, 0.0, 100.0, 0.0, 6.0, 60, name="shaft")
     found = hub_among([blades[0], shaft, *blades[1:]], [[], SEATS[:1], [], []], 0.01, "part")
     assert found == 1
@@ -105,7 +131,9 @@ def test_the_hub_is_what_others_stand_on():
 @pytest.mark.parametrize("turn", [0.0, 0.7, 3.1, -2.0, 5.5])
 def test_the_middle_of_a_sector_is_opposite_to_its_gap(turn):
     body = sector(50.0, 60.0, 0.0, 10.0, turn - 0.4, turn + 0.4)
-    assert math.remainder(middle_azimuth(LOWER, body.vertices) - turn, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-8)
+    assert math.remainder(
+        middle_azimuth(LOWER, body.vertices) - turn, 2.0 * math.pi
+    ) == pytest.approx(0.0, abs=1e-8)
 
 
 @pytest.mark.parametrize(("one", "other"), [
@@ -116,12 +144,20 @@ def test_the_middle_of_a_sector_is_opposite_to_its_gap(turn):
     (((50, 60, 40, 50), (-0.6, 0.6)), ((48, 55, 10, 90), (-0.1, 0.1))),
 ])  # fmt: skip
 def test_solids_that_fill_the_same_place_are_refused_with_it(one, other):
-    bodies = [sector(*size, *turn, name=name) for (size, turn), name in ((one, "one"), (other, "other"))]
+    bodies = [
+        sector(*size, *turn, name=name) for (size, turn), name in ((one, "one"), (other, "other"))
+    ]
     for pair in (bodies, bodies[::-1]):
         with pytest.raises(InputError) as caught:
             on_hub(pair, SEATS, 0.01, "part")
-        assert caught.value.code == "OVERLAP" and {"one", "other"} <= {caught.value.where, *caught.value.message.split()}
-        x, y, z = (float(text) for text in caught.value.message.partition("(")[2].partition(")")[0].split(","))
+        assert caught.value.code == "OVERLAP" and {"one", "other"} <= {
+            caught.value.where,
+            *caught.value.message.split(),
+        }
+        x, y, z = (
+            float(text)
+            for text in caught.value.message.partition("(")[2].partition(")")[0].split(",")
+        )
         for (inner, outer, low, high), (start, end) in (one, other):
             assert inner * 0.98 < math.hypot(x, y) < outer + 1e-3 and low - 1e-3 <= z <= high + 1e-3
             assert start - 1e-4 <= math.atan2(y, x) <= end + 1e-4
@@ -129,12 +165,17 @@ def test_solids_that_fill_the_same_place_are_refused_with_it(one, other):
 
 def test_solids_that_touch_or_meet_within_the_hub_are_not_refused():
     one = sector(50.0, 70.0, 20.0, 60.0)
-    beside, above = sector(50.0, 70.0, 20.0, 60.0, 0.3, 0.9, name="beside"), sector(50.0, 80.0, 60.0, 70.0, name="above")
+    beside, above = (
+        sector(50.0, 70.0, 20.0, 60.0, 0.3, 0.9, name="beside"),
+        sector(50.0, 80.0, 60.0, 70.0, name="above"),
+    )
     below = [sector(30.0, 49.9, 10.0, 90.0, -2.0, 2.0, 60, name="b")]
     assert len(on_hub([one, beside, above], SEATS[:1], 0.01, "part").groups[0].bodies) == 3
     with pytest.raises(InputError, match="inside of the hub"):
         on_hub([one, *below], SEATS[:1], 0.01, "part")
-    deep = [sector(10.0, 70.0, 20.0, 60.0, *turn, name=str(turn)) for turn in ((-1.0, 0.0), (0.05, 1.0))]
+    deep = [
+        sector(10.0, 70.0, 20.0, 60.0, *turn, name=str(turn)) for turn in ((-1.0, 0.0), (0.05, 1.0))
+    ]
     assert len(on_hub(deep, SEATS[:1], 0.01, "part").groups[0].bodies) == 2
 
 
@@ -144,12 +185,21 @@ def test_a_solid_beside_part_of_a_cylinder_does_not_stand_on_it(turn):
     half = Seat(LOWER, (Stretch(0.0, 100.0, turn % (2.0 * math.pi), math.pi),))
     inner = Base("inner", Developable(49.5), np.eye(4))
     rest = Seat(inner, (Stretch(0.0, 100.0, (turn + math.pi) % (2.0 * math.pi), math.pi),))
-    on_half = [sector(40.0, 70.0, 10.0, 60.0, turn + a, turn + a + 0.5, name=f"half {a}") for a in (0.0, 1.3, math.pi - 0.5)]
-    on_rest = [sector(40.0, 70.0, 10.0, 60.0, turn - a, turn - a + 0.5, name=f"rest {a}") for a in (0.6, 1.8, 3.0)]
+    on_half = [
+        sector(40.0, 70.0, 10.0, 60.0, turn + a, turn + a + 0.5, name=f"half {a}")
+        for a in (0.0, 1.3, math.pi - 0.5)
+    ]
+    on_rest = [
+        sector(40.0, 70.0, 10.0, 60.0, turn - a, turn - a + 0.5, name=f"rest {a}")
+        for a in (0.6, 1.8, 3.0)
+    ]
     for seats in ([half, rest], [rest, half]):
         found = on_hub([*on_half, *on_rest], seats, 0.01, "part")
-        assert {group.base.name: {body.name for body in group.bodies} for group in found.groups} == {
-            "Face1": {body.name for body in on_half}, "inner": {body.name for body in on_rest},
+        assert {
+            group.base.name: {body.name for body in group.bodies} for group in found.groups
+        } == {
+            "Face1": {body.name for body in on_half},
+            "inner": {body.name for body in on_rest},
         }
     with pytest.raises(InputError, match="beside the face") as caught:
         on_hub(on_rest[1:2], [half], 0.01, "part")
@@ -163,7 +213,11 @@ def test_a_solid_beside_part_of_a_cylinder_does_not_stand_on_it(turn):
 def test_faces_of_one_cylinder_keep_their_own_ranges():
     """All round at the bottom, a quarter above: a solid above, beside the quarter, stands on nothing."""
     seat = Seat(LOWER, (Stretch(0.0, 30.0), Stretch(30.0, 100.0, 0.0, 0.5 * math.pi)))
-    for low, high, start, stands in ((5.0, 25.0, 2.0, True), (40.0, 90.0, 0.2, True), (40.0, 90.0, 2.0, False)):
+    for low, high, start, stands in (
+        (5.0, 25.0, 2.0, True),
+        (40.0, 90.0, 0.2, True),
+        (40.0, 90.0, 2.0, False),
+    ):
         body = sector(40.0, 70.0, low, high, start, start + 0.5)
         if stands:
             assert on_hub([body], [seat], 0.01, "part").groups[0].base.name == "Face1"
@@ -174,14 +228,22 @@ def test_faces_of_one_cylinder_keep_their_own_ranges():
 
 def test_overlapping_boxes_along_the_axes_are_refused():
     def box(name, low):
-        corners = np.array([[x, y, z] for x in (0, 30) for y in (0, 20) for z in (0, 20)], dtype=float) + low
+        corners = (
+            np.array([[x, y, z] for x in (0, 30) for y in (0, 20) for z in (0, 20)], dtype=float)
+            + low
+        )
         sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
         faces = [corner for a, b, c, d in sides for corner in ((a, b, c), (a, c, d))]
         return Body(name, corners, np.array(faces, dtype=np.int64))
 
     seats = [Seat(Base("hub", Developable(60.0), np.eye(4)), (Stretch(-math.inf, math.inf),))]
     with pytest.raises(InputError, match="fill the same place") as caught:
-        on_hub([box("one", [50.0, -10.0, -10.0]), box("two", [55.0, -5.0, -5.0])], seats, 0.02, "part")
+        on_hub(
+            [box("one", [50.0, -10.0, -10.0]), box("two", [55.0, -5.0, -5.0])], seats, 0.02, "part"
+        )
     assert caught.value.code == "OVERLAP"
-    apart = [box("one", [50.0, -10.0, -10.0]), box("two", [55.0, 10.0, -5.0])]  # a common side is none
+    apart = [
+        box("one", [50.0, -10.0, -10.0]),
+        box("two", [55.0, 10.0, -5.0]),
+    ]  # a common side is none
     assert len(on_hub(apart, seats, 0.02, "part").groups[0].bodies) == 2

@@ -18,13 +18,17 @@ TORUS = Torus(60.0, 15.0)
 def on_layer(layer):
     """Local build directions (m, 3) at the nodes of a layer of the bend."""
     _, along, _ = TORUS.derivatives(layer.u, layer.v)
-    return wall_direction.local(normals(TORUS, layer.u, layer.v), layer.curve.into, layer.curve.out, along)
+    return wall_direction.local(
+        normals(TORUS, layer.u, layer.v), layer.curve.into, layer.curve.out, along
+    )
 
 
 @pytest.fixture(scope="module")
 def layers():
     pipe = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
-    return constant_distance.layers(TORUS, on_implicit(TORUS, pipe, (0.0, 1.5), even_grid(TORUS, 360)), 5.0, np.pi / 2)
+    return constant_distance.layers(
+        TORUS, on_implicit(TORUS, pipe, (0.0, 1.5), even_grid(TORUS, 360)), 5.0, np.pi / 2
+    )
 
 
 def test_local_directions_are_tangent_to_the_wall_and_normal_to_the_bead(layers):
@@ -34,7 +38,9 @@ def test_local_directions_are_tangent_to_the_wall_and_normal_to_the_bead(layers)
         smooth[-1] = smooth[0]
         _, along, _ = TORUS.derivatives(layer.u, layer.v)
         assert np.linalg.norm(build, axis=1) == pytest.approx(1.0)
-        assert (build * normals(TORUS, layer.u, layer.v)).sum(axis=1) == pytest.approx(0.0, abs=1e-12)
+        assert (build * normals(TORUS, layer.u, layer.v)).sum(axis=1) == pytest.approx(
+            0.0, abs=1e-12
+        )
         tangent = layer.curve.out / np.linalg.norm(layer.curve.out, axis=1, keepdims=True)
         assert (build * tangent).sum(axis=1)[smooth] == pytest.approx(0.0, abs=1e-9)
         assert (build * along).sum(axis=1).min() > 0.0
@@ -63,7 +69,9 @@ def test_projected_directions_turn_about_one_axis_only(layers):
     flat = wall_direction.in_plane(build, np.array([0.0, 1.0, 0.0]))
     assert flat[:, 1] == pytest.approx(0.0, abs=1e-15)
     assert np.linalg.norm(flat, axis=1) == pytest.approx(1.0)
-    assert np.cross(flat, build)[:, [0, 2]] == pytest.approx(-build[:, [1]] * flat[:, [2, 0]] * [1, -1], abs=1e-12)
+    assert np.cross(flat, build)[:, [0, 2]] == pytest.approx(
+        -build[:, [1]] * flat[:, [2, 0]] * [1, -1], abs=1e-12
+    )
     with pytest.raises(InputError, match="plane of symmetry"):
         wall_direction.in_plane(np.array([[0.0, 1.0, 0.0]]), np.array([0.0, 1.0, 0.0]))
 
@@ -78,7 +86,9 @@ def test_the_tool_axis_leads_and_tilts_by_the_angles_asked():
     outside = np.cross(tangent, build)
     tool = wall_direction.held(build, tangent, outside, 0.3, 0.2)
     assert np.arcsin((tool * outside).sum(axis=1)) == pytest.approx(0.2)
-    assert np.arctan2((tool * tangent).sum(axis=1), (tool * build).sum(axis=1)) == pytest.approx(0.3)
+    assert np.arctan2((tool * tangent).sum(axis=1), (tool * build).sum(axis=1)) == pytest.approx(
+        0.3
+    )
     assert wall_direction.held(build, tangent, outside, 0.0, 0.0) is build
 
 
@@ -99,7 +109,9 @@ def test_the_turn_stays_below_its_limit_and_departs_no_farther_than_told(layers,
 
 def test_a_sharp_jump_on_a_straight_open_bead():
     points = np.linspace(0.0, 100.0, 401)[:, None] * [1.0, 0.0, 0.0]
-    build = np.where(points[:, :1] < 60.0, [0.0, np.sin(0.5), np.cos(0.5)], [0.0, -np.sin(0.5), np.cos(0.5)])
+    build = np.where(
+        points[:, :1] < 60.0, [0.0, np.sin(0.5), np.cos(0.5)], [0.0, -np.sin(0.5), np.cos(0.5)]
+    )
     found, departure = wall_direction.limited(points, build, False, 0.1)
     assert wall_direction.turn_rates(points, found).max() <= 0.1
     touched = points[departure > 1e-9, 0]
@@ -115,7 +127,10 @@ def test_directions_beyond_the_level_stay_below_both_limits():
     most, rate = np.radians(100.0), np.radians(3.0)
     points = np.linspace(0.0, 100.0, 401)[:, None] * [1.0, 0.0, 0.0]
     azimuth = np.where(points[:, 0] < 60.0, 0.0, 1.2)
-    build = np.stack([np.sin(1.9) * np.cos(azimuth), np.sin(1.9) * np.sin(azimuth), np.full(401, np.cos(1.9))], axis=1)
+    build = np.stack(
+        [np.sin(1.9) * np.cos(azimuth), np.sin(1.9) * np.sin(azimuth), np.full(401, np.cos(1.9))],
+        axis=1,
+    )
     start, _ = wall_direction.capped(build, most)
     found, _ = wall_direction.limited(points, start, False, rate, most=most)
     assert wall_direction.turn_rates(points, found).max() <= rate
@@ -135,7 +150,9 @@ def test_a_limit_that_cannot_be_kept_is_refused():
 def test_a_short_bead_gets_the_mean_of_all_of_it_before_it_is_refused():
     """As one of a real wall, of 1.04 mm, which turns by 30 deg at one end; its mean has a direction."""
     points = np.linspace(0.0, 1.04, 26)[:, None] * [1.0, 0.0, 0.0]
-    angle = np.radians(np.where(np.arange(26) < 5, -18.0 - np.arange(26), 10.0 - 0.45 * np.arange(26)))
+    angle = np.radians(
+        np.where(np.arange(26) < 5, -18.0 - np.arange(26), 10.0 - 0.45 * np.arange(26))
+    )
     build = np.stack([np.sin(angle), 0.0 * angle, np.cos(angle)], axis=1)
     rate = np.radians(20.0)
     found, departure = wall_direction.limited(points, build, False, rate)
@@ -149,5 +166,7 @@ def test_directions_that_lean_over_too_far_are_turned_back_to_the_limit_alone():
     found, back = wall_direction.capped(leaning, 1.0)
     assert back == pytest.approx(1.5)
     assert np.arccos(found[:, 2]) == pytest.approx(np.minimum(angle, 1.0))
-    assert np.cross(found, leaning)[:, 2] == pytest.approx(0.0, abs=1e-12)  # in the same plane with the vertical
+    assert np.cross(found, leaning)[:, 2] == pytest.approx(
+        0.0, abs=1e-12
+    )  # in the same plane with the vertical
     assert wall_direction.capped(leaning, 2.6)[0] is leaning

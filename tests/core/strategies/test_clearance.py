@@ -15,34 +15,60 @@ from tests.swept_beads import Cone, Swept, in_platform
 
 DOME = Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)])
 SMALL_DOME = Meridian.chained([arc((0.0, 0.0), 12.0, 0.0, np.pi / 2)])
-BOTTLE = Meridian.chained([
-    line((20.0, 0.0), (20.0, 15.0)), arc((8.0, 15.0), 12.0, 0.0, np.pi / 2), line((8.0, 27.0), (4.0, 27.0)),
-])
-LAVAL = Meridian.chained([
-    line((30.0, 0.0), (30.0, 10.0)), arc((15.0, 10.0), 15.0, 0.0, np.pi / 3), arc((30.0, 36.0), 15.0, np.pi * 4 / 3, np.pi),
-    line((15.0, 36.0), (28.0, 80.0)),
-])
-VASE = Meridian.chained([arc((30.0, 20.0), 20.0, -np.pi / 2, 0.0), arc((15.0, 20.0), 35.0, 0.0, np.pi / 2.5)])
-HORN = Meridian.chained([arc((60.0, 0.0), 20.0, np.pi, np.pi / 2), line((60.0, 20.0), (75.0, 20.0))])
-LOW_HORN = Meridian.chained([arc((40.0, 0.0), 6.0, np.pi, np.pi / 2), line((40.0, 6.0), (50.0, 6.0))])
+BOTTLE = Meridian.chained(
+    [
+        line((20.0, 0.0), (20.0, 15.0)),
+        arc((8.0, 15.0), 12.0, 0.0, np.pi / 2),
+        line((8.0, 27.0), (4.0, 27.0)),
+    ]
+)
+LAVAL = Meridian.chained(
+    [
+        line((30.0, 0.0), (30.0, 10.0)),
+        arc((15.0, 10.0), 15.0, 0.0, np.pi / 3),
+        arc((30.0, 36.0), 15.0, np.pi * 4 / 3, np.pi),
+        line((15.0, 36.0), (28.0, 80.0)),
+    ]
+)
+VASE = Meridian.chained(
+    [arc((30.0, 20.0), 20.0, -np.pi / 2, 0.0), arc((15.0, 20.0), 35.0, 0.0, np.pi / 2.5)]
+)
+HORN = Meridian.chained(
+    [arc((60.0, 0.0), 20.0, np.pi, np.pi / 2), line((60.0, 20.0), (75.0, 20.0))]
+)
+LOW_HORN = Meridian.chained(
+    [arc((40.0, 0.0), 6.0, np.pi, np.pi / 2), line((40.0, 6.0), (50.0, 6.0))]
+)
 SLIM = NozzleParameters(half_angle=np.radians(8.0), diameter=0.4, length=40.0)
 STUBBY = NozzleParameters(half_angle=np.radians(50.0), diameter=3.0, length=15.0)
 USUAL = NozzleParameters()
 
 
-def planned(meridian, nozzle, platform=0.0, turn=None, height=3.0, width=8.0, path="layers", **build):
+def planned(
+    meridian, nozzle, platform=0.0, turn=None, height=3.0, width=8.0, path="layers", **build
+):
     start, end = turn or (0.0, 2.0 * np.pi)
     wall = RevolvedWall(meridian, np.eye(4), start, end, turn is None)
     strategy = RevolutionParameters(layer_height=height, chord_error=0.05, path=path)
     process = ProcessParameters(bead_width=width)
-    return revolution.plan(wall, strategy, BuildDirectionParameters(**build), process, nozzle, platform)
+    return revolution.plan(
+        wall, strategy, BuildDirectionParameters(**build), process, nozzle, platform
+    )
 
 
 def swept(toolpath):
-    return Swept([
-        (bead.points, bead.build, np.full(len(bead), toolpath.bead_width), np.full(len(bead), toolpath.layer_height), layer)
-        for layer, _, bead in toolpath
-    ])
+    return Swept(
+        [
+            (
+                bead.points,
+                bead.build,
+                np.full(len(bead), toolpath.bead_width),
+                np.full(len(bead), toolpath.layer_height),
+                layer,
+            )
+            for layer, _, bead in toolpath
+        ]
+    )
 
 
 def cone(nozzle):
@@ -69,17 +95,29 @@ def backs(free, toolpath):
 
 
 CASES = [
-    (DOME, USUAL, {}), (DOME, SLIM, {}), (DOME, STUBBY, {}), (SMALL_DOME, USUAL, {}), (BOTTLE, USUAL, {}),
-    (BOTTLE, SLIM, {}), (DOME, USUAL, {"lead": 0.2}), (DOME, USUAL, {"lead": -0.3, "tilt": 0.1}),
-    (BOTTLE, STUBBY, {"tilt": -0.2}), (BOTTLE, USUAL, {"lead": 0.4}), (HORN, STUBBY, {}), (LAVAL, USUAL, {}),
-    (VASE, USUAL, {}), (VASE, STUBBY, {}),
+    (DOME, USUAL, {}),
+    (DOME, SLIM, {}),
+    (DOME, STUBBY, {}),
+    (SMALL_DOME, USUAL, {}),
+    (BOTTLE, USUAL, {}),
+    (BOTTLE, SLIM, {}),
+    (DOME, USUAL, {"lead": 0.2}),
+    (DOME, USUAL, {"lead": -0.3, "tilt": 0.1}),
+    (BOTTLE, STUBBY, {"tilt": -0.2}),
+    (BOTTLE, USUAL, {"lead": 0.4}),
+    (HORN, STUBBY, {}),
+    (LAVAL, USUAL, {}),
+    (VASE, USUAL, {}),
+    (VASE, STUBBY, {}),
 ]
 
 
 @pytest.mark.parametrize(("meridian", "nozzle", "build"), CASES)
 @pytest.mark.parametrize("turn", [None, (0.3, 2.0)])
 @pytest.mark.always
-def test_the_nozzle_is_clear_of_wide_beads_and_would_not_be_with_less_tilt_back(meridian, nozzle, build, turn):
+def test_the_nozzle_is_clear_of_wide_beads_and_would_not_be_with_less_tilt_back(
+    meridian, nozzle, build, turn
+):
     free = planned(meridian, nozzle, turn=turn, clearance="none", max_tilt=np.pi, **build)
     toolpath = planned(meridian, nozzle, turn=turn, max_tilt=np.pi, **build)
     assert not [issue for issue in toolpath.issues if issue.level == "error"]
@@ -89,7 +127,9 @@ def test_the_nozzle_is_clear_of_wide_beads_and_would_not_be_with_less_tilt_back(
         some, own = np.unique(np.linspace(0, len(bead) - 1, 5).astype(int)), laid.layer_began(k)
 
         def deepest(point, tool, k=k, bead=bead, own=own):
-            return laid.deepest(bead.points[point], tool, laid.begin[k] + point + 1, own, cone(nozzle), low)
+            return laid.deepest(
+                bead.points[point], tool, laid.begin[k] + point + 1, own, cone(nozzle), low
+            )
 
         assert max(deepest(j, bead.tool[j]) for j in some) < 1e-4
         # for the blunt nozzle, beads are tilted back further than they need so that those after them find room
@@ -99,7 +139,12 @@ def test_the_nozzle_is_clear_of_wide_beads_and_would_not_be_with_less_tilt_back(
             # the nozzle is looked at larger by the chord error of the deposit, for which it is tilted a little further
             less = 0.96 * back - np.radians(0.8)
             assert max(deepest(j, tilted(wanted[j], less)) for j in some) > 0.0
-    if (meridian is DOME or meridian is BOTTLE) and turn is None and not build and nozzle is not STUBBY:
+    if (
+        (meridian is DOME or meridian is BOTTLE)
+        and turn is None
+        and not build
+        and nozzle is not STUBBY
+    ):
         assert touched > 0
 
 
@@ -108,20 +153,40 @@ def test_where_directions_differ_along_a_bead_each_of_its_points_is_clear():
     assert not [issue for issue in toolpath.issues if issue.level == "error"]
     laid, low = swept(toolpath), lowest(toolpath, USUAL)
     depths = [
-        laid.deepest(bead.points[j], bead.tool[j], laid.begin[k] + j + 1, laid.layer_began(k), cone(USUAL), low)
-        for k, (_, _, bead) in enumerate(toolpath) for j in range(0, len(bead), 3)
+        laid.deepest(
+            bead.points[j],
+            bead.tool[j],
+            laid.begin[k] + j + 1,
+            laid.layer_began(k),
+            cone(USUAL),
+            low,
+        )
+        for k, (_, _, bead) in enumerate(toolpath)
+        for j in range(0, len(bead), 3)
     ]
     assert max(depths) < 1e-4
     assert any(issue.code == "TILT_BACK" for issue in toolpath.issues)
 
 
-@pytest.mark.parametrize(("meridian", "nozzle", "build"), [
-    (LOW_HORN, USUAL, {}), (LOW_HORN, STUBBY, {}), (LOW_HORN, STUBBY, {"lead": 0.2}), (HORN, STUBBY, {"tilt": 0.3}),
-])
-def test_the_nozzle_is_clear_of_the_platform_and_no_more_tilted_than_that_needs(meridian, nozzle, build):
+@pytest.mark.parametrize(
+    ("meridian", "nozzle", "build"),
+    [
+        (LOW_HORN, USUAL, {}),
+        (LOW_HORN, STUBBY, {}),
+        (LOW_HORN, STUBBY, {"lead": 0.2}),
+        (HORN, STUBBY, {"tilt": 0.3}),
+    ],
+)
+def test_the_nozzle_is_clear_of_the_platform_and_no_more_tilted_than_that_needs(
+    meridian, nozzle, build
+):
     free = planned(meridian, nozzle, platform=0.0, max_tilt=np.pi, width=1.0, height=1.5, **build)
-    toolpath = planned(meridian, nozzle, platform=200.0, max_tilt=np.pi, width=1.0, height=1.5, **build)
-    low = cone(nozzle).clear_of(0.0, 0.0) + 0.2  # what a nozzle touches where it stands on a face, and how far faces are off
+    toolpath = planned(
+        meridian, nozzle, platform=200.0, max_tilt=np.pi, width=1.0, height=1.5, **build
+    )
+    low = (
+        cone(nozzle).clear_of(0.0, 0.0) + 0.2
+    )  # what a nozzle touches where it stands on a face, and how far faces are off
     touched = 0
     for (_, _, bead), back in zip(toolpath, backs(free, toolpath), strict=True):
         assert in_platform(bead.points[0], bead.tool[0], cone(nozzle), low, 100.0) < 1e-4
@@ -144,20 +209,32 @@ def test_the_largest_tilt_back_is_told():
 
 def test_a_wall_that_turns_down_outside_cannot_be_reached():
     # up inside and down again outside: the nozzle would have to come through what stands there
-    gutter = Meridian.chained([
-        line((20.0, 0.0), (20.0, 15.0)), arc((21.0, 15.0), 1.0, np.pi, 0.0), line((22.0, 15.0), (22.0, 5.0)),
-    ])
-    issue = next(issue for issue in planned(gutter, USUAL, height=1.5).issues if issue.code == "CLEARANCE")
+    gutter = Meridian.chained(
+        [
+            line((20.0, 0.0), (20.0, 15.0)),
+            arc((21.0, 15.0), 1.0, np.pi, 0.0),
+            line((22.0, 15.0), (22.0, 5.0)),
+        ]
+    )
+    issue = next(
+        issue for issue in planned(gutter, USUAL, height=1.5).issues if issue.code == "CLEARANCE"
+    )
     assert issue.level == "error"
     assert issue.layer >= 11
 
 
 def test_beads_too_wide_for_what_is_left_open_are_told_with_layer_and_remedy():
     # up, over and down into the well that is left: whichever way the nozzle leans, it meets what stands there
-    well = Meridian.chained([
-        line((20.0, 0.0), (20.0, 20.0)), arc((14.0, 20.0), 6.0, 0.0, np.pi), line((8.0, 20.0), (8.0, 6.0)),
-    ])
-    issue = next(issue for issue in planned(well, USUAL, height=2.0).issues if issue.code == "CLEARANCE")
+    well = Meridian.chained(
+        [
+            line((20.0, 0.0), (20.0, 20.0)),
+            arc((14.0, 20.0), 6.0, 0.0, np.pi),
+            line((8.0, 20.0), (8.0, 6.0)),
+        ]
+    )
+    issue = next(
+        issue for issue in planned(well, USUAL, height=2.0).issues if issue.code == "CLEARANCE"
+    )
     assert issue.level == "error" and issue.layer >= 10 and issue.bead == 0
     assert "beads of 8 mm" in issue.message and "process.bead_width" in issue.message
 
@@ -174,17 +251,22 @@ def test_beads_as_thin_as_lines_are_tilted_less():
     assert backs(free, thin)[60] < backs(free, wide)[60] - np.radians(5.0)
 
 
-@pytest.mark.parametrize(("sense", "build"), [("counter-clockwise", {}), ("clockwise", {"lead": 0.2})])
+@pytest.mark.parametrize(
+    ("sense", "build"), [("counter-clockwise", {}), ("clockwise", {"lead": 0.2})]
+)
 def test_a_spiral_is_clear_of_all_its_earlier_turns(sense, build):
     wall = RevolvedWall(SMALL_DOME, np.eye(4))
     strategy = RevolutionParameters(path="spiral", chord_error=0.02, layer_height=1.5)
     process = ProcessParameters(direction=sense)
-    toolpath = revolution.plan(wall, strategy, BuildDirectionParameters(**build), process, USUAL, 0.0)
+    toolpath = revolution.plan(
+        wall, strategy, BuildDirectionParameters(**build), process, USUAL, 0.0
+    )
     laid, low = swept(toolpath), lowest(toolpath, USUAL, **build)
     bead = toolpath.layers[0].beads[0]
     turned = np.abs(bead.parameter - bead.parameter[0])
     own = np.searchsorted(turned, turned - 2.0 * np.pi - 1e-6)
     depths = [
-        laid.deepest(bead.points[i], bead.tool[i], i + 1, own[i], cone(USUAL), low) for i in range(1, len(bead), 7)
+        laid.deepest(bead.points[i], bead.tool[i], i + 1, own[i], cone(USUAL), low)
+        for i in range(1, len(bead), 7)
     ]
     assert -1.0 < max(depths) < 1e-4

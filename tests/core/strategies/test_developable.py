@@ -19,20 +19,29 @@ from freecad_am.core.process.model import bead_table
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 
 CYLINDER, CONE = Developable(45.0), Developable(60.0, 200.0)
-LOW, HIGH = np.array([20.0, -17.0, 20.0]), np.array([84.0, 17.0, 95.0])  # of the box that is a blade
+LOW, HIGH = (
+    np.array([20.0, -17.0, 20.0]),
+    np.array([84.0, 17.0, 95.0]),
+)  # of the box that is a blade
 ERROR = 0.05
 
 
 def box(low=LOW, high=HIGH, turned=0.0, name="blade"):
     """A box turned about the hub's axis."""
-    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    corners = np.array(
+        [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    )
     hull = ConvexHull(corners)
     faces = hull.simplices.copy()
     a, b, c = (corners[faces[:, k]] for k in range(3))
     inward = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0.0
     faces[inward] = faces[inward][:, ::-1]
     cos, sin = math.cos(turned), math.sin(turned)
-    return Body(name, corners @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1.0]]), faces.astype(np.int64))
+    return Body(
+        name,
+        corners @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1.0]]),
+        faces.astype(np.int64),
+    )
 
 
 def collar(inner, outer, low, high, sides=180, name="collar"):
@@ -65,7 +74,11 @@ def solids(surface, *bodies, frame=None):
 def planned(made, build=None, process=None, model=None, **values):
     given = {"layer_height": 6.0, "chord_error": ERROR, "bead_spacing": 6.0, **values}
     return plan_solids(
-        made, DevelopableParameters(**given), build or BuildDirectionParameters(), process or ProcessParameters(), model
+        made,
+        DevelopableParameters(**given),
+        build or BuildDirectionParameters(),
+        process or ProcessParameters(),
+        model,
     )
 
 
@@ -96,10 +109,16 @@ def to_lines(points, lines):
     for line in lines:
         a, b = line[:-1], line[1:]
         way = b - a
-        for some in np.array_split(np.arange(len(points)), max(1, len(points) * len(a) // 2_000_000)):
+        for some in np.array_split(
+            np.arange(len(points)), max(1, len(points) * len(a) // 2_000_000)
+        ):
             off = points[some, None] - a
-            share = np.clip((off * way).sum(axis=2) / np.maximum((way * way).sum(axis=1), 1e-300), 0.0, 1.0)
-            best[some] = np.minimum(best[some], np.linalg.norm(off - share[..., None] * way, axis=2).min(axis=1))
+            share = np.clip(
+                (off * way).sum(axis=2) / np.maximum((way * way).sum(axis=1), 1e-300), 0.0, 1.0
+            )
+            best[some] = np.minimum(
+                best[some], np.linalg.norm(off - share[..., None] * way, axis=2).min(axis=1)
+            )
     return best
 
 
@@ -117,11 +136,18 @@ def test_beads_lie_on_their_surfaces_and_in_the_solid(surface, fill):
             assert np.abs(away(surface, middle) - 6.0 * index).max() < ERROR
             inside = ((bead.points > LOW - ERROR) & (bead.points < HIGH + ERROR)).all(axis=1)
             assert inside.all()
-            normal = np.stack([
-                bead.points[:, 0] / np.hypot(bead.points[:, 0], bead.points[:, 1]) * math.cos(surface.taper),
-                bead.points[:, 1] / np.hypot(bead.points[:, 0], bead.points[:, 1]) * math.cos(surface.taper),
-                np.full(len(bead), math.sin(surface.taper)),
-            ], axis=1)
+            normal = np.stack(
+                [
+                    bead.points[:, 0]
+                    / np.hypot(bead.points[:, 0], bead.points[:, 1])
+                    * math.cos(surface.taper),
+                    bead.points[:, 1]
+                    / np.hypot(bead.points[:, 0], bead.points[:, 1])
+                    * math.cos(surface.taper),
+                    np.full(len(bead), math.sin(surface.taper)),
+                ],
+                axis=1,
+            )
             np.testing.assert_allclose(bead.build, normal, atol=1e-9)
             np.testing.assert_allclose(bead.tool, normal, atol=1e-9)
 
@@ -143,11 +169,17 @@ def test_beads_cover_the_solid_and_nothing_else(surface, fill):
     lines = [laid(offset, bead.points) for bead in path.layers[layer].beads]
     plane = laid(offset, raster)
     distance = to_lines(plane, lines)
-    area = np.cos(np.arctan2(1.0, 1.0)) * rho if np.ndim(rho) else np.ones(len(z))  # of a cell of the raster, to a factor
+    area = (
+        np.cos(np.arctan2(1.0, 1.0)) * rho if np.ndim(rho) else np.ones(len(z))
+    )  # of a cell of the raster, to a factor
     covered = distance <= 3.0 + 0.02
-    assert area[covered & inside].sum() > 0.99 * area[inside].sum() - 4.0 * 0.25 * (6.0**2) * (1 - math.pi / 4)
+    assert area[covered & inside].sum() > 0.99 * area[inside].sum() - 4.0 * 0.25 * (6.0**2) * (
+        1 - math.pi / 4
+    )
     assert area[covered & ~inside].sum() < 0.01 * area[inside].sum()
-    assert distance[inside].max() < 3.0 * math.sqrt(2.0) + 0.2  # nothing left open but the sharp corners of the box
+    assert (
+        distance[inside].max() < 3.0 * math.sqrt(2.0) + 0.2
+    )  # nothing left open but the sharp corners of the box
 
 
 @pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder", "cone"])
@@ -157,12 +189,16 @@ def test_neighbouring_contours_are_the_spacing_apart(surface):
         offset = surface.offset(6.0 * index)
         beads = [bead for bead in path.layers[index].beads if bead.closed]
         assert len(beads) >= 2
-        outer, inner = (laid(offset, bead.points) for bead in sorted(beads, key=lambda bead: -bead.length)[:2])
+        outer, inner = (
+            laid(offset, bead.points) for bead in sorted(beads, key=lambda bead: -bead.length)[:2]
+        )
         assert np.abs(to_lines(inner, [outer]) - 6.0).max() < 0.06
 
 
 def test_order_of_beads_is_around_the_axis_inner_rings_first():
-    made = solids(CYLINDER, *(box(turned=turn, name=f"blade {k}") for k, turn in enumerate((0.1, 2.2, 4.3))))
+    made = solids(
+        CYLINDER, *(box(turned=turn, name=f"blade {k}") for k, turn in enumerate((0.1, 2.2, 4.3)))
+    )
     path = planned(made)
     layer = path.layers[2].beads
     middles = [bead.points[:-1].mean(axis=0) for bead in layer]
@@ -172,11 +208,15 @@ def test_order_of_beads_is_around_the_axis_inner_rings_first():
     outer = closed[-3:]
     assert [blade[k] for k in outer] == [0, 1, 2]
     inner = closed[:3]
-    assert [blade[k] for k in inner] == [0, 1, 2] and layer[inner[0]].length < layer[outer[0]].length
+    assert [blade[k] for k in inner] == [0, 1, 2] and layer[inner[0]].length < layer[
+        outer[0]
+    ].length
     assert path.layers[0].first and not any(one.first for one in path.layers[1:])
     one_by_one = planned(made, order="feature")
     assert len(one_by_one.layers) == 3 * len(path.layers)
-    assert [index for index, one in enumerate(one_by_one.layers) if one.first] == [k * len(path.layers) for k in range(3)]
+    assert [index for index, one in enumerate(one_by_one.layers) if one.first] == [
+        k * len(path.layers) for k in range(3)
+    ]
     assert one_by_one.length == pytest.approx(path.length)
 
 
@@ -189,7 +229,9 @@ def test_a_turned_hub_has_the_same_beads_turned():
     leaning = planned(solids(CONE, moved, frame=frame), fill="zigzag")
     for (_, _, one), (_, _, other), (_, _, third) in zip(plain, astride, leaning, strict=True):
         np.testing.assert_allclose(other.points, one.points * [-1.0, -1.0, 1.0], atol=1e-6)
-        np.testing.assert_allclose(third.points, one.points @ frame[:3, :3].T + frame[:3, 3], atol=1e-6)
+        np.testing.assert_allclose(
+            third.points, one.points @ frame[:3, :3].T + frame[:3, 3], atol=1e-6
+        )
         np.testing.assert_allclose(third.build, one.build @ frame[:3, :3].T, atol=1e-9)
 
 
@@ -198,7 +240,8 @@ def test_the_cut_is_turned_until_no_contour_crosses_it():
     parts = [box(turned=turn) for turn in (0.0, 2.0, 4.2)]
     count = np.cumsum([0, *(len(part.vertices) for part in parts)])
     body = Body(
-        "blades", np.vstack([part.vertices for part in parts]),
+        "blades",
+        np.vstack([part.vertices for part in parts]),
         np.vstack([part.triangles + start for part, start in zip(parts, count)]),
     )
     whole = planned(solids(CONE, body))
@@ -208,7 +251,10 @@ def test_the_cut_is_turned_until_no_contour_crosses_it():
 
 
 def test_solids_all_round_the_hub_have_closed_beads():
-    for surface, body in ((CYLINDER, collar(40.0, 60.0, 10.0, 40.0)), (CONE, collar(30.0, 80.0, 10.0, 40.0))):
+    for surface, body in (
+        (CYLINDER, collar(40.0, 60.0, 10.0, 40.0)),
+        (CONE, collar(30.0, 80.0, 10.0, 40.0)),
+    ):
         path = planned(solids(surface, body), layer_height=4.0)
         for index, layer in enumerate(path.layers):
             round_ = [bead for bead in layer.beads if bead.closed]
@@ -226,9 +272,19 @@ def helix(turns, radius=(38.0, 60.0), pitch=40.0, height=14.0, steps=90):
     angle = np.linspace(0.0, 2.0 * np.pi * turns, int(steps * turns) + 1)
     rings = []
     for rho, up in ((radius[0], 0.0), (radius[1], 0.0), (radius[1], height), (radius[0], height)):
-        rings.append(np.stack([rho * np.cos(angle), rho * np.sin(angle), pitch * angle / (2.0 * np.pi) + up], axis=1))
+        rings.append(
+            np.stack(
+                [rho * np.cos(angle), rho * np.sin(angle), pitch * angle / (2.0 * np.pi) + up],
+                axis=1,
+            )
+        )
     n = len(angle)
-    faces = [(0, n, 2 * n), (0, 2 * n, 3 * n), (n - 1, 3 * n - 1, 2 * n - 1), (n - 1, 4 * n - 1, 3 * n - 1)]
+    faces = [
+        (0, n, 2 * n),
+        (0, 2 * n, 3 * n),
+        (n - 1, 3 * n - 1, 2 * n - 1),
+        (n - 1, 4 * n - 1, 3 * n - 1),
+    ]
     for k in range(4):
         for j in range(n - 1):
             a, b, c, d = k * n + j, k * n + j + 1, (k + 1) % 4 * n + j, (k + 1) % 4 * n + j + 1
@@ -240,7 +296,9 @@ def test_a_thread_stays_in_one_piece():
     path = planned(solids(CYLINDER, helix(2.5)), layer_height=5.0, chord_error=0.1)
     lengths = [max(bead.length for bead in layer.beads) for layer in path.layers]
     assert min(lengths) > 2.0 * 2.5 * 2.0 * np.pi * 44.0  # along and back
-    assert all(np.abs(away(CYLINDER, bead.points) - 5.0 * index).max() < 1e-9 for index, _, bead in path)
+    assert all(
+        np.abs(away(CYLINDER, bead.points) - 5.0 * index).max() < 1e-9 for index, _, bead in path
+    )
 
 
 def test_margin_stands_out_beside_and_above():
@@ -257,10 +315,14 @@ def test_margin_stands_out_beside_and_above():
 @pytest.mark.parametrize("direction", ["counter-clockwise", "clockwise", "alternate"])
 def test_the_torch_leans_outwards_on_outer_contours_alone(direction):
     path = planned(
-        solids(CYLINDER, box()), process=ProcessParameters(direction=direction), deflection=math.radians(12.0)
+        solids(CYLINDER, box()),
+        process=ProcessParameters(direction=direction),
+        deflection=math.radians(12.0),
     )
     for layer in path.layers[:4]:
-        closed = sorted((bead for bead in layer.beads if bead.closed), key=lambda bead: -bead.length)
+        closed = sorted(
+            (bead for bead in layer.beads if bead.closed), key=lambda bead: -bead.length
+        )
         outer, inner = closed[:2]
         lean = np.degrees(np.arccos(np.clip((outer.tool * outer.build).sum(axis=1), -1.0, 1.0)))
         np.testing.assert_allclose(lean, 12.0, atol=1e-6)
@@ -270,11 +332,15 @@ def test_the_torch_leans_outwards_on_outer_contours_alone(direction):
 
 
 def test_lead_and_tilt_are_those_asked_for():
-    build = BuildDirectionParameters(lead=math.radians(10.0), tilt=math.radians(-7.0), max_turn="inf")
+    build = BuildDirectionParameters(
+        lead=math.radians(10.0), tilt=math.radians(-7.0), max_turn="inf"
+    )
     lines = {"fill": "lines", "contour": False, "layer_height": 15.0, "chord_error": 0.2 * ERROR}
     path = planned(solids(CONE, box()), build=build, **lines)
     bead = max(path.layers[1].beads, key=lambda bead: bead.length)
-    step = np.diff(bead.points, axis=0) / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)[:, None]
+    step = (
+        np.diff(bead.points, axis=0) / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)[:, None]
+    )
     along = step[1:] + step[:-1]
     along /= np.linalg.norm(along, axis=1)[:, None]
     flat = np.diff(laid(CONE, bead.points), axis=0)
@@ -282,12 +348,16 @@ def test_lead_and_tilt_are_those_asked_for():
     turn = np.abs(np.diff(heading))
     way = np.cumsum(np.hypot(*flat.T))[:-1]
     bends = way[turn > np.radians(5.0)]  # about which the torch goes round the normal
-    straight = (turn < np.radians(0.15)) & (np.abs(way[:, None] - bends).min(axis=1, initial=np.inf) > 0.15)
+    straight = (turn < np.radians(0.15)) & (
+        np.abs(way[:, None] - bends).min(axis=1, initial=np.inf) > 0.15
+    )
     assert straight.sum() > 3
     along, tool, normal = along[straight], bead.tool[1:-1][straight], bead.build[1:-1][straight]
     forward = np.degrees(np.arctan2((tool * along).sum(axis=1), (tool * normal).sum(axis=1)))
     np.testing.assert_allclose(forward, 10.0, atol=0.05)
-    np.testing.assert_allclose(np.degrees(np.arcsin((tool * np.cross(along, normal)).sum(axis=1))), -7.0, atol=0.05)
+    np.testing.assert_allclose(
+        np.degrees(np.arcsin((tool * np.cross(along, normal)).sum(axis=1))), -7.0, atol=0.05
+    )
 
 
 def test_speeds_hold_the_width():
@@ -309,12 +379,18 @@ def test_speeds_hold_the_width():
     assert told["BEAD_HEIGHT"].level == "warning" and "6 mm" in told["BEAD_HEIGHT"].message
     ten = ProcessParameters(bead_width=14.0, wire=WireParameters(feed=10.0))
     other = planned(solids(CONE, box()), process=ten, model=model)
-    assert {"WIRE_FEED", "OUTSIDE_TABLE"} <= {issue.code for issue in other.issues if issue.level == "warning"}
+    assert {"WIRE_FEED", "OUTSIDE_TABLE"} <= {
+        issue.code for issue in other.issues if issue.level == "warning"
+    }
     assert all(bead.width is None for _, _, bead in planned(solids(CONE, box())))
 
 
 def test_waits_keep_solids_apart_in_time():
-    path = planned(solids(CYLINDER, box(), box(turned=2.0)), wait=40.0, process=ProcessParameters(travel_speed=20.0))
+    path = planned(
+        solids(CYLINDER, box(), box(turned=2.0)),
+        wait=40.0,
+        process=ProcessParameters(travel_speed=20.0),
+    )
     assert any(layer.wait > 0.0 for layer in path.layers)
     now, ended, at = 0.0, {}, None
     for layer in path.layers:
@@ -350,7 +426,9 @@ def test_what_is_refused():
         planned(solids(CONE, over))
     assert caught.value.code == "APEX_INSIDE" and caught.value.where.startswith("cap layer")
     with pytest.raises(InputError) as caught:
-        planned(solids(Developable(60.0, 20.0), helix(2.5, (5.0, 60.0), 4.0, 2.0)), layer_height=2.0)
+        planned(
+            solids(Developable(60.0, 20.0), helix(2.5, (5.0, 60.0), 4.0, 2.0)), layer_height=2.0
+        )
     assert caught.value.code in ("TOO_FAR_ROUND", "APEX_INSIDE")
     with pytest.raises(InputError) as caught:
         planned(solids(CONE, box()), build=BuildDirectionParameters(mode="fixed"))
@@ -362,10 +440,17 @@ def test_what_is_refused():
 def test_collars_have_margins_and_the_torch_leans_away_from_them(direction):
     made = solids(CONE, collar(30.0, 80.0, 10.0, 40.0))
     path = planned(
-        made, process=ProcessParameters(direction=direction), margin=5.0, deflection=math.radians(10.0), layer_height=8.0
+        made,
+        process=ProcessParameters(direction=direction),
+        margin=5.0,
+        deflection=math.radians(10.0),
+        layer_height=8.0,
     )
     first = [bead for bead in path.layers[0].beads if bead.closed]
-    low, high = min(first, key=lambda bead: bead.points[:, 2].min()), max(first, key=lambda bead: bead.points[:, 2].max())
+    low, high = (
+        min(first, key=lambda bead: bead.points[:, 2].min()),
+        max(first, key=lambda bead: bead.points[:, 2].max()),
+    )
     # up the cone a way of s is s cos(a) of height; beads are half a spacing inside of what is 5 mm larger
     reach = 2.0 * math.cos(CONE.taper)
     assert low.points[:, 2] == pytest.approx(np.full(len(low), 10.0 - reach), abs=0.06)

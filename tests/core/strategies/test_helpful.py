@@ -17,7 +17,10 @@ OTHER = "use other layers or another direction"
 
 def slot(half, high=30.0):
     """Walls on either side of a bead, and a lid in the distance that no tilt reaches past."""
-    return [box([-150, half, 0], [150, 60, high], "left"), box([-150, -60, 0], [150, -half, high], "right")]
+    return [
+        box([-150, half, 0], [150, 60, high], "left"),
+        box([-150, -60, 0], [150, -half, high], "right"),
+    ]
 
 
 def message(path):
@@ -29,20 +32,31 @@ def message(path):
 def test_the_half_angle_that_is_named_clears_the_nozzle(half, angle):
     path = toolpath(bead(ALONG))
     told = message(kept_clear(path, slot(half), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)))
-    assert f"with `cell.nozzle.half_angle: {angle} deg` the nozzle is clear, which was tried" in told
+    assert (
+        f"with `cell.nozzle.half_angle: {angle} deg` the nozzle is clear, which was tried" in told
+    )
     assert OTHER not in told and "slimmer" not in told
     slim = NozzleParameters(half_angle=np.radians(angle))
     assert codes(kept_clear(path, slot(half), slim, LOCAL)) in ([], ["TILT_BACK"])
 
 
 def test_a_slimmer_nozzle_that_does_not_help_is_not_named():
-    told = message(kept_clear(toolpath(bead(ALONG)), slot(1.2, 60.0), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)))
+    told = message(
+        kept_clear(
+            toolpath(bead(ALONG)),
+            slot(1.2, 60.0),
+            NOZZLE,
+            dataclasses.replace(LOCAL, max_tilt=np.pi),
+        )
+    )
     assert told.endswith("; with left, right out of the way the nozzle is clear, which was tried")
 
 
 def test_a_larger_tilt_is_named_where_that_clears_it():
     ceiling, path = [box([-60, -4, 6], [60, 60, 30], "ceiling")], toolpath(bead(ALONG))
-    told = message(kept_clear(path, ceiling, NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.radians(20.0))))
+    told = message(
+        kept_clear(path, ceiling, NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.radians(20.0)))
+    )
     assert "with `build_direction.max_tilt: 65 deg` the nozzle is clear" in told
     wide = dataclasses.replace(LOCAL, max_tilt=np.radians(65.0))
     assert codes(kept_clear(path, ceiling, NOZZLE, wide)) == ["TILT_BACK"]
@@ -57,10 +71,20 @@ def test_what_gives_room_at_the_points_and_not_to_the_bead_is_not_named(monkeypa
         asked.append(nozzle.half_angle)
         return dataclasses.replace(path, issues=lost)
 
-    made = kept_clear(toolpath(bead(ALONG)), slot(4.0), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi), remedy=False)
+    made = kept_clear(
+        toolpath(bead(ALONG)),
+        slot(4.0),
+        NOZZLE,
+        dataclasses.replace(LOCAL, max_tilt=np.pi),
+        remedy=False,
+    )
     lost = made.issues
     monkeypatch.setattr(tilt_back, "kept_clear", in_vain)
-    told = message(kept_clear(toolpath(bead(ALONG)), slot(4.0), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)))
+    told = message(
+        kept_clear(
+            toolpath(bead(ALONG)), slot(4.0), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)
+        )
+    )
     assert asked and "the nozzle is clear" not in told
     tried = "`cell.nozzle.half_angle: 5 deg`, left, right out of the way"
     assert f"; it still does with {tried}, each of which was tried; {OTHER}" in told

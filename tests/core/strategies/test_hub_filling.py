@@ -25,14 +25,20 @@ HUBS = {"cylinder": Developable(30.0), "cone": Developable(60.0, 200.0)}
 
 def box(turned, thick=24.0):
     """A box on the hub's side, turned about its axis."""
-    corners = np.array([[x, y, z] for x in (20.0, 70.0) for y in (-0.5 * thick, 0.5 * thick) for z in (20.0, 60.0)])
+    corners = np.array(
+        [[x, y, z] for x in (20.0, 70.0) for y in (-0.5 * thick, 0.5 * thick) for z in (20.0, 60.0)]
+    )
     hull = ConvexHull(corners)
     faces = hull.simplices.copy()
     a, b, c = (corners[faces[:, k]] for k in range(3))
     inward = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0.0
     faces[inward] = faces[inward][:, ::-1]
     cos, sin = math.cos(turned), math.sin(turned)
-    return Body("blade", corners @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1.0]]), faces.astype(np.int64))
+    return Body(
+        "blade",
+        corners @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1.0]]),
+        faces.astype(np.int64),
+    )
 
 
 def planned(hub, turns, thick=24.0, width=8.0, fill_width="auto", **values):
@@ -40,8 +46,11 @@ def planned(hub, turns, thick=24.0, width=8.0, fill_width="auto", **values):
     made = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), bodies),), 0.0)
     given = {"layer_height": 12.0, "bead_spacing": 6.0, "order": "feature", **values}
     return plan_solids(
-        made, DevelopableParameters(**given), BuildDirectionParameters(),
-        ProcessParameters(bead_width=width, fill_width=fill_width), None,
+        made,
+        DevelopableParameters(**given),
+        BuildDirectionParameters(),
+        ProcessParameters(bead_width=width, fill_width=fill_width),
+        None,
     )
 
 
@@ -58,7 +67,11 @@ def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeyp
     assert len(calls) == layers
     for number, turn in enumerate(turns):
         alone = planned(hub, (turn,), fill=fill)
-        mine = [bead for layer in together.layers[number * layers : (number + 1) * layers] for bead in layer.beads]
+        mine = [
+            bead
+            for layer in together.layers[number * layers : (number + 1) * layers]
+            for bead in layer.beads
+        ]
         theirs = [bead for _, _, bead in alone]
         assert len(mine) == len(theirs)
         for a, b in zip(mine, theirs):
@@ -68,9 +81,16 @@ def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeyp
     assert len(calls) == 5 * layers, "another filling is not the same"
 
 
-@pytest.mark.parametrize(("width", "counts", "inset"), [
-    (8.0, "auto", 3.0), (8.0, "bead_width", 4.0), (8.0, "spacing", 3.0), (10.0, "auto", 5.0), (10.0, "spacing", 3.0),
-])
+@pytest.mark.parametrize(
+    ("width", "counts", "inset"),
+    [
+        (8.0, "auto", 3.0),
+        (8.0, "bead_width", 4.0),
+        (8.0, "spacing", 3.0),
+        (10.0, "auto", 5.0),
+        (10.0, "spacing", 3.0),
+    ],
+)
 def test_the_outermost_bead_ends_at_the_border_as_wide_as_it_counts(width, counts, inset):
     """A block that is 40 mm high on a cylinder: its outermost contours lie half a bead inside of it above and below."""
     path = planned("cylinder", (0.0,), width=width, fill_width=counts)
@@ -80,15 +100,21 @@ def test_the_outermost_bead_ends_at_the_border_as_wide_as_it_counts(width, count
 
 
 def test_beads_carry_their_kind_and_ring_through_documents():
-    for fill, kinds in (("contours", {"contour", "centre"}), ("lines", {"contour", "line", "closing"}),
-                        ("zigzag", {"contour", "zigzag", "closing"}), ("spiral", {"spiral", "closing", "centre"})):
+    for fill, kinds in (
+        ("contours", {"contour", "centre"}),
+        ("lines", {"contour", "line", "closing"}),
+        ("zigzag", {"contour", "zigzag", "closing"}),
+        ("spiral", {"spiral", "closing", "centre"}),
+    ):
         path = planned("cylinder", (0.0,), fill=fill)
         assert {bead.kind for _, _, bead in path} <= kinds
         again = unpack(*pack(path, "key"), "key", "toolpath")
         assert [(b.kind, b.ring) for _, _, b in again] == [(b.kind, b.ring) for _, _, b in path]
         floats, text = pack(path, "key")
         old = re.sub(r',"kind":"[a-z]*","ring":\d+', "", text)
-        assert old != text and {bead.kind for _, _, bead in unpack(floats, old, "key", "toolpath")} == {""}
+        assert old != text and {
+            bead.kind for _, _, bead in unpack(floats, old, "key", "toolpath")
+        } == {""}
 
 
 def test_overlap_sets_the_spacing():
@@ -103,10 +129,14 @@ def test_places_are_told_in_the_part():
     turn = 2.0
     with pytest.raises(InfeasibleError) as caught:
         planned("cylinder", (turn,), thick=3.0, thin="refuse")
-    place = np.array([float(word) for word in re.findall(r"\(([^)]*)\)", str(caught.value))[0].split(",")])
+    place = np.array(
+        [float(word) for word in re.findall(r"\(([^)]*)\)", str(caught.value))[0].split(",")]
+    )
     assert place.shape == (3,)
     assert math.hypot(place[0], place[1]) == pytest.approx(30.0, rel=1e-3)
-    assert math.atan2(place[1], place[0]) == pytest.approx(turn, abs=0.06) and 20.0 < place[2] < 60.0
+    assert (
+        math.atan2(place[1], place[0]) == pytest.approx(turn, abs=0.06) and 20.0 < place[2] < 60.0
+    )
 
 
 @pytest.mark.parametrize(("fill", "instead"), [("spiral", "contours"), ("zigzag", "lines")])
@@ -115,24 +145,39 @@ def test_places_are_told_in_the_part():
 def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, instead):
     """A collar, and a blade on the same hub: the blade gets the pattern asked for, the collar the one that is told."""
     ring = collar(20.0, 80.0, 70.0, 90.0)
-    made = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), (box(0.3), ring)),), 0.0)
+    made = SolidsOnHub(
+        "part", (Group(Base("the hub", HUBS[hub], np.eye(4)), (box(0.3), ring)),), 0.0
+    )
 
     def beads(pattern):
         path = plan_solids(
-            made, DevelopableParameters(layer_height=12.0, bead_spacing=6.0, fill=pattern, order="feature"),
-            BuildDirectionParameters(), ProcessParameters(), None,
+            made,
+            DevelopableParameters(
+                layer_height=12.0, bead_spacing=6.0, fill=pattern, order="feature"
+            ),
+            BuildDirectionParameters(),
+            ProcessParameters(),
+            None,
         )
-        return path, [[bead for _, _, bead in path if (bead.points[:, 2].min() > 65.0) == on_collar]
-                      for on_collar in (True, False)]
+        return path, [
+            [bead for _, _, bead in path if (bead.points[:, 2].min() > 65.0) == on_collar]
+            for on_collar in (True, False)
+        ]
 
     path, (round_it, aside) = beads(fill)
     (told,) = [issue for issue in path.issues if issue.code == "PATTERN_ROUND_HUB"]
-    assert told.level == "note" and f"is filled with {instead}" in told.message and f"strategy.fill = {fill}" in told.message
+    assert (
+        told.level == "note"
+        and f"is filled with {instead}" in told.message
+        and f"strategy.fill = {fill}" in told.message
+    )
     levels = {layer for layer, _, bead in path if bead.points[:, 2].min() > 65.0}
     assert f"(more layers like it: {len(levels) - 1})" in told.message and len(levels) > 2
     other, (same, _) = beads(instead)
     assert not [issue for issue in other.issues if issue.code == "PATTERN_ROUND_HUB"]
-    assert len(round_it) == len(same) and all((one.points == two.points).all() for one, two in zip(round_it, same))
+    assert len(round_it) == len(same) and all(
+        (one.points == two.points).all() for one, two in zip(round_it, same)
+    )
     assert fill in {bead.kind for bead in aside} and fill not in {bead.kind for bead in round_it}
 
 
@@ -145,17 +190,26 @@ def test_beads_wider_apart_than_they_are_wide_are_refused():
 
 
 @pytest.mark.parametrize("hub", HUBS)
-@pytest.mark.parametrize(("fill", "contour"), [("contours", True), ("spiral", True), ("lines", False), ("zigzag", True)])
+@pytest.mark.parametrize(
+    ("fill", "contour"), [("contours", True), ("spiral", True), ("lines", False), ("zigzag", True)]
+)
 @pytest.mark.always
 def test_no_bead_of_its_width_stands_out(hub, fill, contour):
     """The box's sides are planes: a bead 9.5 mm wide and straight keeps half of it from them along the hub."""
     path = planned(hub, (0.0,), thick=40.0, width=9.5, bead_spacing=6.5, fill=fill, contour=contour)
     cos = math.cos(HUBS[hub].taper)
     for _, _, bead in path:
-        assert bead.points[:, 2].min() >= 20.0 + 4.75 * cos - 0.05 and bead.points[:, 2].max() <= 60.0 - 4.75 * cos + 0.05
-        assert np.abs(bead.points[:, 1]).max() <= 20.0 - 4.75 * math.cos(math.atan2(20.0, 30.0)) + 1.0
+        assert (
+            bead.points[:, 2].min() >= 20.0 + 4.75 * cos - 0.05
+            and bead.points[:, 2].max() <= 60.0 - 4.75 * cos + 0.05
+        )
+        assert (
+            np.abs(bead.points[:, 1]).max() <= 20.0 - 4.75 * math.cos(math.atan2(20.0, 30.0)) + 1.0
+        )
     reach = [min(bead.points[:, 2].min() for bead in layer.beads) - 20.0 for layer in path.layers]
-    assert np.allclose(reach[:2], 4.75 * cos, atol=0.06)  # farther out the cone meets the box away from its lower side
+    assert np.allclose(
+        reach[:2], 4.75 * cos, atol=0.06
+    )  # farther out the cone meets the box away from its lower side
 
 
 def test_a_single_bead_wider_than_its_region_is_told_with_place_and_overhang():
@@ -163,11 +217,15 @@ def test_a_single_bead_wider_than_its_region_is_told_with_place_and_overhang():
     (told,) = [issue for issue in path.issues if issue.code == "THIN_SINGLE"]
     assert told.level == "note" and "9.5 mm" in told.message
     out = float(re.findall(r"by up to ([\d.]+) mm", told.message)[0])
-    place = np.array([float(word) for word in re.findall(r"mm at \(([^)]*)\)", told.message)[0].split(",")])
+    place = np.array(
+        [float(word) for word in re.findall(r"mm at \(([^)]*)\)", told.message)[0].split(",")]
+    )
     y, z = abs(place[1]), place[2]
     border = min(1.5 - y, z - 20.0, 60.0 - z)
     assert out == pytest.approx(4.75 - border, abs=0.05) and out > 3.2
-    assert not [issue for issue in planned("cylinder", (0.0,)).issues if issue.code == "THIN_SINGLE"]
+    assert not [
+        issue for issue in planned("cylinder", (0.0,)).issues if issue.code == "THIN_SINGLE"
+    ]
 
 
 def lengths(path):
@@ -178,13 +236,21 @@ def lengths(path):
 @pytest.mark.always("cylinder")
 def test_less_than_the_whole_between_solid_layers(hub):
     """First and last layers as at 100 %, those between at the density, all of them round hubs too."""
-    given = {"layer_height": 6.0, "bead_spacing": 1.5, "walls": 2, "chord_error": 0.05, "contour": True}
+    given = {
+        "layer_height": 6.0,
+        "bead_spacing": 1.5,
+        "walls": 2,
+        "chord_error": 0.05,
+        "contour": True,
+    }
     whole = planned(hub, (0.3,), 36.0, fill="lines", **given)
     part = planned(hub, (0.3,), 36.0, fill="gyroid", fill_density=0.25, solid_layers=1, **given)
     share = lengths(part) / lengths(whole)
     assert share[[0, -1]] == pytest.approx(1.0, abs=0.02)
     # 2 walls of 1.5 mm take 3 mm all round of 40 mm by 36 mm or a little more
-    assert (share[1:3] > 0.35).all() and (share[1:3] < 0.55).all()  # farther out the flat top comes nearer
+    assert (share[1:3] > 0.35).all() and (
+        share[1:3] < 0.55
+    ).all()  # farther out the flat top comes nearer
     for layer in part.layers[:3]:
         assert sorted({bead.ring for bead in layer.beads if bead.kind == "contour"}) == [0, 1]
     alone = planned(hub, (0.3,), 36.0, fill="grid", **{**given, "walls": "inf"})
@@ -197,32 +263,68 @@ def test_round_hubs_lines_stand_farther_apart_between_solid_layers():
     made = SolidsOnHub("part", (Group(base, (body,)),), 0.0)
 
     def path(**values):
-        given = {"layer_height": 5.0, "bead_spacing": 2.0, "chord_error": 0.05, "fill_angle_step": 0.0, **values}
+        given = {
+            "layer_height": 5.0,
+            "bead_spacing": 2.0,
+            "chord_error": 0.05,
+            "fill_angle_step": 0.0,
+            **values,
+        }
         return plan_solids(
-            made, DevelopableParameters(**given), BuildDirectionParameters(), ProcessParameters(), None
+            made,
+            DevelopableParameters(**given),
+            BuildDirectionParameters(),
+            ProcessParameters(),
+            None,
         )
+
     whole, part = path(fill="lines"), path(fill="grid", fill_density=0.2, solid_layers=1)
     share = lengths(part) / lengths(whole)
     assert share[[0, -1]] == pytest.approx(1.0, abs=0.01)
-    assert share[1:-1] == pytest.approx(0.2 + 0.8 * 4.0 / 50.0, abs=0.05)  # the contour along both borders is there anyway
+    assert share[1:-1] == pytest.approx(
+        0.2 + 0.8 * 4.0 / 50.0, abs=0.05
+    )  # the contour along both borders is there anyway
     assert "PATTERN_ROUND_HUB" in {issue.code for issue in part.issues}
 
 
 def test_tops_of_a_step_are_filled():
     """Two boxes side by side, one of them lower, of one body: what is under the top of the lower one is filled."""
     low, high = box(0.2, 20.0), box(0.9, 20.0)
-    squeezed = low.vertices * np.where(np.hypot(low.vertices[:, 0], low.vertices[:, 1]) > 50.0, 0.8, 1.0)[:, None]
+    squeezed = (
+        low.vertices
+        * np.where(np.hypot(low.vertices[:, 0], low.vertices[:, 1]) > 50.0, 0.8, 1.0)[:, None]
+    )
     squeezed[:, 2] = low.vertices[:, 2]
-    body = Body("step", np.vstack([squeezed, high.vertices]), np.vstack([low.triangles, high.triangles + 8]))
+    body = Body(
+        "step", np.vstack([squeezed, high.vertices]), np.vstack([low.triangles, high.triangles + 8])
+    )
     made = SolidsOnHub("part", (Group(Base("the hub", HUBS["cylinder"], np.eye(4)), (body,)),), 0.0)
 
     def one(layer, **values):
-        given = {"layer_height": 4.0, "bead_spacing": 1.0, "fill": "lines", "chord_error": 0.05, **values}
-        beads = plan_solids(
-            made, DevelopableParameters(**given), BuildDirectionParameters(), ProcessParameters(), None
-        ).layers[layer].beads
+        given = {
+            "layer_height": 4.0,
+            "bead_spacing": 1.0,
+            "fill": "lines",
+            "chord_error": 0.05,
+            **values,
+        }
+        beads = (
+            plan_solids(
+                made,
+                DevelopableParameters(**given),
+                BuildDirectionParameters(),
+                ProcessParameters(),
+                None,
+            )
+            .layers[layer]
+            .beads
+        )
         angle = [math.atan2(*bead.points.mean(axis=0)[1::-1]) for bead in beads]
-        return [sum(b.length for b, a in zip(beads, angle) if (a < 0.55) == lower) for lower in (True, False)]
+        return [
+            sum(b.length for b, a in zip(beads, angle) if (a < 0.55) == lower)
+            for lower in (True, False)
+        ]
+
     top = 6  # 24 mm above the hub; 56 mm, or a little less, is the lower one's top
     whole, part = one(top), one(top, fill_density=0.2, solid_layers=1)
     assert part[0] == pytest.approx(whole[0], rel=0.02) and part[1] < 0.5 * whole[1]
@@ -233,10 +335,30 @@ def test_tops_of_a_step_are_filled():
 @pytest.mark.parametrize("hub", HUBS)
 def test_connected_contours_start_once_and_narrow_places_run_faster(hub):
     """One closed bead for each solid and layer; the wire that a millimetre of it gets follows its width."""
-    path = planned(hub, (0.3, 2.4), 31.0, fill="connected", bead_spacing=5.0, order="around-axis", layer_height=6.0)
-    usual = planned(hub, (0.3, 2.4), 31.0, fill="contours", bead_spacing=5.0, order="around-axis", layer_height=6.0)
+    path = planned(
+        hub,
+        (0.3, 2.4),
+        31.0,
+        fill="connected",
+        bead_spacing=5.0,
+        order="around-axis",
+        layer_height=6.0,
+    )
+    usual = planned(
+        hub,
+        (0.3, 2.4),
+        31.0,
+        fill="contours",
+        bead_spacing=5.0,
+        order="around-axis",
+        layer_height=6.0,
+    )
     assert [len(layer.beads) for layer in path.layers[:4]] == [2] * min(4, len(path.layers))
-    assert all(bead.closed and bead.kind == "connected" for layer in path.layers[:4] for bead in layer.beads)
+    assert all(
+        bead.closed and bead.kind == "connected"
+        for layer in path.layers[:4]
+        for bead in layer.beads
+    )
     assert path.bead_count < 0.4 * usual.bead_count
     narrow = 0
     for _, _, bead in path:

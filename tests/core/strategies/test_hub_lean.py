@@ -9,7 +9,16 @@ import pytest
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
-from tests.core.strategies.test_developable import CONE, CYLINDER, box, collar, laid, planned, solids, sound
+from tests.core.strategies.test_developable import (
+    CONE,
+    CYLINDER,
+    box,
+    collar,
+    laid,
+    planned,
+    solids,
+    sound,
+)
 
 SURFACES = pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder", "cone"])
 
@@ -17,7 +26,9 @@ SURFACES = pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder",
 def normals(surface, points):
     """Out of the hub."""
     tan = 0.0 if math.isinf(surface.height) else surface.radius / surface.height
-    out = np.column_stack([points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None], np.full(len(points), tan)])
+    out = np.column_stack(
+        [points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None], np.full(len(points), tan)]
+    )
     return out / math.hypot(1.0, tan)
 
 
@@ -30,9 +41,16 @@ def finer(bead, pieces=5):
     """Points and tools (m, 3) that divide the segments, the tool turned evenly on each."""
     t = np.arange(pieces) / pieces
     arc = np.radians(angle(bead.tool[:-1], bead.tool[1:]))[:, None]
-    ends = [np.where(arc > 1e-9, np.sin(share * arc) / np.maximum(np.sin(arc), 1e-12), share) for share in (1.0 - t, t)]
-    tool = (ends[0][..., None] * bead.tool[:-1, None] + ends[1][..., None] * bead.tool[1:, None]).reshape(-1, 3)
-    points = (bead.points[:-1, None] + t[:, None] * np.diff(bead.points, axis=0)[:, None]).reshape(-1, 3)
+    ends = [
+        np.where(arc > 1e-9, np.sin(share * arc) / np.maximum(np.sin(arc), 1e-12), share)
+        for share in (1.0 - t, t)
+    ]
+    tool = (
+        ends[0][..., None] * bead.tool[:-1, None] + ends[1][..., None] * bead.tool[1:, None]
+    ).reshape(-1, 3)
+    points = (bead.points[:-1, None] + t[:, None] * np.diff(bead.points, axis=0)[:, None]).reshape(
+        -1, 3
+    )
     return np.vstack([points, bead.points[-1:]]), np.vstack([tool, bead.tool[-1:]])
 
 
@@ -47,7 +65,12 @@ def corners(surface, bead, least=20.0):
     step = np.diff(laid(surface, bead.points), axis=0)
     way = np.r_[0.0, np.cumsum(np.hypot(*step.T))]
     heading = np.degrees(np.arctan2(step[:, 1], step[:, 0]))
-    turn = np.abs(np.remainder(np.diff(heading, prepend=heading[-1] if bead.closed else heading[0]) + 180.0, 360.0) - 180.0)
+    turn = np.abs(
+        np.remainder(
+            np.diff(heading, prepend=heading[-1] if bead.closed else heading[0]) + 180.0, 360.0
+        )
+        - 180.0
+    )
     return way, way[:-1][turn > least]
 
 
@@ -62,7 +85,10 @@ def from_corners(surface, bead, pieces=1):
 
 def outer(path):
     """The longest closed bead of each layer."""
-    return [max((bead for bead in layer.beads if bead.closed), key=lambda bead: bead.length) for layer in path.layers[:5]]
+    return [
+        max((bead for bead in layer.beads if bead.closed), key=lambda bead: bead.length)
+        for layer in path.layers[:5]
+    ]
 
 
 @SURFACES
@@ -71,11 +97,15 @@ def outer(path):
 @pytest.mark.always
 def test_away_from_corners_the_torch_leans_as_asked(surface, lean, direction):
     path = planned(
-        solids(surface, box()), deflection=math.radians(lean), process=ProcessParameters(direction=direction)
+        solids(surface, box()),
+        deflection=math.radians(lean),
+        process=ProcessParameters(direction=direction),
     )
     for bead in outer(path):
         normal = normals(surface, bead.points)
-        np.testing.assert_allclose(angle(bead.tool, normal), lean, atol=1e-6)  # everywhere, at corners too
+        np.testing.assert_allclose(
+            angle(bead.tool, normal), lean, atol=1e-6
+        )  # everywhere, at corners too
         points, tool = finer(bead)
         normal_there = normals(surface, points)
         free = from_corners(surface, bead, 5) > 0.8 * lean
@@ -83,21 +113,40 @@ def test_away_from_corners_the_torch_leans_as_asked(surface, lean, direction):
         halfway = normal_there[1:] + normal_there[:-1]
         halfway /= np.linalg.norm(halfway, axis=1)[:, None]
         way = np.diff(points, axis=0)
-        way -= (way * halfway).sum(axis=1)[:, None] * halfway  # along the surface, not along the chord
+        way -= (way * halfway).sum(axis=1)[
+            :, None
+        ] * halfway  # along the surface, not along the chord
         across = angle(tool[1:] + tool[:-1], way)[free[1:] & free[:-1]]
         assert len(across) > 4 and np.abs(across - 90.0).max() < 0.12
         middle = bead.points[:-1].mean(axis=0)
         assert ((bead.tool - normal) * (bead.points - middle)).sum(axis=1).min() > 0.0
 
 
-@pytest.mark.parametrize(("surface", "fill", "most"), [
-    (CYLINDER, "contours", 2.0), (CONE, "contours", 6.0), (CYLINDER, "contours", 30.0), (CONE, "spiral", 2.0),
-    (CYLINDER, "spiral", 6.0), (CONE, "lines", 6.0), (CYLINDER, "zigzag", 2.5), (CONE, "zigzag", 30.0),
-])
+@pytest.mark.parametrize(
+    ("surface", "fill", "most"),
+    [
+        (CYLINDER, "contours", 2.0),
+        (CONE, "contours", 6.0),
+        (CYLINDER, "contours", 30.0),
+        (CONE, "spiral", 2.0),
+        (CYLINDER, "spiral", 6.0),
+        (CONE, "lines", 6.0),
+        (CYLINDER, "zigzag", 2.5),
+        (CONE, "zigzag", 30.0),
+    ],
+)
 @pytest.mark.always
 def test_nowhere_does_the_torch_turn_faster(surface, fill, most):
-    build = BuildDirectionParameters(lead=math.radians(5.0), tilt=math.radians(12.0), max_turn=math.radians(most))
-    path = planned(solids(surface, box()), build=build, fill=fill, deflection=math.radians(8.0), layer_height=12.0)
+    build = BuildDirectionParameters(
+        lead=math.radians(5.0), tilt=math.radians(12.0), max_turn=math.radians(most)
+    )
+    path = planned(
+        solids(surface, box()),
+        build=build,
+        fill=fill,
+        deflection=math.radians(8.0),
+        layer_height=12.0,
+    )
     for _, _, bead in path:
         assert turns(bead).max() <= most * (1.0 + 1e-6)
         assert turns(bead.halved(np.arange(len(bead) - 1))).max() <= most * 1.001
@@ -139,7 +188,9 @@ def azimuth(bead):
     return np.unwrap(np.arctan2(bead.tool[:, 2], (bead.tool * around).sum(axis=1)))
 
 
-@pytest.mark.parametrize("seam", [0.0, 45.0, 90.0])  # the seam in the middle of an edge, and at a corner
+@pytest.mark.parametrize(
+    "seam", [0.0, 45.0, 90.0]
+)  # the seam in the middle of an edge, and at a corner
 def test_corners_are_rounded_alike_on_both_sides_and_smoothly(seam):
     process = ProcessParameters(seam=SeamParameters(angle=math.radians(seam)))
     path = planned(solids(CYLINDER, box()), process=process, deflection=math.radians(10.0))
@@ -185,9 +236,19 @@ def test_both_borders_of_a_strip_are_leant_over_wherever_they_run(fill):
     top = vertices[:, 2] > 25.0
     vertices[top, 2] += 45.0 * (1.0 + np.cos(np.arctan2(vertices[top, 1], vertices[top, 0])))
     body = sound(Body("collar", vertices, plain.triangles))
-    path = planned(solids(CYLINDER, body), fill=fill, deflection=math.radians(15.0), chord_error=0.2, layer_height=12.0)
+    path = planned(
+        solids(CYLINDER, body),
+        fill=fill,
+        deflection=math.radians(15.0),
+        chord_error=0.2,
+        layer_height=12.0,
+    )
     for layer in path.layers[:2]:
-        leaning = [bead for bead in layer.beads if angle(bead.tool, normals(CYLINDER, bead.points)).max() > 1.0]
+        leaning = [
+            bead
+            for bead in layer.beads
+            if angle(bead.tool, normals(CYLINDER, bead.points)).max() > 1.0
+        ]
         assert len(leaning) == 2
         low, high = sorted(leaning, key=lambda bead: bead.points[:, 2].mean())
         assert (low.tool[:, 2] < 0.0).all() and (high.tool[:, 2] > 0.0).all()
@@ -204,7 +265,9 @@ def test_holes_are_leant_over_and_beads_further_in_are_not():
 def test_a_ring_too_short_leans_less_and_that_is_told():
     small = box(np.array([20.0, -6.0, 40.0]), np.array([60.0, 6.0, 52.0]), name="stud")
     build = BuildDirectionParameters(max_turn=math.radians(4.0))
-    path = planned(solids(CYLINDER, small), build=build, deflection=math.radians(40.0), bead_spacing=4.0)
+    path = planned(
+        solids(CYLINDER, small), build=build, deflection=math.radians(40.0), bead_spacing=4.0
+    )
     (told,) = [issue for issue in path.issues if issue.code == "LEAN_REDUCED"]
     assert told.level == "warning" and "40 deg" in told.message
     bead = path.layers[told.layer].beads[told.bead]
@@ -216,9 +279,13 @@ def test_a_ring_too_short_leans_less_and_that_is_told():
 
 
 def test_normals_that_turn_faster_are_followed():
-    path = planned(solids(CYLINDER, box()), build=BuildDirectionParameters(max_turn=math.radians(0.5)))
+    path = planned(
+        solids(CYLINDER, box()), build=BuildDirectionParameters(max_turn=math.radians(0.5))
+    )
     (told,) = [issue for issue in path.issues if issue.code.startswith("TURN")]
-    assert told.code == "TURN_OF_NORMALS" and told.level == "warning" and "1.27 deg/mm" in told.message
+    assert (
+        told.code == "TURN_OF_NORMALS" and told.level == "warning" and "1.27 deg/mm" in told.message
+    )
     assert all((bead.tool == bead.build).all() for _, _, bead in path)
     quiet = planned(solids(CYLINDER, box()))
     assert not [issue for issue in quiet.issues if issue.code.startswith(("TURN", "LEAN"))]
@@ -228,7 +295,9 @@ def test_normals_that_turn_faster_are_followed():
 def test_without_a_limit_the_torch_goes_round_the_normal_at_corners(lean):
     """Between points of a corner, where it turns straight from one to the next, it leans as much."""
     build = BuildDirectionParameters(max_turn="inf")
-    path = planned(solids(CYLINDER, box()), build=build, deflection=math.radians(lean), layer_height=12.0)
+    path = planned(
+        solids(CYLINDER, box()), build=build, deflection=math.radians(lean), layer_height=12.0
+    )
     for bead in outer(path):
         points, tool = finer(bead, 4)
         assert np.abs(angle(tool, normals(CYLINDER, points)) - lean).max() < 0.1

@@ -24,7 +24,9 @@ def test_points_that_all_but_coincide_are_one(seed):
     rng = np.random.default_rng(seed)
     count = int(rng.integers(2, 150))
     angle = rng.uniform(-1.0, 1.0, count)
-    steps = 10.0 ** rng.uniform(-9.0, 0.5, (count, 1)) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    steps = 10.0 ** rng.uniform(-9.0, 0.5, (count, 1)) * np.stack(
+        [np.cos(angle), np.sin(angle)], axis=1
+    )
     line = np.vstack([[0.0, 0.0], np.cumsum(steps, axis=0)])
     got = needed(line, 0.01)
     got = divided(got, RoundLayer(Developable(60.0, 200.0)).pieces(got, 0.01))[0]
@@ -45,16 +47,24 @@ def test_narrow_beads_have_no_move_of_less_than_a_tenth_of_a_millisecond(seed):
     rng = np.random.default_rng(seed)
     count = int(rng.integers(3, 150))
     angle = rng.uniform(-0.5, 0.5, count)
-    steps = 10.0 ** rng.uniform(-3.0, -1.0, (count, 1)) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    steps = 10.0 ** rng.uniform(-3.0, -1.0, (count, 1)) * np.stack(
+        [np.cos(angle), np.sin(angle)], axis=1
+    )
     line = np.vstack([[0.0, 0.0], np.cumsum(steps, axis=0)])
     share = rng.uniform(0.3, 1.0, len(line))
     process = ProcessParameters(travel_speed=20.0, acceleration=1e5, bead_width=1.0)
     bead = bead_of(
-        PlaneCurve(line, False, "centre", 0, share=share), Slice(0, Base("flat", Plane(), np.eye(4)), PlaneLayer(0.5), ()),
-        SolidParameters(chord_error=1e-3, bead_spacing=1.0, layer_height=0.5), BuildDirectionParameters(), process, None,
+        PlaneCurve(line, False, "centre", 0, share=share),
+        Slice(0, Base("flat", Plane(), np.eye(4)), PlaneLayer(0.5), ()),
+        SolidParameters(chord_error=1e-3, bead_spacing=1.0, layer_height=0.5),
+        BuildDirectionParameters(),
+        process,
+        None,
     ).bead
     times = np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]
     assert times.min() >= 1e-4 and bead.speed.max() > 25.0
     np.testing.assert_allclose(bead.points[[0, -1], :2], line[[0, -1]], atol=1e-9)
-    fine = np.concatenate([np.linspace(a, b, 200) for a, b in zip(bead.points[:-1, :2], bead.points[1:, :2])])
+    fine = np.concatenate(
+        [np.linspace(a, b, 200) for a, b in zip(bead.points[:-1, :2], bead.points[1:, :2])]
+    )
     assert cKDTree(fine).query(line)[0].max() < 2.0 * 1e-4 * bead.speed.max() + 1e-3

@@ -42,7 +42,10 @@ def covered(surface, beads, angle, way, turn):
             dense.append(a + np.linspace(0.0, 1.0, count)[:, None] * (b - a))
     there, along = polar(surface, np.vstack(dense))
     flat = np.vstack([plane(surface, there + k * turn, along) for k in (-1, 0, 1)])
-    return cKDTree(flat).query(plane(surface, angle, way), distance_upper_bound=SPACING)[0] <= 0.5 * SPACING
+    return (
+        cKDTree(flat).query(plane(surface, angle, way), distance_upper_bound=SPACING)[0]
+        <= 0.5 * SPACING
+    )
 
 
 def looked_at(surface, path, inside):
@@ -59,14 +62,20 @@ def looked_at(surface, path, inside):
         ways = (np.arange(math.floor(low / PITCH), math.ceil(high / PITCH)) + 0.5) * PITCH
         across = PITCH if surface.is_cylinder else PITCH / ways.mean()
         count = math.ceil(turn / across)
-        angle, way = (grid.ravel() for grid in np.meshgrid((np.arange(count) + 0.5) / count * turn - 0.5 * turn, ways))
+        angle, way = (
+            grid.ravel()
+            for grid in np.meshgrid((np.arange(count) + 0.5) / count * turn - 0.5 * turn, ways)
+        )
         area = turn / count * PITCH * (1.0 if surface.is_cylinder else way)
         theta = angle / (there.radius if surface.is_cylinder else sine)
         rho = np.full(len(way), there.radius) if surface.is_cylinder else way * sine
         z = way if surface.is_cylinder else there.height - way * math.cos(surface.taper)
         part = inside(np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1))
         laid = covered(surface, beads, angle, way, turn)
-        sums = [float((area * np.ones(len(way)))[some].sum()) for some in (part, part & ~laid, laid & ~part, laid)]
+        sums = [
+            float((area * np.ones(len(way)))[some].sum())
+            for some in (part, part & ~laid, laid & ~part, laid)
+        ]
         length = sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in beads)
         found += [*sums[:3], length * SPACING - sums[3]]
     return HEIGHT * found
@@ -76,18 +85,29 @@ def ring(inner, outer, low, high):
     def inside(points):
         rho = np.hypot(points[:, 0], points[:, 1])
         return (rho > inner) & (rho < outer) & (points[:, 2] > low) & (points[:, 2] < high)
+
     return collar(inner, outer, low, high, 360), inside
 
 
-@pytest.mark.parametrize(("surface", "size", "fill"), [
-    (CYLINDER, (40.0, 56.0, 10.0, 37.0), "contours"), (CYLINDER, (40.0, 56.0, 10.0, 13.0), "contours"),
-    (CONE, (20.0, 66.0, 30.0, 50.0), "contours"), (CONE, (20.0, 66.0, 30.0, 50.0), "lines"),
-], ids=str)
+@pytest.mark.parametrize(
+    ("surface", "size", "fill"),
+    [
+        (CYLINDER, (40.0, 56.0, 10.0, 37.0), "contours"),
+        (CYLINDER, (40.0, 56.0, 10.0, 13.0), "contours"),
+        (CONE, (20.0, 66.0, 30.0, 50.0), "contours"),
+        (CONE, (20.0, 66.0, 30.0, 50.0), "lines"),
+    ],
+    ids=str,
+)
 def test_what_is_laid_all_the_way_round_a_hub_is_known(surface, size, fill):
     body, inside = ring(*size)
     path = planned(solids(surface, body), fill=fill)
     whole, left, beside, twice = looked_at(surface, path, inside)
-    foot = (lambda z: surface.radius) if surface.is_cylinder else (lambda z: surface.radius * (1.0 - z / surface.height))
+    foot = (
+        (lambda z: surface.radius)
+        if surface.is_cylinder
+        else (lambda z: surface.radius * (1.0 - z / surface.height))
+    )
     part = quad(lambda z: math.pi * (size[1] ** 2 - foot(z) ** 2), size[2], size[3])[0]
     told, near = path.volumes, 0.012 * max(part, whole)
     assert told[0] == pytest.approx(part, rel=1e-3)
@@ -100,12 +120,16 @@ def test_what_is_laid_all_the_way_round_a_hub_is_known(surface, size, fill):
 
 def test_a_thin_collar_is_told_to_lie_beside_and_a_wide_one_is_no_news():
     """Of 3 mm under beads of 6 mm as much lies beside as in it; warned of as of any other solid."""
+
     def told(low, high):
         made = solids(CYLINDER, ring(40.0, 57.0, low, high)[0])
         balance = deposit_balance.of_toolpath(made, planned(made), 6.0)
         return balance, [one.code for one in deposit_balance.issues(balance)]
+
     balance, codes = told(10.0, 13.0)
-    assert codes[-1] == "DEPOSITED_BESIDE" and balance.outside == pytest.approx(balance.beads / 2.0, rel=0.02)
+    assert codes[-1] == "DEPOSITED_BESIDE" and balance.outside == pytest.approx(
+        balance.beads / 2.0, rel=0.02
+    )
     assert "DEPOSITED_BESIDE" not in told(10.0, 40.0)[1]
 
 
@@ -116,24 +140,39 @@ def test_what_layers_reach_beyond_a_solid_lies_beside_it():
     path = planned(solids(CYLINDER, block))
     part = 75.0 * quad(lambda y: high - math.sqrt(45.0**2 - y * y), -17.0, 17.0)[0]
     assert len(path.layers) > 1 and path.volumes[0] == pytest.approx(part, rel=1e-3)
-    laid = HEIGHT * 75.0 * sum(
-        2.0 * radius * math.asin(17.0 / radius) - (0.0 if radius < high else 2.0 * radius * math.acos(high / radius))
-        for radius in 45.0 + HEIGHT * np.arange(len(path.layers))
+    laid = (
+        HEIGHT
+        * 75.0
+        * sum(
+            2.0 * radius * math.asin(17.0 / radius)
+            - (0.0 if radius < high else 2.0 * radius * math.acos(high / radius))
+            for radius in 45.0 + HEIGHT * np.arange(len(path.layers))
+        )
     )
     assert laid > 1.1 * part
     assert path.volumes[2] == pytest.approx(laid - part, rel=0.05)
 
 
-@pytest.mark.parametrize("surface", [CYLINDER, CONE, Developable(60.0, 20.0)], ids=["cylinder", "cone", "wide cone"])
+@pytest.mark.parametrize(
+    "surface", [CYLINDER, CONE, Developable(60.0, 20.0)], ids=["cylinder", "cone", "wide cone"]
+)
 def test_the_volume_outside_of_a_hub(surface):
     low, high = np.array([20.0, -17.0, 5.0]), np.array([84.0, 17.0, 95.0])
     body = box(low, high)
 
     def span(y, z):
-        rho = surface.radius if surface.is_cylinder else max(surface.radius * (1.0 - z / surface.height), 0.0)
+        rho = (
+            surface.radius
+            if surface.is_cylinder
+            else max(surface.radius * (1.0 - z / surface.height), 0.0)
+        )
         return high[0] - max(low[0], math.sqrt(max(rho * rho - y * y, 0.0)))
 
     y, z = (low[k] + (np.arange(600) + 0.5) / 600 * (high[k] - low[k]) for k in (1, 2))
-    expected = np.mean([[span(a, b) for a in y] for b in z]) * (high[1] - low[1]) * (high[2] - low[2])
-    assert volume_beyond(surface, body.vertices, body.triangles) == pytest.approx(expected, rel=2e-4)
+    expected = (
+        np.mean([[span(a, b) for a in y] for b in z]) * (high[1] - low[1]) * (high[2] - low[2])
+    )
+    assert volume_beyond(surface, body.vertices, body.triangles) == pytest.approx(
+        expected, rel=2e-4
+    )
     assert volume_beyond(Developable(200.0), body.vertices, body.triangles) == 0.0

@@ -11,8 +11,14 @@ from freecad_am.core.strategies.clearance.least_turn import BARRED, least
 
 def cost(states, allowed, weight, change, way):
     n = len(way)
-    own = sum(weight[k] * (states[k, way[k]] ** 2).sum() if allowed[k, way[k]] else BARRED for k in range(n))
-    return own + sum(change[k] * ((states[k, way[k]] - states[k + 1, way[k + 1]]) ** 2).sum() for k in range(n - 1))
+    own = sum(
+        weight[k] * (states[k, way[k]] ** 2).sum() if allowed[k, way[k]] else BARRED
+        for k in range(n)
+    )
+    return own + sum(
+        change[k] * ((states[k, way[k]] - states[k + 1, way[k + 1]]) ** 2).sum()
+        for k in range(n - 1)
+    )
 
 
 @pytest.mark.parametrize("same", [False, True], ids=["own states", "the same states"])
@@ -26,5 +32,9 @@ def test_no_way_is_better(seed, same):
     found = least(states, allowed, weight, change)
     for k in range(b):
         own = np.broadcast_to(states[0] if same else states[k], (n, s, 2))
-        best = min(cost(own, allowed[k], weight[k], change[k], way) for way in product(range(s), repeat=n))
-        assert cost(own, allowed[k], weight[k], change[k], found[k]) == pytest.approx(best, rel=1e-12)
+        best = min(
+            cost(own, allowed[k], weight[k], change[k], way) for way in product(range(s), repeat=n)
+        )
+        assert cost(own, allowed[k], weight[k], change[k], found[k]) == pytest.approx(
+            best, rel=1e-12
+        )

@@ -14,7 +14,9 @@ from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub, upright
 from freecad_am.core.issues import InputError
 from freecad_am.core.strategies.revolution import platform
 
-FRAME = np.array([[0.0, -1.0, 0.0, 30.0], [1.0, 0.0, 0.0, 40.0], [0.0, 0.0, 1.0, 5.0], [0.0, 0.0, 0.0, 1.0]])
+FRAME = np.array(
+    [[0.0, -1.0, 0.0, 30.0], [1.0, 0.0, 0.0, 40.0], [0.0, 0.0, 1.0, 5.0], [0.0, 0.0, 0.0, 1.0]]
+)
 WALL = RevolvedWall(Meridian.chained([line((20.0, 0.0), (20.0, 10.0))]), FRAME, label="Cup")
 
 
@@ -38,11 +40,15 @@ def test_a_disc_below_and_beside_is_taken_on_the_safe_side():
     assert seen.height == pytest.approx(-5.0)
 
 
-@pytest.mark.parametrize(("diameter", "frame", "said"), [
-    (90.0, at(0.0, 0.0, 0.0), "50 mm off the middle"),
-    (300.0, at(0.0, 0.0, 6.0), "1 mm below"),
-    (300.0, at(30.0, 40.0, 5.0, 0.1), r"5\.73 deg"), (300.0, at(30, 40, 5, np.pi), "180 deg"),
-])
+@pytest.mark.parametrize(
+    ("diameter", "frame", "said"),
+    [
+        (90.0, at(0.0, 0.0, 0.0), "50 mm off the middle"),
+        (300.0, at(0.0, 0.0, 6.0), "1 mm below"),
+        (300.0, at(30.0, 40.0, 5.0, 0.1), r"5\.73 deg"),
+        (300.0, at(30, 40, 5, np.pi), "180 deg"),
+    ],
+)
 def test_what_misses_the_platform_is_refused(diameter, frame, said):
     with pytest.raises(InputError, match=said) as refused:
         platform.under(WALL, diameter, frame)
@@ -50,34 +56,68 @@ def test_what_misses_the_platform_is_refused(diameter, frame, said):
     assert "Cup" in refused.value.message
 
 
-@pytest.mark.parametrize(("diameter", "frame", "over"), [
-    (30.0, None, True), (40.0, None, False), (0.0, None, False),
-    (130.0, at(0.0, 0.0, 0.0), True), (140.0, at(0.0, 0.0, 0.0), False),
-])
+@pytest.mark.parametrize(
+    ("diameter", "frame", "over"),
+    [
+        (30.0, None, True),
+        (40.0, None, False),
+        (0.0, None, False),
+        (130.0, at(0.0, 0.0, 0.0), True),
+        (140.0, at(0.0, 0.0, 0.0), False),
+    ],
+)
 def test_a_base_that_reaches_over_the_edge_is_deposited_with_a_warning(diameter, frame, over):
     found = platform.overhanging(WALL, platform.under(WALL, diameter, frame))
-    assert [(issue.level, issue.code) for issue in found] == ([("warning", "OVER_PLATFORM")] if over else [])
+    assert [(issue.level, issue.code) for issue in found] == (
+        [("warning", "OVER_PLATFORM")] if over else []
+    )
     assert all("Cup has a diameter of 40 mm" in issue.message for issue in found)
 
 
-@pytest.mark.parametrize(("diameter", "frame", "mended"), [
-    (30.0, None, False), (130.0, at(0.0, 0.0, 0.0), True), (40.0, at(29.0, 40.0, 0.0), True), (39.9, at(29, 40, 0), False),
-])
+@pytest.mark.parametrize(
+    ("diameter", "frame", "mended"),
+    [
+        (30.0, None, False),
+        (130.0, at(0.0, 0.0, 0.0), True),
+        (40.0, at(29.0, 40.0, 0.0), True),
+        (39.9, at(29, 40, 0), False),
+    ],
+)
 def test_the_frame_of_the_feature_is_a_remedy_where_it_does(diameter, frame, mended):
     (found,) = platform.overhanging(WALL, platform.under(WALL, diameter, frame))
     assert ("use cell.mount: feature" in found.message) == mended
-    assert mended == (frame is not None and not platform.overhanging(WALL, platform.under(WALL, diameter, None)))
+    assert mended == (
+        frame is not None and not platform.overhanging(WALL, platform.under(WALL, diameter, None))
+    )
 
 
 @pytest.mark.parametrize("depth", [0.0, 7.5])
 def test_of_a_part_far_larger_than_the_platform_only_what_is_over_it_is_looked_at(depth):
     """A plate of 6 m, whose underside would be 70 million places, reaches below the disc with the middle of its underside
     alone: no corner of a triangle is near."""
-    corner = np.array([[x, y, z] for x in (-3000.0, 3000.0) for y in (-3000.0, 3000.0) for z in (-depth, 50.0)])
-    sides = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
-             [1, 5, 7], [1, 7, 3]]
-    base = Base("hub", Developable(1.0), upright(np.array([0.0, 4000.0, 0.0]), np.array([0.0, 0.0, 1.0])))
-    solids = SolidsOnHub("plate", (Group(base, (Body("plate", corner, np.array(sides, dtype=np.int64)),)),), 0.01)
+    corner = np.array(
+        [[x, y, z] for x in (-3000.0, 3000.0) for y in (-3000.0, 3000.0) for z in (-depth, 50.0)]
+    )
+    sides = [
+        [0, 1, 3],
+        [0, 3, 2],
+        [4, 6, 7],
+        [4, 7, 5],
+        [0, 4, 5],
+        [0, 5, 1],
+        [2, 3, 7],
+        [2, 7, 6],
+        [0, 2, 6],
+        [0, 6, 4],
+        [1, 5, 7],
+        [1, 7, 3],
+    ]
+    base = Base(
+        "hub", Developable(1.0), upright(np.array([0.0, 4000.0, 0.0]), np.array([0.0, 0.0, 1.0]))
+    )
+    solids = SolidsOnHub(
+        "plate", (Group(base, (Body("plate", corner, np.array(sides, dtype=np.int64)),)),), 0.01
+    )
     tracemalloc.start()
     if depth:
         with pytest.raises(InputError, match=r"plate reaches 7\.5 mm below the platform"):
@@ -89,14 +129,33 @@ def test_of_a_part_far_larger_than_the_platform_only_what_is_over_it_is_looked_a
     assert most < 10e6
 
 
-@pytest.mark.parametrize(("drop", "diameter", "refused"), [
-    (0.0, 300.0, False), (0.04, 300.0, False), (7.5, 300.0, True), (7.5, 0.0, False), (7.5, 110.0, False),
-])
+@pytest.mark.parametrize(
+    ("drop", "diameter", "refused"),
+    [
+        (0.0, 300.0, False),
+        (0.04, 300.0, False),
+        (7.5, 300.0, True),
+        (7.5, 0.0, False),
+        (7.5, 110.0, False),
+    ],
+)
 def test_solids_that_reach_below_the_platform_are_refused_with_their_depth(drop, diameter, refused):
     """A bar beside a hub of 40 mm: what of it is within the hub does not count, nor what is beside the platform."""
     corner = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
-    sides = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
-             [1, 5, 7], [1, 7, 3]]
+    sides = [
+        [0, 1, 3],
+        [0, 3, 2],
+        [4, 6, 7],
+        [4, 7, 5],
+        [0, 4, 5],
+        [0, 5, 1],
+        [2, 3, 7],
+        [2, 7, 6],
+        [0, 2, 6],
+        [0, 6, 4],
+        [1, 5, 7],
+        [1, 7, 3],
+    ]
     bar = corner * [250.0, 20.0, 60.0] - [-60.0, 10.0, drop]
     within = corner * [10.0, 20.0, 90.0] - [5.0, 10.0, 20.0]
     faces = np.array(sides, dtype=np.int64)

@@ -29,7 +29,9 @@ SPHERE = Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)])
 LAVAL = Meridian.chained([parabola(-10.0, 100.0, 0.0, 96.5), parabola(3.0, 85.0, 96.5, 128.0)])
 FUNNEL = Meridian.chained([arc((90.0, 0.0), 45.0, np.pi, np.pi / 2)])
 CYLINDER = Meridian.chained([line((10.0, 0.0), (10.0, 30.0))])
-MOVED = np.array([[0.6, 0.0, 0.8, 11.0], [0.0, 1.0, 0.0, -7.0], [-0.8, 0.0, 0.6, 3.0], [0.0, 0.0, 0.0, 1.0]])
+MOVED = np.array(
+    [[0.6, 0.0, 0.8, 11.0], [0.0, 1.0, 0.0, -7.0], [-0.8, 0.0, 0.6, 3.0], [0.0, 0.0, 0.0, 1.0]]
+)
 
 
 def plan(meridian, build=FREE, process=None, platform=0.0, frame=None, turn=None, **strategy):
@@ -132,9 +134,15 @@ def test_beads_that_are_points_are_left_out():
     assert "POINT_BEADS" in {issue.code for issue in toolpath.issues}
 
 
-@pytest.mark.parametrize(("direction", "signs"), [
-    ("counter-clockwise", (1, 1, 1)), ("clockwise", (-1, -1, -1)), ("alternate", (1, -1, 1)), ("as found", (1, 1, 1)),
-])
+@pytest.mark.parametrize(
+    ("direction", "signs"),
+    [
+        ("counter-clockwise", (1, 1, 1)),
+        ("clockwise", (-1, -1, -1)),
+        ("alternate", (1, -1, 1)),
+        ("as found", (1, 1, 1)),
+    ],
+)
 def test_seams_move_and_beads_run_as_asked(direction, signs):
     process = ProcessParameters(seam=SeamParameters(0.4, 0.1), direction=direction)
     toolpath = plan(CYLINDER, process=process, frame=MOVED, layer_height=10.0)
@@ -147,7 +155,9 @@ def test_seams_move_and_beads_run_as_asked(direction, signs):
             assert np.diff(bead.parameter) == pytest.approx(np.diff(azimuth))
 
 
-@pytest.mark.parametrize(("direction", "signs"), [("counter-clockwise", (1, 1)), ("alternate", (1, -1))])
+@pytest.mark.parametrize(
+    ("direction", "signs"), [("counter-clockwise", (1, 1)), ("alternate", (1, -1))]
+)
 def test_a_part_of_a_turn_gives_open_beads(direction, signs):
     toolpath = plan(SPHERE, process=ProcessParameters(direction=direction), turn=(0.5, 2.5))
     assert len(toolpath.layers) == 71
@@ -190,7 +200,9 @@ def test_the_cap_counts_lead_and_tilt():
     build = BuildDirectionParameters(lead=0.3, tilt=-0.2, max_tilt=0.8, clearance="none")
     angles = []
     for _, _, bead in plan(SPHERE, build):
-        assert (bead.build * bead.tool).sum(axis=1) == pytest.approx(np.full(len(bead), np.cos(0.3) * np.cos(0.2)))
+        assert (bead.build * bead.tool).sum(axis=1) == pytest.approx(
+            np.full(len(bead), np.cos(0.3) * np.cos(0.2))
+        )
         angles.append(np.arccos(bead.tool[0, 2]))
     assert max(angles) == pytest.approx(0.8, abs=1e-6)
 

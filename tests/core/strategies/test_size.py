@@ -15,7 +15,11 @@ from freecad_am.core.geometry.walls.patch_wall import FirstCurve
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
-from freecad_am.core.parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
+from freecad_am.core.parameters.filled import (
+    CladdingParameters,
+    DevelopableParameters,
+    SolidParameters,
+)
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import MOST_LAYERS, RevolutionParameters, SurfaceParameters
 from freecad_am.core.strategies import cladding, size
@@ -29,14 +33,18 @@ from tests.core.strategies.test_wall_fronts import WALLS
 
 FREE = BuildDirectionParameters(clearance="none", max_tilt=np.pi)
 DOME = RevolvedWall(Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)]), np.eye(4))
-VASE = RevolvedWall(Meridian.chained([line((60.0, 0.0), (20.0, 50.0)), line((20.0, 50.0), (45.0, 70.0))]), np.eye(4))
+VASE = RevolvedWall(
+    Meridian.chained([line((60.0, 0.0), (20.0, 50.0)), line((20.0, 50.0), (45.0, 70.0))]), np.eye(4)
+)
 SECTOR = dataclasses.replace(VASE, start=0.3, end=1.7, full=False)
 PROCESS = ProcessParameters()
 
 
 def turned(wall, **values):
     strategy = RevolutionParameters(**values)
-    return size.of_revolution(wall, strategy), revolution.plan(wall, strategy, FREE, PROCESS, NozzleParameters(), 0.0)
+    return size.of_revolution(wall, strategy), revolution.plan(
+        wall, strategy, FREE, PROCESS, NozzleParameters(), 0.0
+    )
 
 
 def on_part(wall, **values):
@@ -47,33 +55,59 @@ def on_part(wall, **values):
 
 def on_hub(made, **values):
     strategy = DevelopableParameters(**{"layer_height": 3.0, "bead_spacing": 3.0, **values})
-    return size.of_solids(made, strategy), plan_solids(made, strategy, BuildDirectionParameters(), PROCESS, None)
+    return size.of_solids(made, strategy), plan_solids(
+        made, strategy, BuildDirectionParameters(), PROCESS, None
+    )
 
 
 def on_faces(wall, **values):
-    sheet = dataclasses.replace(wall, first=(), rims=(), behind=np.zeros(len(wall.vertices), dtype=bool))
+    sheet = dataclasses.replace(
+        wall, first=(), rims=(), behind=np.zeros(len(wall.vertices), dtype=bool)
+    )
     strategy = CladdingParameters(**values)
     faces = CladFaces("part", ("Face1",), (sheet,))
-    return size.of_cladding(faces, strategy), cladding.plan(faces, strategy, BuildDirectionParameters(), PROCESS, None)
+    return size.of_cladding(faces, strategy), cladding.plan(
+        faces, strategy, BuildDirectionParameters(), PROCESS, None
+    )
 
 
-@pytest.mark.parametrize("make", [
-    lambda: turned(DOME, layer_height=0.7), lambda: turned(VASE, layer_height=0.5, chord_error=0.002),
-    lambda: turned(VASE, layer_height=0.4, spacing="iso-height"), lambda: turned(SECTOR, layer_height=0.5),
-    lambda: turned(DOME, layer_height=0.5, min_points=300, chord_error=0.1),
-    lambda: on_part(tube(), layer_height=1.0), lambda: on_part(bend(TILTED), layer_height=3.0, chord_error=0.001),
-    lambda: on_part(WALLS["three tangent faces"][0](), layer_height=2.0),
-    lambda: on_part(WALLS["a bend"][0](), layer_height=5.0, chord_error=0.001),
-    lambda: on_hub(solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), chord_error=0.01),
-    lambda: on_hub(solids(CONE, box(), box(turned=2.0)), chord_error=0.002, fill="lines"),
-    lambda: on_hub(solids(CYLINDER, box()), margin=30.0, layer_height=6.0, bead_spacing=8.0),
-    lambda: on_faces(WALLS["a bend"][0](), layers=1, chord_error=0.01),
-    # layers around a bent pipe become three times as long
-    lambda: on_faces(WALLS["a half shell"][0](), layers=3, layer_height=14.0, bead_spacing=15.0, chord_error=0.05),
-])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: turned(DOME, layer_height=0.7),
+        lambda: turned(VASE, layer_height=0.5, chord_error=0.002),
+        lambda: turned(VASE, layer_height=0.4, spacing="iso-height"),
+        lambda: turned(SECTOR, layer_height=0.5),
+        lambda: turned(DOME, layer_height=0.5, min_points=300, chord_error=0.1),
+        lambda: on_part(tube(), layer_height=1.0),
+        lambda: on_part(bend(TILTED), layer_height=3.0, chord_error=0.001),
+        lambda: on_part(WALLS["three tangent faces"][0](), layer_height=2.0),
+        lambda: on_part(WALLS["a bend"][0](), layer_height=5.0, chord_error=0.001),
+        lambda: on_hub(solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), chord_error=0.01),
+        lambda: on_hub(solids(CONE, box(), box(turned=2.0)), chord_error=0.002, fill="lines"),
+        lambda: on_hub(solids(CYLINDER, box()), margin=30.0, layer_height=6.0, bead_spacing=8.0),
+        lambda: on_faces(WALLS["a bend"][0](), layers=1, chord_error=0.01),
+        # layers around a bent pipe become three times as long
+        lambda: on_faces(
+            WALLS["a half shell"][0](),
+            layers=3,
+            layer_height=14.0,
+            bead_spacing=15.0,
+            chord_error=0.05,
+        ),
+    ],
+)
 @pytest.mark.always(
-    "<lambda>0", "<lambda>1", "<lambda>2", "<lambda>3", "<lambda>4",
-    "<lambda>5", "<lambda>6", "<lambda>8", "<lambda>10", "<lambda>13",
+    "<lambda>0",
+    "<lambda>1",
+    "<lambda>2",
+    "<lambda>3",
+    "<lambda>4",
+    "<lambda>5",
+    "<lambda>6",
+    "<lambda>8",
+    "<lambda>10",
+    "<lambda>13",
 )
 def test_counts_are_about_right(make):
     told, made = make()
@@ -84,7 +118,9 @@ def test_counts_are_about_right(make):
 def test_the_turns_of_a_spiral_count_as_layers():
     told, made = turned(VASE, layer_height=0.5, path="spiral")
     assert told.points == pytest.approx(made.point_count, rel=0.2)
-    assert told.layers == pytest.approx(np.ptp(next(iter(made))[2].parameter) / (2.0 * np.pi), rel=0.05)
+    assert told.layers == pytest.approx(
+        np.ptp(next(iter(made))[2].parameter) / (2.0 * np.pi), rel=0.05
+    )
 
 
 FINE = {
@@ -116,14 +152,21 @@ def test_layers_that_are_too_many_are_refused_at_once_with_what_is_enough(name):
     assert layers * 1e-6 == pytest.approx(enough * MOST_LAYERS, rel=0.15)  # both are rounded
 
 
-@pytest.mark.parametrize(("family", "values", "key"), [
-    (RevolutionParameters, {"chord_error": 1e-5}, "strategy.chord_error"),
-    (RevolutionParameters, {"layer_height": 1e-3, "chord_error": 1e-3}, "strategy.layer_height"),
-    (SurfaceParameters, {"chord_error": 1e-5, "layer_height": 0.9}, "strategy.chord_error"),
-    (DevelopableParameters, {"bead_spacing": 1e-4}, "strategy.bead_spacing"),
-    (DevelopableParameters, {"chord_error": 1e-5}, "strategy.chord_error"),
-    (DevelopableParameters, {"layer_height": 2e-3}, "strategy.layer_height"),
-])
+@pytest.mark.parametrize(
+    ("family", "values", "key"),
+    [
+        (RevolutionParameters, {"chord_error": 1e-5}, "strategy.chord_error"),
+        (
+            RevolutionParameters,
+            {"layer_height": 1e-3, "chord_error": 1e-3},
+            "strategy.layer_height",
+        ),
+        (SurfaceParameters, {"chord_error": 1e-5, "layer_height": 0.9}, "strategy.chord_error"),
+        (DevelopableParameters, {"bead_spacing": 1e-4}, "strategy.bead_spacing"),
+        (DevelopableParameters, {"chord_error": 1e-5}, "strategy.chord_error"),
+        (DevelopableParameters, {"layer_height": 2e-3}, "strategy.layer_height"),
+    ],
+)
 def test_points_that_are_too_many_are_told_by_what_makes_them(family, values, key):
     strategy = family(**values)
     with pytest.raises(InputError) as caught:
@@ -131,23 +174,37 @@ def test_points_that_are_too_many_are_told_by_what_makes_them(family, values, ke
     error = caught.value
     assert (error.code, error.where) == ("TOO_MANY", key)
     value = getattr(strategy, key.split(".")[1])
-    assert error.message.startswith(f"{value:g} mm makes about 200,000,000 points, and more than 50,000,000 cannot")
+    assert error.message.startswith(
+        f"{value:g} mm makes about 200,000,000 points, and more than 50,000,000 cannot"
+    )
     enough = float(error.message.split("at least ")[1].split()[0])
-    assert enough == pytest.approx(value * (16.0 if key.endswith("error") else 4.0), rel=0.1) and enough >= 4.0 * value
+    assert (
+        enough == pytest.approx(value * (16.0 if key.endswith("error") else 4.0), rel=0.1)
+        and enough >= 4.0 * value
+    )
 
 
 def test_what_is_said_to_be_enough_is_taken():
     for values in ({"layer_height": 1e-6}, {"layer_height": 0.1, "chord_error": 1e-5}):
         wide = RevolvedWall(Meridian.chained([line((4000.0, 0.0), (4000.0, 900.0))]), np.eye(4))
         with pytest.raises(InputError) as caught:
-            size.refuse_absurd(size.of_revolution(wide, RevolutionParameters(**values)), RevolutionParameters(**values))
-        key, enough = caught.value.where.split(".")[1], float(caught.value.message.split("at least ")[1].split()[0])
+            size.refuse_absurd(
+                size.of_revolution(wide, RevolutionParameters(**values)),
+                RevolutionParameters(**values),
+            )
+        key, enough = (
+            caught.value.where.split(".")[1],
+            float(caught.value.message.split("at least ")[1].split()[0]),
+        )
         strategy = RevolutionParameters(**{**values, key: enough})
         size.refuse_absurd(size.of_revolution(wide, strategy), strategy)
 
 
 def test_beads_by_overlap_are_told_by_their_width():
-    made, thin = solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), dataclasses.replace(PROCESS, bead_width=1e-5)
+    made, thin = (
+        solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)),
+        dataclasses.replace(PROCESS, bead_width=1e-5),
+    )
     strategy = DevelopableParameters(layer_height=3.0, bead_overlap=0.3)
     size.refuse_absurd(size.of_solids(made, strategy), strategy)  # the feature knows no width yet
     with pytest.raises(InputError, match=r"1e-05 mm makes about [\d,]+ points") as caught:
@@ -158,23 +215,37 @@ def test_beads_by_overlap_are_told_by_their_width():
 def test_large_jobs_are_not_refused():
     """A tank 4 m wide and 5 m high at half a millimetre, and a fine one of 40 million points."""
     tank = RevolvedWall(Meridian.chained([line((2000.0, 0.0), (2000.0, 5000.0))]), np.eye(4))
-    for strategy in (RevolutionParameters(layer_height=0.5), RevolutionParameters(layer_height=0.5, chord_error=0.001)):
+    for strategy in (
+        RevolutionParameters(layer_height=0.5),
+        RevolutionParameters(layer_height=0.5, chord_error=0.001),
+    ):
         found = size.of_revolution(tank, strategy)
         size.refuse_absurd(found, strategy)
     assert 25e6 < found.points < size.MOST_POINTS
 
 
-@pytest.mark.parametrize(("family", "points", "told"), [
-    (RevolutionParameters, 200_000, None), (RevolutionParameters, 1_000_000, "0.92 min of the processor and 1.5 GB"),
-    (SurfaceParameters, 10_000, None), (SurfaceParameters, 60_000, "2 min of the processor and 0.09 GB"),
-    (CladdingParameters, 19_000, None), (CladdingParameters, 76_000, "1.9 min of the processor and 0.12 GB"),
-    (DevelopableParameters, 100_000, None), (DevelopableParameters, 370_000, "1.6 min of the processor and 0.56 GB"),
-])
+@pytest.mark.parametrize(
+    ("family", "points", "told"),
+    [
+        (RevolutionParameters, 200_000, None),
+        (RevolutionParameters, 1_000_000, "0.92 min of the processor and 1.5 GB"),
+        (SurfaceParameters, 10_000, None),
+        (SurfaceParameters, 60_000, "2 min of the processor and 0.09 GB"),
+        (CladdingParameters, 19_000, None),
+        (CladdingParameters, 76_000, "1.9 min of the processor and 0.12 GB"),
+        (DevelopableParameters, 100_000, None),
+        (DevelopableParameters, 370_000, "1.6 min of the processor and 0.56 GB"),
+    ],
+)
 def test_large_jobs_are_told(family, points, told):
     found = size.judged(size.Size(180.0, points), family())
-    assert [(issue.level, issue.code) for issue in found] == ([] if told is None else [("note", "LARGE")])
+    assert [(issue.level, issue.code) for issue in found] == (
+        [] if told is None else [("note", "LARGE")]
+    )
     if told:
-        assert found[0].message.startswith(f"about {points:,} points in 180 layers are planned, which takes about {told} of")
+        assert found[0].message.startswith(
+            f"about {points:,} points in 180 layers are planned, which takes about {told} of"
+        )
 
 
 def test_many_layers_of_few_points_are_told():
@@ -198,13 +269,18 @@ def test_tilts_that_take_long_to_find_are_told():
     # a wall all of whose beads turn too fast: 6 s for its first tilts, 70 s for slower ones
     assert size.of_tilting(1_065) == size.of_tilting(500, 6) == ()
     (issue,) = size.of_tilting(1_065, 6)
-    assert (issue.level, issue.code) == ("note", "LARGE") and "on beads of 1,100 points" in issue.message
+    assert (issue.level, issue.code) == (
+        "note",
+        "LARGE",
+    ) and "on beads of 1,100 points" in issue.message
     assert "takes up to 0.96 min of the processor" in issue.message
 
 
 def test_layers_of_a_wide_margin_are_told_by_what_filling_them_takes():
     """Its layers, each another one, are long straight beads of few points."""
-    block = size.of_solids(solids(CYLINDER, box()), DevelopableParameters(layer_height=6.0, bead_spacing=8.0))
+    block = size.of_solids(
+        solids(CYLINDER, box()), DevelopableParameters(layer_height=6.0, bead_spacing=8.0)
+    )
     assert block.squares == 0.0
     strategy = DevelopableParameters(layer_height=6.0, bead_spacing=8.0, margin=300.0)
     assert size.of_solids(solids(CYLINDER, box()), strategy).squares > 200_000
@@ -215,10 +291,15 @@ def test_layers_of_a_wide_margin_are_told_by_what_filling_them_takes():
 def test_remedies_that_take_long_to_find_are_told():
     assert size.of_remedies(0) == size.of_remedies(3_700) == ()
     (issue,) = size.of_remedies(15_516)
-    assert (issue.level, issue.code) == ("note", "LARGE") and "takes up to 2.1 min of the processor" in issue.message
+    assert (issue.level, issue.code) == (
+        "note",
+        "LARGE",
+    ) and "takes up to 2.1 min of the processor" in issue.message
 
 
-@pytest.mark.parametrize(("height", "told"), [(1.0, "1,500,000 nodes, which takes about 1.3 min"), (2.0, None)])
+@pytest.mark.parametrize(
+    ("height", "told"), [(1.0, "1,500,000 nodes, which takes about 1.3 min"), (2.0, None)]
+)
 def test_curved_layers_are_told_by_their_grid(height, told):
     """A plate of 96 cm3 whose layers of 1 mm took 105 s of the processor, which its 60,000 points do not tell."""
     made = solids(CYLINDER, box((-60.0, -40.0, 0.0), (60.0, 40.0, 10.0)))
@@ -226,12 +307,20 @@ def test_curved_layers_are_told_by_their_grid(height, told):
     found = size.judged(size.of_solids(made, strategy), strategy)
     assert [issue.code for issue in found] == ([] if told is None else ["LARGE"])
     assert told is None or (told in found[0].message and "layers: planes" in found[0].message)
-    assert size.judged(size.of_solids(made, dataclasses.replace(strategy, layers="planes")), strategy) == ()
+    assert (
+        size.judged(size.of_solids(made, dataclasses.replace(strategy, layers="planes")), strategy)
+        == ()
+    )
 
 
-@pytest.mark.parametrize(("points", "told"), [
-    (600_000, ["nodes"]), (700_000, ["nodes", "1.1 GB"]), (4_500_000, ["6.8 GB"]),
-])
+@pytest.mark.parametrize(
+    ("points", "told"),
+    [
+        (600_000, ["nodes"]),
+        (700_000, ["nodes", "1.1 GB"]),
+        (4_500_000, ["6.8 GB"]),
+    ],
+)
 def test_curved_layers_that_take_much_memory_too_are_told_by_both(points, told):
     """Of a grid that takes 1,000 s of the processor, and points that take 150 s, 175 s and 1,125 s."""
     found = size.judged(size.Size(100.0, points, nodes=2e7), SolidParameters(layers="geodesic"))
@@ -243,8 +332,10 @@ def test_curved_layers_that_take_much_memory_too_are_told_by_both(points, told):
 def bellows(high):
     """A mesh of rings of 60 and 72 mm, 12 mm apart, which meet at right angles, on its lowest ring."""
     angle = 2.0 * np.pi * np.arange(72) / 72
-    rings = [np.column_stack([r * np.cos(angle), r * np.sin(angle), np.full(72, 12.0 * k)])
-             for k, r in enumerate([60.0, 72.0] * high)]
+    rings = [
+        np.column_stack([r * np.cos(angle), r * np.sin(angle), np.full(72, 12.0 * k)])
+        for k, r in enumerate([60.0, 72.0] * high)
+    ]
     k, on = np.arange(72), np.roll(np.arange(72), -1)
     band = np.vstack([np.column_stack([k, on, on + 72]), np.column_stack([k, on + 72, k + 72])])
     return np.vstack(rings), np.vstack([band + 72 * k for k in range(len(rings) - 1)])
@@ -256,10 +347,14 @@ def test_folds_of_a_mesh_are_told_by_their_length(high, told):
     This one takes 36 s."""
     wall = mesh_wall(*bellows(high), 3.0, "bellows", 5.0)
     edge = wall.vertices[:, 2] < 1e-6
-    wall = dataclasses.replace(wall, first=(FirstCurve(wall.vertices[edge], *2 * (np.eye(3)[[0] * edge.sum()],), True),))
+    wall = dataclasses.replace(
+        wall, first=(FirstCurve(wall.vertices[edge], *2 * (np.eye(3)[[0] * edge.sum()],), True),)
+    )
     strategy = SurfaceParameters(layer_height=3.0, chord_error=0.2)
     found = size.of_wall(wall, strategy)
-    assert found.folds < 4_000.0 * (2 * high - 1)  # around each ring it bends over some rows of facets
+    assert found.folds < 4_000.0 * (
+        2 * high - 1
+    )  # around each ring it bends over some rows of facets
     told_of = size.judged(found, strategy)
     assert [issue.code for issue in told_of] == ([] if told is None else ["LARGE"])
     assert told is None or (told in told_of[0].message and "rounded edges" in told_of[0].message)

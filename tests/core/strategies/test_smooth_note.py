@@ -16,15 +16,23 @@ from freecad_am.core.slicing.tubes.wall_layer import even_grid
 from freecad_am.core.strategies.walls import plan as surface
 
 
-@pytest.mark.parametrize("band, level, words", [
-    (0.05, WARNING, ("band of 5 %", "does not suffice", "more than 6 deg/mm")), (0.2, NOTE, ("no layer has a corner",)),
-])
+@pytest.mark.parametrize(
+    "band, level, words",
+    [
+        (0.05, WARNING, ("band of 5 %", "does not suffice", "more than 6 deg/mm")),
+        (0.2, NOTE, ("no layer has a corner",)),
+    ],
+)
 def test_a_band_too_narrow_is_told(band, level, words):
     torus = Torus(60.0, 15.0)
-    first = on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360))
+    first = on_implicit(
+        torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360)
+    )
     wall = SurfaceWall("torus", (60.0, 15.0), np.eye(4), 1.2, first.curve.points[:-1])
     strategy = SurfaceParameters(layer_height=5.0, spacing="smooth", band=band)
-    toolpath = surface.plan(wall, strategy, BuildDirectionParameters(clearance="none"), ProcessParameters())
+    toolpath = surface.plan(
+        wall, strategy, BuildDirectionParameters(clearance="none"), ProcessParameters()
+    )
     (told,) = [issue for issue in toolpath.issues if issue.code == "TURN"]
     assert told.level == level
     assert all(word in told.message for word in words)

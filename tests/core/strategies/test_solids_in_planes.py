@@ -40,7 +40,10 @@ def hull(points, name="hull"):
 def tube(profile, sides=240, name="tube"):
     """A part of revolution about Z from a closed profile (r, z), counter-clockwise."""
     angle = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
-    rows = [np.stack([r * np.cos(angle), r * np.sin(angle), np.full(sides, z)], axis=1) for r, z in profile]
+    rows = [
+        np.stack([r * np.cos(angle), r * np.sin(angle), np.full(sides, z)], axis=1)
+        for r, z in profile
+    ]
     faces = []
     for k in range(len(rows)):
         for j in range(sides):
@@ -71,17 +74,30 @@ def planned(*bodies, build=None, process=None, **values):
     given = {"layer_height": 4.0, "chord_error": ERROR, "bead_spacing": 4.0, **values}
     strategy = SolidParameters(**given)
     solids = stacked(bodies, strategy, "part")
-    return plan(solids, strategy, build or BuildDirectionParameters(), process or ProcessParameters(), None)
+    return plan(
+        solids, strategy, build or BuildDirectionParameters(), process or ProcessParameters(), None
+    )
 
 
 @pytest.mark.parametrize("order", ["feature", "around-axis"])
 def test_progress_goes_on_layer_by_layer(order):
     """Of one solid of twenty layers, and of two that lie apart."""
-    for bodies in ([box((0, 0, 0), (20, 20, 40))], [box((0, 0, 0), (20, 20, 40)), box((40, 0, 0), (60, 20, 40), "other")]):
-        strategy = SolidParameters(layer_height=2.0, chord_error=ERROR, bead_spacing=8.0, order=order, fuse="none")
+    for bodies in (
+        [box((0, 0, 0), (20, 20, 40))],
+        [box((0, 0, 0), (20, 20, 40)), box((40, 0, 0), (60, 20, 40), "other")],
+    ):
+        strategy = SolidParameters(
+            layer_height=2.0, chord_error=ERROR, bead_spacing=8.0, order=order, fuse="none"
+        )
         told = []
-        plan(stacked(bodies, strategy, "part"), strategy, BuildDirectionParameters(), ProcessParameters(), None,
-             lambda share, text, told=told: told.append(share))
+        plan(
+            stacked(bodies, strategy, "part"),
+            strategy,
+            BuildDirectionParameters(),
+            ProcessParameters(),
+            None,
+            lambda share, text, told=told: told.append(share),
+        )
         assert len(told) == 20 * len(bodies)
         assert told == pytest.approx(np.arange(len(told)) / len(told), abs=0.02)
 
@@ -131,7 +147,12 @@ def test_covers_what_beads_can_reach_and_nothing_else(fill):
     reachable = ndimage.distance_transform_edt(~middles) * GRID <= 2.0
     for layer in made.layers:
         tree = cKDTree(np.vstack([dense(bead)[:, :2] for bead in layer.beads]))
-        covered = tree.query(np.stack([x, y], axis=-1).reshape(-1, 2), distance_upper_bound=2.0)[0].reshape(x.shape) < 2.0
+        covered = (
+            tree.query(np.stack([x, y], axis=-1).reshape(-1, 2), distance_upper_bound=2.0)[
+                0
+            ].reshape(x.shape)
+            < 2.0
+        )
         assert (covered & reachable).sum() >= 0.99 * reachable.sum()
         assert (covered & ~section).sum() <= 0.01 * section.sum()
 
@@ -147,8 +168,12 @@ def test_plane_layers_are_as_far_apart_as_their_planes(fill, way):
     assert len(values) == sum(len(bead) for layer, _, bead in made if layer and not bead.closing)
     local = spacing.local_distances(made)
     for (layer, _, bead), one in zip(made, local, strict=True):
-        assert len(one) == len(bead) and (np.isnan(one).all() if layer == 0 else np.abs(one - 2.0).max() < 1e-9)
-    plates = planned(box((0, 0, 0), (40, 30, 4)), box((0, 0, 8), (40, 30, 12)), fill=fill, layer_height=2.0)
+        assert len(one) == len(bead) and (
+            np.isnan(one).all() if layer == 0 else np.abs(one - 2.0).max() < 1e-9
+        )
+    plates = planned(
+        box((0, 0, 0), (40, 30, 4)), box((0, 0, 8), (40, 30, 12)), fill=fill, layer_height=2.0
+    )
     assert [round(float(one.max()), 9) for one in spacing.between_layers(plates)] == [2.0, 6.0, 2.0]
 
 
@@ -160,24 +185,39 @@ def test_deposits_the_volume_of_the_part():
 
 def test_what_beads_leave_and_what_lies_beside_is_known():
     """A plate filled, and a fin thinner than a bead: how much wider one bead is, and what is above the last cut."""
-    part, left, beside = planned(box((0, 0, 0), (60, 30, 9)), fill="contours", layer_height=2.0).volumes
+    part, left, beside = planned(
+        box((0, 0, 0), (60, 30, 9)), fill="contours", layer_height=2.0
+    ).volumes
     assert part == pytest.approx(60 * 30 * 9) and beside < 1.0
     rounded = 4 * (1.0 - 0.25 * math.pi) * 2.0**2  # mm^2 that a contour leaves in its four corners
-    assert 60 * 30 * 1 < left < 60 * 30 * 1 + 4 * 5 * 2.0 * rounded  # at most five rings in four layers of 2 mm
+    assert (
+        60 * 30 * 1 < left < 60 * 30 * 1 + 4 * 5 * 2.0 * rounded
+    )  # at most five rings in four layers of 2 mm
     part, left, beside = planned(box((0, 0, 0), (60, 2, 8))).volumes
     assert part == pytest.approx(960.0) and left < 1.0
-    assert beside == pytest.approx(960.0 + 2 * 8 * math.pi * 2.0, rel=0.2)  # twice as wide, and round ends
-    part, left, beside = planned(box((0, 0, 0), (60, 30, 10.5)), fill="contours", layer_height=4.0).volumes
-    assert part == pytest.approx(60 * 30 * 10.5) and left < 3 * 5 * 4.0 * rounded  # three layers, the last cut 10 mm up
+    assert beside == pytest.approx(
+        960.0 + 2 * 8 * math.pi * 2.0, rel=0.2
+    )  # twice as wide, and round ends
+    part, left, beside = planned(
+        box((0, 0, 0), (60, 30, 10.5)), fill="contours", layer_height=4.0
+    ).volumes
+    assert (
+        part == pytest.approx(60 * 30 * 10.5) and left < 3 * 5 * 4.0 * rounded
+    )  # three layers, the last cut 10 mm up
     assert beside == pytest.approx(60 * 30 * 1.5, abs=1.0)
-    apart = planned(box((0, 0, 0), (30, 30, 9)), box((40, 0, 0), (60, 30, 9)), fill="contours", layer_height=2.0).volumes
-    assert apart[0] == pytest.approx(50 * 30 * 9)  # of several solids too, where they cannot overlap
+    apart = planned(
+        box((0, 0, 0), (30, 30, 9)), box((40, 0, 0), (60, 30, 9)), fill="contours", layer_height=2.0
+    ).volumes
+    assert apart[0] == pytest.approx(
+        50 * 30 * 9
+    )  # of several solids too, where they cannot overlap
 
 
 def test_what_beads_lay_twice_is_known():
     """Against a raster of how many beads are above each place; zigzags meet contours, lone beads meet nothing."""
     for part, values, least in (
-        (box((0, 0, 0), (60, 30, 4)), {"fill": "zigzag"}, 0.05), (box((0, 0, 0), (50, 37, 4)), {"fill": "lines"}, 0.01),
+        (box((0, 0, 0), (60, 30, 4)), {"fill": "zigzag"}, 0.05),
+        (box((0, 0, 0), (50, 37, 4)), {"fill": "lines"}, 0.01),
         (box((0, 0, 0), (60, 8, 4)), {"fill": "contours"}, 0.0),
     ):
         made = planned(part, layer_height=4.0, narrowest=1.0, **values)
@@ -194,63 +234,106 @@ def test_what_beads_lay_twice_is_known():
         volume = math.prod(np.ptp(part.vertices, axis=0))
         assert made.twice == pytest.approx(expected, abs=0.01 * volume)
         assert made.twice >= least * volume
-    half = planned(box((0, 0, 0), (60, 30, 4)), fill="lines", fill_density=0.5, bead_spacing=4.0, layer_height=4.0)
+    half = planned(
+        box((0, 0, 0), (60, 30, 4)),
+        fill="lines",
+        fill_density=0.5,
+        bead_spacing=4.0,
+        layer_height=4.0,
+    )
     assert half.twice < 0.01 * 60 * 30 * 4  # lines farther apart, which meet their contour
 
 
-@pytest.mark.parametrize("part,fill", [
-    (box((0, 0, 0), (60, 9.6, 4)), "contours"),  # a middle bead with 2 of its 4 mm of room
-    (box((0, 0, 0), (60, 6.4, 4)), "connected"),  # both sides of one contour, 2.4 mm apart
-    (tube([(14.0, 0.0), (24.0, 0.0), (24.0, 4.0), (14.0, 4.0)]), "lines"), (box((0, 0, 0), (50, 37, 4)), "zigzag"),
-])
+@pytest.mark.parametrize(
+    "part,fill",
+    [
+        (box((0, 0, 0), (60, 9.6, 4)), "contours"),  # a middle bead with 2 of its 4 mm of room
+        (box((0, 0, 0), (60, 6.4, 4)), "connected"),  # both sides of one contour, 2.4 mm apart
+        (tube([(14.0, 0.0), (24.0, 0.0), (24.0, 4.0), (14.0, 4.0)]), "lines"),
+        (box((0, 0, 0), (50, 37, 4)), "zigzag"),
+    ],
+)
 def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
     """What each segment lays, its time at the usual wire feed; its width tells the same. With all beads as wide as ever it
     would be more than 3 % too much."""
     process = ProcessParameters(travel_speed=20.0)
 
     def laid(made):
-        time = sum((np.hypot(*np.diff(bead.points, axis=0)[:, :2].T) / bead.speed[1:]).sum() for _, _, bead in made)
+        time = sum(
+            (np.hypot(*np.diff(bead.points, axis=0)[:, :2].T) / bead.speed[1:]).sum()
+            for _, _, bead in made
+        )
         wide = sum(
-            (np.hypot(*np.diff(bead.points, axis=0)[:, :2].T)
-             * (4.0 if bead.width is None else 0.5 * (bead.width[1:] + bead.width[:-1]))).sum() for _, _, bead in made
+            (
+                np.hypot(*np.diff(bead.points, axis=0)[:, :2].T)
+                * (4.0 if bead.width is None else 0.5 * (bead.width[1:] + bead.width[:-1]))
+            ).sum()
+            for _, _, bead in made
         )
         assert wide == pytest.approx(time * 20.0 * 4.0, rel=0.03)
         return wide * 4.0
+
     volume = SolidMesh(part.vertices, part.triangles).volume
     made = planned(part, fill=fill, process=process)
     assert laid(made) == pytest.approx(volume, rel=0.03) and made.twice < 0.03 * volume
-    assert min(bead.width.min() for _, _, bead in made if bead.width is not None) >= 0.3 * 4.0 - 1e-9
+    assert (
+        min(bead.width.min() for _, _, bead in made if bead.width is not None) >= 0.3 * 4.0 - 1e-9
+    )
     (told,) = [issue for issue in made.issues if issue.code == "SPEED_VARIES"]
     beads = [bead for _, _, bead in made]
     others = [bead for bead in beads if np.abs(bead.speed[1:] / 20.0 - 1.0).max() > 0.01]
     count, every, slow, fast, usual, thin, wide = (
-        float(number) for number in re.findall(r"(?<![a-z])\d+\.?\d*", told.message.split("; for one speed")[0]))
+        float(number)
+        for number in re.findall(r"(?<![a-z])\d+\.?\d*", told.message.split("; for one speed")[0])
+    )
     assert (count, every, usual) == (len(others), len(beads), 20.0)
-    for said, exact in ((slow, min(bead.speed[1:].min() for bead in others)),
-                        (fast, max(bead.speed[1:].max() for bead in others)),
-                        (thin, min(bead.width.min() for bead in others)), (wide, max(bead.width.max() for bead in others))):
+    for said, exact in (
+        (slow, min(bead.speed[1:].min() for bead in others)),
+        (fast, max(bead.speed[1:].max() for bead in others)),
+        (thin, min(bead.width.min() for bead in others)),
+        (wide, max(bead.width.max() for bead in others)),
+    ):
         assert said == pytest.approx(exact, rel=5e-3)
     assert told.level == "note" and made.layers[told.layer].beads[told.bead] in others
     full = planned(part, fill=fill, process=process, narrowest=1.0)
-    assert laid(full) > 1.03 * volume and not [issue for issue in full.issues if issue.code == "SPEED_VARIES"]
+    assert laid(full) > 1.03 * volume and not [
+        issue for issue in full.issues if issue.code == "SPEED_VARIES"
+    ]
     assert [bead.closed for _, _, bead in full] == [bead.closed for _, _, bead in made]
 
 
-@pytest.mark.parametrize(("asked", "remedy"), [
-    ({"fill": "contours"}, "strategy.narrowest: 100 %"),
-    ({"fill": "zigzag"}, "strategy.narrowest: 100 %"),
-    ({"fill": "connected"}, "strategy.fill: contours and strategy.narrowest: 100 %"),
-    ({"fill": "connected", "narrowest": 1.0}, "strategy.fill: contours"),
-    ({"fill": "lines", "spacing_range": (0.7, 1.4)}, "a spacing range of 100 % to 100 % and strategy.narrowest: 100 %"),
-    ({"fill": "spiral", "spacing_range": (0.7, 1.4), "narrowest": 1.0}, "a spacing range of 100 % to 100 %"),
-])
+@pytest.mark.parametrize(
+    ("asked", "remedy"),
+    [
+        ({"fill": "contours"}, "strategy.narrowest: 100 %"),
+        ({"fill": "zigzag"}, "strategy.narrowest: 100 %"),
+        ({"fill": "connected"}, "strategy.fill: contours and strategy.narrowest: 100 %"),
+        ({"fill": "connected", "narrowest": 1.0}, "strategy.fill: contours"),
+        (
+            {"fill": "lines", "spacing_range": (0.7, 1.4)},
+            "a spacing range of 100 % to 100 % and strategy.narrowest: 100 %",
+        ),
+        (
+            {"fill": "spiral", "spacing_range": (0.7, 1.4), "narrowest": 1.0},
+            "a spacing range of 100 % to 100 %",
+        ),
+    ],
+)
 def test_what_is_told_to_give_one_speed_does(asked, remedy):
     part = box((0, 0, 0), (60, 9.6, 4))
     (told,) = [issue for issue in planned(part, **asked).issues if issue.code == "SPEED_VARIES"]
     assert told.message.endswith(f"; for one speed give {remedy}")
-    meant = {"strategy.narrowest: 100 %": {"narrowest": 1.0}, "strategy.fill: contours": {"fill": "contours"},
-             "a spacing range of 100 % to 100 %": {"spacing_range": (1.0, 1.0)}}
-    changed = {key: value for words, setting in meant.items() if words in remedy for key, value in setting.items()}
+    meant = {
+        "strategy.narrowest: 100 %": {"narrowest": 1.0},
+        "strategy.fill: contours": {"fill": "contours"},
+        "a spacing range of 100 % to 100 %": {"spacing_range": (1.0, 1.0)},
+    }
+    changed = {
+        key: value
+        for words, setting in meant.items()
+        if words in remedy
+        for key, value in setting.items()
+    }
     made = planned(part, **{**asked, **changed})
     assert not [issue for issue in made.issues if issue.code == "SPEED_VARIES"]
     speeds = np.concatenate([bead.speed[1:] for _, _, bead in made])
@@ -271,7 +354,9 @@ def test_beads_are_as_short_as_their_spacing_where_that_is_less_than_2_mm():
     thin = {"layer_height": 0.25, "bead_spacing": 0.6, "chord_error": 0.01}
     made = planned(rod, **thin)
     part, left, beside = made.volumes
-    assert part == pytest.approx(2.0 * math.pi, rel=0.01) and left + beside + made.twice < 0.03 * part
+    assert (
+        part == pytest.approx(2.0 * math.pi, rel=0.01) and left + beside + made.twice < 0.03 * part
+    )
     made = planned(rod, shortest=2.0, **thin)  # it goes on over the ring
     assert made.volumes[1] + made.twice > 0.1 * part
     for apart, least in ((0.6, 0.6), (2.0, 2.0), (5.0, 2.0)):
@@ -282,7 +367,9 @@ def test_touching_and_overlapping_solids_are_one():
     """Two halves of a block, and one with a third that overlaps both: the beads of the block."""
     whole = planned(box((0, 0, 0), (60, 30, 8)))
     halves = planned(box((0, 0, 0), (30, 30, 8)), box((30, 0, 0), (60, 30, 8)))
-    over = planned(box((0, 0, 0), (30, 30, 8)), box((30, 0, 0), (60, 30, 8)), box((20, 10, 0), (40, 20, 8)))
+    over = planned(
+        box((0, 0, 0), (30, 30, 8)), box((30, 0, 0), (60, 30, 8)), box((20, 10, 0), (40, 20, 8))
+    )
     apart = planned(box((0, 0, 0), (30, 30, 8)), box((30, 0, 0), (60, 30, 8)), fuse="none")
     for other in (halves, over):
         assert other.bead_count == whole.bead_count
@@ -310,12 +397,18 @@ def test_connected_contours_have_one_start_per_island_and_layer():
     assert len(made.layers) == 6
     for number, layer in enumerate(made.layers):
         starts = np.array([bead.points[0] for bead in layer.beads])
-        assert sorted(np.searchsorted([40.0, 105.0], starts[:, 0]).tolist()) == ([0, 1, 2] if number < 3 else [0, 1])
+        assert sorted(np.searchsorted([40.0, 105.0], starts[:, 0]).tolist()) == (
+            [0, 1, 2] if number < 3 else [0, 1]
+        )
         assert all(np.allclose(bead.points[0], bead.points[-1]) for bead in layer.beads)
-    for bead in made.layers[0].beads:  # the whole island is in it: no place farther from it than beads beside each other
+    for bead in made.layers[
+        0
+    ].beads:  # the whole island is in it: no place farther from it than beads beside each other
         mine = [(0.0, 0.0, 26.0, 30.0), (38.0, -17.0, 102.0, 47.0), (110.0, 0.0, 150.0, 40.0)]
         x0, y0, x1, y1 = mine[int(np.searchsorted([40.0, 105.0], bead.points[0, 0]))]
-        places = np.stack(np.meshgrid(np.arange(x0 + 0.5, x1, 0.5), np.arange(y0 + 0.5, y1, 0.5)), axis=-1).reshape(-1, 2)
+        places = np.stack(
+            np.meshgrid(np.arange(x0 + 0.5, x1, 0.5), np.arange(y0 + 0.5, y1, 0.5)), axis=-1
+        ).reshape(-1, 2)
         if x0 == 38.0:
             radius = np.hypot(*(places - [70.0, 15.0]).T)
             places = places[(radius > 14.0) & (radius < 32.0)]
@@ -332,11 +425,21 @@ def _share(bead):
 
 def test_starts_that_are_spread_keep_away_from_neighbours_and_from_the_layers_below():
     made = planned(box((0, 0, 0), (60, 44, 40)), fill="contours", starts="spread")
-    rings = [[bead for bead in layer.beads if np.allclose(bead.points[0], bead.points[-1])] for layer in made.layers]
+    rings = [
+        [bead for bead in layer.beads if np.allclose(bead.points[0], bead.points[-1])]
+        for layer in made.layers
+    ]
     shares = np.array([[_share(bead) for bead in layer] for layer in rings])
     assert shares.shape == (10, 5)
-    for axis, away in ((0, 1), (0, 2), (0, 3), (1, 1)):  # up to three layers below, and the contour beside
-        apart = np.abs(np.roll(shares, -away, axis=axis) - shares).take(range(shares.shape[axis] - away), axis=axis)
+    for axis, away in (
+        (0, 1),
+        (0, 2),
+        (0, 3),
+        (1, 1),
+    ):  # up to three layers below, and the contour beside
+        apart = np.abs(np.roll(shares, -away, axis=axis) - shares).take(
+            range(shares.shape[axis] - away), axis=axis
+        )
         assert np.minimum(apart, 1.0 - apart).min() > 0.13
     aligned = planned(box((0, 0, 0), (60, 44, 40)), fill="contours")
     assert len({tuple(np.round(layer.beads[-1].points[0][:2], 6)) for layer in aligned.layers}) == 1
@@ -344,7 +447,10 @@ def test_starts_that_are_spread_keep_away_from_neighbours_and_from_the_layers_be
 
 def test_lines_of_every_second_layer_start_at_their_other_end():
     made = planned(box((0, 0, 0), (60, 44, 16)), fill="lines", starts="spread", fill_angle_step=0.0)
-    lines = [[bead.points[:, :2] for bead in layer.beads if len(bead.points) == 2] for layer in made.layers]
+    lines = [
+        [bead.points[:, :2] for bead in layer.beads if len(bead.points) == 2]
+        for layer in made.layers
+    ]
     ends = [np.round(layer, 6) for layer in lines]
     assert len(ends) == 4 and len(ends[0]) > 8
     for below, above in zip(ends, ends[1:]):
@@ -355,7 +461,9 @@ def test_lines_of_every_second_layer_start_at_their_other_end():
 def test_no_layer_takes_less_than_asked_for_and_islands_cool_alike():
     """Rods of unequal height, so that upper layers are shorter; times along the beads and straight between them."""
     process = ProcessParameters()
-    rods = [box((40 * k, 0, 0), (40 * k + 25 - 5 * k, 25, 24 - 8 * k), f"rod {k}") for k in (2, 0, 1)]
+    rods = [
+        box((40 * k, 0, 0), (40 * k + 25 - 5 * k, 25, 24 - 8 * k), f"rod {k}") for k in (2, 0, 1)
+    ]
     made = planned(*rods, fill="contours", process=process, min_layer_time=60.0)
     took, at = [], None
     for layer in made.layers:
@@ -372,11 +480,18 @@ def test_no_layer_takes_less_than_asked_for_and_islands_cool_alike():
     for number, layer in enumerate(made.layers):
         island = [int(bead.points[:, 0].mean() // 40) for bead in layer.beads]
         first = [one for k, one in enumerate(island) if k == 0 or island[k - 1] != one]
-        assert first == [k for k in range(3) if 4 * number < 24 - 8 * k]  # the same in every layer, each once
+        assert first == [
+            k for k in range(3) if 4 * number < 24 - 8 * k
+        ]  # the same in every layer, each once
     (issue,) = [issue for issue in made.issues if issue.code == "WAITS"]
-    assert f"before {sum(wait > 0.0 for wait in waits)} of 6 layers" in issue.message and "60 s" in issue.message
+    assert (
+        f"before {sum(wait > 0.0 for wait in waits)} of 6 layers" in issue.message
+        and "60 s" in issue.message
+    )
     usual = planned(*rods, fill="contours", process=process)
-    assert usual.length == pytest.approx(made.length) and not any(layer.wait for layer in usual.layers)
+    assert usual.length == pytest.approx(made.length) and not any(
+        layer.wait for layer in usual.layers
+    )
 
 
 @pytest.mark.parametrize("way", [(0, 0, 1), (1, 0, 0), (0, -1, 0), (1, 2, -3)])
@@ -385,7 +500,12 @@ def test_any_direction(way):
     """The same part turned is deposited alike: as many layers, as long beads, the tool along the direction."""
     unit = np.array(way) / np.linalg.norm(way)
     made = planned(tube(CONE), direction=" ".join(map(str, way)))
-    heights = np.array([[float((bead.points @ unit).min()), float((bead.points @ unit).max())] for _, _, bead in made])
+    heights = np.array(
+        [
+            [float((bead.points @ unit).min()), float((bead.points @ unit).max())]
+            for _, _, bead in made
+        ]
+    )
     lowest = float((tube(CONE).vertices @ unit).min())
     np.testing.assert_allclose(heights[:, 0], heights[:, 1], atol=1e-9)
     steps = (heights[:, 0] - lowest) / 4.0
@@ -399,7 +519,9 @@ def test_the_best_direction_is_the_one_that_needs_no_support():
     """A T that lies down leaves nothing over nothing, as upside down, and is lower."""
     outline = [(-5, 0), (5, 0), (5, 30), (40, 30), (40, 40), (-40, 40), (-40, 30), (-5, 30)]
     cap = [(0, 1, 2), (0, 2, 7), (6, 7, 5), (7, 2, 5), (2, 3, 4), (2, 4, 5)]
-    solids = stacked([prism(outline, cap, -10.0, 10.0)], SolidParameters(direction="auto", layer_height=2.0), "T")
+    solids = stacked(
+        [prism(outline, cap, -10.0, 10.0)], SolidParameters(direction="auto", layer_height=2.0), "T"
+    )
     np.testing.assert_allclose(solids.groups[0].base.frame[:3, 2], [0.0, 1.0, 0.0], atol=1e-12)
     (issue,) = [issue for issue in solids.issues if issue.code == "DIRECTION"]
     assert "20 mm high" in issue.message and "1400 mm^2" in issue.message
@@ -408,8 +530,11 @@ def test_the_best_direction_is_the_one_that_needs_no_support():
 def test_faces_where_touching_solids_meet_lean_over_nothing():
     """A T of a stem and a plate, drawn apart and overlapping by a millimetre: as good to lay down as the T in one piece, and
     what leans out along Z is what the plate has beside the stem."""
+
     def told(*bodies, fuse="auto"):
-        solids = stacked(bodies, SolidParameters(direction="auto", layer_height=2.0, fuse=fuse), "T")
+        solids = stacked(
+            bodies, SolidParameters(direction="auto", layer_height=2.0, fuse=fuse), "T"
+        )
         (issue,) = [issue for issue in solids.issues if issue.code == "DIRECTION"]
         return solids.groups[0].base.frame[:3, 2], issue.message
 
@@ -423,12 +548,17 @@ def test_faces_where_touching_solids_meet_lean_over_nothing():
         assert along_z(message) == pytest.approx(1400.0, rel=0.02)
     assert along_z(told(stem, plate, fuse="none")[1]) == pytest.approx(1600.0)
     # a foot that the stem stands on does not count either: none of its area is over nothing
-    way, message = told(box((-5, -10, 0), (5, 10, 30)), box((-20, -10, -10), (20, 10, 0)), box((-20, -10, 30), (20, 10, 40)))
+    way, message = told(
+        box((-5, -10, 0), (5, 10, 30)),
+        box((-20, -10, -10), (20, 10, 0)),
+        box((-20, -10, 30), (20, 10, 40)),
+    )
     assert abs(way[1]) == 1.0 and along_z(message) == pytest.approx(600.0, rel=0.02)
 
 
 @pytest.mark.parametrize(
-    "lean, most, told", [(30, 45, False), (50, 45, True), (50, 60, False), (80, 89, False), (88, 90, False)]
+    "lean, most, told",
+    [(30, 45, False), (50, 45, True), (50, 60, False), (80, 89, False), (88, 90, False)],
 )
 @pytest.mark.always("30-45-False", "50-45-True", "50-60-False", "80-89-False")
 def test_walls_that_lean_out_are_told(lean, most, told):
@@ -460,10 +590,19 @@ def test_a_wall_as_thick_as_a_bead_is_wide_has_none_that_stands_out(low):
     assert not [issue.message for issue in made.issues if issue.code == "THIN_SINGLE"]
 
 
-@pytest.mark.parametrize("height, cut_at, layers", [
-    (10.0, "middle", 5), (9.0, "middle", 4), (9.1, "middle", 5), (1.1, "middle", 1), (10.0, "bottom", 5), (10.0, "top", 5),
-    (9.9, "top", 4), (8.1, "bottom", 5),
-])
+@pytest.mark.parametrize(
+    "height, cut_at, layers",
+    [
+        (10.0, "middle", 5),
+        (9.0, "middle", 4),
+        (9.1, "middle", 5),
+        (1.1, "middle", 1),
+        (10.0, "bottom", 5),
+        (10.0, "top", 5),
+        (9.9, "top", 4),
+        (8.1, "bottom", 5),
+    ],
+)
 def test_number_of_layers(height, cut_at, layers):
     made = planned(box((0, 0, 0), (30, 30, height)), layer_height=2.0, cut_at=cut_at)
     assert len(made.layers) == layers
@@ -486,7 +625,9 @@ def test_a_direction_along_no_axis_is_refused(text):
 
 def test_a_margin_stands_out_beside_and_above():
     made = planned(box((0, 0, 0), (40, 30, 8)), margin=5.0, fill="contours")
-    low, high = (f([f(bead.points, axis=0) for _, _, bead in made], axis=0) for f in (np.min, np.max))
+    low, high = (
+        f([f(bead.points, axis=0) for _, _, bead in made], axis=0) for f in (np.min, np.max)
+    )
     np.testing.assert_allclose(low, [-3.0, -3.0, 0.0], atol=1e-6)
     np.testing.assert_allclose(high[:2], [43.0, 33.0], atol=1e-6)
     assert high[2] == pytest.approx(8.0)  # 5 mm above: one layer more
@@ -507,7 +648,9 @@ def test_random_hulls_are_filled(seed):
     assert 0.9 * volume < made.length * 12.0 < 1.2 * volume  # beads that close gaps overlap others
 
 
-@pytest.mark.parametrize(("angle", "step"), [(0.0, 0.0), (90.0, 0.0), (30.0, 40.0), (-15.0, -120.0)])
+@pytest.mark.parametrize(
+    ("angle", "step"), [(0.0, 0.0), (90.0, 0.0), (30.0, 40.0), (-15.0, -120.0)]
+)
 @pytest.mark.always("0.0-0.0", "30.0-40.0", "-15.0--120.0")
 def test_closed_beads_of_plane_layers_start_where_the_seam_says(angle, step):
     """On a ring that lies beside the origin: each layer's by the azimuth about its middle; where a box is farthest out that
@@ -524,12 +667,20 @@ def test_closed_beads_of_plane_layers_start_where_the_seam_says(angle, step):
             off = bead.points[0, :2] - bead.points[:-1, :2].mean(axis=0)
             asked = angle + number * step
             turned = math.degrees(math.atan2(off[1], off[0])) - asked
-            assert abs((turned + 180.0) % 360.0 - 180.0) < math.degrees(4.0 / np.hypot(*off)), (number, turned)
+            assert abs((turned + 180.0) % 360.0 - 180.0) < math.degrees(4.0 / np.hypot(*off)), (
+                number,
+                turned,
+            )
         starts.append(max(closed, key=lambda bead: np.ptp(bead.points[:, 0])).points[0, :2])
     apart = np.linalg.norm(np.diff(starts, axis=0), axis=1)
     assert (apart > 8.0).all() if step else (apart < 0.1).all()
     for number, layer in enumerate(planned(box((0, 0, 0), (40, 24, 12)), process=process).layers):
-        way = np.array([math.cos(math.radians(angle + number * step)), math.sin(math.radians(angle + number * step))])
+        way = np.array(
+            [
+                math.cos(math.radians(angle + number * step)),
+                math.sin(math.radians(angle + number * step)),
+            ]
+        )
         for bead in layer.beads:
             reach = bead.points[:, :2] @ way
             assert not bead.closed or reach[0] > reach.max() - 1e-6

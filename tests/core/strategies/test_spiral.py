@@ -23,8 +23,12 @@ def spiral(meridian, direction="counter-clockwise", turn=None, **strategy):
     start, end = turn or (0.0, TURN)
     wall = RevolvedWall(meridian, np.eye(4), start, end, turn is None)
     return revolution.plan(
-        wall, RevolutionParameters(path="spiral", **strategy), BuildDirectionParameters(),
-        ProcessParameters(direction=direction, seam=SeamParameters(0.3, 0.0)), NozzleParameters(), 0.0,
+        wall,
+        RevolutionParameters(path="spiral", **strategy),
+        BuildDirectionParameters(),
+        ProcessParameters(direction=direction, seam=SeamParameters(0.3, 0.0)),
+        NozzleParameters(),
+        0.0,
     )
 
 
@@ -53,7 +57,9 @@ def test_one_open_bead_rises_by_a_layer_height_per_turn(meridian, pitch, chord_e
     # between the points, on a grid ten times finer
     share = np.linspace(0.0, 1.0, 11)[1:-1, None]
     fine = (turned[:-1] + share * np.diff(turned)).T.ravel()
-    chords = (bead.points[:-1, None] + share[None] * np.diff(bead.points, axis=0)[:, None]).reshape(-1, 3)
+    chords = (bead.points[:-1, None] + share[None] * np.diff(bead.points, axis=0)[:, None]).reshape(
+        -1, 3
+    )
     along = np.repeat(np.diff(bead.points, axis=0), 9, axis=0)
     off = exact(meridian, fine, pitch, end) - chords
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
@@ -73,7 +79,9 @@ def test_clockwise_spirals_fall_in_their_angle():
     bead = spiral(FUNNEL, "clockwise").layers[0].beads[0]
     assert bead.parameter[0] == pytest.approx(0.3)
     assert (np.diff(bead.parameter) < 0.0).all()
-    assert bead.points[:, 1] == pytest.approx(np.hypot(*bead.points[:, :2].T) * np.sin(bead.parameter), abs=1e-9)
+    assert bead.points[:, 1] == pytest.approx(
+        np.hypot(*bead.points[:, :2].T) * np.sin(bead.parameter), abs=1e-9
+    )
 
 
 def test_kinks_are_points_of_the_spiral():

@@ -14,7 +14,9 @@ from freecad_am.core.process.deposit.spacing import between_layers
 from freecad_am.core.strategies.walls import plan as surface
 
 BEND, TUBE, PIPE = 60.0, 15.0, 32.0
-TILTED = np.array([[0.36, 0.48, -0.8, 5.0], [-0.8, 0.6, 0.0, -7.0], [0.48, 0.64, 0.6, 11.0], [0, 0, 0, 1]])
+TILTED = np.array(
+    [[0.36, 0.48, -0.8, 5.0], [-0.8, 0.6, 0.0, -7.0], [0.48, 0.64, 0.6, 11.0], [0, 0, 0, 1]]
+)
 
 
 def bend(frame=None, end=0.5 * np.pi):
@@ -33,9 +35,24 @@ def tube(height=20.0):
     return SurfaceWall(CONE, (10.0, 0.0), np.eye(4), height, first, label="Tube")
 
 
-def planned(wall, mode="local", process=None, lead=0.0, tilt=0.0, max_tilt=np.pi, max_turn="inf", plane="auto", **strategy):
+def planned(
+    wall,
+    mode="local",
+    process=None,
+    lead=0.0,
+    tilt=0.0,
+    max_tilt=np.pi,
+    max_turn="inf",
+    plane="auto",
+    **strategy,
+):
     build = BuildDirectionParameters(mode, lead, tilt, max_tilt, max_turn, plane, "none")
-    return surface.plan(wall, SurfaceParameters(**{"layer_height": 5.0, **strategy}), build, process or ProcessParameters())
+    return surface.plan(
+        wall,
+        SurfaceParameters(**{"layer_height": 5.0, **strategy}),
+        build,
+        process or ProcessParameters(),
+    )
 
 
 def parameters(points, frame=None):
@@ -56,7 +73,11 @@ def test_layers_trimmed_at_the_end(frame):
     assert len(toolpath.layers) == 15  # 16 with the one wholly past the end (ERRATA)
     for _, _, bead in toolpath:
         u, _ = parameters(bead.points, frame)
-        reach = np.hypot(*(bead.points if frame is None else (bead.points - frame[:3, 3]) @ frame[:3, :3])[:, [0, 2]].T)
+        reach = np.hypot(
+            *(bead.points if frame is None else (bead.points - frame[:3, 3]) @ frame[:3, :3])[
+                :, [0, 2]
+            ].T
+        )
         assert u.max() <= 0.5 * np.pi + 1e-7
         assert reach.min() > 0.0
         if not bead.closed:
@@ -82,7 +103,9 @@ def test_bends_end_at_their_end_however_far_they_turn(turn, spacing, end):
     v = np.linspace(0.0, 2.0 * np.pi, 50)
     rim = Torus(BEND, TUBE).point(np.full(50, last), v)
     apart = np.linalg.norm(rim[:, None] - points, axis=2).min(axis=1)
-    assert apart.min() < 12.0  # nothing stops long before the end on its inside, where layers reach it first
+    assert (
+        apart.min() < 12.0
+    )  # nothing stops long before the end on its inside, where layers reach it first
     if end == "trim":
         assert apart.max() < 12.0
 
@@ -167,7 +190,9 @@ def test_fixed_layer_and_capped_directions():
     for _, _, bead in planned(bend(), mode="layer"):
         assert np.abs(bead.tool - bead.tool[0]).max() == 0.0
     capped = planned(bend(), max_tilt=np.radians(60.0))
-    assert max(np.arccos(bead.tool[:, 2]).max() for _, _, bead in capped) == pytest.approx(np.radians(60.0), abs=1e-9)
+    assert max(np.arccos(bead.tool[:, 2]).max() for _, _, bead in capped) == pytest.approx(
+        np.radians(60.0), abs=1e-9
+    )
     assert "TILT_CAPPED" in codes(capped)
 
 
@@ -178,7 +203,8 @@ def turns(bead, vectors):
 
 
 @pytest.mark.parametrize(
-    ("mode", "lead", "degrees"), [("local", 0.0, 10.0), ("local", 0.3, 10.0), ("symmetry-plane", 0.2, 2.0)]
+    ("mode", "lead", "degrees"),
+    [("local", 0.0, 10.0), ("local", 0.3, 10.0), ("symmetry-plane", 0.2, 2.0)],
 )
 def test_directions_turn_no_faster_than_their_limit(mode, lead, degrees):
     """Fronts turn by up to 97 degrees at their corners (ERRATA), and the free directions with them."""
@@ -186,8 +212,10 @@ def test_directions_turn_no_faster_than_their_limit(mode, lead, degrees):
     free, limited = (planned(bend(), mode=mode, lead=lead, max_turn=turn) for turn in ("inf", most))
     fastest = [max(turns(bead, bead.tool).max() for _, _, bead in one) for one in (free, limited)]
     assert fastest[0] > 1.5 * most and fastest[1] <= most + 1e-6
-    departure = max(np.arccos(np.clip((a.tool * b.tool).sum(axis=1), -1.0, 1.0)).max()
-                    for (_, _, a), (_, _, b) in zip(free, limited, strict=True))
+    departure = max(
+        np.arccos(np.clip((a.tool * b.tool).sum(axis=1), -1.0, 1.0)).max()
+        for (_, _, a), (_, _, b) in zip(free, limited, strict=True)
+    )
     note = codes(limited)["TURN_LIMITED"]
     assert f"{np.degrees(departure):.3g} deg" in note.message and "TURN_LIMITED" not in codes(free)
     for (_, _, a), (_, _, b) in zip(free, limited, strict=True):
@@ -197,14 +225,23 @@ def test_directions_turn_no_faster_than_their_limit(mode, lead, degrees):
             assert np.abs(b.tool[:, 1]).max() < 1e-9
         if b.closed:
             assert b.tool[0] == pytest.approx(b.tool[-1], abs=1e-9)
-    assert all(np.abs(a.tool - b.tool).max() < 1e-9 for a, b in zip(  # no corner yet
-        free.layers[1].beads, limited.layers[1].beads, strict=True)) or lead
+    assert (
+        all(
+            np.abs(a.tool - b.tool).max() < 1e-9
+            for a, b in zip(  # no corner yet
+                free.layers[1].beads, limited.layers[1].beads, strict=True
+            )
+        )
+        or lead
+    )
 
 
 def test_a_plane_may_be_given():
     toolpath = planned(tube(), mode="symmetry-plane", plane="0 3 0", tilt=0.3)
     assert all(np.abs(bead.tool[:, 1]).max() < 1e-12 for _, _, bead in toolpath)
-    assert max(np.abs(bead.tool[:, 0]).max() for _, _, bead in toolpath) == pytest.approx(np.sin(0.3), abs=0.01)
+    assert max(np.abs(bead.tool[:, 0]).max() for _, _, bead in toolpath) == pytest.approx(
+        np.sin(0.3), abs=0.01
+    )
     with pytest.raises(InputError) as caught:
         planned(tube(), mode="symmetry-plane", plane="0 0 0")
     assert caught.value.where == "build_direction.plane"
@@ -221,8 +258,14 @@ def test_seams_and_directions():
         x, y, _ = layer.beads[0].points[0]
         angle = np.radians(90.0 + 30.0 * index)
         assert (x, y) == pytest.approx((10.0 * np.cos(angle), 10.0 * np.sin(angle)), abs=1e-6)
-    for direction, signs in (("counter-clockwise", [1, 1]), ("clockwise", [-1, -1]), ("alternate", [1, -1])):
-        layers = planned(bend(TILTED), process=ProcessParameters(direction=direction), end="whole").layers
+    for direction, signs in (
+        ("counter-clockwise", [1, 1]),
+        ("clockwise", [-1, -1]),
+        ("alternate", [1, -1]),
+    ):
+        layers = planned(
+            bend(TILTED), process=ProcessParameters(direction=direction), end="whole"
+        ).layers
         assert [np.sign(turning(layer.beads[0])) for layer in layers[:2]] == signs
 
 
@@ -253,7 +296,9 @@ def test_refusals():
     assert caught.value.code == "TOO_LOW"
 
 
-@pytest.mark.parametrize("options", [{}, {"end": "whole"}, {"spacing": "smooth"}, {"spacing": "iso-parameter"}], ids=str)
+@pytest.mark.parametrize(
+    "options", [{}, {"end": "whole"}, {"spacing": "smooth"}, {"spacing": "iso-parameter"}], ids=str
+)
 def test_notes_tell_of_layers_that_are_deposited(options):
     toolpath = planned(bend(), **options)
     count = len(toolpath.layers)
@@ -265,7 +310,12 @@ def test_notes_tell_of_layers_that_are_deposited(options):
     turning = [0.0] * count
     for layer, _, bead in toolpath:
         into, out = bead.tangents[:, 0], bead.tangents[:, 1]
-        turning[layer] = max(turning[layer], float(np.degrees(np.arccos(np.clip((into * out).sum(axis=1), -1, 1)).max())))
+        turning[layer] = max(
+            turning[layer],
+            float(np.degrees(np.arccos(np.clip((into * out).sum(axis=1), -1, 1)).max())),
+        )
     cornered = [index for index, turn in enumerate(turning) if turn > 1e-3]
-    assert told.message.startswith(f"{len(cornered)} of {count} fronts have corners, first layer {cornered[0]}")
+    assert told.message.startswith(
+        f"{len(cornered)} of {count} fronts have corners, first layer {cornered[0]}"
+    )
     assert f"by {max(turning):.3g} deg" in told.message and told.layer == int(np.argmax(turning))

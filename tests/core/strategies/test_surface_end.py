@@ -36,7 +36,9 @@ def points_of(piece):
 def test_pieces_end_on_the_line_and_lie_below_it(layers):
     pieces = [trimmed(PLACED, layer, END) for layer in layers]
     assert [len(layer) for layer in pieces] == [1] * 15 + [0]
-    assert [layer[0].closed for layer in pieces[:-1]] == [layer.u.max() <= END for layer in layers[:-1]]
+    assert [layer[0].closed for layer in pieces[:-1]] == [
+        layer.u.max() <= END for layer in layers[:-1]
+    ]
     assert sum(layer[0].closed for layer in pieces[:-1]) == 10
     for layer, (piece,) in zip(layers, pieces[:-1]):
         points = points_of(piece)
@@ -47,8 +49,12 @@ def test_pieces_end_on_the_line_and_lie_below_it(layers):
 
 
 def test_trimmed_layers_cover_the_wall(layers):
-    beads = np.vstack([points_of(piece) for layer in layers for piece in trimmed(PLACED, layer, END)])
-    u, v = np.meshgrid(np.linspace(0.3, END, 150), np.linspace(0.0, 2.0 * np.pi, 150), indexing="ij")
+    beads = np.vstack(
+        [points_of(piece) for layer in layers for piece in trimmed(PLACED, layer, END)]
+    )
+    u, v = np.meshgrid(
+        np.linspace(0.3, END, 150), np.linspace(0.0, 2.0 * np.pi, 150), indexing="ij"
+    )
     wall = TORUS.point(u, v).reshape(-1, 3)
     outside = wall[PIPE.value(wall)[0] > 0.0]
     distance = cKDTree(beads).query(outside)[0]

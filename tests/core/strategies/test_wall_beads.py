@@ -46,7 +46,9 @@ def test_a_seam_next_to_a_corner_keeps_its_place_and_the_turn(shift):
     assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= NEAREST
     assert (line.points[0] == line.points[-1]).all()
     assert line.points[0] == pytest.approx(curve.at(np.array([start]))[0][0], abs=1e-12)
-    assert line.tangents[0, 1] == pytest.approx([0, 1, 0]) and line.tangents[-1, 0] == pytest.approx([1, 0, 0])
+    assert line.tangents[0, 1] == pytest.approx([0, 1, 0]) and line.tangents[
+        -1, 0
+    ] == pytest.approx([1, 0, 0])
 
 
 def test_two_corners_side_by_side_are_one_that_turns_by_both():

@@ -50,7 +50,9 @@ def bead(points, tool=(0.0, 0.0, 1.0), closed=False):
     points = np.asarray(points, dtype=float)
     length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     tool = np.tile(tool, (len(points), 1)) if np.ndim(tool) == 1 else tool
-    return Bead(points, tool, tool, 2 * np.pi * length / length[-1], np.full(len(points), 6.0), closed)
+    return Bead(
+        points, tool, tool, 2 * np.pi * length / length[-1], np.full(len(points), 6.0), closed
+    )
 
 
 def toolpath(*beads):
@@ -61,27 +63,38 @@ def box(low, high, name="box"):
     x, y, z = np.transpose([low, high])
     vertices = np.array([[a, b, c] for a in x for b in y for c in z], dtype=float)
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return Body(name, vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]))
+    return Body(
+        name, vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    )
 
 
 def pipe(sides=200):
     angle = 2 * np.pi * np.arange(sides) / sides
-    rings = [np.stack([PIPE * np.cos(angle), np.full(sides, y), PIPE * np.sin(angle)], 1) for y in (-100.0, 100.0)]
+    rings = [
+        np.stack([PIPE * np.cos(angle), np.full(sides, y), PIPE * np.sin(angle)], 1)
+        for y in (-100.0, 100.0)
+    ]
     one, two = np.arange(sides), np.roll(np.arange(sides), -1)
-    side = np.concatenate([np.stack([one, two, one + sides], 1), np.stack([two, two + sides, one + sides], 1)])
+    side = np.concatenate(
+        [np.stack([one, two, one + sides], 1), np.stack([two, two + sides, one + sides], 1)]
+    )
     return Body("pipe", np.vstack(rings), side)
 
 
 def sampled(nozzle, low, tip, tool):
     """Points of the nozzle's surface and inside, (k, n, 3)."""
     height = np.linspace(low, nozzle.length, 50)
-    angle, share = np.meshgrid(np.linspace(0, 2 * np.pi, 24, endpoint=False), [0.0, 0.4, 0.8, 1.0], indexing="ij")
+    angle, share = np.meshgrid(
+        np.linspace(0, 2 * np.pi, 24, endpoint=False), [0.0, 0.4, 0.8, 1.0], indexing="ij"
+    )
     radius = (0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * height)[:, None] * share.ravel()
     one = np.cross(tool, np.eye(3)[np.argmin(np.abs(tool), axis=1)])
     one /= np.linalg.norm(one, axis=1)[:, None]
     two = np.cross(tool, one)
     heights = np.repeat(height[:, None], angle.size, axis=1)
-    flat = np.stack([radius * np.cos(angle.ravel()), radius * np.sin(angle.ravel()), heights]).reshape(3, -1)
+    flat = np.stack(
+        [radius * np.cos(angle.ravel()), radius * np.sin(angle.ravel()), heights]
+    ).reshape(3, -1)
     return tip[:, None] + np.einsum("ckj,cn->knj", np.stack([one, two, tool]), flat)
 
 
@@ -89,9 +102,12 @@ def touches_deposit(path, nozzle):
     """(layer, bead, point) at which a point of an earlier bead, or of this one behind, is well inside the nozzle."""
     found, count = [], 0
     low, a, k = left_out(nozzle), 0.5 * nozzle.diameter, np.tan(nozzle.half_angle)
-    laid = np.concatenate([
-        np.linspace(one.points[:-1], one.points[1:], SAMPLES, axis=1).reshape(-1, 3) for _, _, one in path
-    ])
+    laid = np.concatenate(
+        [
+            np.linspace(one.points[:-1], one.points[1:], SAMPLES, axis=1).reshape(-1, 3)
+            for _, _, one in path
+        ]
+    )
     for i, j, one in path:
         for point in range(len(one)):
             count += SAMPLES * (point > 0)
@@ -104,10 +120,12 @@ def touches_deposit(path, nozzle):
 
 
 def turned(path, other):
-    return np.concatenate([
-        np.degrees(np.arccos(np.clip((one.tool * two.tool).sum(axis=1), -1, 1)))
-        for (_, _, one), (_, _, two) in zip(path, other)
-    ])
+    return np.concatenate(
+        [
+            np.degrees(np.arccos(np.clip((one.tool * two.tool).sum(axis=1), -1, 1)))
+            for (_, _, one), (_, _, two) in zip(path, other)
+        ]
+    )
 
 
 def codes(path):
@@ -128,8 +146,12 @@ def bend_on_pipe(mode, **values):
     assert np.abs(np.hypot(first[:, 0], first[:, 2]) - PIPE).max() < 1e-9
     wall = dataclasses.replace(wall, first=first)
     build = BuildDirectionParameters(mode=mode, clearance="none")
-    made = surface.plan(wall, SurfaceParameters(layer_height=8.0, end="whole", **values), build, ProcessParameters())
-    return wall, dataclasses.replace(made, bead_width=0.0)  # lines: what is measured here is the pipe
+    made = surface.plan(
+        wall, SurfaceParameters(layer_height=8.0, end="whole", **values), build, ProcessParameters()
+    )
+    return wall, dataclasses.replace(
+        made, bead_width=0.0
+    )  # lines: what is measured here is the pipe
 
 
 @pytest.mark.parametrize("mode", ["local", "symmetry-plane"])
@@ -142,7 +164,9 @@ def test_a_fat_nozzle_on_the_pipe(mode):
     def deepest(path):
         low = left_out(FAT) + ABOVE_FACES
         points = [sampled(FAT, low, one.points, one.tool).reshape(-1, 3) for _, _, one in path]
-        return PIPE - min(np.hypot(some[:, 0], some[:, 2])[np.abs(some[:, 1]) < 99].min() for some in points)
+        return PIPE - min(
+            np.hypot(some[:, 0], some[:, 2])[np.abs(some[:, 1]) < 99].min() for some in points
+        )
 
     assert deepest(asked) > 0.3
     assert deepest(found) < PIPE * (1 - np.cos(np.pi / 200)) + 1e-6
@@ -200,10 +224,13 @@ def test_a_post_beside_the_way_is_passed_smoothly():
 
 def test_where_nothing_helps_the_place_is_named():
     path = toolpath(
-        bead([[0, -40, 0], [0, -20, 0]]), bead([[0, -10, 1], [0, 10, 1], [0, 30, 1]]),
+        bead([[0, -40, 0], [0, -20, 0]]),
+        bead([[0, -10, 1], [0, 10, 1], [0, 30, 1]]),
     )
     lid = box([-90, 5, 8], [90, 90, 9], "lid")  # the nozzle does not fit under it
-    found = kept_clear(path, [lid, disc(113.0, np.eye(4))], NOZZLE, BuildDirectionParameters(max_tilt=np.pi / 3))
+    found = kept_clear(
+        path, [lid, disc(113.0, np.eye(4))], NOZZLE, BuildDirectionParameters(max_tilt=np.pi / 3)
+    )
     error = next(issue for issue in found.issues if issue.code == "CLEARANCE")
     assert (error.level, error.layer, error.bead, error.point) == ("error", 1, 0, 1)
 
@@ -233,7 +260,11 @@ def test_what_is_clear_stays_as_it_is_to_the_bit():
     path = toolpath(bead([[0, 0, 0], [5, 0, 0]]), bead([[0, 0, 1], [5, 0, 1]]))
     told = []
     clear = box([40, 40, 0], [50, 50, 50])
-    assert kept_clear(path, [clear], NOZZLE, LOCAL, watch=Watch(lambda *work: told.append(work))) is path and told == []
+    assert (
+        kept_clear(path, [clear], NOZZLE, LOCAL, watch=Watch(lambda *work: told.append(work)))
+        is path
+        and told == []
+    )
     flat = box([-100, -100, -10], [100, 100, 0])
     assert kept_clear(path, [flat], NOZZLE, LOCAL) is path
 
@@ -241,14 +272,21 @@ def test_what_is_clear_stays_as_it_is_to_the_bit():
 def test_left_out_is_where_the_side_is_one_diameter_away():
     for nozzle in (NOZZLE, FAT):
         x = left_out(nozzle)
-        assert np.hypot(x, 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * x) == pytest.approx(nozzle.diameter)
+        assert np.hypot(x, 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * x) == pytest.approx(
+            nozzle.diameter
+        )
 
 
 def test_a_look_at_fixtures_names_the_first_place():
     path = toolpath(bead([[0, 0, 0], [20, 0, 0]]), bead([[0, 0, 1], [20, 0, 1]]))
     clamp = box([24, -5, 5], [40, 5, 30], "clamp")
     (issue,) = touched_at(path, [clamp], NOZZLE)
-    assert (issue.code, issue.layer, issue.bead, issue.point) == ("CLEARANCE", 0, 0, 1) and "clamp" in issue.message
+    assert (issue.code, issue.layer, issue.bead, issue.point) == (
+        "CLEARANCE",
+        0,
+        0,
+        1,
+    ) and "clamp" in issue.message
     assert touched_at(path, [box([60, -5, 5], [70, 5, 30])], NOZZLE) == []
 
 
@@ -256,8 +294,12 @@ def between(path, count=40):
     """Tips and axes (n, 3) closely along all segments, the axes interpolated."""
     share = np.linspace(0, 1, count)[:, None]
     pairs = [
-        (one.points[k] + share * (one.points[k + 1] - one.points[k]), one.tool[k] + share * (one.tool[k + 1] - one.tool[k]))
-        for _, _, one in path for k in range(len(one) - 1)
+        (
+            one.points[k] + share * (one.points[k + 1] - one.points[k]),
+            one.tool[k] + share * (one.tool[k + 1] - one.tool[k]),
+        )
+        for _, _, one in path
+        for k in range(len(one) - 1)
     ]
     tip, axis = (np.concatenate(some) for some in zip(*pairs))
     return tip, axis / np.linalg.norm(axis, axis=1, keepdims=True)
@@ -269,18 +311,26 @@ def test_a_thin_plate_that_reaches_in_between_two_points_is_seen():
     path = toolpath(bead(np.stack([along, np.zeros(11), np.zeros(11)], axis=1)))
     low, high = np.array([1.9, 0.3, 1.3]), np.array([2.1, 1.5, 1.7])
     plate = box(low, high, "plate")
-    solid = sampled(NOZZLE, left_out(NOZZLE), *(path.layers[0].beads[0].points, path.layers[0].beads[0].tool))
+    solid = sampled(
+        NOZZLE, left_out(NOZZLE), *(path.layers[0].beads[0].points, path.layers[0].beads[0].tool)
+    )
     assert not ((solid > low) & (solid < high)).all(axis=2).any()
     (issue,) = touched_at(path, [plate], NOZZLE)
     assert (issue.code, issue.point) == ("CLEARANCE", 5)
     found = kept_clear(path, [plate], NOZZLE, LOCAL)
     one = found.layers[0].beads[0]
-    assert codes(found) == ["TILT_BACK"] and 12 <= len(one) <= 16 and np.isin(along, one.points[:, 0]).all()
+    assert (
+        codes(found) == ["TILT_BACK"]
+        and 12 <= len(one) <= 16
+        and np.isin(along, one.points[:, 0]).all()
+    )
     assert (one.points[:, 1:] == 0).all() and touched_at(found, [plate], NOZZLE) == []
     height = np.linspace(left_out(NOZZLE) + ABOVE_FACES, 4.0, 60)
     tip, axis = between(found)
     x, y = np.stack([np.linspace(low[0], high[0], 9), np.full(9, low[1])])
-    for z in np.linspace(low[2], high[2], 9):  # the plate's near edge, as deep in the nozzle as it is let pass
+    for z in np.linspace(
+        low[2], high[2], 9
+    ):  # the plate's near edge, as deep in the nozzle as it is let pass
         offset = np.stack([x, y, np.full(9, z)], axis=1) - tip[:, None]
         up = np.einsum("kij,kj->ki", offset, axis)
         side = np.linalg.norm(offset - up[:, :, None] * axis[:, None], axis=2)
@@ -309,7 +359,9 @@ def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilt
 
     def fastest(build):
         work.clear()
-        found = kept_clear(path, [post], NOZZLE, build, watch=Watch(lambda *some: work.append(some)))
+        found = kept_clear(
+            path, [post], NOZZLE, build, watch=Watch(lambda *some: work.append(some))
+        )
         axes = found.layers[0].beads[0].tool
         solid = sampled(NOZZLE, left_out(NOZZLE) + ABOVE_FACES, points, axes)
         assert not ((solid > [46, 6, -20]) & (solid < [50, 12, 90])).all(axis=2).any()
@@ -321,7 +373,9 @@ def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilt
     kept, told = fastest(BuildDirectionParameters(max_turn=most, max_tilt=np.pi))
     assert work == [(len(s), 1), (len(s), 6)]  # each before it begins
     assert kept <= most * (1.0 + 1e-9) and "TURN_PASSED" not in told
-    passed, told = fastest(BuildDirectionParameters(max_turn=most, max_tilt=0.61))  # no room, and that is told
+    passed, told = fastest(
+        BuildDirectionParameters(max_turn=most, max_tilt=0.61)
+    )  # no room, and that is told
     assert passed <= most * (1.0 + 1e-9) or "TURN_PASSED" in told
 
 
@@ -360,7 +414,9 @@ def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch
     searched = []
     cones = tilt_search.TiltSearch.coarse
     monkeypatch.setattr(
-        tilt_search.TiltSearch, "coarse", lambda self, watch: searched.append(len(self.flat)) or cones(self, watch)
+        tilt_search.TiltSearch,
+        "coarse",
+        lambda self, watch: searched.append(len(self.flat)) or cones(self, watch),
     )
     found = kept_clear(asked, [], NOZZLE, LOCAL)
     assert codes(found) == ["TILT_BACK"] and set(searched) == {41}
@@ -372,16 +428,23 @@ def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch
 
 def test_beads_of_one_layer_that_overlap_hinder_no_one():
     rows = [bead([[x, y, 0] for x in np.linspace(0, 30, 11)]) for y in np.arange(0.0, 30.0, 6.0)]
-    lean = [dataclasses.replace(one, tool=np.tile([0.0, -np.sin(0.5), np.cos(0.5)], (11, 1))) for one in rows]
+    lean = [
+        dataclasses.replace(one, tool=np.tile([0.0, -np.sin(0.5), np.cos(0.5)], (11, 1)))
+        for one in rows
+    ]
     for beads in (rows, lean):
-        path = Toolpath((Layer(tuple(beads)),), np.eye(4), 2.0, 0.01, family="surface", bead_width=8.0)
+        path = Toolpath(
+            (Layer(tuple(beads)),), np.eye(4), 2.0, 0.01, family="surface", bead_width=8.0
+        )
         assert kept_clear(path, [], NOZZLE, LOCAL) is path
 
 
 def test_where_some_points_of_a_bead_have_no_way_the_rest_is_not_searched_for_ever():
     """A tunnel: nothing frees the nozzle in it; 4,000 points cost no more than a few cones each."""
     count = 1000
-    path = toolpath(bead(np.stack([np.linspace(-40, 40, count), np.zeros(count), np.zeros(count)], axis=1)))
+    path = toolpath(
+        bead(np.stack([np.linspace(-40, 40, count), np.zeros(count), np.zeros(count)], axis=1))
+    )
     roof = [box([-90, -90, 8], [90, 90, 9], "roof"), box([-90, -90, -9], [90, 90, -8], "floor")]
     looks = []
     scenes = clearance_room.Scene.touched
@@ -422,7 +485,11 @@ def test_only_beads_that_get_points_are_tilted_anew(monkeypatch):
     asked = bend_on_pipe("local")[1]
     build = BuildDirectionParameters(mode="local", max_tilt=np.pi)
     plain = kept_clear(asked, [pipe()], FAT, build)
-    searched, looks, (between, cleared) = [], [], (wall_clearance.touched_between, wall_clearance._cleared)
+    searched, looks, (between, cleared) = (
+        [],
+        [],
+        (wall_clearance.touched_between, wall_clearance._cleared),
+    )
     counts = np.array([len(one) for _, _, one in asked])
     begin = int(counts[:2].sum())
 

@@ -17,13 +17,18 @@ from freecad_am.core.strategies.walls.comparison import NORMAL, Refused
 
 def bend(tube=15.0):
     torus = Torus(60.0, tube)
-    first = on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360))
+    first = on_implicit(
+        torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360)
+    )
     return SurfaceWall("torus", (60.0, tube), np.eye(4), 0.5 * np.pi, first.curve.points[:-1])
 
 
 @pytest.fixture(scope="module")
 def compared():
-    return {one.method: one for one in wall_comparison.compare(bend(), SurfaceParameters(layer_height=5.0))}
+    return {
+        one.method: one
+        for one in wall_comparison.compare(bend(), SurfaceParameters(layer_height=5.0))
+    }
 
 
 def test_iso_parameter_and_constant_distance_are_those_of_the_errata(compared):
@@ -36,7 +41,9 @@ def test_iso_parameter_and_constant_distance_are_those_of_the_errata(compared):
     assert all(np.allclose(step, 5.0, atol=1e-4) for step in before.step)
     assert max(step.max() for step in after.step) == pytest.approx(5.0 * 1.52, abs=0.03)
     assert before.corners == 0 and before.corner == 0.0
-    assert after.corners == 11 and np.degrees(after.corner) == pytest.approx(94.0, abs=1.0)  # 97 past the end
+    assert after.corners == 11 and np.degrees(after.corner) == pytest.approx(
+        94.0, abs=1.0
+    )  # 97 past the end
 
 
 def test_layers_normal_to_the_centreline_fan_out(compared):
@@ -48,7 +55,9 @@ def test_layers_normal_to_the_centreline_fan_out(compared):
     starts = [np.isfinite(distance).any() for distance in normal.distance]
     assert all(starts)
     last, place = normal.distance[-1], normal.around[-1]
-    assert place[np.argmax(last)] == pytest.approx(0.0, abs=2e-3)  # v = 0 is the outside of the bend
+    assert place[np.argmax(last)] == pytest.approx(
+        0.0, abs=2e-3
+    )  # v = 0 is the outside of the bend
     assert np.isnan(normal.distance[0]).any() and np.isfinite(normal.distance[-1]).all()
 
 
@@ -56,21 +65,33 @@ def test_smooth_keeps_band_and_turn(compared):
     smooth, exact = compared["smooth"], compared["constant-distance"]
     assert smooth.least >= 4.0 and smooth.most <= 6.0 and smooth.corners == 0
     assert smooth.turn <= np.radians(6.0)
-    assert np.radians(6.0) < exact.turn < np.radians(60.0)  # beside corners; a corner is not a turn per mm
+    assert (
+        np.radians(6.0) < exact.turn < np.radians(60.0)
+    )  # beside corners; a corner is not a turn per mm
 
 
 def test_the_figures_hang_together(compared):
     for one in compared.values():
-        assert len(one.around) == len(one.distance) == len(one.step) == one.layers - 1 == len(one.curves) - 1
+        assert (
+            len(one.around)
+            == len(one.distance)
+            == len(one.step)
+            == one.layers - 1
+            == len(one.curves) - 1
+        )
         assert one.least <= one.mean <= one.most
         for around, distance, step in zip(one.around, one.distance, one.step, strict=True):
             assert len(around) == len(distance) == len(step)
             assert -0.5 <= around[0] < around[-2] <= 0.5 and (np.diff(around) > 0.0).all()
             assert around[-1] == pytest.approx(around[0] + 1.0)
             assert [distance[0], step[0]] == pytest.approx([distance[-1], step[-1]], nan_ok=True)
-            assert (step >= distance - 1e-3)[np.isfinite(step)].all()  # the nearest point is nearer than the one below
+            assert (step >= distance - 1e-3)[
+                np.isfinite(step)
+            ].all()  # the nearest point is nearer than the one below
         reach = np.concatenate(one.curves)
-        assert np.nanmin(reach[:, 0] ** 2 + reach[:, 2] ** 2) >= (32.0 - 1e-3) ** 2  # above the pipe
+        assert (
+            np.nanmin(reach[:, 0] ** 2 + reach[:, 2] ** 2) >= (32.0 - 1e-3) ** 2
+        )  # above the pipe
         assert np.nanmin(reach[:, 0]) >= -60.0 - 1e-6  # below the end
 
 

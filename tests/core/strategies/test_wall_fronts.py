@@ -32,7 +32,10 @@ def sliced_once():
     def kept(wall, height, smoothing=None, progress=lambda fraction, text: None):
         key = id(wall), height, smoothing
         if key not in found:
-            found[key] = wall, layers(wall, height, smoothing, progress)  # the wall too, so that its number stays its own
+            found[key] = (
+                wall,
+                layers(wall, height, smoothing, progress),
+            )  # the wall too, so that its number stays its own
         return found[key][1]
 
     with pytest.MonkeyPatch.context() as patch:
@@ -42,7 +45,9 @@ def sliced_once():
 
 def planned(wall, height, process=None, strategy=None, **build):
     build = BuildDirectionParameters(**{"clearance": "none", "max_tilt": np.pi, **build})
-    strategy = SurfaceParameters(**{"layer_height": height, "chord_error": 0.001, **(strategy or {})})
+    strategy = SurfaceParameters(
+        **{"layer_height": height, "chord_error": 0.001, **(strategy or {})}
+    )
     return wall_fronts.plan(wall, strategy, build, process or ProcessParameters())
 
 
@@ -51,7 +56,10 @@ def dense(beads):
     parts = []
     for bead in beads:
         share = np.arange(60)[:, None, None] / 60.0
-        parts += [(bead.points[:-1] + share * np.diff(bead.points, axis=0)).reshape(-1, 3), bead.points[-1:]]
+        parts += [
+            (bead.points[:-1] + share * np.diff(bead.points, axis=0)).reshape(-1, 3),
+            bead.points[-1:],
+        ]
     return np.vstack(parts)
 
 
@@ -74,14 +82,28 @@ def gutter():
     vertices, triangles = grid(point, np.linspace(-4.0, 40.0, 45), s)
     middle = vertices[triangles].mean(axis=1)
     owner = np.where(middle[:, 0] > 0.0, 1, np.where(middle[:, 1] > 0.0, 2, 0)).astype(np.intp)
-    sides = [np.array([[1.0, 0, 0, 0], [0, 0, y, y * radius], [0, -y, 0, 0], [0, 0, 0, 1.0]]) for y in (-1.0, 1.0)]
+    sides = [
+        np.array([[1.0, 0, 0, 0], [0, 0, y, y * radius], [0, -y, 0, 0], [0, 0, 0, 1.0]])
+        for y in (-1.0, 1.0)
+    ]
     round_ = Patch(CYLINDER, (radius,), np.eye(4), 1.0, (2.0 * np.pi, 0.0))
     patches = [Patch(PLANE, (), sides[0]), round_, Patch(PLANE, (), sides[1])]
     a, b, c = vertices[triangles].transpose(1, 0, 2)
-    out = np.einsum("ij,ij->i", np.cross(b - a, c - a), middle * [1.0, 1.0, 0.0] - np.minimum(middle, 0.0) * [1.0, 0, 0])
+    out = np.einsum(
+        "ij,ij->i",
+        np.cross(b - a, c - a),
+        middle * [1.0, 1.0, 0.0] - np.minimum(middle, 0.0) * [1.0, 0, 0],
+    )
     triangles = np.where((out < 0.0)[:, None], triangles[:, ::-1], triangles)
     slanted = HalfSpace(np.zeros(3), np.array([0.1, 0.15, 1.0]))
-    return patch_wall(vertices, triangles, patches, owner, slanted, lambda points: np.abs(points[:, 2] - 40.0) < 1e-9)
+    return patch_wall(
+        vertices,
+        triangles,
+        patches,
+        owner,
+        slanted,
+        lambda points: np.abs(points[:, 2] - 40.0) < 1e-9,
+    )
 
 
 WALLS = {
@@ -89,7 +111,10 @@ WALLS = {
     "a half shell": (lambda: bend(PIPE, 0.3, 1.3, 1.25, 0.5, np.pi), 2.5),
     "three tangent faces": (gutter, 2.0),
     "a bend": (lambda: bend(PIPE, 0.3, np.pi / 2, 1.25), 5.0),
-    "a cap": (lambda: ball(HalfSpace(np.array([0, 0, -5.0]), np.array([0.1, 0.3, 1.0])), 2500), 2.0),
+    "a cap": (
+        lambda: ball(HalfSpace(np.array([0, 0, -5.0]), np.array([0.1, 0.3, 1.0])), 2500),
+        2.0,
+    ),
 }
 MADE = {}
 
@@ -99,7 +124,13 @@ def made(name):
     if name not in MADE:
         make, height = WALLS[name]
         wall = make()
-        MADE[name] = wall, height, planned(wall, height, ProcessParameters(direction="alternate"), {"chord_error": 0.0003})
+        MADE[name] = (
+            wall,
+            height,
+            planned(
+                wall, height, ProcessParameters(direction="alternate"), {"chord_error": 0.0003}
+            ),
+        )
     return MADE[name]
 
 
@@ -116,7 +147,11 @@ def test_layers_are_a_height_apart_and_cover_the_wall(name):
     off = cKDTree(dense([bead for _, _, bead in toolpath])).query(points)[0]
     assert off.max() < height
     ends = [rim.points for rim in wall.rims]
-    inside = cKDTree(np.vstack(ends)).query(points)[0] > height if ends else np.ones(len(points), dtype=bool)
+    inside = (
+        cKDTree(np.vstack(ends)).query(points)[0] > height
+        if ends
+        else np.ones(len(points), dtype=bool)
+    )
     assert off[inside].max() < 0.6 * height
 
 
@@ -155,7 +190,9 @@ def test_directions_are_tangent_to_the_wall_normal_to_the_bead_and_continuous(na
     most = np.radians(15.0)
     for _, _, bead in planned(wall, height, max_turn=most):
         turn = np.arccos(np.clip((bead.tool[1:] * bead.tool[:-1]).sum(axis=1), -1.0, 1.0))
-        assert (turn / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)).max() < most * (1.0 + 1e-6) + 1e-6
+        assert (turn / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)).max() < most * (
+            1.0 + 1e-6
+        ) + 1e-6
 
 
 def test_pieces_alternate_so_that_links_are_short():
@@ -163,11 +200,16 @@ def test_pieces_alternate_so_that_links_are_short():
     assert codes(toolpath)["SPLIT"].message == "a front splits in 2 at layer 7"
     assert codes(toolpath)["MERGE"].message == "2 fronts merge at layer 21"
     beads = [bead for _, _, bead in toolpath]
-    links = np.array([
-        np.linalg.norm(after.points[0] - before.points[-1]) for before, after in zip(beads, beads[1:])
-        if not before.closing and not after.closing
-    ])
-    assert (links < 1.01 * height).sum() >= len(links) - 17  # but for the ways across the opening, once a layer
+    links = np.array(
+        [
+            np.linalg.norm(after.points[0] - before.points[-1])
+            for before, after in zip(beads, beads[1:])
+            if not before.closing and not after.closing
+        ]
+    )
+    assert (links < 1.01 * height).sum() >= len(
+        links
+    ) - 17  # but for the ways across the opening, once a layer
     assert links.max() < 40.0  # the sheet is 60 mm wide
     as_found = planned(wall, height)
     for _, _, bead in as_found:
@@ -183,21 +225,30 @@ def test_seams_follow_each_other_at_the_angle_asked_for():
     assert steps.min() > height - 1e-3 and steps.max() < 1.5 * height
     for layer in whole.layers[:3]:  # there the centre is that of the tube within a hair
         x, y, z = layer.beads[0].points[0]
-        assert np.degrees(np.arctan2(y, np.hypot(x + 60.0, z) - 60.0)) == pytest.approx(-60.0, abs=8.0)
+        assert np.degrees(np.arctan2(y, np.hypot(x + 60.0, z) - 60.0)) == pytest.approx(
+            -60.0, abs=8.0
+        )
     clockwise = ProcessParameters(seam=SeamParameters(0.0, np.radians(30.0)), direction="clockwise")
     other = planned(wall, height, clockwise, {"end": "whole"})
     for one, two in zip(whole.layers, other.layers):
-        turning = [np.cross(bead.points[:-1], bead.points[1:]).sum(axis=0) @ bead.build.mean(axis=0)
-                   for bead in (one.beads[0], two.beads[0])]
+        turning = [
+            np.cross(bead.points[:-1], bead.points[1:]).sum(axis=0) @ bead.build.mean(axis=0)
+            for bead in (one.beads[0], two.beads[0])
+        ]
         assert turning[0] > 0.0 > turning[1]
 
 
 def test_seam_of_an_upright_tube():
     """The angle is that about the axis, from X; steps add up."""
-    toolpath = planned(tube(FLOOR, 20.0, 1.5), 5.0, ProcessParameters(seam=SeamParameters(0.4, 0.3)))
+    toolpath = planned(
+        tube(FLOOR, 20.0, 1.5), 5.0, ProcessParameters(seam=SeamParameters(0.4, 0.3))
+    )
     for index, layer in enumerate(toolpath.layers):
         x, y, z = layer.beads[0].points[0]
-        assert (np.arctan2(y, x), z) == (pytest.approx(0.4 + 0.3 * index, abs=1e-3), pytest.approx(5.0 * index, abs=1e-6))
+        assert (np.arctan2(y, x), z) == (
+            pytest.approx(0.4 + 0.3 * index, abs=1e-3),
+            pytest.approx(5.0 * index, abs=1e-6),
+        )
 
 
 def test_whole_layers_stop_below_the_first_that_is_cut():
@@ -218,12 +269,16 @@ def test_lead_tilt_and_planes():
     leaning = planned(wall, 5.0, lead=0.2, tilt=0.3).layers[1].beads[0]
     out = leaning.points * [1.0, 1.0, 0.0] / 20.0
     assert (leaning.tool * out).sum(axis=1) == pytest.approx(np.sin(0.3), abs=1e-3)
-    assert (leaning.tool * leaning.tangents[:, 1]).sum(axis=1) == pytest.approx(np.sin(0.2) * np.cos(0.3), abs=1e-3)
+    assert (leaning.tool * leaning.tangents[:, 1]).sum(axis=1) == pytest.approx(
+        np.sin(0.2) * np.cos(0.3), abs=1e-3
+    )
     flat = planned(wall, 5.0, mode="symmetry-plane", plane="1 0 0", tilt=0.3)
     assert all(np.abs(bead.tool[:, 0]).max() < 1e-12 for _, _, bead in flat)
     with pytest.raises(InputError) as caught:
         planned(wall, 5.0, mode="symmetry-plane")
-    assert caught.value.code == "NO_SYMMETRY_PLANE" and "build_direction.plane" in caught.value.message
+    assert (
+        caught.value.code == "NO_SYMMETRY_PLANE" and "build_direction.plane" in caught.value.message
+    )
 
 
 def test_layers_along_lines_need_a_parameter():
@@ -234,16 +289,26 @@ def test_layers_along_lines_need_a_parameter():
 
 def test_smooth_layers_say_what_they_cost():
     wall, height, exact = made("a bend")
-    smooth = planned(wall, height, ProcessParameters(direction="alternate"), {"spacing": "smooth", "chord_error": 0.0003})
+    smooth = planned(
+        wall,
+        height,
+        ProcessParameters(direction="alternate"),
+        {"spacing": "smooth", "chord_error": 0.0003},
+    )
     assert codes(exact)["CORNERS"].level == "note"
     assert "CORNERS" not in codes(smooth) and codes(smooth)["SPACING"].level == "note"
-    assert codes(smooth)["TURN"].level == "warning" and "first layer 13" in codes(smooth)["TURN"].message
+    assert (
+        codes(smooth)["TURN"].level == "warning"
+        and "first layer 13" in codes(smooth)["TURN"].message
+    )
     spacings = np.concatenate(between_layers(smooth))
     assert spacings.min() >= 0.8 * height and spacings.max() <= 1.2 * height
     straight = planned(tube(FLOOR, 20.0, 1.5), height, strategy={"spacing": "smooth"})
     assert codes(straight)["TURN"].level == "note"
     off = cKDTree(dense([bead for _, _, bead in smooth])).query(samples(wall, 2))[0]
-    inside = cKDTree(np.vstack([rim.points for rim in wall.rims])).query(samples(wall, 2))[0] > height
+    inside = (
+        cKDTree(np.vstack([rim.points for rim in wall.rims])).query(samples(wall, 2))[0] > height
+    )
     assert off.max() < height and off[inside].max() < 0.6 * height
 
 
@@ -273,14 +338,18 @@ def test_a_bend_of_one_surface_has_by_fronts_the_layers_that_its_parameter_gives
     several = bend(PIPE, 0.4, 0.5 * np.pi, 3.0)
     toolpath = planned(several, 8.0, mode="symmetry-plane")
     build = BuildDirectionParameters("symmetry-plane", clearance="none", max_tilt=np.pi)
-    by_parameter = tubes.plan(one, SurfaceParameters(layer_height=8.0, chord_error=0.001), build, ProcessParameters())
+    by_parameter = tubes.plan(
+        one, SurfaceParameters(layer_height=8.0, chord_error=0.001), build, ProcessParameters()
+    )
     layers = [[bead for bead in layer.beads if not bead.closing] for layer in toolpath.layers]
     assert [len(layer) for layer in layers] == [len(layer.beads) for layer in by_parameter.layers]
     for below, above, other in zip(layers, layers[1:], by_parameter.layers[1:]):
         points = np.vstack([bead.points for bead in above])
         x, y, z = points.T
         assert np.abs(np.hypot(np.hypot(x + 60.0, z) - 60.0, y) - 15.0).max() < 1e-6
-        inside = np.vstack([bead.points[slice(None) if bead.closed else slice(1, -1)] for bead in above])
+        inside = np.vstack(
+            [bead.points[slice(None) if bead.closed else slice(1, -1)] for bead in above]
+        )
         assert cKDTree(dense(below)).query(inside)[0] == pytest.approx(8.0, abs=3e-3)
         assert cKDTree(dense(other.beads)).query(points)[0].max() < 0.02
     assert max(np.abs(bead.tool[:, 1]).max() for _, _, bead in toolpath) < 1e-9
@@ -289,7 +358,11 @@ def test_a_bend_of_one_surface_has_by_fronts_the_layers_that_its_parameter_gives
 def test_other_directions_leave_the_layers_as_they_are(monkeypatch):
     """What would clear the nozzle is tried with another direction: a minute of it went into the same layers."""
     wall, asked, layers = tube(FLOOR, 40.0, 5.0), [], fronts.layers
-    monkeypatch.setattr(fronts, "layers", lambda wall, height, *rest: asked.append(height) or layers(wall, height, *rest))
+    monkeypatch.setattr(
+        fronts,
+        "layers",
+        lambda wall, height, *rest: asked.append(height) or layers(wall, height, *rest),
+    )
     leaning, upright = planned(wall, 6.0), planned(wall, 6.0, mode="fixed")
     assert asked == [6.0]
     for (_, _, one), (_, _, other) in zip(leaning, upright, strict=True):

@@ -28,12 +28,17 @@ def flat(theta, way):
     """Places at azimuths and distances from the apex laid flat."""
     rho = way * math.sin(CONE.taper)
     z = CONE.height - way * math.cos(CONE.taper)
-    return CONE.flat(np.stack([rho * np.cos(theta), rho * np.sin(theta), np.broadcast_to(z, rho.shape)], axis=1))
+    return CONE.flat(
+        np.stack([rho * np.cos(theta), rho * np.sin(theta), np.broadcast_to(z, rho.shape)], axis=1)
+    )
 
 
 def ring(at):
     """The ring with its hole at the azimuth `at`."""
-    theta, across = np.linspace(-math.pi, math.pi, 720, endpoint=False), np.linspace(-HALF, HALF, 40)
+    theta, across = (
+        np.linspace(-math.pi, math.pi, 720, endpoint=False),
+        np.linspace(-HALF, HALF, 40),
+    )
     along = np.linspace(NEAR, FAR, 20)
     turn = np.r_[across, np.full(20, HALF), across[::-1], np.full(20, -HALF)] + at
     way = np.r_[np.full(40, NEAR), along, np.full(40, FAR), along[::-1]]
@@ -49,26 +54,36 @@ def test_what_is_left_of_a_ring_knows_how_far_round_it_is(at):
     (part,) = ring(at).grown(-0.5 * SPACING, 0.1)
     assert isinstance(part, Region)
     turn = RoundLayer(CONE).period.around
-    u = math.remainder(part.sheet - (at + math.pi) / (2.0 * math.pi) * turn, turn)  # opposite to the hole
+    u = math.remainder(
+        part.sheet - (at + math.pi) / (2.0 * math.pi) * turn, turn
+    )  # opposite to the hole
     assert abs(u) < 1e-3 * turn
     assert part.grown(-1.0, 0.1)[0].sheet == part.simple(0.1).sheet == part.sheet
 
 
-@pytest.mark.parametrize(("fill", "contour"), [("contours", False), ("lines", False), ("lines", True)])
+@pytest.mark.parametrize(
+    ("fill", "contour"), [("contours", False), ("lines", False), ("lines", True)]
+)
 @pytest.mark.parametrize("at", [0.0, 0.7])
 @pytest.mark.always
 def test_beads_on_both_sides_of_a_hole_stay_out_of_it(fill, contour, at):
     """No bead runs through the hole, and they come as near to it on one side as on the other."""
-    strategy = DevelopableParameters(bead_spacing=SPACING, fill=fill, contour=contour, chord_error=0.2)
+    strategy = DevelopableParameters(
+        bead_spacing=SPACING, fill=fill, contour=contour, chord_error=0.2
+    )
     base, process = Base("the hub", CONE, np.eye(4)), ProcessParameters()
     layer = Slice(0, base, RoundLayer(CONE), (ring(at),))
     curves = Pictures(strategy, process).filled(layer, "ring").curves
-    points = np.vstack([
-        bead_of(curve, layer, strategy, BuildDirectionParameters(), process, None).bead.points
-        for curve in curves
-    ])
+    points = np.vstack(
+        [
+            bead_of(curve, layer, strategy, BuildDirectionParameters(), process, None).bead.points
+            for curve in curves
+        ]
+    )
     way = np.hypot(points[:, 0], points[:, 1]) / math.sin(CONE.taper)
-    past = np.remainder(np.arctan2(points[:, 1], points[:, 0]) - at + math.pi, 2.0 * math.pi) - math.pi
+    past = (
+        np.remainder(np.arctan2(points[:, 1], points[:, 0]) - at + math.pi, 2.0 * math.pi) - math.pi
+    )
     beside = np.abs(past) - HALF
     assert not ((beside < -0.01) & (way > NEAR + 0.2) & (way < FAR - 0.2)).any()
     # half a spacing from the hole where that is farthest out, on the cone laid flat

@@ -37,8 +37,13 @@ class Lesson:
         self.person, self.hand, self.name = person, hand, name
         text = (PAGES / f"{name}.md").read_text(encoding="utf-8")
         parts = re.split(r"^## ", text, flags=re.MULTILINE)[1:]
-        told = {part.splitlines()[0].strip(): re.findall(r"!\[[^\]]*\]\(images/([\w-]+)\.png\)", part) for part in parts}
-        self.told = {heading: pictures for heading, pictures in told.items() if re.match(r"\d+\. ", heading)}
+        told = {
+            part.splitlines()[0].strip(): re.findall(r"!\[[^\]]*\]\(images/([\w-]+)\.png\)", part)
+            for part in parts
+        }
+        self.told = {
+            heading: pictures for heading, pictures in told.items() if re.match(r"\d+\. ", heading)
+        }
         self.done, self.taken = [], []
         kept = os.environ.get("ROBOTIC_AM_PICTURES")
         self.folder = Path(kept) / "tutorials" if kept else None
@@ -89,7 +94,11 @@ class Lesson:
     def _keep(self, name):
         """The window as the screen shows it, in a file for the page."""
         screen = self.person.widgets.QApplication.primaryScreen()
-        grabbed = screen.grabWindow(0) if self.person.core.qVersion().startswith("5") else screen.grabWindow()
+        grabbed = (
+            screen.grabWindow(0)
+            if self.person.core.qVersion().startswith("5")
+            else screen.grabWindow()
+        )
         window = self.person.window
         corner = window.mapToGlobal(self.person.core.QPoint(0, 0))
         shown = grabbed.copy(self.person.core.QRect(corner, window.size()))
@@ -99,10 +108,18 @@ class Lesson:
         """The 3D view as the screen shows it, (height, width, 3) colours 0..255."""
         screen = self.person.widgets.QApplication.primaryScreen()
         view = self.person.gui.activeDocument().activeView()
-        grabbed = screen.grabWindow(0) if self.person.core.qVersion().startswith("5") else screen.grabWindow()
-        cut = grabbed.toImage().copy(self.person.core.QRect(self.hand.corner(view), self.person.core.QSize(*view.getSize())))
+        grabbed = (
+            screen.grabWindow(0)
+            if self.person.core.qVersion().startswith("5")
+            else screen.grabWindow()
+        )
+        cut = grabbed.toImage().copy(
+            self.person.core.QRect(self.hand.corner(view), self.person.core.QSize(*view.getSize()))
+        )
         image = cut.convertToFormat(self.person.widgets.QImage.Format_RGB32)
-        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(
+            image.height(), -1, 4
+        )
         return rows[:, : image.width(), 2::-1].astype(int)
 
     # ---- what a hand does
@@ -110,7 +127,9 @@ class Lesson:
     def keys(self, *keys):
         """Keys pressed with the main window in front."""
         self.person.window.activateWindow()
-        self.hand.do("windowfocus", int(self.person.window.winId()))  # as a window manager does, of which there is none
+        self.hand.do(
+            "windowfocus", int(self.person.window.winId())
+        )  # as a window manager does, of which there is none
         self.hand.do("key", *keys)
         self.person.idle(0.2)
 
@@ -125,11 +144,19 @@ class Lesson:
 
         def look():
             dialog = widgets.QApplication.activeModalWidget()
-            if isinstance(dialog, widgets.QDialog) and dialog.windowTitle().startswith("STEP") and not state["asked"]:
+            if (
+                isinstance(dialog, widgets.QDialog)
+                and dialog.windowTitle().startswith("STEP")
+                and not state["asked"]
+            ):
                 state["asked"] = True  # FreeCAD 1.0 and later ask how to read a STEP file
-                button = dialog.findChild(widgets.QDialogButtonBox).button(widgets.QDialogButtonBox.Ok)
+                button = dialog.findChild(widgets.QDialogButtonBox).button(
+                    widgets.QDialogButtonBox.Ok
+                )
                 middle = button.mapToGlobal(button.rect().center())
-                subprocess.Popen(["xdotool", "mousemove", str(middle.x()), str(middle.y()), "click", "1"])
+                subprocess.Popen(
+                    ["xdotool", "mousemove", str(middle.x()), str(middle.y()), "click", "1"]
+                )
             if not isinstance(dialog, widgets.QFileDialog):
                 return
             if time.monotonic() > end:  # nobody but this timer runs while the dialog is open
@@ -140,13 +167,19 @@ class Lesson:
             waited = time.monotonic() - state["since"]
             if state["typing"] is None:
                 if line.hasFocus():
-                    now(typing=subprocess.Popen(["xdotool", "key", "ctrl+a", "type", "--delay", "5", str(path)]))
+                    now(
+                        typing=subprocess.Popen(
+                            ["xdotool", "key", "ctrl+a", "type", "--delay", "5", str(path)]
+                        )
+                    )
             elif state["typing"].poll() is None:
                 now()
             elif line.text() == str(path) and not state["entered"]:
                 now(entered=True)
                 subprocess.Popen(["xdotool", "key", "Return"])
-            elif waited > AGAIN:  # where the machine is busy, the list of proposals may have taken letters, or Enter
+            elif (
+                waited > AGAIN
+            ):  # where the machine is busy, the list of proposals may have taken letters, or Enter
                 now(typing=None, entered=False)
 
         timer = core.QTimer()
@@ -156,7 +189,11 @@ class Lesson:
         try:
             trigger()
             self.person.until(lambda: state["entered"], "the file dialog", DIALOG)
-            self.person.until(lambda: widgets.QApplication.activeModalWidget() is None, "the file dialog to close", DIALOG)
+            self.person.until(
+                lambda: widgets.QApplication.activeModalWidget() is None,
+                "the file dialog to close",
+                DIALOG,
+            )
         finally:
             timer.stop()
             watch.awaited = ()
@@ -206,7 +243,10 @@ class Lesson:
 
     def _click_entry(self, shown, wanted):
         """Click an entry of the menu bar or of an open menu; the entry."""
-        titles = {action.text().replace("&", "").split("\t")[0].rstrip(".…"): action for action in shown.actions()}
+        titles = {
+            action.text().replace("&", "").split("\t")[0].rstrip(".…"): action
+            for action in shown.actions()
+        }
         assert wanted in titles, f"no '{wanted}' among {list(titles)}"
         middle = shown.mapToGlobal(shown.actionGeometry(titles[wanted]).center())
         self.hand.at((middle.x(), middle.y()))
@@ -222,7 +262,9 @@ class Lesson:
     def from_below(self):
         """The view turned until undersides are seen, as by the middle button of the mouse, and all of the part in it."""
         view = self.person.gui.activeDocument().activeView()
-        view.setCameraOrientation(App.Rotation(App.Vector(1, 0, 0), 120) * App.Rotation(App.Vector(0, 1, 0), 25))
+        view.setCameraOrientation(
+            App.Rotation(App.Vector(1, 0, 0), 120) * App.Rotation(App.Vector(0, 1, 0), 25)
+        )
         self.hand.click(self.person.button("Std_ViewFitAll"))
         self.person.idle(0.3)
 
@@ -230,7 +272,9 @@ class Lesson:
         """Wait for a plot that was asked for."""
         from freecad_am.gui.plots import dock
 
-        self.person.until(lambda: dock._dock.building.worker is None and dock._dock.canvas.ready, "the plot", 30)
+        self.person.until(
+            lambda: dock._dock.building.worker is None and dock._dock.canvas.ready, "the plot", 30
+        )
         self.person.idle(0.5)
 
     def play(self, factor, notches):
@@ -251,7 +295,9 @@ class Lesson:
 
         tip = np.array(dock._open[0].scene.nozzle.matrix.getValue().getValue())[3, :3]
         view = self.person.gui.activeDocument().activeView()
-        x, y = (getattr(view, "getPointOnViewport", None) or view.getPointOnScreen)(App.Vector(*tip))
+        x, y = (getattr(view, "getPointOnViewport", None) or view.getPointOnScreen)(
+            App.Vector(*tip)
+        )
         corner = self.hand.corner(view)
         self.hand.do("mousemove", corner.x() + x, corner.y() + view.getSize()[1] - 1 - y)
         for _ in range(notches):
@@ -268,9 +314,15 @@ class Lesson:
         """A button at the top of a task panel."""
         wanted = getattr(self.person.widgets.QDialogButtonBox, name)
         boxes = self.person.present(self.person.widgets.QDialogButtonBox)
-        button = next(box.button(wanted) for box in boxes if box.isVisible() and box.button(wanted) is not None)
+        button = next(
+            box.button(wanted)
+            for box in boxes
+            if box.isVisible() and box.button(wanted) is not None
+        )
         self.hand.click(button)
-        for box in boxes:  # what Python keeps of them would stand for whatever comes to be at their place later
+        for box in (
+            boxes
+        ):  # what Python keeps of them would stand for whatever comes to be at their place later
             self.person.qt.invalidate(box)
         self.person.panel_closed()
         self.person.idle(0.3)
@@ -290,7 +342,9 @@ class Lesson:
     def close(self, name):
         """A dock, by the cross in its corner."""
         dock = self.person.panel(name)
-        self.hand.click(dock.findChild(self.person.widgets.QAbstractButton, "qt_dockwidget_closebutton"))
+        self.hand.click(
+            dock.findChild(self.person.widgets.QAbstractButton, "qt_dockwidget_closebutton")
+        )
 
         def gone():
             docks = self.person.present(self.person.widgets.QDockWidget, name)
@@ -306,7 +360,9 @@ class Lesson:
     def unfold_in(self, panel, title):
         """The heading of a part of a panel that is folded away."""
         heading = self.person.field(panel, f"Fold{title.replace(' ', '')}")
-        for _ in range(3):  # what a preview tells may move it away from under the pointer: a hand clicks again
+        for _ in range(
+            3
+        ):  # what a preview tells may move it away from under the pointer: a hand clicks again
             self.hand.click(heading)
             self.person.idle(0.5)
             if heading.isChecked():
@@ -325,7 +381,9 @@ class Lesson:
         self.hand.do("mousemove", *start)
         self.hand.do("mousedown", 1)
         for share in (0.15, 0.4, 0.7, 1.0):
-            self.hand.do("mousemove", *(round(a + share * (b - a)) for a, b in zip(start, end, strict=True)))
+            self.hand.do(
+                "mousemove", *(round(a + share * (b - a)) for a, b in zip(start, end, strict=True))
+            )
         self.hand.do("mouseup", 1)
         self.person.idle(0.3)
 
@@ -345,7 +403,10 @@ def of_machine(pixels):
 def lesson(person, hand, request):
     """The lesson of the test's page, in a window as the pictures show it: tree and panels at the left, light ground."""
     view = App.ParamGet("User parameter:BaseApp/Preferences/View")
-    before, ground = {name: view.GetBool(name, name == "Gradient") for name in PLAIN}, view.GetUnsigned("BackgroundColor")
+    before, ground = (
+        {name: view.GetBool(name, name == "Gradient") for name in PLAIN},
+        view.GetUnsigned("BackgroundColor"),
+    )
     view.SetUnsigned("BackgroundColor", GROUND)
     for name, value in PLAIN.items():
         view.SetBool(name, value)

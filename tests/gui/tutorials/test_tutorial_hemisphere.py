@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tutorial 1, step by step: a part of revolution from a STEP file to a program, with the rotation about the tool by hand."""
 
-
 from freecad_am import api
 from freecad_am.gui.redundancy_map import tool as docks
 
@@ -98,10 +97,14 @@ def place(canvas, column, value):
     """Where a column of the map and a rotation are on the screen."""
     from PySide import QtCore
 
-    there = canvas.mapToGlobal(QtCore.QPoint(round(float(canvas.x_of(column))), round(float(canvas.y_of(value)))))
+    there = canvas.mapToGlobal(
+        QtCore.QPoint(round(float(canvas.x_of(column))), round(float(canvas.y_of(value))))
+    )
     return there.x(), there.y()
 
 
 def panel_text(person, panel):
     """All that a panel says."""
-    return "\n".join(label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible())
+    return "\n".join(
+        label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible()
+    )

@@ -40,8 +40,12 @@ def test_the_dome_on_a_positioner(person, hand, lesson):
     lesson.hand.enter(panel, "Machine", ROBOT)
     lesson.choose(panel, "Setup", "tool on robot")
     lesson.unfold_in(panel, "Nozzle")
-    for axis, value in zip(("X", "Y", "Z", "RX", "RY", "RZ"), (0.0, 0.0, TORCH, 0.0, 0.0, 0.0), strict=True):
-        lesson.hand.enter(panel, f"NozzleTool{axis}", f"{value:g} {'mm' if len(axis) == 1 else 'deg'}")
+    for axis, value in zip(
+        ("X", "Y", "Z", "RX", "RY", "RZ"), (0.0, 0.0, TORCH, 0.0, 0.0, 0.0), strict=True
+    ):
+        lesson.hand.enter(
+            panel, f"NozzleTool{axis}", f"{value:g} {'mm' if len(axis) == 1 else 'deg'}"
+        )
     lesson.unfold_in(panel, "Cell: advanced")
     lesson.hand.enter(panel, "External", f"{TABLE} at {AWAY:g} 0 0 0 0 0 carries part")
     lesson.hand.enter(panel, "Platform", f"{FACE:g} mm")
@@ -101,7 +105,7 @@ def _map(person, hand, lesson):
     there = one.canvas.mapToGlobal(one.canvas.area().center().toPoint())
     hand.at((there.x(), there.y()))
     person.until(lambda: one.clicked, "the click", 10)
-    (bead, point), = one.clicked.items()
+    ((bead, point),) = one.clicked.items()
     lesson.choose(dock, "across", "e2")
     person.until(lambda: one.board.across == 1 and one.canvas.painted is not None, "e2 across", 60)
     lesson.choose(dock, "axis", "e1")
@@ -118,7 +122,9 @@ def _upright(text):
     rows = np.array(re.findall(rf"LIN \{{{words}\}}", text), dtype=float)
     assert len(rows) > 200 and np.ptp(rows[:, 7]) > 300.0
     chain = PyKDL.Chain()
-    for joint in json.loads((external.MECHANISMS / f"{TABLE}.json").read_text(encoding="utf-8"))["joints"]:
+    for joint in json.loads((external.MECHANISMS / f"{TABLE}.json").read_text(encoding="utf-8"))[
+        "joints"
+    ]:
         chain.addSegment(PyKDL.Segment(PyKDL.Joint(), PyKDL.Frame(PyKDL.Vector(*joint["origin"]))))
         axis = PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis)
         chain.addSegment(PyKDL.Segment(axis, PyKDL.Frame()))
@@ -132,5 +138,8 @@ def _upright(text):
         torch = table.M * PyKDL.Rotation.RPY(c, b, a)
         leaning.append(math.degrees(math.acos(max(-1.0, min(1.0, -torch.UnitZ()[2])))))
     assert max(leaning) <= LEANS + 0.01
-    in_part = [math.degrees(math.acos(-PyKDL.Rotation.RPY(c, b, a).UnitZ()[2])) for c, b, a in np.radians(rows[:, 5:2:-1])]
+    in_part = [
+        math.degrees(math.acos(-PyKDL.Rotation.RPY(c, b, a).UnitZ()[2]))
+        for c, b, a in np.radians(rows[:, 5:2:-1])
+    ]
     assert max(in_part) > 40.0  # in the first file: it is the table that turns

@@ -76,11 +76,15 @@ def test_the_tube(person, hand, lesson, tmp_path):
     hand.click_tree("Joint path")
     lesson.tool("Plots")
     dock = person.panel("RoboticAM_Plots")
-    if person.field(dock, "picture").currentIndex():  # left there by a test before: a session begins with the angles
+    if person.field(
+        dock, "picture"
+    ).currentIndex():  # left there by a test before: a session begins with the angles
         lesson.choose(dock, "picture", person.field(dock, "picture").itemText(0))
     person.until(lambda: drawn(plots._dock) > 1, "the angles", 20)
     lesson.choose(dock, "picture", "Joint speeds in %")
-    person.until(lambda: drawn(plots._dock) == 1, "all speeds in one picture", 20)  # angles have one for each axis
+    person.until(
+        lambda: drawn(plots._dock) == 1, "all speeds in one picture", 20
+    )  # angles have one for each axis
     lesson.picture("tube-plots")
     lesson.close("RoboticAM_Plots")
 
@@ -106,10 +110,14 @@ def test_the_tube(person, hand, lesson, tmp_path):
 
 def drawn(dock):
     """How many charts the canvas of the plots shows, 0 while they are being made."""
-    return len(dock.canvas.drawn.places) if dock.building.worker is None and dock.canvas.ready else 0
+    return (
+        len(dock.canvas.drawn.places) if dock.building.worker is None and dock.canvas.ready else 0
+    )
 
 
 def first_layer(person, panel):
     """Until the preview tells of the first layer."""
     note = person.field(panel, "preview")
-    person.until(lambda: note.isVisible() and note.text().startswith("First layer: "), "the preview", 60)
+    person.until(
+        lambda: note.isVisible() and note.text().startswith("First layer: "), "the preview", 60
+    )

@@ -20,7 +20,9 @@ def test_the_wye(person, hand, lesson):
     person.until(lambda: "45°: " in told.text(), "the area that leans out", 60)
     hand.click(slider)
     hand.do("key", *["Left"] * 15)
-    person.until(lambda: "30°: " in told.text() and not told.text().endswith("(0 %)"), "the arms", 10)
+    person.until(
+        lambda: "30°: " in told.text() and not told.text().endswith("(0 %)"), "the arms", 10
+    )
     lesson.from_below()
     lesson.picture("wye-overhang")
     lesson.see_all()

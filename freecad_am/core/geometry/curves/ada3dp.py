@@ -35,15 +35,29 @@ def curves_of(data: bytes, where: str) -> tuple[BeadCurve, ...]:
         found = list(_beads(data))
     except (ValueError, IndexError, struct.error) as error:
         raise InputError(
-            CODE, where, "it is not a toolpath of AdaOne, or it is damaged ({}); export it again", error
+            CODE,
+            where,
+            "it is not a toolpath of AdaOne, or it is damaged ({}); export it again",
+            error,
         ) from None
     if not found:
-        raise InputError(CODE, where, "no segment of it deposits, so there is no bead; export a toolpath that deposits")
+        raise InputError(
+            CODE,
+            where,
+            "no segment of it deposits, so there is no bead; export a toolpath that deposits",
+        )
     for _, points, _ in found:
         if not (np.isfinite(points).all() and np.abs(points).max() <= MAX_MM):
-            raise InputError(CODE, where, "a position is not a number of at most {:g} mm; export it again", MAX_MM)
+            raise InputError(
+                CODE,
+                where,
+                "a position is not a number of at most {:g} mm; export it again",
+                MAX_MM,
+            )
     numbers = {layer: k for k, layer in enumerate(sorted({layer for layer, _, _ in found}))}
-    return tuple(BeadCurve(points, directions, numbers[layer]) for layer, points, directions in found)
+    return tuple(
+        BeadCurve(points, directions, numbers[layer]) for layer, points, directions in found
+    )
 
 
 def _beads(data: bytes) -> Iterator[tuple[int, Array, Array | None]]:
@@ -52,7 +66,9 @@ def _beads(data: bytes) -> Iterator[tuple[int, Array, Array | None]]:
         if number != GROUPS or not isinstance(group, bytes):
             continue
         entries = list(_fields(group))
-        layer = next((value for key, value in entries if key == LAYER and isinstance(value, int)), 0)
+        layer = next(
+            (value for key, value in entries if key == LAYER and isinstance(value, int)), 0
+        )
         layer -= (1 << 64) * (layer >= 1 << 63)
         for key, segment in entries:
             if key != SEGMENTS or not isinstance(segment, bytes):
@@ -60,7 +76,11 @@ def _beads(data: bytes) -> Iterator[tuple[int, Array, Array | None]]:
             parts = list(_fields(segment))
             if not any(value for name, value in parts if name == PROCESS_ON):
                 continue
-            rows = [_point(value) for name, value in parts if name == POINTS and isinstance(value, bytes)]
+            rows = [
+                _point(value)
+                for name, value in parts
+                if name == POINTS and isinstance(value, bytes)
+            ]
             if len(rows) < 2:
                 continue
             points, directions = (np.array(column) for column in zip(*rows))

@@ -12,7 +12,13 @@ from ...types import Array
 from ..obstacles import Body
 
 # endings of files that are laid as beads, and what they are
-POINT_FILES = {".csv": "csv", ".gcode": "gcode", ".gco": "gcode", ".g": "gcode", ".ada3dp": "ada3dp"}
+POINT_FILES = {
+    ".csv": "csv",
+    ".gcode": "gcode",
+    ".gco": "gcode",
+    ".g": "gcode",
+    ".ada3dp": "ada3dp",
+}
 MEETING = 1e-6  # mm between the ends of a closed curve
 
 
@@ -28,7 +34,10 @@ class BeadCurve:
     @property
     def closed(self) -> bool:
         """Whether it ends where it begins."""
-        return len(self.points) > 3 and float(np.linalg.norm(self.points[-1] - self.points[0])) < MEETING
+        return (
+            len(self.points) > 3
+            and float(np.linalg.norm(self.points[-1] - self.points[0])) < MEETING
+        )
 
 
 @dataclass(frozen=True, eq=False)

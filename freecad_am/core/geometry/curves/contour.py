@@ -79,7 +79,8 @@ def _near(parts: Sequence[Chain]) -> list[tuple[float, int, int, int, int]]:
     gaps = np.hypot(*(tips[rows[:, 0]] - tips[rows[:, 1]]).T)
     return [
         (gap, a // 2, b // 2, 1 - a % 2, b % 2)
-        for gap, (a, b) in zip(gaps.tolist(), rows.tolist(), strict=True) if a // 2 != b // 2 and gap <= BRIDGE
+        for gap, (a, b) in zip(gaps.tolist(), rows.tolist(), strict=True)
+        if a // 2 != b // 2 and gap <= BRIDGE
     ]
 
 
@@ -97,7 +98,11 @@ def is_closed(chain: Chain, whole: bool = False) -> bool:
     """True when the chain bounds a section: it meets itself, or starts and ends on the axis. whole: it is all of a closed
     surface, so it meets itself across a gap too, the widest one of its pieces, whose nearest ends are joined first."""
     meets = len(chain) > 1 or len(chain[0].points) > 2
-    return (meets and opening(chain) < JOIN) or _on_axis(chain) or (whole and meets and opening(chain) <= BRIDGE)
+    return (
+        (meets and opening(chain) < JOIN)
+        or _on_axis(chain)
+        or (whole and meets and opening(chain) <= BRIDGE)
+    )
 
 
 def _on_axis(chain: Chain) -> bool:
@@ -133,7 +138,13 @@ def walls(chain: Chain) -> list[Chain]:
             if runs[-1] and _at_extreme(part.points[0], low, high):
                 runs.append([])
             runs[-1].append(part)
-    if meets and len(runs) > 1 and runs[0] and runs[-1] and not _at_extreme(runs[0][0].points[0], low, high):
+    if (
+        meets
+        and len(runs) > 1
+        and runs[0]
+        and runs[-1]
+        and not _at_extreme(runs[0][0].points[0], low, high)
+    ):
         runs[0] = runs.pop() + runs[0]
     found = [stripped for run in runs if (stripped := _without_flat_ends(run))]
     return [upright(run) for run in sorted(found, key=_mean_radius, reverse=True)]
@@ -151,7 +162,9 @@ def _rims(chain: Chain, meets: bool, low: float, high: float) -> set[int]:
             continue
         before, after = chain[index - 1].tangents[-1], chain[(index + 1) % len(chain)].tangents[0]
         turns = turning(before, piece.tangents[0]), turning(piece.tangents[-1], after)
-        square = turns[0] * turns[1] > 0.0 and all(SQUARE[0] < abs(turn) < SQUARE[1] for turn in turns)
+        square = turns[0] * turns[1] > 0.0 and all(
+            SQUARE[0] < abs(turn) < SQUARE[1] for turn in turns
+        )
         straight = float(np.abs(piece.tangents - piece.tangents[0]).max()) < 1e-6
         levels = [z for z in (low, high) if np.abs(piece.points[[0, -1], 1] - z).min() < LEVEL]
         ends_wall = any(all(abs(flat - z) > LEVEL for flat in flat_levels) for z in levels)
@@ -170,13 +183,19 @@ def _cut_at(piece: Piece, low: float, high: float) -> list[Piece]:
     turning = np.flatnonzero(rise[1:] * rise[:-1] <= 0.0)
     if piece.flat or len(turning) == 0:
         return [piece]
-    curve = Meridian(np.r_[0.0, np.cumsum(arc_lengths(piece.points, piece.tangents))], piece.points, piece.tangents)
+    curve = Meridian(
+        np.r_[0.0, np.cumsum(arc_lengths(piece.points, piece.tangents))],
+        piece.points,
+        piece.tangents,
+    )
     cuts = [0.0, curve.length]
     for i in turning:
         a, b = float(curve.s[i]), float(curve.s[i + 1])
         for _ in range(60):
             middle = 0.5 * (a + b)
-            a, b = (middle, b) if float(curve.at([middle])[2][0, 1]) * rise[i] > 0.0 else (a, middle)
+            a, b = (
+                (middle, b) if float(curve.at([middle])[2][0, 1]) * rise[i] > 0.0 else (a, middle)
+            )
         inside = 10.0 * JOIN < b < curve.length - 10.0 * JOIN
         if inside and _at_extreme(np.array([0.0, curve.at([b])[1][0]]), low, high):
             cuts.append(b)
@@ -219,7 +238,9 @@ def halfway(outer: Chain, inner: Chain) -> list[tuple[Array, Array]]:
     """
     curves = meridian_of(outer), meridian_of(inner)
     if len(outer) == len(inner):
-        bounds = [_piece_ends(chain, curve) for chain, curve in zip((outer, inner), curves, strict=True)]
+        bounds = [
+            _piece_ends(chain, curve) for chain, curve in zip((outer, inner), curves, strict=True)
+        ]
     else:
         bounds = [np.r_[0.0, curve.kinks, curve.length] for curve in curves]
     if len(bounds[0]) != len(bounds[1]):

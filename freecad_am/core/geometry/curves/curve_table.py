@@ -31,7 +31,8 @@ def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
     separator = ";" if ";" in lines[0] else ","
     columns, first = _columns(_cells(lines[0], separator), where)
     numbers = [
-        _numbers(_cells(line, separator), columns, f"{where} line {k}") for k, line in enumerate(lines[first:], first + 1)
+        _numbers(_cells(line, separator), columns, f"{where} line {k}")
+        for k, line in enumerate(lines[first:], first + 1)
     ]
     if not numbers:
         raise InputError(CODE, where, "it has no points; {}", FORM)
@@ -42,7 +43,9 @@ def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
     for start, end in zip(starts, [*starts[1:], len(rows)]):
         at = f"{where} line {first + 1 + int(start)}"
         if bead[start] in known:
-            raise InputError(CODE, at, "bead {:g} begins again; keep the lines of a bead together", bead[start])
+            raise InputError(
+                CODE, at, "bead {:g} begins again; keep the lines of a bead together", bead[start]
+            )
         known.add(float(bead[start]))
         found.append(_curve(rows[start:end], columns, at, first + 1 + int(start), where))
     return tuple(found)
@@ -58,7 +61,9 @@ def _columns(cells: Sequence[str], where: str) -> tuple[tuple[str, ...], int]:
     if any(name in COLUMNS for name in names):
         wanted = BY_COUNT.get(len(names))
         if set(names) != set(wanted or ()):
-            raise InputError(CODE, f"{where} line 1", "its columns are {}; {}", ", ".join(cells), FORM)
+            raise InputError(
+                CODE, f"{where} line 1", "its columns are {}; {}", ", ".join(cells), FORM
+            )
         return names, 1
     if len(cells) not in BY_COUNT:
         raise InputError(CODE, f"{where} line 1", "it has {} columns; {}", len(cells), FORM)
@@ -67,18 +72,28 @@ def _columns(cells: Sequence[str], where: str) -> tuple[tuple[str, ...], int]:
 
 def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[float]:
     if len(cells) != len(columns) or not all(cells):
-        lacking = "it is empty" if not any(cells) else Text("it has {} numbers in place of {}", sum(map(bool, cells)),
-                                                            len(columns))
+        lacking = (
+            "it is empty"
+            if not any(cells)
+            else Text("it has {} numbers in place of {}", sum(map(bool, cells)), len(columns))
+        )
         raise InputError(CODE, where, "{}; fill the gap, or leave the line out", Word(lacking))
     found = []
     for cell, name in zip(cells, columns):
         try:
             number = float(cell)
         except ValueError:
-            raise InputError(CODE, where, "{!r} is not a number; give {} as a number with a point", cell[:40],
-                             name) from None
+            raise InputError(
+                CODE,
+                where,
+                "{!r} is not a number; give {} as a number with a point",
+                cell[:40],
+                name,
+            ) from None
         if not math.isfinite(number) or abs(number) > MAX_MM:
-            raise InputError(CODE, where, "{} is {:g}; give a number of at most {:g}", name, number, MAX_MM)
+            raise InputError(
+                CODE, where, "{} is {:g}; give a number of at most {:g}", name, number, MAX_MM
+            )
         found.append(number)
     return found
 
@@ -86,7 +101,9 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
 def _curve(rows: Array, columns: Sequence[str], at: str, line: int, where: str) -> BeadCurve:
     points = rows[:, [columns.index(name) for name in COLUMNS[:3]]]
     if len(points) < 2:
-        raise InputError(CODE, at, "a bead of one point has no way to go; give it two points or more")
+        raise InputError(
+            CODE, at, "a bead of one point has no way to go; give it two points or more"
+        )
     near = np.flatnonzero(np.linalg.norm(np.diff(points, axis=0), axis=1) < APART)
     if len(near):
         at = f"{where} line {line + int(near[0]) + 1}"
@@ -97,5 +114,9 @@ def _curve(rows: Array, columns: Sequence[str], at: str, line: int, where: str) 
     size = np.linalg.norm(directions, axis=1)
     none = np.flatnonzero(size < 1e-9)
     if len(none):
-        raise InputError(CODE, f"{where} line {line + int(none[0])}", "i, j, k are 0; give a direction, such as 0, 0, 1")
+        raise InputError(
+            CODE,
+            f"{where} line {line + int(none[0])}",
+            "i, j, k are 0; give a direction, such as 0, 0, 1",
+        )
     return BeadCurve(points, directions / size[:, None])

@@ -20,10 +20,14 @@ from .bead_curves import BeadCurve
 CODE = "BAD_GCODE"
 WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:\d+\.?\d*|\.\d+))")
 START = re.compile(r"[A-Za-z]\s*[-+.\d]")
-LAYER = re.compile(r";\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)", re.IGNORECASE)
+LAYER = re.compile(
+    r";\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)", re.IGNORECASE
+)
 APART = 1e-6  # mm; points no farther apart are one
 MAX_MM = 1e7  # mm; farther away is a slip of the pen
-ARC_END = 0.1  # mm by which the ends of an arc may be on different circles: slicers round to hundredths
+ARC_END = (
+    0.1  # mm by which the ends of an arc may be on different circles: slicers round to hundredths
+)
 ROUNDED = 1e-9
 UP = np.array([0.0, 0.0, 1.0])
 FORM = "give absolute or relative moves in mm, G0 to G3 with E, as a slicer for filament or pellets writes them"
@@ -84,7 +88,9 @@ class _Reader:
         else:
             words = words[1:]
         if name in REFUSED or name.split(".")[0] in REFUSED:
-            raise self._error(Text("{}: {}", name, REFUSED.get(name) or REFUSED[name.split(".")[0]]))
+            raise self._error(
+                Text("{}: {}", name, REFUSED.get(name) or REFUSED[name.split(".")[0]])
+            )
         if name in ("G0", "G1", "G2", "G3"):
             self.motion = name
             self._moved(name, dict(words))
@@ -117,7 +123,9 @@ class _Reader:
             if axis not in self.at:
                 continue
             if not math.isfinite(value) or abs(value) > MAX_MM:
-                raise self._error(Text("{} is {:g}; give a number of at most {:g}", axis, value, MAX_MM))
+                raise self._error(
+                    Text("{} is {:g}; give a number of at most {:g}", axis, value, MAX_MM)
+                )
             absolute = self.absolute_e if axis == "E" else self.absolute
             before = self.at[axis]
             self.at[axis] = value if absolute else before + value
@@ -131,7 +139,12 @@ class _Reader:
             self._end()
             return
         if len(self.known) < 3:
-            raise self._error(Text("it extrudes before the program says where: X, Y and Z have to be given first; {}", FORM))
+            raise self._error(
+                Text(
+                    "it extrudes before the program says where: X, Y and Z have to be given first; {}",
+                    FORM,
+                )
+            )
         if not self.run:
             self.run = [start]
         self.run += way
@@ -143,8 +156,12 @@ class _Reader:
         radius = float(np.hypot(*one))
         if radius < APART or abs(radius - float(np.hypot(*other))) > max(ARC_END, 1e-3 * radius):
             raise self._error(
-                Text("the ends of the arc are {:.4g} and {:.4g} mm from its middle; give I and J from its start to its "
-                    "middle", radius, np.hypot(*other))
+                Text(
+                    "the ends of the arc are {:.4g} and {:.4g} mm from its middle; give I and J from its start to its "
+                    "middle",
+                    radius,
+                    np.hypot(*other),
+                )
             )
         turn = math.atan2(other[1], other[0]) - math.atan2(one[1], one[0])
         turn = -(-turn % (2.0 * math.pi)) if name == "G2" else turn % (2.0 * math.pi)
@@ -155,9 +172,13 @@ class _Reader:
         share = np.arange(1, count + 1) / count
         angle = math.atan2(one[1], one[0]) + share * turn
         reach = radius + share * (float(np.hypot(*other)) - radius)
-        rows = np.column_stack([
-            middle[0] + reach * np.cos(angle), middle[1] + reach * np.sin(angle), start[2] + share * (end[2] - start[2]),
-        ])
+        rows = np.column_stack(
+            [
+                middle[0] + reach * np.cos(angle),
+                middle[1] + reach * np.sin(angle),
+                start[2] + share * (end[2] - start[2]),
+            ]
+        )
         rows[-1] = end
         return list(rows)
 
@@ -165,12 +186,19 @@ class _Reader:
         if "I" in words or "J" in words:
             return np.asarray(start[:2] + np.array([words.get("I", 0.0), words.get("J", 0.0)]))
         if "R" not in words:
-            raise self._error(Text("{} has neither I and J nor R; give the middle of the arc or its radius", name))
+            raise self._error(
+                Text("{} has neither I and J nor R; give the middle of the arc or its radius", name)
+            )
         radius, chord = words["R"], end[:2] - start[:2]
         length = float(np.hypot(*chord))
         if length < APART or abs(2.0 * radius) < length * (1.0 - 1e-6):
-            raise self._error(Text("a radius of {:g} mm makes no arc between points {:.4g} mm apart; give I and J", radius,
-                                   length))
+            raise self._error(
+                Text(
+                    "a radius of {:g} mm makes no arc between points {:.4g} mm apart; give I and J",
+                    radius,
+                    length,
+                )
+            )
         away = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0))
         left = np.array([-chord[1], chord[0]]) / length
         side = (1.0 if name == "G3" else -1.0) * (1.0 if radius > 0.0 else -1.0)
@@ -193,12 +221,18 @@ class _Reader:
         """The beads, each with its layer."""
         self._end()
         if not self.beads:
-            raise InputError(CODE, self.where, "no move of it extrudes, so there is no bead; {}", FORM)
+            raise InputError(
+                CODE, self.where, "no move of it extrudes, so there is no bead; {}", FORM
+            )
         texts = [comments for comments, _ in self.beads]
-        keys: Iterable[float] = texts if self.comments else [round(float(points[0, 2]), 3) for _, points in self.beads]
+        keys: Iterable[float] = (
+            texts if self.comments else [round(float(points[0, 2]), 3) for _, points in self.beads]
+        )
         layers, layer, before = [], -1, math.nan
         for key in keys:
             layer += key != before
             before = key
             layers.append(layer)
-        return tuple(BeadCurve(points, None, number) for number, (_, points) in zip(layers, self.beads))
+        return tuple(
+            BeadCurve(points, None, number) for number, (_, points) in zip(layers, self.beads)
+        )

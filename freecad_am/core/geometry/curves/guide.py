@@ -69,7 +69,9 @@ class Guide:
         near = np.asarray(self._tree.query(flat)[1], dtype=np.intp)
         places = self._places
         low = np.where(near == 0, -np.inf, places[np.maximum(near - 1, 0)])
-        high = np.where(near == len(places) - 1, np.inf, places[np.minimum(near + 1, len(places) - 1)])
+        high = np.where(
+            near == len(places) - 1, np.inf, places[np.minimum(near + 1, len(places) - 1)]
+        )
         found = places[near]
         for _ in range(STEPS):
             foot, along = self.at(found)
@@ -111,7 +113,9 @@ class Guide:
 
     @cached_property
     def _curve(self) -> CubicHermiteSpline:
-        from scipy.interpolate import CubicHermiteSpline  # slow to import, and most jobs have no guide
+        from scipy.interpolate import (
+            CubicHermiteSpline,  # slow to import, and most jobs have no guide
+        )
 
         return CubicHermiteSpline(self.way, self.points, self.tangents)
 

@@ -77,7 +77,10 @@ def estimated(points: Array, closed: bool) -> Outline:
     corner = (before * after).sum(axis=1) < np.cos(CORNER)
     long = (length > LENGTH_RATIO * np.minimum(far[:-1], near[1:]))[:, 0]
     straight = (corner[:-1] | corner[1:] | long)[:, None]
-    leaving, arriving = np.where(straight, along, tangent[:-1]), np.where(straight, along, tangent[1:])
+    leaving, arriving = (
+        np.where(straight, along, tangent[:-1]),
+        np.where(straight, along, tangent[1:]),
+    )
     return outline(points, at_points(leaving, arriving))
 
 

@@ -24,7 +24,9 @@ class Nearest(NamedTuple):
 
 def doubled_area(ring: Array) -> float:
     """Twice the area (mm^2) a ring (n, 2) encloses, positive when it runs counter-clockwise."""
-    x, y = (ring - ring[0]).T.copy()  # the first point is the origin: the edge back to it adds nothing
+    x, y = (
+        ring - ring[0]
+    ).T.copy()  # the first point is the origin: the edge back to it adds nothing
     return float(x[:-1] @ y[1:] - x[1:] @ y[:-1])
 
 
@@ -60,15 +62,22 @@ def winding(rings: Sequence[Array], points: Array) -> Index:
         near = near[np.argsort(points[near, 1], kind="stable")]
         following = np.roll(ring, -1, axis=0)
         # the points that an edge is beside are neighbours in the order of y
-        span = np.searchsorted(points[near, 1], np.sort(np.stack([ring[:, 1], following[:, 1]]), axis=0))
+        span = np.searchsorted(
+            points[near, 1], np.sort(np.stack([ring[:, 1], following[:, 1]]), axis=0)
+        )
         many = span[1] - span[0]
         ends = np.cumsum(many)
         for some in np.split(np.arange(len(ring)), np.flatnonzero(np.diff(ends // AT_ONCE)) + 1):
             edge = np.repeat(some, many[some])
-            row = near[np.arange(len(edge)) - np.repeat(ends[some] - many[some] - span[0][some], many[some])
-                       + (ends[some[0]] - many[some[0]])]
+            row = near[
+                np.arange(len(edge))
+                - np.repeat(ends[some] - many[some] - span[0][some], many[some])
+                + (ends[some[0]] - many[some[0]])
+            ]
             a, b = ring[edge], following[edge]
-            side = (b[:, 0] - a[:, 0]) * (points[row, 1] - a[:, 1]) - (points[row, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
+            side = (b[:, 0] - a[:, 0]) * (points[row, 1] - a[:, 1]) - (points[row, 0] - a[:, 0]) * (
+                b[:, 1] - a[:, 1]
+            )
             up = a[:, 1] < b[:, 1]
             turned = np.where(up, (side > 0.0).astype(int), -(side < 0.0).astype(int))
             count += np.bincount(row, weights=turned, minlength=len(count)).astype(np.intp)
@@ -102,11 +111,16 @@ def nearest_among(lines: Sequence[tuple[Array, bool]], points: Array) -> tuple[A
     for line, closed in lines:
         found = nearest(line, points, closed)
         nearer = found.distance < distance
-        places, distance = np.where(nearer[:, None], found.points, places), np.where(nearer, found.distance, distance)
+        places, distance = (
+            np.where(nearer[:, None], found.points, places),
+            np.where(nearer, found.distance, distance),
+        )
     return places, distance
 
 
-def nearest_of(rings: Sequence[Array], boxes: tuple[Array, Array], points: Array) -> tuple[Array, Array]:
+def nearest_of(
+    rings: Sequence[Array], boxes: tuple[Array, Array], points: Array
+) -> tuple[Array, Array]:
     """The places (n, 2) on rings nearest to points (n, 2), and how far they are (n,), mm. boxes: lowest and highest
     coordinates (r, 2) of each ring."""
     low, high = boxes
@@ -114,9 +128,13 @@ def nearest_of(rings: Sequence[Array], boxes: tuple[Array, Array], points: Array
     least = np.hypot(beyond[..., 0], beyond[..., 1])
     one = int(least.sum(axis=0).argmin())
     first = nearest(rings[one], points, closed=True).distance
-    near = (least <= first[:, None] * (1.0 + 1e-9)).any(axis=0)  # no place of others is nearer than their box
+    near = (least <= first[:, None] * (1.0 + 1e-9)).any(
+        axis=0
+    )  # no place of others is nearer than their box
     near[one] = True
-    found = [nearest(ring, points, closed=True) for ring, is_near in zip(rings, near.tolist()) if is_near]
+    found = [
+        nearest(ring, points, closed=True) for ring, is_near in zip(rings, near.tolist()) if is_near
+    ]
     away = np.stack([one.distance for one in found])
     best, row = np.argmin(away, axis=0), np.arange(len(points))
     return np.stack([one.points for one in found])[best, row], away[best, row]
@@ -174,4 +192,7 @@ def up_to(points: Array, way: float) -> Array:
 def turned(points: Array, angle: float) -> Array:
     """Points (..., 2) turned about the origin by an angle, rad."""
     cos, sin = np.cos(angle), np.sin(angle)
-    return np.stack([points[..., 0] * cos - points[..., 1] * sin, points[..., 0] * sin + points[..., 1] * cos], axis=-1)
+    return np.stack(
+        [points[..., 0] * cos - points[..., 1] * sin, points[..., 0] * sin + points[..., 1] * cos],
+        axis=-1,
+    )

@@ -19,7 +19,9 @@ from ..obstacles import Body
 from ..walls.part_depths import PartDepths
 
 KINK = 1e-5  # rad; smaller turns between two pieces are a smooth join
-SAME_PLACE = 1e-9  # mm; the end of one piece and the start of the next closer than this are one point
+SAME_PLACE = (
+    1e-9  # mm; the end of one piece and the start of the next closer than this are one point
+)
 STEP = 1e-4  # mm; a gap up to this is the rounding of a file and has no length of its own
 ON_AXIS = 1e-6  # mm; a smaller radius is a point on the axis
 
@@ -82,7 +84,10 @@ class Meridian:
             if points:
                 _bridge(points, tangents, lengths, piece_points[0], piece_tangents[0])
                 piece_points, piece_tangents = piece_points[1:], piece_tangents[1:]
-                joined = np.vstack([points[-1][-1:], piece_points]), np.vstack([tangents[-1][-1:], piece_tangents])
+                joined = (
+                    np.vstack([points[-1][-1:], piece_points]),
+                    np.vstack([tangents[-1][-1:], piece_tangents]),
+                )
             else:
                 joined = piece_points, piece_tangents
             lengths.extend(arc_lengths(*joined))
@@ -151,7 +156,9 @@ class Meridian:
         return np.split(found[kept], np.searchsorted(which[kept], np.arange(1, len(wanted))))
 
 
-def _bridge(points: list[Array], tangents: list[Array], lengths: list[float], to: Array, tangent: Array) -> None:
+def _bridge(
+    points: list[Array], tangents: list[Array], lengths: list[float], to: Array, tangent: Array
+) -> None:
     """Append to the chain the nodes that lead from its end to the start of the next piece."""
     end = points[-1][-1]
     gap = to - end
@@ -205,5 +212,7 @@ class RevolvedWall:
         """(n, 3) vectors in part coordinates from components (n, 3) along radius, azimuth and axis at the azimuths."""
         c, s = np.cos(azimuth), np.sin(azimuth)
         r, t, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
-        turned: Array = np.stack([r * c - t * s, r * s + t * c, z + 0.0 * c], axis=-1) @ self.frame[:3, :3].T
+        turned: Array = (
+            np.stack([r * c - t * s, r * s + t * c, z + 0.0 * c], axis=-1) @ self.frame[:3, :3].T
+        )
         return turned

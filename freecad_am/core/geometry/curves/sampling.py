@@ -15,7 +15,9 @@ Curve = Callable[[Array], tuple[Array, Array]]
 
 TANGENT_TOLERANCE = 8e-9  # before the last halving, which brings it to 1e-9
 POINT_TOLERANCE = 1e-8  # mm
-ROUNDS = 14  # halvings; a curve that needs more has a corner inside, which `breaks` should have named
+ROUNDS = (
+    14  # halvings; a curve that needs more has a corner inside, which `breaks` should have named
+)
 
 
 def sampled(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
@@ -33,7 +35,9 @@ def sampled(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
         middle = 0.5 * (t[:-1] + t[1:])[rough]
         new_points, new_tangents = _evaluate(curve, middle)
         i = np.flatnonzero(rough)
-        fine = _agrees(points[i], tangents[i], points[i + 1], tangents[i + 1], new_points, new_tangents)
+        fine = _agrees(
+            points[i], tangents[i], points[i + 1], tangents[i + 1], new_points, new_tangents
+        )
         t, points, tangents = (
             np.insert(have, i + 1, new, axis=0)
             for have, new in ((t, middle), (points, new_points), (tangents, new_tangents))

@@ -28,10 +28,18 @@ class SpaceCurve:
     def __init__(self, w: Array, points: Array, into: Array, out: Array, closed: bool) -> None:
         m = len(w)
         if m < 2 or points.shape != (m, 3) or into.shape != (m, 3) or out.shape != (m, 3):
-            raise ValueError("a curve needs at least two nodes, each with a point and two derivatives")
+            raise ValueError(
+                "a curve needs at least two nodes, each with a point and two derivatives"
+            )
         if not (np.diff(w) > 0.0).all():
             raise ValueError("the parameter of a curve must rise")
-        self.w, self.points, self.into, self.out, self.closed = w, points, into.copy(), out.copy(), closed
+        self.w, self.points, self.into, self.out, self.closed = (
+            w,
+            points,
+            into.copy(),
+            out.copy(),
+            closed,
+        )
         if closed:
             self.into[0], self.out[-1] = self.into[-1], self.out[0]
         span = np.diff(w)[:, None]
@@ -69,13 +77,17 @@ class SpaceCurve:
         if not self.closed:
             raise ValueError("only a closed curve can be started elsewhere")
         order = np.r_[node : len(self.w) - 1, 0 : node + 1]
-        w = self.w[order] + np.where(np.arange(len(order)) >= len(self.w) - 1 - node, self.period, 0.0)
+        w = self.w[order] + np.where(
+            np.arange(len(order)) >= len(self.w) - 1 - node, self.period, 0.0
+        )
         return SpaceCurve(w, self.points[order], self.into[order], self.out[order], True)
 
     def stretch(self, first: int, last: int) -> SpaceCurve:
         """The open curve from one node to another."""
         nodes = slice(first, last + 1)
-        return SpaceCurve(self.w[nodes], self.points[nodes], self.into[nodes], self.out[nodes], False)
+        return SpaceCurve(
+            self.w[nodes], self.points[nodes], self.into[nodes], self.out[nodes], False
+        )
 
     def reversed(self) -> SpaceCurve:
         """The same curve run the other way, over the same range of the parameter."""
@@ -102,7 +114,11 @@ class SpaceCurve:
         span = self.span[arc][..., None]
         a, b, d = c[..., 1, :], c[..., 2, :], c[..., 3, :]
         point = c[..., 0, :] + t * (a + t * (b + t * d))
-        return point, (a + t * (2.0 * b + 3.0 * t * d)) / span, (2.0 * b + 6.0 * t * d) / (span * span)
+        return (
+            point,
+            (a + t * (2.0 * b + 3.0 * t * d)) / span,
+            (2.0 * b + 6.0 * t * d) / (span * span),
+        )
 
     def at(self, w: Array) -> tuple[Array, Array, Array]:
         """Points, first and second derivatives along w at the parameters (n,), each (n, 3)."""
@@ -142,13 +158,17 @@ class SpaceCurve:
     def beyond_box(self, points: Array) -> Array:
         """mm that points (n, 3) are beyond a box about it, by a hair less than they are, which its places are not nearer."""
         low, high = self._box
-        return (1.0 - 1e-9) * lengths(np.maximum(np.maximum(low - points, points - high), 0.0)) - 1e-9
+        return (1.0 - 1e-9) * lengths(
+            np.maximum(np.maximum(low - points, points - high), 0.0)
+        ) - 1e-9
 
     @cached_property
     def _box(self) -> tuple[Array, Array]:
         """The lowest and highest coordinates (3,), mm, of what holds it: its nodes and the handles of its arcs."""
         nodes, third = self.points, self.span[:, None] / 3.0
-        every = np.vstack([nodes, nodes[:-1] + third * self.out[:-1], nodes[1:] - third * self.into[1:]])
+        every = np.vstack(
+            [nodes, nodes[:-1] + third * self.out[:-1], nodes[1:] - third * self.into[1:]]
+        )
         return every.min(axis=0), every.max(axis=0)
 
     @cached_property
@@ -197,7 +217,13 @@ class SpaceCurve:
             if not moving.any():
                 break
             if not moving.all():
-                on, w, goal, low, high = on[moving], w[moving], goal[moving], low[moving], high[moving]
+                on, w, goal, low, high = (
+                    on[moving],
+                    w[moving],
+                    goal[moving],
+                    low[moving],
+                    high[moving],
+                )
         return done.reshape(shape)
 
     @cached_property

@@ -15,7 +15,9 @@ STRAIGHT = np.cos(np.radians(25.0))  # of a turn of a curve at a vertex that may
 UPRIGHT = np.cos(np.radians(30.0))  # of a turn of a triangle when a corner moves
 
 
-def collapsed(vertices: Array, triangles: Index, owner: Index, shortest: float, longest: float) -> tuple[Index, Index]:
+def collapsed(
+    vertices: Array, triangles: Index, owner: Index, shortest: float, longest: float
+) -> tuple[Index, Index]:
     """The triangles and owners that are left when edges shorter than `shortest` mm are drawn together, none becoming longer
     than `longest`. Vertices on boundaries and between owners move along those curves alone; vertices are not renumbered."""
     for _ in range(ROUNDS):
@@ -27,12 +29,16 @@ def collapsed(vertices: Array, triangles: Index, owner: Index, shortest: float, 
         into = np.arange(len(vertices))
         rank = np.full(len(vertices), len(gone), dtype=np.intp)
         order = np.argsort(np.linalg.norm(vertices[gone] - vertices[stays], axis=1), kind="stable")
-        gone, first = np.unique(gone[order], return_index=True)  # one way for each vertex, the shortest
+        gone, first = np.unique(
+            gone[order], return_index=True
+        )  # one way for each vertex, the shortest
         stays = stays[order][first]
         target = np.full(len(vertices), -1, dtype=np.intp)
         target[gone] = stays
         allowed = _allowed(vertices, triangles, edges, target, longest)
-        mixed = np.random.default_rng(0).permutation(np.flatnonzero(allowed[gone]))  # or long rows wait for each other
+        mixed = np.random.default_rng(0).permutation(
+            np.flatnonzero(allowed[gone])
+        )  # or long rows wait for each other
         gone, stays = gone[mixed], stays[mixed]
         # no two next to each other: of those that touch a triangle only the first goes
         place = np.full(len(vertices), len(gone), dtype=np.intp)
@@ -53,7 +59,9 @@ def collapsed(vertices: Array, triangles: Index, owner: Index, shortest: float, 
     return triangles, owner
 
 
-def _candidates(vertices: Array, triangles: Index, owner: Index, edges: Edges, short: Mask) -> tuple[Index, Index]:
+def _candidates(
+    vertices: Array, triangles: Index, owner: Index, edges: Edges, short: Mask
+) -> tuple[Index, Index]:
     """Vertices that may go and the neighbours that they may go to."""
     adjacent = owner[edges.faces]
     curve = (edges.count != 2) | (adjacent[:, 0] != adjacent[:, 1])
@@ -71,15 +79,25 @@ def _candidates(vertices: Array, triangles: Index, owner: Index, edges: Edges, s
     return gone[free], stays[free]
 
 
-def _allowed(vertices: Array, triangles: Index, edges: Edges, target: Index, longest: float) -> Mask:
+def _allowed(
+    vertices: Array, triangles: Index, edges: Edges, target: Index, longest: float
+) -> Mask:
     """Vertices (n,) whose move to their target (n,), -1 for none, turns no triangle over and makes no edge too long."""
     allowed = target >= 0
     normal = _normals(vertices[triangles])
     for k in range(3):
-        tip, following, other = triangles[:, k], triangles[:, (k + 1) % 3], triangles[:, (k + 2) % 3]
+        tip, following, other = (
+            triangles[:, k],
+            triangles[:, (k + 1) % 3],
+            triangles[:, (k + 2) % 3],
+        )
         to = target[tip]
         moved = (to >= 0) & (to != following) & (to != other)
-        new = _normals(np.stack([vertices[to[moved]], vertices[following[moved]], vertices[other[moved]]], axis=1))
+        new = _normals(
+            np.stack(
+                [vertices[to[moved]], vertices[following[moved]], vertices[other[moved]]], axis=1
+            )
+        )
         far = np.linalg.norm(vertices[to[moved]] - vertices[following[moved]], axis=1)
         far = np.maximum(far, np.linalg.norm(vertices[to[moved]] - vertices[other[moved]], axis=1))
         bad = (dot(new, normal[moved]) < UPRIGHT) | (far > longest)

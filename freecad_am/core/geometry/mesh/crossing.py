@@ -30,7 +30,10 @@ def crossings(vertices: Array, triangles: Index, least: float) -> Crossings:
     """
     corners = vertices[triangles]
     planes = _planes(corners)
-    found = [_crossed(corners, triangles, planes, pairs, least) for pairs in near_pairs(corners, planes[:, :3], least)]
+    found = [
+        _crossed(corners, triangles, planes, pairs, least)
+        for pairs in near_pairs(corners, planes[:, :3], least)
+    ]
     if not found:
         return Crossings(np.zeros((0, 2), dtype=np.intp), np.zeros(0), np.zeros((0, 3)))
     return Crossings(*(np.concatenate(column) for column in zip(*found)))
@@ -46,7 +49,9 @@ def _planes(corners: Array) -> Array:
     return planes
 
 
-def _crossed(corners: Array, triangles: Index, planes: Array, pairs: Index, least: float) -> Crossings:
+def _crossed(
+    corners: Array, triangles: Index, planes: Array, pairs: Index, least: float
+) -> Crossings:
     """Those of the pairs (k, 2) that cross."""
     pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T), least)]
     pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T[::-1]), least)]
@@ -54,7 +59,11 @@ def _crossed(corners: Array, triangles: Index, planes: Array, pairs: Index, leas
     same = triangles[one][:, :, None] == triangles[other][:, None, :]
     along = np.cross(planes[one, :3], planes[other, :3])
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
-    start, end = _within(corners[one], np.where(same.any(axis=2), 0.0, _plane_distances(corners, planes, other, one)), along)
+    start, end = _within(
+        corners[one],
+        np.where(same.any(axis=2), 0.0, _plane_distances(corners, planes, other, one)),
+        along,
+    )
     far = np.where(same.any(axis=1), 0.0, _plane_distances(corners, planes, one, other))
     low, high = _within(corners[other], far, along)
     first = np.maximum(dot(start, along), dot(low, along))

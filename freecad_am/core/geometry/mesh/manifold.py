@@ -108,7 +108,10 @@ def _across_solid(angles: Array, forward: Mask) -> list[tuple[int, int]]:
 def holes(mesh: Manifold) -> list[Hole]:
     """The holes, the largest first."""
     start, end = mesh.open.T
-    vertices, known = mesh.vertices, np.unique(start)  # a vertex has one side that begins there, and one that ends
+    vertices, known = (
+        mesh.vertices,
+        np.unique(start),
+    )  # a vertex has one side that begins there, and one that ends
     following = np.full(len(known), -1, dtype=np.intp)
     following[np.searchsorted(known, end)] = np.searchsorted(known, start)
     found = []

@@ -36,5 +36,7 @@ def near_pairs(middle: Array, reach: Array) -> Iterator[Index]:
             found = own.sparse_distance_matrix(tree, radius, output_type="ndarray")
             one, other = mine[found["i"]], others[found["j"]]
             # pairs of one class are found from both sides
-            kept = (found["v"] <= reach[one] + reach[other]) & ((sizes[other] < size) | (one < other))
+            kept = (found["v"] <= reach[one] + reach[other]) & (
+                (sizes[other] < size) | (one < other)
+            )
             yield np.sort(np.stack([one[kept], other[kept]], axis=1), axis=1)

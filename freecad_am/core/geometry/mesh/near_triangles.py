@@ -56,7 +56,9 @@ def near_pairs(corners: Array, normals: Array, deep: float) -> Iterator[Index]:
 def _neighbourly(middles: Array) -> Index:
     """The order (n,) of points along Morton's curve: neighbours in it are mostly neighbours in space."""
     size = float(np.ptp(middles, axis=0).max()) or 1.0
-    cells = np.minimum(((middles - middles.min(axis=0)) / size * 2**BITS).astype(np.int64), 2**BITS - 1)
+    cells = np.minimum(
+        ((middles - middles.min(axis=0)) / size * 2**BITS).astype(np.int64), 2**BITS - 1
+    )
     code = np.zeros(len(cells), dtype=np.int64)
     for bit in range(BITS):
         for axis in range(3):
@@ -70,7 +72,10 @@ def _levels(corners: Array, normals: Array) -> list[_Level]:
     depth = max(int(np.ceil(np.log2(len(corners)))), 1)
     spare = 2**depth - len(corners)
     low, high = corners.min(axis=1), corners.max(axis=1)
-    low, high = (np.vstack([side, np.full((spare, 3), fill)]) for side, fill in ((low, np.inf), (high, -np.inf)))
+    low, high = (
+        np.vstack([side, np.full((spare, 3), fill)])
+        for side, fill in ((low, np.inf), (high, -np.inf))
+    )
     total = np.vstack([normals, np.zeros((spare, 3))])
     found = []
     for level in range(depth + 1):
@@ -106,7 +111,11 @@ def _below(pairs: Index) -> Index:
     """The pairs of the halves of pairs of nodes; of a node and itself, its halves with themselves and with each other."""
     one, other = (2 * pairs).T
     apart = one != other
-    return np.concatenate([
-        np.stack([one, other], axis=1), np.stack([one, other + 1], axis=1), np.stack([one + 1, other + 1], axis=1),
-        np.stack([one + 1, other], axis=1)[apart],
-    ])
+    return np.concatenate(
+        [
+            np.stack([one, other], axis=1),
+            np.stack([one, other + 1], axis=1),
+            np.stack([one + 1, other + 1], axis=1),
+            np.stack([one + 1, other], axis=1)[apart],
+        ]
+    )

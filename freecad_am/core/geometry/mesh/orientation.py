@@ -26,17 +26,27 @@ def connected_pieces(corners: Index) -> Index:
     return found
 
 
-def turned_alike(vertices: Array, corners: Index, edges: Edges, label: str, messages: list[str]) -> Index:
+def turned_alike(
+    vertices: Array, corners: Index, edges: Edges, label: str, messages: list[str]
+) -> Index:
     """Triangles turned so that neighbours agree."""
     turned = alike_across(corners, edges, np.arange(len(edges.ends)), messages)
     forward = turned < np.roll(turned, -1, axis=1)
     one, other = edges.faces.T
     number = Edges(turned)
-    ways = [forward[face, np.argmax(number.of[face] == np.arange(len(one))[:, None], axis=1)] for face in (one, other)]
+    ways = [
+        forward[face, np.argmax(number.of[face] == np.arange(len(one))[:, None], axis=1)]
+        for face in (one, other)
+    ]
     wrong = ways[0] == ways[1]
     if wrong.any():
         where = place(vertices[edges.ends[np.argmax(wrong)]].mean(axis=0))
-        raise InputError("NOT_ORIENTABLE", label, "the mesh has no inside, as at {}; model the solid again", where)
+        raise InputError(
+            "NOT_ORIENTABLE",
+            label,
+            "the mesh has no inside, as at {}; model the solid again",
+            where,
+        )
     return turned
 
 
@@ -44,12 +54,19 @@ def alike_across(corners: Index, edges: Edges, two: Index, messages: list[str]) 
     """Triangles turned so that neighbours across edges (k,) of two agree, as far as they can."""
     forward = corners < np.roll(corners, -1, axis=1)
     one, other = edges.faces[two].T
-    ways = [forward[face, np.argmax(edges.of[face] == two[:, None], axis=1)] for face in (one, other)]
+    ways = [
+        forward[face, np.argmax(edges.of[face] == two[:, None], axis=1)] for face in (one, other)
+    ]
     against = ways[0] == ways[1]
     if not against.any():
         return corners
     flip = _flips(len(corners), one, other, against)
-    messages.append(Text("{} triangles were turned to agree with their neighbours", int(min(flip.sum(), (~flip).sum()))))
+    messages.append(
+        Text(
+            "{} triangles were turned to agree with their neighbours",
+            int(min(flip.sum(), (~flip).sum())),
+        )
+    )
     return np.where(flip[:, None], corners[:, ::-1], corners)
 
 
@@ -65,7 +82,9 @@ def _flips(count: int, one: Index, other: Index, against: Mask) -> Mask:
         for face in order[1:].tolist():
             near = int(before[face])
             flip[face] = flip[near] ^ ((near, face) in crossed)
-    most = np.bincount(piece, weights=flip) > 0.5 * np.bincount(piece)  # the fewer are the wrong ones
+    most = np.bincount(piece, weights=flip) > 0.5 * np.bincount(
+        piece
+    )  # the fewer are the wrong ones
     turned: Mask = flip ^ most[piece]
     return turned
 
@@ -82,8 +101,14 @@ def solids_of(vertices: Array, corners: Index, messages: list[str]) -> tuple[Sol
         messages.append(Text("{} pieces that enclose nothing were dropped", int((~bulky).sum())))
     about = {}
     for k in np.flatnonzero(bulky & (volume < 0.0)).tolist():
-        wider = np.flatnonzero((low < low[k]).all(axis=1) & (high > high[k]).all(axis=1) & bulky & (volume > 0.0))
-        inside = [j for j in wider.tolist() if _winding(vertices[pieces[j]], vertices[pieces[k][0, 0]]) > 0.5]
+        wider = np.flatnonzero(
+            (low < low[k]).all(axis=1) & (high > high[k]).all(axis=1) & bulky & (volume > 0.0)
+        )
+        inside = [
+            j
+            for j in wider.tolist()
+            if _winding(vertices[pieces[j]], vertices[pieces[k][0, 0]]) > 0.5
+        ]
         if inside:
             about[k] = min(inside, key=lambda j: volume[j])
     outer = [k for k in np.flatnonzero(bulky).tolist() if k not in about]

@@ -30,7 +30,9 @@ def _ear(ring: Array) -> int:
     triangle is the least drawn out, and of none the one that turns left most."""
     before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
     turn = _cross(ring - before, after - ring)
-    longest = np.maximum.reduce([((a - b) ** 2).sum(axis=1) for a, b in ((ring, before), (after, ring), (before, after))])
+    longest = np.maximum.reduce(
+        [((a - b) ** 2).sum(axis=1) for a, b in ((ring, before), (after, ring), (before, after))]
+    )
     shape = turn / np.maximum(longest, 1e-300)
     inside = np.ones((len(ring), len(ring)), dtype=bool)  # triangle, corner
     for a, b in ((before, ring), (ring, after), (after, before)):

@@ -12,10 +12,19 @@ from ..walls.surface import dot
 
 ROUNDS = 60
 NEEDLE = 0.5  # of the shortest to the longest side
-DIVERGED = 100  # more edges that are too long than twice the least there were: halving them does not end
-STALLED, SHORTER = 10, 0.9  # rounds in which the longest edge becomes no shorter than this share of itself: nor does it
+DIVERGED = (
+    100  # more edges that are too long than twice the least there were: halving them does not end
+)
+STALLED, SHORTER = (
+    10,
+    0.9,
+)  # rounds in which the longest edge becomes no shorter than this share of itself: nor does it
 LEVEL = 0.3  # cosine between the normals of two triangles, down to which an edge may be turned in any case
-FLIPS, FEW_FLIPS, MANY = 40, 4, 6000  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
+FLIPS, FEW_FLIPS, MANY = (
+    40,
+    4,
+    6000,
+)  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
 
 # vertices (k, 3), owners of the triangles beside each new one (k, 2) -1 for none, ends of the edge it halves (k, 2)
 Placed = Callable[[Array, Index, Index], Array]
@@ -47,7 +56,13 @@ class Edges:
 
 
 def refined(
-    vertices: Array, triangles: Index, owner: Index, longest: float, place: Placed, most: int, turned: bool = True
+    vertices: Array,
+    triangles: Index,
+    owner: Index,
+    longest: float,
+    place: Placed,
+    most: int,
+    turned: bool = True,
 ) -> tuple[Array, Index, Index] | None:
     """Vertices, triangles and their owners (m,) with no edge longer than `longest` mm; None when there would be more than
     `most` triangles, edges that are turned come back as long as they were, again and again, or some are still too long after
@@ -94,7 +109,9 @@ def refined(
     return None
 
 
-def quartered(vertices: Array, triangles: Index, owner: Index, place: Placed) -> tuple[Array, Index, Index]:
+def quartered(
+    vertices: Array, triangles: Index, owner: Index, place: Placed
+) -> tuple[Array, Index, Index]:
     """Vertices, triangles and their owners (m,), each triangle divided into four at the middles of its edges, which `place`
     moves to where they belong."""
     edges = Edges(triangles)
@@ -103,7 +120,11 @@ def quartered(vertices: Array, triangles: Index, owner: Index, place: Placed) ->
     a, b, c = triangles.T
     ab, bc, ca = (edges.of + len(vertices)).T
     four = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-    return np.vstack([vertices, middle]), np.concatenate([np.stack(one, axis=1) for one in four]), np.tile(owner, 4)
+    return (
+        np.vstack([vertices, middle]),
+        np.concatenate([np.stack(one, axis=1) for one in four]),
+        np.tile(owner, 4),
+    )
 
 
 def _first_cut(edges: Edges, own: Array, owner: Index, longest: float, split: Mask) -> Index:
@@ -142,8 +163,11 @@ def count_halved(corners: Array, longest: float) -> float:
         halves[:, needle] = np.stack([short, 0.25 * middle, long - 0.75 * middle], axis=1)[needle]
         halves = halves.reshape(-1, 3)
         # alike ones together
-        _, first, of = np.unique(np.round(np.log2(np.maximum(np.sort(halves, axis=1), 1e-12)), 1) @ [1e6, 1e3, 1.0],
-                                 return_index=True, return_inverse=True)
+        _, first, of = np.unique(
+            np.round(np.log2(np.maximum(np.sort(halves, axis=1), 1e-12)), 1) @ [1e6, 1e3, 1.0],
+            return_index=True,
+            return_inverse=True,
+        )
         each = np.bincount(np.ravel(of), weights=np.tile(each[~small], 2)).astype(np.float64)
         square = np.sort(halves[first], axis=1)
     return float(count)
@@ -173,18 +197,27 @@ def flipped(vertices: Array, triangles: Index, owner: Index) -> Index:
     """The triangles with the edges inside of one owner's area turned where the angles beyond them are larger than pi
     together (Delaunay)."""
     triangles = triangles.copy()
-    open_ = np.ones(len(triangles), dtype=bool)  # changed, or wished for by two edges: between others nothing is new
+    open_ = np.ones(
+        len(triangles), dtype=bool
+    )  # changed, or wished for by two edges: between others nothing is new
     for _ in range(FLIPS if len(triangles) < MANY else FEW_FLIPS):
         edges = Edges(triangles)
-        pair = np.flatnonzero((edges.count == 2) & (owner[edges.faces[:, 0]] == owner[edges.faces[:, 1]]))
+        pair = np.flatnonzero(
+            (edges.count == 2) & (owner[edges.faces[:, 0]] == owner[edges.faces[:, 1]])
+        )
         pair = pair[open_[edges.faces[pair]].any(axis=1)]
         one, other = edges.faces[pair].T
-        at, back = np.argmax(edges.of[one] == pair[:, None], axis=1), np.argmax(edges.of[other] == pair[:, None], axis=1)
+        at, back = (
+            np.argmax(edges.of[one] == pair[:, None], axis=1),
+            np.argmax(edges.of[other] == pair[:, None], axis=1),
+        )
         a, b = triangles[one, at], triangles[one, (at + 1) % 3]
         c, d = triangles[one, (at + 2) % 3], triangles[other, (back + 2) % 3]
         excess = _angle(vertices, c, a, b) + _angle(vertices, d, a, b) - np.pi
         asked = (triangles[other, back] == b) & (c != d) & (excess > 1e-6)
-        a, b, c, d, one, other, excess = (column[asked] for column in (a, b, c, d, one, other, excess))
+        a, b, c, d, one, other, excess = (
+            column[asked] for column in (a, b, c, d, one, other, excess)
+        )
         # never fold: the new triangles look the same way as the old ones, and hardly less alike: no edge across a tube
         old = _normal(vertices, a, b, c), _normal(vertices, b, a, d)
         new = _normal(vertices, a, d, c), _normal(vertices, d, b, c)
@@ -199,7 +232,9 @@ def flipped(vertices: Array, triangles: Index, owner: Index) -> Index:
         rank = np.full(len(triangles), len(wish), dtype=np.intp)
         for faces in (one[wish], other[wish]):
             np.minimum.at(rank, faces, np.arange(len(wish)))
-        chosen = wish[(rank[one[wish]] == np.arange(len(wish))) & (rank[other[wish]] == np.arange(len(wish)))]
+        chosen = wish[
+            (rank[one[wish]] == np.arange(len(wish))) & (rank[other[wish]] == np.arange(len(wish)))
+        ]
         open_ = rank < len(wish)
         triangles[one[chosen]] = np.stack([a[chosen], d[chosen], c[chosen]], axis=1)
         triangles[other[chosen]] = np.stack([d[chosen], b[chosen], c[chosen]], axis=1)

@@ -36,14 +36,20 @@ class Repaired(NamedTuple):
     issues: tuple[Issue, ...]
 
 
-def repaired(points: Array, triangles: Index, label: str, hole: float = 0.0, crossing: bool = False) -> Repaired:
+def repaired(
+    points: Array, triangles: Index, label: str, hole: float = 0.0, crossing: bool = False
+) -> Repaired:
     """Points (n, 3) and triangles (m, 3) as solids. hole: the largest hole that is closed, mm. crossing: a solid may cut
     itself, which is told.
 
     InputError BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, NO_SOLID, SELF_CROSSING.
     """
     if not len(triangles) or not np.isfinite(points).all():
-        raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are not numbers; export it again")
+        raise InputError(
+            "BAD_FILE",
+            label,
+            "the mesh has no triangles, or points that are not numbers; export it again",
+        )
     messages: list[str] = []
     mended: list[str] = []
     vertices, corners = _closed(points, triangles, messages)
@@ -64,7 +70,13 @@ def repaired(points: Array, triangles: Index, label: str, hole: float = 0.0, cro
             solid.refuse_crossing(label, WELDS[-1])
     issues = []
     if messages:
-        issues.append(Issue(NOTE, "MESH_REPAIRED", Text("{}: {}", label, Text.joined("; ", messages[:MOST_NAMED]))))
+        issues.append(
+            Issue(
+                NOTE,
+                "MESH_REPAIRED",
+                Text("{}: {}", label, Text.joined("; ", messages[:MOST_NAMED])),
+            )
+        )
     return Repaired(solids, (*issues, *mended_issues(label, mended)))
 
 
@@ -72,7 +84,9 @@ def mended_issues(label: str, mended: list[str]) -> tuple[Issue, ...]:
     """What was mended, and where, as an issue; none for nothing."""
     if not mended:
         return ()
-    return (Issue(WARNING, "MENDED", Text("{}: {}", label, Text.joined("; ", mended[:MOST_NAMED]))),)
+    return (
+        Issue(WARNING, "MENDED", Text("{}: {}", label, Text.joined("; ", mended[:MOST_NAMED]))),
+    )
 
 
 class Connected(NamedTuple):
@@ -91,7 +105,9 @@ def connected_triangles(points: Array, triangles: Index, label: str, hole: float
     mended: list[str] = []
     vertices, corners = _closed(points, triangles, messages)
     if not len(corners):
-        raise InputError("NO_SOLID", label, "all triangles of the mesh cancel one another; export it again")
+        raise InputError(
+            "NO_SOLID", label, "all triangles of the mesh cancel one another; export it again"
+        )
     edges = Edges(corners)
     corners = alike_across(corners, edges, np.flatnonzero(edges.count == 2), messages)
     found = separated(vertices, corners)
@@ -103,7 +119,8 @@ def connected_triangles(points: Array, triangles: Index, label: str, hole: float
     owner[found.triangles] = piece[:, None]
     largest: dict[int, float] = {}
     small = [
-        one for one in holes(found)
+        one
+        for one in holes(found)
         if one.size <= min(hole, END * largest.setdefault(int(owner[one.loop[0]]), one.size))
     ]
     if small:
@@ -112,8 +129,17 @@ def connected_triangles(points: Array, triangles: Index, label: str, hole: float
             f"{len(small)} holes were closed, the largest {widest.size:.3g} mm across at {place(widest.middle)}"
         )
     vertices, corners = filled(found.vertices, found.triangles, small)
-    issues = (Issue(NOTE, "MESH_REPAIRED", Text("{}: {}", label,
-                                                Text.joined("; ", messages[:MOST_NAMED]))),) if messages else ()
+    issues = (
+        (
+            Issue(
+                NOTE,
+                "MESH_REPAIRED",
+                Text("{}: {}", label, Text.joined("; ", messages[:MOST_NAMED])),
+            ),
+        )
+        if messages
+        else ()
+    )
     return Connected(vertices, corners, issues, tuple(mended))
 
 
@@ -123,8 +149,11 @@ def crossing_messages(solid: SolidMesh, least: float) -> list[str]:
     if not len(found.pairs):
         return []
     return [
-        Text("{} pairs of triangles cross, as at {}, and what any of them enclose counts as inside", len(found.pairs),
-            place(found.places[found.length.argmax()]))
+        Text(
+            "{} pairs of triangles cross, as at {}, and what any of them enclose counts as inside",
+            len(found.pairs),
+            place(found.places[found.length.argmax()]),
+        )
     ]
 
 
@@ -141,29 +170,47 @@ def _mended(
     if large and not (before.count == 1).any():
         where = place(vertices[before.ends[np.argmax(before.count > 2)]].mean(axis=0))
         raise InputError(
-            "NON_MANIFOLD", label, "three or more triangles share an edge: {} edges, the first at {}; repair the mesh "
-            "(Mesh, Analyze)", int((before.count > 2).sum()), where,
+            "NON_MANIFOLD",
+            label,
+            "three or more triangles share an edge: {} edges, the first at {}; repair the mesh "
+            "(Mesh, Analyze)",
+            int((before.count > 2).sum()),
+            where,
         )
     if large:
         raise InputError(
-            "OPEN_MESH", label, "the mesh has a hole: {} edges, {:.4g} mm across, at {}{}{}; fill holes (Mesh, Close holes) "
-            "or export it again, or deposit it as a wall if it is one", len(large[0].loop), large[0].size,
-            place(large[0].middle), Word(Text(", and {} more", len(large) - 1) if len(large) > 1 else ""),
+            "OPEN_MESH",
+            label,
+            "the mesh has a hole: {} edges, {:.4g} mm across, at {}{}{}; fill holes (Mesh, Close holes) "
+            "or export it again, or deposit it as a wall if it is one",
+            len(large[0].loop),
+            large[0].size,
+            place(large[0].middle),
+            Word(Text(", and {} more", len(large) - 1) if len(large) > 1 else ""),
             Word(Text("; up to strategy.mend, {:g} mm, holes are closed", size) if size else ""),
         )
     if found.split:
         at = place(vertices[before.ends[np.argmax(before.count > 2)]].mean(axis=0))
-        mended.append(Text("{} edges of more than two triangles were divided, as at {}", found.split, at))
+        mended.append(
+            Text("{} edges of more than two triangles were divided, as at {}", found.split, at)
+        )
     if open_:
         widest = open_[0]
         mended.append(
-            Text("{} holes were closed, the largest {:.3g} mm across at {}", len(open_), widest.size, place(widest.middle))
+            Text(
+                "{} holes were closed, the largest {:.3g} mm across at {}",
+                len(open_),
+                widest.size,
+                place(widest.middle),
+            )
         )
     vertices, corners = filled(found.vertices, found.triangles, open_)
     for _ in range(ROUNDS):
         if (Edges(corners).count == 2).all():
             break
-        again = separated(vertices, corners)  # what was closed may lie on what was there, as a fin's other side does
+        again = separated(
+            vertices, corners
+        )  # what was closed may lie on what was there, as a fin's other side does
         vertices, corners = filled(again.vertices, again.triangles, holes(again))
     return vertices, corners
 
@@ -207,10 +254,14 @@ def _welded(points: Array, triangles: Index, weld: float, notes: list[str]) -> t
     sense = np.where(rotated[:, 1] < rotated[:, 2], 1, -1)
     good = np.flatnonzero(np.bincount(number, weights=sense)[number] * sense > 0.0)
     kept = good[np.unique(number[good], return_index=True)[1]]
-    if len(kept) < MOSTLY * (number.max(initial=-1) + 1):  # every triangle from both sides, as for display
+    if len(kept) < MOSTLY * (
+        number.max(initial=-1) + 1
+    ):  # every triangle from both sides, as for display
         kept = np.unique(number, return_index=True)[1]
     if len(kept) < len(corners):
-        notes.append(Text("{} triangles that were there twice were dropped", len(corners) - len(kept)))
+        notes.append(
+            Text("{} triangles that were there twice were dropped", len(corners) - len(kept))
+        )
     corners = corners[np.sort(kept)]
     used, index = np.unique(corners, return_inverse=True)
     return points[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
@@ -236,7 +287,9 @@ def _patched(corners: Index, notes: list[str]) -> Index:
             return corners
         if a < b and a < c:
             missing.append((a, b, c))
-    known = {tuple(sorted(corner)) for corner in corners[np.isin(corners, start).all(axis=1)].tolist()}
+    known = {
+        tuple(sorted(corner)) for corner in corners[np.isin(corners, start).all(axis=1)].tolist()
+    }
     if any(tuple(sorted(corner)) in known for corner in missing):
         return corners  # the border of a loose triangle
     notes.append(Text("{} missing triangles were put in", len(missing)))

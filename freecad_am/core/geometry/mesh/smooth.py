@@ -42,7 +42,10 @@ class SmoothMesh:
         size = np.linalg.norm(double, axis=1)
         unit = double / np.maximum(size, 1e-300)[:, None]
         for k in range(3):
-            one, other = corner[:, (k + 1) % 3] - corner[:, k], corner[:, (k + 2) % 3] - corner[:, k]
+            one, other = (
+                corner[:, (k + 1) % 3] - corner[:, k],
+                corner[:, (k + 2) % 3] - corner[:, k],
+            )
             angle = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
             np.add.at(normal, self.triangles[:, k], angle[:, None] * unit)
             np.add.at(area, self.triangles[:, k], size / 6.0)
@@ -90,6 +93,11 @@ class SmoothMesh:
         height = dot(unit, middle)
         value = 0.5 * ((weight * above).sum(axis=1) + height)
         turned = (middle - height[:, None] * unit) / length[:, None]
-        change = above + np.einsum("klc,kc->kl", normal, turned) + np.einsum("klc,kc->kl", away, unit) - 2.0 * value[:, None]
+        change = (
+            above
+            + np.einsum("klc,kc->kl", normal, turned)
+            + np.einsum("klc,kc->kl", away, unit)
+            - 2.0 * value[:, None]
+        )
         slope = 0.5 * (np.einsum("kl,klc->kc", pull * change, away) + mean + unit)
         return value, slope

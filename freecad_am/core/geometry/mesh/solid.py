@@ -34,7 +34,10 @@ class SolidMesh:
     @property
     def volume(self) -> float:
         """Volume, mm3; negative when the mesh is turned inside out."""
-        a, b, c = (self.vertices[self.triangles[:, k]] - self.vertices[self.triangles[0, 0]] for k in range(3))
+        a, b, c = (
+            self.vertices[self.triangles[:, k]] - self.vertices[self.triangles[0, 0]]
+            for k in range(3)
+        )
         return float(dot(a, np.cross(b, c)).sum() / 6.0)
 
     def refuse_unsound(self, label: str, of_shape: bool = False, touching: bool = False) -> None:
@@ -43,29 +46,63 @@ class SolidMesh:
         edges = Edges(self.triangles)
         several = (edges.count > 2) & ~(touching & (edges.count % 2 == 0))
         for wrong, code, what, cure in (
-            ((edges.count == 1) & of_shape, "OPEN_MESH", "faces of the solid do not meet along their edges", "check it "
-             "where it was drawn (Part, Check geometry), and draw those faces again or sew them"),
-            (edges.count == 1, "OPEN_MESH", "the mesh has a hole", "fill holes (Mesh, Close holes) or export it again"),
-            (several & of_shape, "NON_MANIFOLD", "the solid touches itself along an edge, so that its inside is "
-             "not known", "draw it apart there, or let it overlap there and fuse it (Part, Boolean)"),
-            (several, "NON_MANIFOLD", "three or more triangles share an edge", "repair the mesh (Mesh, Analyze)"),
+            (
+                (edges.count == 1) & of_shape,
+                "OPEN_MESH",
+                "faces of the solid do not meet along their edges",
+                "check it "
+                "where it was drawn (Part, Check geometry), and draw those faces again or sew them",
+            ),
+            (
+                edges.count == 1,
+                "OPEN_MESH",
+                "the mesh has a hole",
+                "fill holes (Mesh, Close holes) or export it again",
+            ),
+            (
+                several & of_shape,
+                "NON_MANIFOLD",
+                "the solid touches itself along an edge, so that its inside is not known",
+                "draw it apart there, or let it overlap there and fuse it (Part, Boolean)",
+            ),
+            (
+                several,
+                "NON_MANIFOLD",
+                "three or more triangles share an edge",
+                "repair the mesh (Mesh, Analyze)",
+            ),
         ):
             if wrong.any():
                 where = place(self.vertices[edges.ends[np.argmax(wrong)]].mean(axis=0))
-                raise InputError(code, label, "{}: {} edges, the first at {}; {}", what, int(wrong.sum()), where, cure)
+                raise InputError(
+                    code,
+                    label,
+                    "{}: {} edges, the first at {}; {}",
+                    what,
+                    int(wrong.sum()),
+                    where,
+                    cure,
+                )
         half = np.stack([self.triangles, np.roll(self.triangles, -1, axis=1)], axis=2)
         sense = np.where(half[..., 0] < half[..., 1], 1, -1)
         total = np.bincount(edges.of.ravel(), weights=sense.ravel(), minlength=len(edges.ends))
         if (total != 0).any():
             where = place(self.vertices[edges.ends[np.argmax(total != 0)]].mean(axis=0))
             raise InputError(
-                "INSIDE_OUT", label, "neighbouring triangles face opposite ways, for instance at {}; turn them alike (Mesh, "
-                "Harmonize normals)", where,
+                "INSIDE_OUT",
+                label,
+                "neighbouring triangles face opposite ways, for instance at {}; turn them alike (Mesh, "
+                "Harmonize normals)",
+                where,
             )
         if self.volume <= 0.0:
             raise InputError(
-                "INSIDE_OUT", label, "the solid is turned inside out (volume {:.4g} mm3, near {}); flip its normals (Mesh, "
-                "Flip normals)", self.volume, place(self.vertices.mean(axis=0)),
+                "INSIDE_OUT",
+                label,
+                "the solid is turned inside out (volume {:.4g} mm3, near {}); flip its normals (Mesh, "
+                "Flip normals)",
+                self.volume,
+                place(self.vertices.mean(axis=0)),
             )
 
     def refuse_crossing(self, label: str, least: float) -> None:
@@ -74,9 +111,13 @@ class SolidMesh:
         if len(found.pairs):
             where = place(found.places[found.length.argmax()])
             raise InputError(
-                "SELF_CROSSING", label, "it cuts itself: {} pairs of its triangles cross, for instance at {}, so that what "
+                "SELF_CROSSING",
+                label,
+                "it cuts itself: {} pairs of its triangles cross, for instance at {}, so that what "
                 "is inside is not known; fuse what overlaps where the part was drawn, or repair the mesh (Mesh, Analyze, "
-                "Self-intersections)", len(found.pairs), where,
+                "Self-intersections)",
+                len(found.pairs),
+                where,
             )
 
     def searched(self, edge: float) -> Search:
@@ -101,7 +142,9 @@ class SolidMesh:
         one, other = (self.units[edges.faces[two, side]] for side in (0, 1))
         turn[two] = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
         turn[turn > SHARP] = 0.0
-        length = np.linalg.norm(self.vertices[edges.ends[:, 1]] - self.vertices[edges.ends[:, 0]], axis=1)
+        length = np.linalg.norm(
+            self.vertices[edges.ends[:, 1]] - self.vertices[edges.ends[:, 0]], axis=1
+        )
         width = np.linalg.norm(self.normals, axis=1)[:, None] / np.maximum(length[edges.of], 1e-300)
         sagitta: Array = (0.125 * width * turn[edges.of]).max(axis=1)
         return sagitta
@@ -143,9 +186,13 @@ class Search:
         small = share < 1e-9
         normal = self.units[triangle].copy()
         on_edge = np.flatnonzero(small.sum(axis=1) == 1)
-        normal[on_edge] = at_edge[edge_of[triangle[on_edge], (np.argmax(small[on_edge], axis=1) + 1) % 3]]
+        normal[on_edge] = at_edge[
+            edge_of[triangle[on_edge], (np.argmax(small[on_edge], axis=1) + 1) % 3]
+        ]
         on_vertex = np.flatnonzero(small.sum(axis=1) == 2)
-        normal[on_vertex] = at_vertex[self.triangles[triangle[on_vertex], np.argmin(small[on_vertex], axis=1)]]
+        normal[on_vertex] = at_vertex[
+            self.triangles[triangle[on_vertex], np.argmin(small[on_vertex], axis=1)]
+        ]
         side = np.where(dot(points - foot, normal) < 0.0, -1.0, 1.0)
         return side * distance, foot, self.owner[triangle]
 
@@ -158,8 +205,14 @@ class Search:
         near = np.zeros((len(points), count), dtype=np.intp)
         for which, slack in ((far, 0.3), (close, 0.0)):
             if len(which):
-                near[which] = self.of[np.asarray(self.tree.query(points[which], k=count, eps=slack)[1]).reshape(-1, count)]
-        fresh = np.ones(near.shape, dtype=bool)  # most parts next to a point are of the same few triangles
+                near[which] = self.of[
+                    np.asarray(self.tree.query(points[which], k=count, eps=slack)[1]).reshape(
+                        -1, count
+                    )
+                ]
+        fresh = np.ones(
+            near.shape, dtype=bool
+        )  # most parts next to a point are of the same few triangles
         for k in range(1, count):
             fresh[:, k] = (near[:, :k] != near[:, k : k + 1]).all(axis=1)
         corner, owner = self.vertices[self.triangles[near[fresh]]], np.nonzero(fresh)[0]
@@ -175,7 +228,10 @@ class Search:
         corner = self.vertices[self.triangles]
         at_vertex = np.zeros_like(self.vertices)
         for k in range(3):
-            one, other = corner[:, (k + 1) % 3] - corner[:, k], corner[:, (k + 2) % 3] - corner[:, k]
+            one, other = (
+                corner[:, (k + 1) % 3] - corner[:, k],
+                corner[:, (k + 2) % 3] - corner[:, k],
+            )
             angle = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
             np.add.at(at_vertex, self.triangles[:, k], angle[:, None] * self.units)
         edges = Edges(self.triangles)
@@ -185,10 +241,16 @@ class Search:
         return at_vertex, at_edge, edges.of
 
 
-def spread(corners: Array, longest: float, kept: Callable[[Array], Mask] | None = None) -> tuple[Array, Index]:
+def spread(
+    corners: Array, longest: float, kept: Callable[[Array], Mask] | None = None
+) -> tuple[Array, Index]:
     """Middles (k, 3) of the parts of triangles (m, 3, 3), none with a side beyond `longest` mm; the triangle of each.
     kept: says of triangles (n, 3, 3), whole ones and parts, which (n,) are parted further; the others are left out."""
-    return _spread(corners, longest, kept) if len(corners) else (np.zeros((0, 3)), np.zeros(0, dtype=np.intp))
+    return (
+        _spread(corners, longest, kept)
+        if len(corners)
+        else (np.zeros((0, 3)), np.zeros(0, dtype=np.intp))
+    )
 
 
 def _spread(
@@ -208,6 +270,8 @@ def _spread(
         corner, of, top = corner[~small], of[~small], top[~small]
         a, b, c = (corner[np.arange(len(top)), (top + k) % 3] for k in range(3))
         middle = 0.5 * (a + b)
-        corner = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        corner = np.concatenate(
+            [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
+        )
         of = np.r_[of, of]
     return np.concatenate([one for one, _ in done]), np.concatenate([one for _, one in done])

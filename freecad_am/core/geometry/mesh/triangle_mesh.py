@@ -93,7 +93,9 @@ class Mesh:
         at = np.flatnonzero(sides[1:] == sides[:-1])
         one, other = self.area_vectors[face[at]], self.area_vectors[face[at + 1]]
         along = self.vertices[self._half_edges[order[at]]]
-        turn = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other))
+        turn = np.arctan2(
+            np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other)
+        )
         return float(np.linalg.norm(along[:, 1] - along[:, 0], axis=1)[turn > angle].sum())
 
     @cached_property
@@ -112,7 +114,9 @@ class Mesh:
         """The faces (k,) that touch the vertices."""
         faces, begin = self._faces_of
         count = begin[vertices + 1] - begin[vertices]
-        at = np.repeat(begin[vertices] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(count.sum())
+        at = np.repeat(begin[vertices] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(
+            count.sum()
+        )
         touched: Index = np.unique(faces[at])
         return touched
 
@@ -131,14 +135,20 @@ class Mesh:
     def part(self, faces: Index) -> tuple[Mesh, Index]:
         """The mesh of some faces (k,) alone, and the numbers (m,) that its vertices have here."""
         vertices, corners = np.unique(self.faces[faces], return_inverse=True)
-        return Mesh(self.vertices[vertices], np.ravel(corners).reshape(-1, 3).astype(np.intp)), vertices
+        return Mesh(
+            self.vertices[vertices], np.ravel(corners).reshape(-1, 3).astype(np.intp)
+        ), vertices
 
     def finer(self, longest: float) -> Mesh:
         """The mesh cut evenly so that no edge is longer than `longest` mm."""
         points, parts = cut_evenly(self.vertices[self.faces], longest)
-        every = (np.arange(len(self.faces))[:, None, None] * points.shape[1] + parts[None]).reshape(-1, 3)
+        every = (np.arange(len(self.faces))[:, None, None] * points.shape[1] + parts[None]).reshape(
+            -1, 3
+        )
         points = points.reshape(-1, 3)
-        _, first, same = np.unique(np.round(points, DECIMALS) + 0.0, axis=0, return_index=True, return_inverse=True)
+        _, first, same = np.unique(
+            np.round(points, DECIMALS) + 0.0, axis=0, return_index=True, return_inverse=True
+        )
         return Mesh(points[first], np.ravel(same)[every].astype(np.intp))
 
     def level_lines(self, values: Array, faces: Index) -> list[LevelLine]:
@@ -164,13 +174,20 @@ class Mesh:
         following[node[: len(row)]] = node[len(row) :]
         arrives = np.bincount(node[len(row) :], minlength=len(edges))
         if np.bincount(node[: len(row)]).max() > 1 or arrives.max() > 1:
-            raise InputError("MESH", "wall", "faces of the wall's mesh turn opposite ways: orient the faces alike")
+            raise InputError(
+                "MESH",
+                "wall",
+                "faces of the wall's mesh turn opposite ways: orient the faces alike",
+            )
         one, other = values[edges].T
         t = np.clip(one / (one - other), 1e-6, 1.0 - 1e-6)[:, None]
         points = (1.0 - t) * self.vertices[edges[:, 0]] + t * self.vertices[edges[:, 1]]
         rims = self.vertices[edges[:, 1]] - self.vertices[edges[:, 0]]
         rims /= np.linalg.norm(rims, axis=1, keepdims=True)
-        return [LevelLine(points[chain], closed, rims[chain[[0, -1]]]) for chain, closed in chains(following)]
+        return [
+            LevelLine(points[chain], closed, rims[chain[[0, -1]]])
+            for chain, closed in chains(following)
+        ]
 
 
 def chains(following: Index) -> list[tuple[Index, bool]]:

@@ -27,7 +27,12 @@ def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
     zero = np.zeros_like(v)
     vs = np.stack([v, on_ab, zero, 1.0 - on_bc])
     ws = np.stack([w, zero, on_ac, on_bc])
-    square = dot(ap, ap) + vs * (vs * d00 - 2.0 * d20) + ws * (ws * d11 - 2.0 * d21) + 2.0 * vs * ws * d01
+    square = (
+        dot(ap, ap)
+        + vs * (vs * d00 - 2.0 * d20)
+        + ws * (ws * d11 - 2.0 * d21)
+        + 2.0 * vs * ws * d01
+    )
     square[0] = np.where(inside, square[0], np.inf)
     best = np.argmin(square, axis=0)[None]
     v, w, least = (np.take_along_axis(each, best, axis=0)[0] for each in (vs, ws, square))
@@ -44,9 +49,20 @@ def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
     number = np.full((n + 2, n + 2), -1)
     number[i, j] = np.arange(len(i))
     up, down = i + j < n, i + j < n - 1
-    parts = np.vstack([
-        np.stack([number[i[up], j[up]], number[i[up] + 1, j[up]], number[i[up], j[up] + 1]], axis=1),
-        np.stack([number[i[down] + 1, j[down]], number[i[down] + 1, j[down] + 1], number[i[down], j[down] + 1]], axis=1),
-    ])
+    parts = np.vstack(
+        [
+            np.stack(
+                [number[i[up], j[up]], number[i[up] + 1, j[up]], number[i[up], j[up] + 1]], axis=1
+            ),
+            np.stack(
+                [
+                    number[i[down] + 1, j[down]],
+                    number[i[down] + 1, j[down] + 1],
+                    number[i[down], j[down] + 1],
+                ],
+                axis=1,
+            ),
+        ]
+    )
     share = np.stack([n - i - j, i, j], axis=1) / n
     return np.einsum("sk,mkc->msc", share, corners), parts.astype(np.intp)

@@ -25,7 +25,9 @@ class Uncrossed(NamedTuple):
     closed: list[Hole]
 
 
-def uncrossed(vertices: Array, triangles: Index, pairs: Index, widest: float, least: float) -> Uncrossed | None:
+def uncrossed(
+    vertices: Array, triangles: Index, pairs: Index, widest: float, least: float
+) -> Uncrossed | None:
     """A surface of vertices (n, 3) and triangles (m, 3), of which pairs (k, 2) cross. None where that would leave a hole
     wider than `widest` mm, or reaches an end of the surface, or where triangles cross by more than `least` mm even then."""
     edges = Edges(triangles)

@@ -12,7 +12,9 @@ from ...types import Array
 MEETING = 1e-7  # of the period; cuts meet there
 
 
-def chained(pieces: Sequence[Sequence[Array]], cuts: Array) -> tuple[list[tuple[Array, int]], list[Array]]:
+def chained(
+    pieces: Sequence[Sequence[Array]], cuts: Array
+) -> tuple[list[tuple[Array, int]], list[Array]]:
     """Rings of windows put together where cuts went through: those that go round with their sense, and closed ones."""
     turn = float(cuts[-1] - cuts[0])
     near, count = MEETING * turn, len(cuts) - 1
@@ -33,8 +35,12 @@ def chained(pieces: Sequence[Sequence[Array]], cuts: Array) -> tuple[list[tuple[
             borders = np.r_[-1, np.flatnonzero(on_cut)]
             for a, b in zip(borders + 1, borders[1:]):
                 if b > a:
-                    starts.append(((window + int(side[a] == 2)) % count, float(ring[a, 1]), len(runs)))
-                    ends.append(((window + int(side[b] == 2)) % count, float(ring[b, 1]), len(runs)))
+                    starts.append(
+                        ((window + int(side[a] == 2)) % count, float(ring[a, 1]), len(runs))
+                    )
+                    ends.append(
+                        ((window + int(side[b] == 2)) % count, float(ring[b, 1]), len(runs))
+                    )
                     runs.append(ring[a : b + 1])
     after = {}
     for (_, _, run), (_, _, following) in zip(sorted(ends), sorted(starts)):

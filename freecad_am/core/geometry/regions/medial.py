@@ -45,7 +45,9 @@ def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
     """
     axis = _axis(region, least, step)
     for spread in (BETWEEN_WALLS, ANYWHERE):
-        links = axis.links[(axis.spread >= spread) & (axis.clearance[axis.links] >= least).all(axis=1)]
+        links = axis.links[
+            (axis.spread >= spread) & (axis.clearance[axis.links] >= least).all(axis=1)
+        ]
         if not len(links):
             continue
         ring = _cycle(axis.points, links) if len(region.borders()) > 1 else None
@@ -58,7 +60,9 @@ def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
     return np.zeros((0, 2)), False
 
 
-def spine_round(strip: Strip, least: float, step: float, chord_error: float, aside: float) -> Array | None:
+def spine_round(
+    strip: Strip, least: float, step: float, chord_error: float, aside: float
+) -> Array | None:
     """The path (n, 2) once round in the middle of a strip, laid flat, from half a turn before 0 on; None where the strip is
     somewhere thinner than 2 `least` mm. step: as of `spine`. chord_error: mm, of what is straight in (u, v) and an arc when
     laid flat. aside: mm that are looked at beyond a turn, beside the breadth of the strip."""
@@ -90,14 +94,18 @@ def _axis(region: Region, least: float, step: float) -> _Axis:
         diagram = Voronoi(moved)
     corners = diagram.vertices * size + middle
     pairs = diagram.ridge_points
-    ends = np.fromiter(chain.from_iterable(diagram.ridge_vertices), dtype=np.intp, count=2 * len(pairs)).reshape(-1, 2)
+    ends = np.fromiter(
+        chain.from_iterable(diagram.ridge_vertices), dtype=np.intp, count=2 * len(pairs)
+    ).reshape(-1, 2)
     adjacent = (follows[pairs[:, 0]] == pairs[:, 1]) | (follows[pairs[:, 1]] == pairs[:, 0])
     use = (ends >= 0).all(axis=1) & ~adjacent
     pairs, ends = pairs[use], ends[use]
     away = np.hypot(*(corners[ends] - places[pairs[:, :1]]).transpose(2, 0, 1))
     apart = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
     spread = apart / np.maximum(2.0 * away.mean(axis=1), 1e-300)
-    use = (spread >= ANYWHERE) & (away >= least).all(axis=1)  # before it is asked what is inside, which takes longest
+    use = (spread >= ANYWHERE) & (away >= least).all(
+        axis=1
+    )  # before it is asked what is inside, which takes longest
     ends, away, spread = ends[use], away[use], spread[use]
     members = np.unique(ends)
     inside = np.zeros(len(corners), dtype=bool)
@@ -151,7 +159,9 @@ def _longest(points: Array, links: Index) -> Index:
     members, number = np.unique(links, return_inverse=True)
     number = number.reshape(-1, 2)
     size = np.hypot(*(points[links[:, 0]] - points[links[:, 1]]).T)
-    graph = coo_matrix((np.maximum(size, 1e-300), number.T), shape=(len(members), len(members))).tocsr()
+    graph = coo_matrix(
+        (np.maximum(size, 1e-300), number.T), shape=(len(members), len(members))
+    ).tocsr()
     count, label = connected_components(graph, directed=False)
     total = np.bincount(label[number[:, 0]], weights=size, minlength=count)
     start = int(np.flatnonzero(label == int(np.argmax(total)))[0])
@@ -160,7 +170,10 @@ def _longest(points: Array, links: Index) -> Index:
         away[~np.isfinite(away)] = -1.0
         start = int(np.argmax(away))
     away, before = (
-        rows[0] for rows in dijkstra(graph, directed=False, indices=np.array([start]), return_predecessors=True)
+        rows[0]
+        for rows in dijkstra(
+            graph, directed=False, indices=np.array([start]), return_predecessors=True
+        )
     )
     away[~np.isfinite(away)] = -1.0
     path = [int(np.argmax(away))]

@@ -26,7 +26,10 @@ AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at on
 LEAST_ARC = 8  # segments of a full turn
 EIGHT = 2.8  # times the squared radius, a hair less than the area of a regular octagon in a circle
 WIDTH = 0.005  # relative tolerance of a region's width
-FINE_SLIT, LONG_SLIT = 0.1, 20.0  # of a slit's width: chord error of what closes it; how much border it takes away
+FINE_SLIT, LONG_SLIT = (
+    0.1,
+    20.0,
+)  # of a slit's width: chord error of what closes it; how much border it takes away
 
 
 class Shapely(NamedTuple):
@@ -45,10 +48,14 @@ def shapely() -> Shapely:
         from shapely import geometry, ops
     except ImportError:
         raise InputError(
-            "MISSING_LIBRARY", "filling", "solids are filled with the Python package shapely (1.8 or newer), which is not "
+            "MISSING_LIBRARY",
+            "filling",
+            "solids are filled with the Python package shapely (1.8 or newer), which is not "
             "installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely",
         ) from None
-    return Shapely(geometry, ops, "resolution" if package.__version__.startswith("1.") else "quad_segs")
+    return Shapely(
+        geometry, ops, "resolution" if package.__version__.startswith("1.") else "quad_segs"
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,12 +88,16 @@ class Region:
 
     def contains(self, points: Array) -> Mask:
         """Whether points (..., 2) lie inside; on the border either may be said."""
-        return np.reshape(winding(self._borders, np.reshape(points, (-1, 2))) > 0, np.shape(points)[:-1])
+        return np.reshape(
+            winding(self._borders, np.reshape(points, (-1, 2))) > 0, np.shape(points)[:-1]
+        )
 
     @cached_property
     def _boxes(self) -> tuple[Array, Array]:
         """Lowest and highest coordinates (n, 2) of the borders."""
-        return np.array([each.min(axis=0) for each in self._borders]), np.array([each.max(axis=0) for each in self._borders])
+        return np.array([each.min(axis=0) for each in self._borders]), np.array(
+            [each.max(axis=0) for each in self._borders]
+        )
 
     def nearest(self, points: Array) -> tuple[Array, Array]:
         """The places (n, 2) on the border nearest to points (n, 2), and how far they are (n,), mm."""
@@ -112,13 +123,17 @@ class Region:
         """
         if distance == 0.0:
             return (self,)
-        return _parts(_buffered(self.shape, distance, chord_error), SLIVER * self.extent**2, self.sheet)
+        return _parts(
+            _buffered(self.shape, distance, chord_error), SLIVER * self.extent**2, self.sheet
+        )
 
     def without(self, others: Iterable[Region], wide: float = 0.0) -> tuple[Region, ...]:
         """What is left when others are taken away. wide: mm; of pieces too small for a circle of that diameter, which may be
         very many, those are left out of which `grown` by minus half of it leaves nothing whatever its arcs."""
         away = shapely().ops.unary_union([other.shape for other in others])
-        return _parts(self.shape.difference(away), max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2))
+        return _parts(
+            self.shape.difference(away), max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2)
+        )
 
     def common(self, others: Iterable[Region]) -> tuple[Region, ...]:
         """What it shares with others."""
@@ -131,11 +146,17 @@ class Region:
         whole = library.geometry.LineString(line)
         cut = whole.intersection(self.shape)
         cut = library.ops.linemerge(cut) if cut.geom_type == "MultiLineString" else cut
-        parts = [part for part in getattr(cut, "geoms", [cut]) if part.geom_type == "LineString" and not part.is_empty]
+        parts = [
+            part
+            for part in getattr(cut, "geoms", [cut])
+            if part.geom_type == "LineString" and not part.is_empty
+        ]
         found = []
         for part in parts:
             ends = [float(whole.project(library.geometry.Point(part.coords[k]))) for k in (0, -1)]
-            found.append((min(ends), np.array(part.coords, dtype=float)[:: 1 if ends[0] <= ends[1] else -1]))
+            found.append(
+                (min(ends), np.array(part.coords, dtype=float)[:: 1 if ends[0] <= ends[1] else -1])
+            )
         return [piece for _, piece in sorted(found, key=lambda item: item[0])]
 
     def distance(self, other: Region) -> float:
@@ -164,10 +185,19 @@ class Mended(NamedTuple):
         """What a user should know."""
         found = []
         if self.changed > 0.0:
-            text = Text("contours that cross or touch were mended; {:.3g} mm^2 changed", self.changed)
+            text = Text(
+                "contours that cross or touch were mended; {:.3g} mm^2 changed", self.changed
+            )
             found.append(Issue(NOTE, "REGION_MENDED", text, layer))
         if self.dropped > 0.0:
-            found.append(Issue(NOTE, "REGION_SLIVERS", Text("slivers of {:.3g} mm^2 were dropped", self.dropped), layer))
+            found.append(
+                Issue(
+                    NOTE,
+                    "REGION_SLIVERS",
+                    Text("slivers of {:.3g} mm^2 were dropped", self.dropped),
+                    layer,
+                )
+            )
         return tuple(found)
 
 
@@ -193,18 +223,28 @@ def mended(loops: Sequence[Array], least_area: float | None = None) -> Mended:
     return Mended(kept, changed if changed > noise else 0.0, dropped if dropped > noise else 0.0)
 
 
-def along(curves: Sequence[tuple[Array, bool]], half: float | Array, chord_error: float) -> tuple[Region, ...]:
+def along(
+    curves: Sequence[tuple[Array, bool]], half: float | Array, chord_error: float
+) -> tuple[Region, ...]:
     """What lies within `half` mm, or (k,) mm of each, of k curves (points (n, 2), whether closed)."""
     wholes = [np.vstack([points, points[:1]]) if closed else points for points, closed in curves]
-    pieces = [(piece, float(wide)) for whole, wide in zip(wholes, np.full(len(wholes), half)) for piece in _bends(whole)]
-    lines = [_buffered(shapely().geometry.LineString(piece), wide, chord_error) for piece, wide in pieces]
+    pieces = [
+        (piece, float(wide))
+        for whole, wide in zip(wholes, np.full(len(wholes), half))
+        for piece in _bends(whole)
+    ]
+    lines = [
+        _buffered(shapely().geometry.LineString(piece), wide, chord_error) for piece, wide in pieces
+    ]
     return _parts(shapely().ops.unary_union(lines), 0.0)
 
 
 def joined(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
     """Regions of one plane without the slits in and between them that are thinner than `width` mm; the same regions where
     there are none, or only short ones."""
-    shape = shapely().ops.unary_union([_buffered(part.shape, 0.5 * width, FINE_SLIT * width) for part in parts])
+    shape = shapely().ops.unary_union(
+        [_buffered(part.shape, 0.5 * width, FINE_SLIT * width) for part in parts]
+    )
     shape = _buffered(shape, -0.5 * width, FINE_SLIT * width)
     if sum(part.shape.length for part in parts) - shape.length < LONG_SLIT * width:
         return tuple(parts)
@@ -264,7 +304,9 @@ def _nested(loops: list[Array]) -> Any:
 def _wound(loops: list[Array]) -> tuple[Any, float]:
     """The shape of what loops go round at least once, and the area (mm^2) that they go round otherwise."""
     library = shapely()
-    lines = library.ops.unary_union([library.geometry.LineString(np.vstack([loop, loop[:1]])) for loop in loops])
+    lines = library.ops.unary_union(
+        [library.geometry.LineString(np.vstack([loop, loop[:1]])) for loop in loops]
+    )
     faces = list(library.ops.polygonize(lines))
     if not faces:
         return library.geometry.Polygon(), 0.0
@@ -290,7 +332,9 @@ def _parts(shape: Any, least_area: float, sheet: float = 0.0) -> tuple[Region, .
     found = [Region(part, sheet) for part in _polygons(shape) if part.area > least_area]
     if len(found) < 2:
         return tuple(found)
-    return tuple(sorted(found, key=lambda region: (region.borders()[0][0, 0], region.borders()[0][0, 1])))
+    return tuple(
+        sorted(found, key=lambda region: (region.borders()[0][0, 0], region.borders()[0][0, 1]))
+    )
 
 
 def _polygons(shape: Any) -> list[Any]:

@@ -16,17 +16,27 @@ def grown(regions: Sequence[Region], distance: float, chord_error: float) -> tup
 
 
 @overload
-def grown(regions: Sequence[Strip | Region], distance: float, chord_error: float) -> tuple[Strip | Region, ...]: ...
+def grown(
+    regions: Sequence[Strip | Region], distance: float, chord_error: float
+) -> tuple[Strip | Region, ...]: ...
 
 
-def grown(regions: Sequence[Strip | Region], distance: float, chord_error: float) -> tuple[Strip | Region, ...]:
+def grown(
+    regions: Sequence[Strip | Region], distance: float, chord_error: float
+) -> tuple[Strip | Region, ...]:
     """As `Region.grown` and `Strip.grown`."""
     return tuple(part for region in regions for part in region.grown(distance, chord_error))
 
 
-def without(regions: Sequence[Region], others: Sequence[Region], wide: float = 0.0) -> tuple[Region, ...]:
+def without(
+    regions: Sequence[Region], others: Sequence[Region], wide: float = 0.0
+) -> tuple[Region, ...]:
     """As `Region.without`; the same regions where there are no others."""
-    return tuple(part for region in regions for part in region.without(others, wide)) if others else tuple(regions)
+    return (
+        tuple(part for region in regions for part in region.without(others, wide))
+        if others
+        else tuple(regions)
+    )
 
 
 def common(regions: Sequence[Region], others: Sequence[Region]) -> tuple[Region, ...]:
@@ -37,7 +47,11 @@ def common(regions: Sequence[Region], others: Sequence[Region]) -> tuple[Region,
 def halves(strip: Strip) -> list[Region]:
     """A strip cut in two, half a turn each way from where it is laid flat about."""
     half = 0.5 * strip.period.around
-    return [part for low, high in ((-half, 0.0), (0.0, half)) for part in strip.flat(Window(0.0, low, high, 0.0))]
+    return [
+        part
+        for low, high in ((-half, 0.0), (0.0, half))
+        for part in strip.flat(Window(0.0, low, high, 0.0))
+    ]
 
 
 def wider(regions: Sequence[Region], width: float, chord_error: float) -> list[Region]:

@@ -44,7 +44,9 @@ class Period:
             return flat.copy()
         x, y = columns(flat)
         rest = self.apex - y
-        return np.stack([np.arctan2(x, rest) * abs(self.apex), self.apex - np.hypot(x, rest)], axis=1)
+        return np.stack(
+            [np.arctan2(x, rest) * abs(self.apex), self.apex - np.hypot(x, rest)], axis=1
+        )
 
     @property
     def whole(self) -> float:
@@ -74,7 +76,9 @@ class Period:
         angle, apex = turns * self.turn, np.array([0.0, self.apex])
         cos, sin = math.cos(angle), math.sin(angle)
         away = flat - apex
-        turned = np.stack([away[:, 0] * cos - away[:, 1] * sin, away[:, 0] * sin + away[:, 1] * cos], axis=1)
+        turned = np.stack(
+            [away[:, 0] * cos - away[:, 1] * sin, away[:, 0] * sin + away[:, 1] * cos], axis=1
+        )
         return np.asarray(turned + apex)
 
     def points_round(self, v: float, chord_error: float, least_radius: float) -> int:
@@ -126,17 +130,26 @@ class Strip:
         """As `Region.grown`, on the plane without ends; what does not go round any more is a region."""
         return self.made(lambda part: part.grown(distance, chord_error), abs(distance))
 
-    def made(self, operation: Callable[[Region], Sequence[Region]], reach: float) -> tuple[Strip | Region, ...]:
+    def made(
+        self, operation: Callable[[Region], Sequence[Region]], reach: float
+    ) -> tuple[Strip | Region, ...]:
         """What an operation makes of the strip that looks no farther than `reach` mm around."""
         windows = self.windows(reach)
         pieces: list[list[Array]] = []
         for window in windows:
             found: list[Array] = []
-            for part in (part for region in self.flat(window, with_margin=True) for part in operation(region)):
+            for part in (
+                part for region in self.flat(window, with_margin=True) for part in operation(region)
+            ):
                 uv = [self._cut(ring, window) for ring in part.borders()]
-                found += [ring for inner in regions(uv) for ring in _boxed(inner, window.low, window.high)]
+                found += [
+                    ring for inner in regions(uv) for ring in _boxed(inner, window.low, window.high)
+                ]
             pieces.append(found)
-        return parts(*chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), self.period)
+        return parts(
+            *chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])),
+            self.period,
+        )
 
     def between(self, low: float, high: float) -> tuple[Region, ...]:
         """The strip from u = low to u = high as regions in (u, v)."""
@@ -154,8 +167,11 @@ class Strip:
         """The strip in a window, with its margin or without, as regions laid flat about its middle."""
         margin = window.margin if with_margin else 0.0
         return [
-            part for region in self.between(window.low - margin, window.high + margin)
-            for part in regions([self.period.unroll(ring, window.about) for ring in region.borders()])
+            part
+            for region in self.between(window.low - margin, window.high + margin)
+            for part in regions(
+                [self.period.unroll(ring, window.about) for ring in region.borders()]
+            )
         ]
 
     def moved_back(self, window: Window, flat: Array) -> tuple[Array, float]:
@@ -188,20 +204,28 @@ class Strip:
     def _cut(self, flat: Array, window: Window) -> Array:
         """A ring laid flat about the middle of a window in (u, v), with points where the ends of the window cross it."""
         ends = window.low - window.about, window.high - window.about
-        return np.asarray(self._with_cuts(self.period.unrolled(flat), ends, closed=True) + np.array([window.about, 0.0]))
+        return np.asarray(
+            self._with_cuts(self.period.unrolled(flat), ends, closed=True)
+            + np.array([window.about, 0.0])
+        )
 
     def windows(self, reach: float) -> tuple[Window, ...]:
         """The strip once round, for what looks `reach` mm around."""
         margin, count = self._windows(reach)
         cuts = np.linspace(-0.5 * self.period.around, 0.5 * self.period.around, count + 1).tolist()
-        return tuple(Window(0.5 * (low + high), low, high, margin) for low, high in zip(cuts, cuts[1:]))
+        return tuple(
+            Window(0.5 * (low + high), low, high, margin) for low, high in zip(cuts, cuts[1:])
+        )
 
     def pane(self, window: Window) -> tuple[Region, ...]:
         """What is about all of the strip in a window, without the room beside it, laid flat about its middle."""
         u = np.linspace(window.low, window.high, 17)
         bottom, top = self.levels
         margin = 0.05 * (window.high - window.low) + 1.0
-        below, above = np.stack([u, np.full(17, bottom - margin)], axis=1), np.stack([u, np.full(17, top + margin)], axis=1)
+        below, above = (
+            np.stack([u, np.full(17, bottom - margin)], axis=1),
+            np.stack([u, np.full(17, top + margin)], axis=1),
+        )
         return regions([self.period.unroll(np.vstack([below, above[::-1]]), window.about)])
 
     def near(self, window: Window, uv: Array, closed: bool) -> list[tuple[Array, bool]]:
@@ -210,15 +234,22 @@ class Strip:
         turn = self.period.around
         low, high = window.low - window.margin, window.high + window.margin
         found: list[tuple[Array, bool]] = []
-        first, last = np.ceil((low - uv[:, 0].max()) / turn), np.floor((high - uv[:, 0].min()) / turn)
+        first, last = (
+            np.ceil((low - uv[:, 0].max()) / turn),
+            np.floor((high - uv[:, 0].min()) / turn),
+        )
         for k in range(int(first), int(last) + 1):
             line = uv + np.array([k * turn, 0.0])
             if closed:
                 found.append((line, True))
                 continue
             within = (line[:, 0] >= low) & (line[:, 0] <= high)
-            edge = within[1:] | within[:-1] | ((line[1:, 0] < low) & (line[:-1, 0] > high)) | (
-                (line[1:, 0] > high) & (line[:-1, 0] < low))
+            edge = (
+                within[1:]
+                | within[:-1]
+                | ((line[1:, 0] < low) & (line[:-1, 0] > high))
+                | ((line[1:, 0] > high) & (line[:-1, 0] < low))
+            )
             change = np.diff(np.r_[False, edge, False].astype(int))
             runs = zip(np.flatnonzero(change > 0), np.flatnonzero(change < 0))
             found += [(line[a : b + 1], False) for a, b in runs]
@@ -235,7 +266,9 @@ class Strip:
         return margin * abs(self.period.apex), count
 
 
-def parts(rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: Period) -> tuple[Strip | Region, ...]:
+def parts(
+    rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: Period
+) -> tuple[Strip | Region, ...]:
     """Strips and plane regions that borders bound: (u, v) of those that go round with their sense, and of closed ones."""
     begun = [_begun(ring, sense, period.around) for ring, sense in rounds]
     order = sorted(begun, key=lambda item: float(item[0][:, 1].mean()))
@@ -290,7 +323,9 @@ def _within(strip: Strip, hole: Array) -> bool:
 
 def _box(low: float, high: float, bottom: float, top: float) -> Array:
     margin = 1.0 + top - bottom
-    return np.array([[low, bottom - margin], [high, bottom - margin], [high, top + margin], [low, top + margin]])
+    return np.array(
+        [[low, bottom - margin], [high, bottom - margin], [high, top + margin], [low, top + margin]]
+    )
 
 
 def _boxed(region: Region, low: float, high: float) -> list[Array]:

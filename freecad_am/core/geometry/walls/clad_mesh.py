@@ -27,7 +27,9 @@ def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label
     wall = mesh_wall(points, triangles, OF_SPACING * spacing, label, 0.0)
     if not len(wall.mesh.border_edges):
         raise InputError(
-            "NO_FACES", label, "it is a closed mesh, which has no faces to choose; cut out of it what is to be covered "
+            "NO_FACES",
+            label,
+            "it is a closed mesh, which has no faces to choose; cut out of it what is to be covered "
             "(Mesh, Cutting), or take the file that it was made of",
         )
     front = _faces_as(points, triangles, wall)
@@ -38,6 +40,8 @@ def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label
 def _faces_as(points: Array, triangles: Index, wall: MeshWall) -> bool:
     """Whether a wall faces the way that most of the mesh does which it was made of."""
     given, made = Mesh(points, triangles), wall.mesh
-    near = cKDTree(points[triangles].mean(axis=1)).query(wall.vertices[wall.triangles].mean(axis=1))[1]
+    near = cKDTree(points[triangles].mean(axis=1)).query(
+        wall.vertices[wall.triangles].mean(axis=1)
+    )[1]
     units = given.area_vectors[near] / np.maximum(given.areas[near], 1e-300)[:, None]
     return float(dot(made.area_vectors, units).sum()) > 0.0

@@ -19,7 +19,10 @@ TOUCH = 0.05  # mm; a wall that ends this short of its substrate stands on it
 STEPS = 40
 CORNER = np.radians(0.1)  # rad; smaller turns of the substrate are smooth joints
 CLOSE = 0.3  # of the wall's typical edge; of nearer points of a chain one is enough
-ROUNDS, SAGITTAS = 8, 1.2  # of points added between others; what a smooth curve may be off a facet, in its sagittas
+ROUNDS, SAGITTAS = (
+    8,
+    1.2,
+)  # of points added between others; what a smooth curve may be off a facet, in its sagittas
 WITHIN, ON_GROUND = 1e-5, 1e-6  # mm between the points of a chain and both surfaces, and at them
 # of each arc; where a curvature jumps within it, its middle may be right by chance
 THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
@@ -36,7 +39,9 @@ def levels(wall: PatchWall, ground: Ground) -> Array:
     return value
 
 
-def first_curves(wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim, ...]) -> tuple[list[FirstCurve], float]:
+def first_curves(
+    wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim, ...]
+) -> tuple[list[FirstCurve], float]:
     """The chains between the negative and the other values (n,) of the wall's vertices, and how far they leave wall or
     ground between the points, mm: by about WITHIN, on a ground of triangles by what they stand for.
 
@@ -54,7 +59,9 @@ def first_curves(wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim,
     return found, off
 
 
-def _curve(wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ...]) -> tuple[FirstCurve | None, float]:
+def _curve(
+    wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ...]
+) -> tuple[FirstCurve | None, float]:
     points = thinned(line.points, line.closed, CLOSE * wall.mesh.typical_edge)
     points, piece = _converged(wall, ground, points)
     if not line.closed:
@@ -86,7 +93,9 @@ def _refined(wall: PatchWall, ground: Ground, first: FirstCurve) -> tuple[FirstC
     for _ in range(ROUNDS + 4):
         curve = first.curve()
         inner = curve.at((curve.w[:-1, None] + curve.span[:, None] * THIRDS).ravel())[0]
-        apart = np.maximum(np.linalg.norm(wall.project(inner)[0] - inner, axis=1), _off(ground, inner))
+        apart = np.maximum(
+            np.linalg.norm(wall.project(inner)[0] - inner, axis=1), _off(ground, inner)
+        )
         off = apart.reshape(-1, len(THIRDS)).max(axis=1)
         bad = np.flatnonzero((off > WITHIN) & (curve.span > 1e-6 * curve.period))
         if not len(bad):
@@ -101,8 +110,10 @@ def _refined(wall: PatchWall, ground: Ground, first: FirstCurve) -> tuple[FirstC
             break
         at, points, slope = bad[sound] + 1, points[sound], slope[sound]
         first = FirstCurve(
-            np.insert(first.points, at, points, axis=0), np.insert(first.into, at, slope, axis=0),
-            np.insert(first.out, at, slope, axis=0), first.closed,
+            np.insert(first.points, at, points, axis=0),
+            np.insert(first.into, at, slope, axis=0),
+            np.insert(first.out, at, slope, axis=0),
+            first.closed,
         )
     return first, float(max(off.max(), _off(ground, first.points).max()))
 
@@ -117,7 +128,9 @@ def _off(ground: Ground, points: Array) -> Array:
     return np.asarray(np.linalg.norm(points - ground.located(points)[0], axis=1))
 
 
-def _converged(wall: PatchWall, ground: Ground, points: Array, level: Array | float = 0.0) -> tuple[Array, Index]:
+def _converged(
+    wall: PatchWall, ground: Ground, points: Array, level: Array | float = 0.0
+) -> tuple[Array, Index]:
     """Points moved within the wall onto the ground, or `level` (k,) mm above it, and the piece of it that each lies on."""
     points, normal = wall.project(points)
     piece = ground.located(points)[2]
@@ -136,7 +149,9 @@ def _converged(wall: PatchWall, ground: Ground, points: Array, level: Array | fl
 
 def _on_rim(point: Array, rims: tuple[Rim, ...], ground: Ground) -> Array:
     """The place on the nearest rim at which it meets the ground; the point as it is where there is none."""
-    best = min(rims, key=lambda rim: float(np.linalg.norm(rim.points - point, axis=1).min()), default=None)
+    best = min(
+        rims, key=lambda rim: float(np.linalg.norm(rim.points - point, axis=1).min()), default=None
+    )
     if best is None or len(best.points) < 4:
         return point
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(best.points, axis=0), axis=1))]
@@ -175,7 +190,9 @@ def _with_corners(
         on_wall, normal = wall.project(p)
         (foot_a, up_a), (foot_b, up_b) = ground.on(one, p), ground.on(other, p)
         system = np.stack([normal, up_a, up_b], axis=1)
-        gaps = np.stack([dot(on_wall - p, normal), dot(foot_a - p, up_a), dot(foot_b - p, up_b)], axis=1)
+        gaps = np.stack(
+            [dot(on_wall - p, normal), dot(foot_a - p, up_a), dot(foot_b - p, up_b)], axis=1
+        )
         flat = np.linalg.norm(np.cross(up_a, up_b), axis=1) < CORNER
         system[flat] = np.eye(3)
         singular = np.abs(np.linalg.det(system)) < 1e-6
@@ -188,7 +205,9 @@ def _with_corners(
             break
     span = np.linalg.norm(points[at] - points[following[at]], axis=1)
     kept = ~flat & (np.linalg.norm(p - middle, axis=1) < 2.0 * span + 1e-9)
-    if ground.facets and kept.any():  # planes of facets that are not neighbours meet above the solid
+    if (
+        ground.facets and kept.any()
+    ):  # planes of facets that are not neighbours meet above the solid
         kept[kept] = np.abs(ground.signed(p[kept])) < 1e-5
     key = np.r_[np.arange(count), at[kept] + 0.5]
     order = np.argsort(key, kind="stable")
@@ -197,7 +216,9 @@ def _with_corners(
     return np.vstack([points, p[kept]])[order], before[order], after[order], edge[order]
 
 
-def _ordered(points: Array, into: Array, out: Array, edge: Mask, closed: bool) -> tuple[Array, Array, Array]:
+def _ordered(
+    points: Array, into: Array, out: Array, edge: Mask, closed: bool
+) -> tuple[Array, Array, Array]:
     """Without the points that lie past a corner they should come before, or on it."""
     keep = np.ones(len(points), dtype=bool)
     scale = float(np.median(np.linalg.norm(np.diff(points, axis=0), axis=1)))
@@ -217,7 +238,13 @@ def _ordered(points: Array, into: Array, out: Array, edge: Mask, closed: bool) -
 
 
 def _rounded(
-    wall: PatchWall, ground: Ground, points: Array, into: Array, out: Array, edge: Mask, closed: bool
+    wall: PatchWall,
+    ground: Ground,
+    points: Array,
+    into: Array,
+    out: Array,
+    edge: Mask,
+    closed: bool,
 ) -> tuple[FirstCurve, float]:
     """A smooth curve from one edge between facets to the next where their turns are small, with the exact corners elsewhere.
 
@@ -240,7 +267,9 @@ def _rounded(
                 continue
             span = (length[end] - length[start]) % (gap.sum() if closed else np.inf)
             if span < reach:
-                inner = np.arange(start + 1, end if end > start else end + len(points)) % len(points)
+                inner = np.arange(start + 1, end if end > start else end + len(points)) % len(
+                    points
+                )
                 keep[inner] = False
     points, sharp = points[keep], sharp[keep]
     points, into, out = splined(points, sharp, closed)
@@ -265,13 +294,17 @@ def _rounded(
     return FirstCurve(points, into, out, closed), off
 
 
-def _apart(points: Array, into: Array, out: Array, edge: Mask, closed: bool) -> tuple[Array, Array, Array, Mask]:
+def _apart(
+    points: Array, into: Array, out: Array, edge: Mask, closed: bool
+) -> tuple[Array, Array, Array, Mask]:
     """The columns without points that nearly coincide with the one before."""
     scale = float(np.median(np.linalg.norm(np.diff(points, axis=0), axis=1)))
     keep = np.ones(len(points), dtype=bool)
     last = points[0]
     for k in range(1, len(points)):
-        if np.linalg.norm(points[k] - last) < 0.2 * scale and not (not closed and k == len(points) - 1):
+        if np.linalg.norm(points[k] - last) < 0.2 * scale and not (
+            not closed and k == len(points) - 1
+        ):
             keep[k] = False
         else:
             last = points[k]

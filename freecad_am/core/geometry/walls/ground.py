@@ -37,7 +37,9 @@ class ExactGround:
 
     facets = False
 
-    def __init__(self, solid: SolidMesh, face: Index, patches: tuple[Patch, ...], chord: float, edge: float) -> None:
+    def __init__(
+        self, solid: SolidMesh, face: Index, patches: tuple[Patch, ...], chord: float, edge: float
+    ) -> None:
         self.face, self.patches, self.near = face, patches, 3.0 * chord
         self.search = solid.searched(edge)
 
@@ -137,7 +139,9 @@ def distances(points: Array, ground: Ground, near: float) -> Array:
     size = float(np.ptp(points, axis=0).max(initial=0.0)) / 4.0
     while len(open_) and size > near:
         cube = np.floor((points[open_] - points.min(axis=0)) / size).astype(np.intp)
-        _, one, of = np.unique(cube @ np.array([1, 1 << 20, 1 << 40]), return_index=True, return_inverse=True)
+        _, one, of = np.unique(
+            cube @ np.array([1, 1 << 20, 1 << 40]), return_index=True, return_inverse=True
+        )
         asked = open_[one]
         found, of = ground.signed(points[asked]), np.ravel(of)
         away = np.linalg.norm(points[open_] - points[asked][of], axis=1)

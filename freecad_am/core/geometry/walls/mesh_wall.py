@@ -29,8 +29,12 @@ from .surface import dot
 
 MAX_TRIANGLES = 1_500_000  # triangles
 COLLAPSE = 0.55  # of the longest edge; shorter ones are drawn together
-CREASE = np.cos(np.radians(20.0))  # facets that meet at more are areas of their own, whose edges stay where they are
-PLANE = np.cos(np.radians(3.0))  # and for facets larger than the mesh's edges where it would run across such meetings
+CREASE = np.cos(
+    np.radians(20.0)
+)  # facets that meet at more are areas of their own, whose edges stay where they are
+PLANE = np.cos(
+    np.radians(3.0)
+)  # and for facets larger than the mesh's edges where it would run across such meetings
 ACROSS = 0.05  # of the length of an edge, mm off the facets from which on this is looked at
 FOLD = 0.25  # rad between facets: a bend whose radius is less than four edges, which they cannot follow
 PIECE = 1000  # places done together; bounds the memory
@@ -54,7 +58,11 @@ class MeshWall(PatchWall):
     @property
     def smoothing(self) -> float:
         """How far, mm, the smooth surface is off the mesh, at most."""
-        at_vertices = 0.0 if self.samples is None else float(np.linalg.norm(self.vertices - self.samples, axis=1).max())
+        at_vertices = (
+            0.0
+            if self.samples is None
+            else float(np.linalg.norm(self.vertices - self.samples, axis=1).max())
+        )
         return max(at_vertices, self.between)
 
     @property
@@ -84,30 +92,61 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
     read = _read(points, triangles, label, mend)
     facets = SolidMesh(read.vertices, read.triangles).searched(edge)
     wall = _meshed(read, _areas(read.vertices, read.triangles), facets, edge, label)
-    if wall.between > ACROSS * edge:  # edges of the mesh run across a valley or a ridge of large facets
+    if (
+        wall.between > ACROSS * edge
+    ):  # edges of the mesh run across a valley or a ridge of large facets
         other = _meshed(read, _areas(read.vertices, read.triangles, edge), facets, edge, label)
         wall = other if other.between < wall.between else wall
     off = wall.smoothing
     if off <= REPORTED_FROM_MM or wall.samples is None:
         return wall
     farthest = wall.samples[np.argmax(np.linalg.norm(wall.vertices - wall.samples, axis=1))]
-    return replace(wall, issues=(*wall.issues, Issue(
-        NOTE, "SMOOTHED", Text("{}: where facets meet at an angle the wall runs smoothly, up to {} mm off them, at {}",
-            label, deviation(off), place(farthest)),
-    )))
+    return replace(
+        wall,
+        issues=(
+            *wall.issues,
+            Issue(
+                NOTE,
+                "SMOOTHED",
+                Text(
+                    "{}: where facets meet at an angle the wall runs smoothly, up to {} mm off them, at {}",
+                    label,
+                    deviation(off),
+                    place(farthest),
+                ),
+            ),
+        ),
+    )
 
 
 def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) -> MeshWall:
     """The smooth wall through facets, whose areas `owner` (m,) tells apart. InputError TOO_FINE."""
-    made = refined(read.vertices, read.triangles, owner, edge, lambda middles, adjacent, ends: middles, MAX_TRIANGLES)
+    made = refined(
+        read.vertices,
+        read.triangles,
+        owner,
+        edge,
+        lambda middles, adjacent, ends: middles,
+        MAX_TRIANGLES,
+    )
     if made is None:
         made = refined(
-            read.vertices, read.triangles, owner, edge, lambda middles, adjacent, ends: middles, MAX_TRIANGLES, turned=False
+            read.vertices,
+            read.triangles,
+            owner,
+            edge,
+            lambda middles, adjacent, ends: middles,
+            MAX_TRIANGLES,
+            turned=False,
         )
     if made is None:
         raise InputError(
-            "TOO_FINE", label, "with edges of {:.3g} mm, a layer height, the mesh of the wall has more than {} triangles; "
-            "use a larger layer height, or deposit the wall in parts", edge, MAX_TRIANGLES,
+            "TOO_FINE",
+            label,
+            "with edges of {:.3g} mm, a layer height, the mesh of the wall has more than {} triangles; "
+            "use a larger layer height, or deposit the wall in parts",
+            edge,
+            MAX_TRIANGLES,
         )
     vertices, corners, owner = made
     corners, owner = collapsed(vertices, corners, owner, COLLAPSE * edge, edge)
@@ -122,7 +161,18 @@ def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) 
     pieces = np.array_split(middles, max(1, len(middles) // PIECE))
     between = max(float(facets.away(some).max()) for some in pieces)
     return MeshWall(
-        smooth, wall.triangles, wall.patch, wall.uv, (), (), wall.behind, (), label, (), read.issues, samples=samples,
+        smooth,
+        wall.triangles,
+        wall.patch,
+        wall.uv,
+        (),
+        (),
+        wall.behind,
+        (),
+        label,
+        (),
+        read.issues,
+        samples=samples,
         between=between,
     )
 
@@ -130,14 +180,27 @@ def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) 
 def _bare(samples: Array, corners: Index, label: str, issues: tuple[Issue, ...]) -> MeshWall:
     count = len(corners)
     return MeshWall(
-        samples, corners, np.zeros(count, dtype=np.intp), np.zeros((count, 3, 2)), (), (),
-        np.zeros(len(samples), dtype=bool), (), label, (), issues,
+        samples,
+        corners,
+        np.zeros(count, dtype=np.intp),
+        np.zeros((count, 3, 2)),
+        (),
+        (),
+        np.zeros(len(samples), dtype=bool),
+        (),
+        label,
+        (),
+        issues,
     )
 
 
 def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
     if not len(triangles) or not np.isfinite(points).all():
-        raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are not numbers; export it again")
+        raise InputError(
+            "BAD_FILE",
+            label,
+            "the mesh has no triangles, or points that are not numbers; export it again",
+        )
     found = connected_triangles(points, triangles, label, mend)
     mended = list(found.mended)
     crossed = crossings(found.vertices, found.triangles, WELDS[-1])
@@ -146,14 +209,22 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
         plain = uncrossed(found.vertices, found.triangles, crossed.pairs, mend, WELDS[-1])
         if plain is None:
             raise InputError(
-                "SELF_INTERSECTION", label, "the wall cuts itself: {} pairs of its triangles cross, for instance at {}; "
+                "SELF_INTERSECTION",
+                label,
+                "the wall cuts itself: {} pairs of its triangles cross, for instance at {}; "
                 "repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with holes of up to "
-                "strategy.mend closed", len(crossed.pairs), at,
+                "strategy.mend closed",
+                len(crossed.pairs),
+                at,
             )
         size = max((hole.size for hole in plain.closed), default=0.0)
         mended.append(
-            Text("{} triangles that cross were cut out, as at {}, which left holes of up to {:.3g} mm across", plain.cut_out,
-                at, size)
+            Text(
+                "{} triangles that cross were cut out, as at {}, which left holes of up to {:.3g} mm across",
+                plain.cut_out,
+                at,
+                size,
+            )
         )
         found = found._replace(vertices=plain.vertices, triangles=plain.triangles)
     return _Read(found.vertices, found.triangles, (*found.issues, *mended_issues(label, mended)))
@@ -166,11 +237,17 @@ def _areas(vertices: Array, triangles: Index, edge: float = np.inf) -> Index:
     normal = doubled_areas(corner)
     size = np.linalg.norm(normal, axis=1)
     normal /= np.maximum(size, 1e-300)[:, None]
-    large = size > edge * np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)  # the least of its heights
+    large = size > edge * np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(
+        axis=1
+    )  # the least of its heights
     edges = Edges(triangles)
     one, other = edges.faces[edges.count == 2].T
-    smooth: Mask = dot(normal[one], normal[other]) > np.where(large[one] & large[other], PLANE, CREASE)
+    smooth: Mask = dot(normal[one], normal[other]) > np.where(
+        large[one] & large[other], PLANE, CREASE
+    )
     count = len(triangles)
-    links = coo_matrix((np.ones(int(smooth.sum())), (one[smooth], other[smooth])), shape=(count, count))
+    links = coo_matrix(
+        (np.ones(int(smooth.sum())), (one[smooth], other[smooth])), shape=(count, count)
+    )
     areas: Index = connected_components(links, directed=False)[1].astype(np.intp)
     return areas

@@ -9,12 +9,17 @@ import numpy as np
 from ...types import Array, Index
 
 
-def derivatives(knots: tuple[Array, Array], poles: Array, u: Array, v: Array) -> tuple[Array, Array, Array]:
+def derivatives(
+    knots: tuple[Array, Array], poles: Array, u: Array, v: Array
+) -> tuple[Array, Array, Array]:
     """Points and derivatives along u and v, each (n, 3), at the parameters u, v (n,).
 
     knots: of both directions, with the ends repeated. poles: (k, l, 4) as w x, w y, w z, w.
     """
-    inside = [np.clip(at, *bounds(knot, poles.shape[axis])) for axis, (knot, at) in enumerate(zip(knots, (u, v)))]
+    inside = [
+        np.clip(at, *bounds(knot, poles.shape[axis]))
+        for axis, (knot, at) in enumerate(zip(knots, (u, v)))
+    ]
     point, along, around, twist = _rational(knots, poles, *inside)
     du, dv = (u - inside[0])[:, None], (v - inside[1])[:, None]
     if du.any() or dv.any():
@@ -29,7 +34,9 @@ def bounds(knots: Array, count: int) -> tuple[float, float]:
     return float(knots[degree]), float(knots[count])
 
 
-def _rational(knots: tuple[Array, Array], poles: Array, u: Array, v: Array) -> tuple[Array, Array, Array, Array]:
+def _rational(
+    knots: tuple[Array, Array], poles: Array, u: Array, v: Array
+) -> tuple[Array, Array, Array, Array]:
     first_u, basis_u = _basis(knots[0], poles.shape[0], u)
     first_v, basis_v = _basis(knots[1], poles.shape[1], v)
     rows = first_u[:, None] + np.arange(basis_u.shape[2])
@@ -41,7 +48,12 @@ def _rational(knots: tuple[Array, Array], poles: Array, u: Array, v: Array) -> t
     point = all_[:, 0, 0, :3] / weight
     along = (all_[:, 1, 0, :3] - all_[:, 1, 0, 3:] * point) / weight
     around = (all_[:, 0, 1, :3] - all_[:, 0, 1, 3:] * point) / weight
-    twist = (all_[:, 1, 1, :3] - all_[:, 1, 1, 3:] * point - all_[:, 1, 0, 3:] * around - all_[:, 0, 1, 3:] * along) / weight
+    twist = (
+        all_[:, 1, 1, :3]
+        - all_[:, 1, 1, 3:] * point
+        - all_[:, 1, 0, 3:] * around
+        - all_[:, 0, 1, 3:] * along
+    ) / weight
     return point, along, around, twist
 
 
@@ -54,7 +66,10 @@ def _basis(knots: Array, count: int, at: Array) -> tuple[Index, Array]:
     lower = values
     for p in range(1, degree + 1):
         steps = np.arange(1, p + 1)
-        left, right = at[:, None] - knots[span[:, None] + 1 - steps], knots[span[:, None] + steps] - at[:, None]
+        left, right = (
+            at[:, None] - knots[span[:, None] + 1 - steps],
+            knots[span[:, None] + steps] - at[:, None],
+        )
         share = values / (right + left[:, ::-1])
         lower = values
         values = np.zeros((len(at), p + 1))

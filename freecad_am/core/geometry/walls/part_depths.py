@@ -48,4 +48,8 @@ class PartDepths:
 
     def outside(self, width: float) -> float:
         """Volume of beads of a width, mm, that the part does not reach to, mm3."""
-        return self.area * float(np.maximum(width - self.thickness, 0.0).mean()) if len(self.thickness) else 0.0
+        return (
+            self.area * float(np.maximum(width - self.thickness, 0.0).mean())
+            if len(self.thickness)
+            else 0.0
+        )

@@ -14,7 +14,14 @@ from ..columns import columns
 from . import nurbs
 from .surface import dot
 
-PLANE, CYLINDER, CONE, SPHERE, TORUS, SPLINE = "plane", "cylinder", "cone", "sphere", "torus", "spline"
+PLANE, CYLINDER, CONE, SPHERE, TORUS, SPLINE = (
+    "plane",
+    "cylinder",
+    "cone",
+    "sphere",
+    "torus",
+    "spline",
+)
 STEPS = 40
 STILL = 1e-10  # mm; a step that is shorter ends the search of a nearest point
 SAMPLES = 6  # per span of knots, for the start of that search
@@ -56,8 +63,13 @@ class Patch:
             radius, slope = self.sizes
             along = (reach - radius) * np.sin(slope) + z * np.cos(slope)
             apex = -radius / np.sin(slope)
-            return np.stack([azimuth, np.maximum(along, apex) if slope > 0.0 else np.minimum(along, apex)], axis=1)
-        return np.stack([azimuth, np.arctan2(z, reach - (self.sizes[0] if self.kind == TORUS else 0.0))], axis=1)
+            return np.stack(
+                [azimuth, np.maximum(along, apex) if slope > 0.0 else np.minimum(along, apex)],
+                axis=1,
+            )
+        return np.stack(
+            [azimuth, np.arctan2(z, reach - (self.sizes[0] if self.kind == TORUS else 0.0))], axis=1
+        )
 
     def at(self, uv: Array) -> tuple[Array, Array]:
         """Points and unit normals to the outer side, each (n, 3), at (u, v) (n, 2)."""
@@ -67,13 +79,17 @@ class Patch:
         u, v = columns(uv)
         zero = np.zeros_like(u)
         if self.kind == PLANE:
-            return self._placed(np.stack([u, v, zero], axis=1), np.stack([zero, zero, zero + 1.0], axis=1))
+            return self._placed(
+                np.stack([u, v, zero], axis=1), np.stack([zero, zero, zero + 1.0], axis=1)
+            )
         out, axis = np.stack([np.cos(u), np.sin(u), zero], axis=1), np.array([0.0, 0.0, 1.0])
         if self.kind == CYLINDER:
             return self._placed(self.sizes[0] * out + v[:, None] * axis, out)
         if self.kind == CONE:
             radius, slope = self.sizes
-            point = (radius + v * np.sin(slope))[:, None] * out + (v * np.cos(slope))[:, None] * axis
+            point = (radius + v * np.sin(slope))[:, None] * out + (v * np.cos(slope))[
+                :, None
+            ] * axis
             return self._placed(point, np.cos(slope) * out - np.sin(slope) * axis)
         normal = np.cos(v)[:, None] * out + np.sin(v)[:, None] * axis
         if self.kind == SPHERE:
@@ -164,7 +180,9 @@ class Patch:
     def _spline_normal(self, uv: Array, cross: Array) -> Array:
         """Unit normals; where the surface is pinched to a point, those a little way inside."""
         length = np.linalg.norm(cross, axis=1)
-        thin = np.flatnonzero(length < 1e-9 * max(float(length.max(initial=0.0)), self._typical_area))
+        thin = np.flatnonzero(
+            length < 1e-9 * max(float(length.max(initial=0.0)), self._typical_area)
+        )
         if len(thin):
             middle = np.array([0.5 * (low + high) for low, high in self.bounds])
             _, along, around = self._derivatives(uv[thin] + 1e-4 * (middle - uv[thin]))

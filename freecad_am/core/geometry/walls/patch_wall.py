@@ -43,7 +43,9 @@ class FirstCurve:
         if self.closed:
             points, into, out = (np.vstack([column, column[:1]]) for column in (points, into, out))
         chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        bow = np.arccos(np.clip(dot(out[:-1], into[1:]), -1.0, 1.0))  # the arcs are about circular: as long as they are
+        bow = np.arccos(
+            np.clip(dot(out[:-1], into[1:]), -1.0, 1.0)
+        )  # the arcs are about circular: as long as they are
         w = np.r_[0.0, np.cumsum(chord / np.sinc(0.5 * np.minimum(bow, 1.0) / np.pi))]
         return SpaceCurve(w, points, into, out, self.closed)
 
@@ -102,7 +104,11 @@ class PatchWall:
     @property
     def symmetry_normal(self) -> Array | None:
         """Unit normal (3,) of the plane of the bend of a torus that closes around; other walls are not known to have one."""
-        whole = len(self.patches) == 1 and self.patches[0].kind == TORUS and all(rim.closed for rim in self.rims)
+        whole = (
+            len(self.patches) == 1
+            and self.patches[0].kind == TORUS
+            and all(rim.closed for rim in self.rims)
+        )
         return np.array(self.patches[0].frame[:3, 2]) if whole else None
 
     @property
@@ -153,7 +159,9 @@ class PatchWall:
         count = min(NEAREST, len(self.triangles))
         near = np.asarray(self._middles.query(points, k=count)[1]).reshape(len(points), count)
         corner = self._corners[near]
-        distance, share = closest(corner[:, :, 0], corner[:, :, 1], corner[:, :, 2], points[:, None])
+        distance, share = closest(
+            corner[:, :, 0], corner[:, :, 1], corner[:, :, 2], points[:, None]
+        )
         best = np.argmin(distance, axis=1)
         row = np.arange(len(points))
         return near[row, best].astype(np.intp), share[row, best]
@@ -170,16 +178,25 @@ class PatchWall:
         if not len(near):
             return patch
         p = points[near]
-        arc = np.asarray(joints.tree.query(p, k=min(3, len(joints.start)))[1]).reshape(len(near), -1)
+        arc = np.asarray(joints.tree.query(p, k=min(3, len(joints.start)))[1]).reshape(
+            len(near), -1
+        )
         start, end = joints.start[arc], joints.end[arc]
-        t = np.clip(dot(p[:, None] - start, end - start) / np.maximum(dot(end - start, end - start), 1e-300), 0.0, 1.0)
+        t = np.clip(
+            dot(p[:, None] - start, end - start)
+            / np.maximum(dot(end - start, end - start), 1e-300),
+            0.0,
+            1.0,
+        )
         off = np.linalg.norm(start + t[..., None] * (end - start) - p[:, None], axis=-1)
         row, best = np.arange(len(near)), np.argmin(off, axis=1)
         arc, t = arc[row, best], t[row, best]
         for _ in range(3):
             at, slope, bend = joints.at(arc, t)
             rate = dot(slope, slope) - dot(p - at, bend)
-            t = np.clip(t + dot(p - at, slope) / np.maximum(rate, 0.1 * dot(slope, slope)), 0.0, 1.0)
+            t = np.clip(
+                t + dot(p - at, slope) / np.maximum(rate, 0.1 * dot(slope, slope)), 0.0, 1.0
+            )
         at, slope, _ = joints.at(arc, t)
         normal = (1.0 - t)[:, None] * joints.start_normal[arc] + t[:, None] * joints.end_normal[arc]
         left = dot(p - at, np.cross(normal, slope)) > 0.0
@@ -204,7 +221,9 @@ class PatchWall:
             return None
         edge = half[one]
         slopes = tangents(self.vertices, edge)
-        length = np.linalg.norm(self.vertices[edge[:, 1]] - self.vertices[edge[:, 0]], axis=1)[:, None]
+        length = np.linalg.norm(self.vertices[edge[:, 1]] - self.vertices[edge[:, 0]], axis=1)[
+            :, None
+        ]
         on_joint = np.zeros(len(self.vertices), dtype=bool)
         on_joint[edge] = True
         start, end = self.vertices[edge[:, 0]], self.vertices[edge[:, 1]]
@@ -215,8 +234,15 @@ class PatchWall:
                 normals[side, mine] = self.patches[k].at(self.patches[k].inverse(points[mine]))[1]
         touched: Mask = np.asarray(on_joint[self.triangles].any(axis=1))
         return _Joints(
-            start, end, slopes[:, 0] * length, slopes[:, 1] * length, normals[0], normals[1],
-            np.stack([owner[one], owner[other]], axis=1), cKDTree(0.5 * (start + end)), touched,
+            start,
+            end,
+            slopes[:, 0] * length,
+            slopes[:, 1] * length,
+            normals[0],
+            normals[1],
+            np.stack([owner[one], owner[other]], axis=1),
+            cKDTree(0.5 * (start + end)),
+            touched,
         )
 
 
@@ -237,7 +263,12 @@ class _Joints(NamedTuple):
     def at(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
         """Points, first and second derivatives (n, 3) of arcs at t in [0, 1]."""
         t = t[:, None]
-        start, end, a, b = self.start[arc], self.end[arc], self.start_slope[arc], self.end_slope[arc]
+        start, end, a, b = (
+            self.start[arc],
+            self.end[arc],
+            self.start_slope[arc],
+            self.end_slope[arc],
+        )
         chord = end - start
         square, cube = 3.0 * chord - 2.0 * a - b, a + b - 2.0 * chord
         slope = a + t * (2.0 * square + 3.0 * t * cube)

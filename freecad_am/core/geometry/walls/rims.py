@@ -33,7 +33,9 @@ def rims_of(wall: PatchWall) -> tuple[Rim, ...]:
     return tuple(found)
 
 
-def with_ends(wall: PatchWall, rims: tuple[Rim, ...], first: tuple[FirstCurve, ...], behind: Mask) -> tuple[Rim, ...]:
+def with_ends(
+    wall: PatchWall, rims: tuple[Rim, ...], first: tuple[FirstCurve, ...], behind: Mask
+) -> tuple[Rim, ...]:
     """The rims with the ends among them marked.
 
     A rim is an end unless it lies behind, an end of a first curve lies on it (a side), a first curve runs along it, or it
@@ -50,10 +52,19 @@ def with_ends(wall: PatchWall, rims: tuple[Rim, ...], first: tuple[FirstCurve, .
     for rim in rims:
         at = tree.query(rim.points)[1]
         open_ = ~behind[at]
-        side = any(np.linalg.norm(rim.points - end, axis=1).min() < near and _runs_on(rim, end, near) for end in starts)
+        side = any(
+            np.linalg.norm(rim.points - end, axis=1).min() < near and _runs_on(rim, end, near)
+            for end in starts
+        )
         start = open_.any() and float(distance[at][open_].mean()) < near
         rises = np.where(np.isfinite(inside[at]), distance[at] > inside[at] - 1e-9, True)
-        end = bool(open_.mean() > 0.5 and not side and not start and rises[open_].mean() > REACHED and beyond > 0.0)
+        end = bool(
+            open_.mean() > 0.5
+            and not side
+            and not start
+            and rises[open_].mean() > REACHED
+            and beyond > 0.0
+        )
         marked.append(replace(rim, end=end))
     return tuple(marked)
 

@@ -45,7 +45,9 @@ class SurfaceWall:
 
     def surface(self) -> Placed:
         """The wall as slicing wants it, in part coordinates."""
-        return Placed(own_surface(self.kind, self.sizes, self.u, self.v, self.table, self.period), self.frame)
+        return Placed(
+            own_surface(self.kind, self.sizes, self.u, self.v, self.table, self.period), self.frame
+        )
 
     @property
     def symmetry_normal(self) -> Array | None:
@@ -54,7 +56,11 @@ class SurfaceWall:
 
 
 def own_surface(
-    kind: str, sizes: tuple[float, ...], u: Array | None = None, v: Array | None = None, table: Array | None = None,
+    kind: str,
+    sizes: tuple[float, ...],
+    u: Array | None = None,
+    v: Array | None = None,
+    table: Array | None = None,
     period: float = 2.0 * np.pi,
 ) -> Surface:
     """The surface of a kind in its own frame, see `SurfaceWall`."""

@@ -92,5 +92,7 @@ class Tabulated:
         return inside, v, (u - inside)[..., None]
 
     def _evaluated(self, u: Array, v: Array, du: int, dv: int) -> Array:
-        values: Array = np.stack([spline.ev(u, v, dx=du, dy=dv) for spline in self._splines], axis=-1)
+        values: Array = np.stack(
+            [spline.ev(u, v, dx=du, dy=dv) for spline in self._splines], axis=-1
+        )
         return values

@@ -118,7 +118,9 @@ class CalibratedArm:
             if step % AGAIN == 0:
                 back[open_] = self._inverse_rates(q[open_], flange[left, :3, 3])
             rates = np.einsum("nij,nj->ni", back[open_], error)
-            q[open_] += rates / np.maximum(1.0, np.abs(rates).max(axis=1, keepdims=True))  # no more than 1 rad at a time
+            q[open_] += rates / np.maximum(
+                1.0, np.abs(rates).max(axis=1, keepdims=True)
+            )  # no more than 1 rad at a time
         q[~(off < SINGULAR)] = np.nan
         return q
 

@@ -70,7 +70,9 @@ class FiveAxis:
         axes = np.stack([self.placed(branch, points, station) for branch in turned])
         return Solutions(axes, np.stack([found.first_free, found.second_free], axis=1))
 
-    def locked(self, axis: int, at: Array | float, tools: Array, torch: Array) -> rotary_pair.Locked:
+    def locked(
+        self, axis: int, at: Array | float, tools: Array, torch: Array
+    ) -> rotary_pair.Locked:
         """Four axes: the turning axis `axis` (0 or 1) stands at an angle, the other brings the tools as near as it can."""
         first, second, source, target = self._pair(tools, torch)
         lock = rotary_pair.with_first_locked if axis == 0 else rotary_pair.with_second_locked
@@ -107,7 +109,12 @@ class FiveAxis:
         between = _product(rotations[first + 1 : second + 1])
         after = _product(rotations[second + 1 :]) @ self.chain.flange[:3, :3]
         source = tools @ (between @ after).T
-        return self.chain.directions[first], between @ self.chain.directions[second], source, before.T @ torch
+        return (
+            self.chain.directions[first],
+            between @ self.chain.directions[second],
+            source,
+            before.T @ torch,
+        )
 
 
 def _product(rotations: Array) -> Array:

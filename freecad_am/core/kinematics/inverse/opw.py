@@ -79,9 +79,11 @@ class OpwArm:
         reach = self.a1 + self.c2 * s2 + self.a2 * c23 + self.c3 * s23
         height = self.c1 + self.c2 * c2 - self.a2 * s23 + self.c3 * c23
         # the flange's axes in the forearm's frame, then about the elbow, then about axis 1
-        wrist = ((c4 * c5 * c6 - s4 * s6, -c4 * c5 * s6 - s4 * c6, c4 * s5),
-                 (s4 * c5 * c6 + c4 * s6, -s4 * c5 * s6 + c4 * c6, s4 * s5),
-                 (-s5 * c6, s5 * s6, c5))
+        wrist = (
+            (c4 * c5 * c6 - s4 * s6, -c4 * c5 * s6 - s4 * c6, c4 * s5),
+            (s4 * c5 * c6 + c4 * s6, -s4 * c5 * s6 + c4 * c6, s4 * s5),
+            (-s5 * c6, s5 * s6, c5),
+        )
         result = np.zeros(angles.shape[:-1] + (4, 4))
         for column in range(3):
             x, y, z = (wrist[row][column] for row in range(3))
@@ -114,7 +116,8 @@ class OpwArm:
         """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
         turned = np.asarray(q, float) * np.array(self.signs, float) - np.array(self.offsets)
         bent: Array = np.minimum(
-            np.abs(np.sin(turned[..., 4])), np.abs(np.sin(turned[..., 2] + np.arctan2(self.a2, self.c3)))
+            np.abs(np.sin(turned[..., 4])),
+            np.abs(np.sin(turned[..., 2] + np.arctan2(self.a2, self.c3))),
         )
         return bent
 

@@ -117,7 +117,10 @@ def _side(arm: OpwArm, centre: Array, distance: tuple[Array, Array], back: int) 
     if arm.b == 0.0:
         sine, cosine = centre[1] / signed, centre[0] / signed
     else:
-        sine, cosine = centre[1] * signed - centre[0] * arm.b, centre[0] * signed + centre[1] * arm.b
+        sine, cosine = (
+            centre[1] * signed - centre[0] * arm.b,
+            centre[0] * signed + centre[1] * arm.b,
+        )
         sine /= squared
         cosine /= squared
     return _Side(sine, cosine, signed - arm.a1, centre[2] - arm.c1)
@@ -162,7 +165,9 @@ def _triangle(arm: OpwArm, side: _Side) -> tuple[_Triangle, Mask | None]:
     return triangle, lost if any_lost else None
 
 
-def _arm(arm: OpwArm, side: _Side, triangle: _Triangle, left: bool, angles: Array) -> tuple[Array, Array]:
+def _arm(
+    arm: OpwArm, side: _Side, triangle: _Triangle, left: bool, angles: Array
+) -> tuple[Array, Array]:
     """Write axes 2 and 3 of one elbow; give sine and cosine of the angle of axis 4 from the vertical."""
     inclined = math.atan2(arm.a2, arm.c3)
     ahead, above = side.ahead, side.above
@@ -200,7 +205,11 @@ def _about_axis_1(side: _Side, rows: Array) -> tuple[Array, Array]:
 
 
 def _wrist(
-    arm: OpwArm, height: Array, flange: tuple[Array, Array], direction: tuple[Array, Array], angles: Array
+    arm: OpwArm,
+    height: Array,
+    flange: tuple[Array, Array],
+    direction: tuple[Array, Array],
+    angles: Array,
 ) -> None:
     """Write axes 4 to 6 with opw's q5 >= 0."""
     sine, cosine = direction
@@ -243,7 +252,9 @@ def _half_turn(angle: Array, out: Array) -> None:
     np.subtract(angle, np.copysign(math.pi, angle), out=out)
 
 
-def _to_machine(arm: OpwArm, axis: int, angle: Array, low: float = -math.pi, width: float = 2.0 * math.pi) -> None:
+def _to_machine(
+    arm: OpwArm, axis: int, angle: Array, low: float = -math.pi, width: float = 2.0 * math.pi
+) -> None:
     """From opw's angle, in [low, low + width], to the machine's in [-pi, pi], in place."""
     sign, shift = arm.signs[axis], arm.offsets[axis]
     if shift and abs(abs(shift) - math.pi) < 1e-12 and width > math.pi:

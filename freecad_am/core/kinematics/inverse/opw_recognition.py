@@ -41,8 +41,12 @@ def rooted(chain: Chain) -> tuple[Chain, Array]:
     up = axis if axis[2] >= 0.0 or abs(axis[2]) < STRAIGHT else -axis
     new = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), up), foot)
     old = frames.inverse(new)
-    return Chain(np.concatenate((old @ chain.origins[:1], chain.origins[1:])), chain.directions, chain.flange,
-                 chain.sliding), old
+    return Chain(
+        np.concatenate((old @ chain.origins[:1], chain.origins[1:])),
+        chain.directions,
+        chain.flange,
+        chain.sliding,
+    ), old
 
 
 def track_of(chain: Chain) -> int:
@@ -59,32 +63,61 @@ def recognise(chain: Chain) -> OpwArm:
     if chain.axes != 6 or chain.sliding.any():
         slides = int(chain.sliding.sum())
         if track_of(chain):
-            raise refused("its first axis slides and carries the six that turn, as a track does",
-                          "let the machine begin with the robot, and name the track in `cell.external` with `carries: "
-                          "robot`")
-        raise refused(Text("it has {} axes, {} of which slide", chain.axes, slides),
-                      "choose a robot with six that turn; those beside it are `cell.external`")
+            raise refused(
+                "its first axis slides and carries the six that turn, as a track does",
+                "let the machine begin with the robot, and name the track in `cell.external` with `carries: "
+                "robot`",
+            )
+        raise refused(
+            Text("it has {} axes, {} of which slide", chain.axes, slides),
+            "choose a robot with six that turn; those beside it are `cell.external`",
+        )
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)
     arm = _arm(at_rest, centre)
     q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
     off = np.abs(arm.forward(q) - chain.forward(q))
     if off[:, :3, 3].max() > POSITION or off[:, :3, :3].max() > ROTATION:
-        raise refused(Text("its closed form is {:.3g} mm and {:.2g} (entries of the rotation) off", off[:, :3, 3].max(),
-                           off[:, :3, :3].max()), "give the geometry with more digits")
+        raise refused(
+            Text(
+                "its closed form is {:.3g} mm and {:.2g} (entries of the rotation) off",
+                off[:, :3, 3].max(),
+                off[:, :3, :3].max(),
+            ),
+            "give the geometry with more digits",
+        )
     return arm
 
 
 def chain_of(arm: OpwArm) -> Chain:
     """The chain of joint frames of a closed form; its joint frames are parallel to base_link where the angles of `opw`
     are zero."""
-    steps = np.array([
-        (0.0, 0.0, 0.0), (arm.a1, arm.b, arm.c1), (0.0, 0.0, arm.c2), (arm.a2, 0.0, arm.c3), (0.0,) * 3, (0.0,) * 3,
-    ])
-    axes = np.array([(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+    steps = np.array(
+        [
+            (0.0, 0.0, 0.0),
+            (arm.a1, arm.b, arm.c1),
+            (0.0, 0.0, arm.c2),
+            (arm.a2, 0.0, arm.c3),
+            (0.0,) * 3,
+            (0.0,) * 3,
+        ]
+    )
+    axes = np.array(
+        [
+            (0.0, 0.0, 1.0),
+            (0.0, 1.0, 0.0),
+            (0.0, 1.0, 0.0),
+            (0.0, 0.0, 1.0),
+            (0.0, 1.0, 0.0),
+            (0.0, 0.0, 1.0),
+        ]
+    )
     turns = frames.rotation_about(axes, -np.array(arm.offsets))
-    return Chain(frames.pose(turns, steps), axes * np.array(arm.signs, float)[:, None], frames.pose(
-        np.eye(3), (0.0, 0.0, arm.c4)))
+    return Chain(
+        frames.pose(turns, steps),
+        axes * np.array(arm.signs, float)[:, None],
+        frames.pose(np.eye(3), (0.0, 0.0, arm.c4)),
+    )
 
 
 def _wrist_centre(at_rest: JointFrames) -> Array:
@@ -94,15 +127,25 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
     if np.hypot(z[0, 0], z[0, 1]) > STRAIGHT or np.linalg.norm(foot) > NEAR_MM:
         raise refused("axis 1 is not the Z of the base frame")
     if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < STRAIGHT for axis in (2, 3)):
-        raise refused("the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots")
+        raise refused(
+            "the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots"
+        )
     for first, second in ((0, 1), (2, 3), (3, 4), (4, 5)):
         off = math.asin(min(1.0, abs(float(z[first] @ z[second]))))
         if off > STRAIGHT:
-            raise refused(Text("axes {} and {} are {:.6g} deg apart, not 90 deg", first + 1, second + 1,
-                               90.0 - math.degrees(off)))
+            raise refused(
+                Text(
+                    "axes {} and {} are {:.6g} deg apart, not 90 deg",
+                    first + 1,
+                    second + 1,
+                    90.0 - math.degrees(off),
+                )
+            )
     off = math.asin(min(1.0, float(np.linalg.norm(np.cross(z[1], z[2])))))
     if off > STRAIGHT:
-        raise refused(Text("axes 2 and 3 are not parallel, but {:.6g} deg apart", math.degrees(off)))
+        raise refused(
+            Text("axes 2 and 3 are not parallel, but {:.6g} deg apart", math.degrees(off))
+        )
     # the point of axis 5 next to axis 4, and how far both others pass it by
     across = p[3] - p[4]
     centre: Array = p[4] + z[4] * float(z[4] @ across)
@@ -110,8 +153,14 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         to = centre - p[axis]
         off = float(np.linalg.norm(to - z[axis] * float(z[axis] @ to)))
         if off > NEAR_MM:
-            raise refused(Text("the wrist is not spherical: axis {} passes {:.6g} mm off the point where axes {} meet",
-                               axis + 1, off, Word("5 and 6" if axis == 3 else "4 and 5")))
+            raise refused(
+                Text(
+                    "the wrist is not spherical: axis {} passes {:.6g} mm off the point where axes {} meet",
+                    axis + 1,
+                    off,
+                    Word("5 and 6" if axis == 3 else "4 and 5"),
+                )
+            )
     return centre
 
 
@@ -137,14 +186,20 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     across = np.cos(turn23) * x - np.sin(turn23) * up
     out = flange[:3, 2]
     if np.linalg.norm(np.cross(out, z[5])) > STRAIGHT:
-        raise refused("the Z of the flange does not lie along axis 6", "take the frame tool0 of a URDF, or turn the flange",
-                      FLANGE)
+        raise refused(
+            "the Z of the flange does not lie along axis 6",
+            "take the frame tool0 of a URDF, or turn the flange",
+            FLANGE,
+        )
     offset = flange[:3, 3] - centre
     if np.linalg.norm(offset - out * float(offset @ out)) > NEAR_MM:
         raise refused("the flange's origin does not lie on axis 6", TOOL_FRAME, FLANGE)
     if float(offset @ out) < -NEAR_MM and float(out @ forearm) < 0.0:
-        raise refused("the Z of the flange points back into the wrist, not out of it",
-                      "take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange", FLANGE)
+        raise refused(
+            "the Z of the flange points back into the wrist, not out of it",
+            "take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange",
+            FLANGE,
+        )
     # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
     turn4 = math.atan2(-float(z[4] @ across), float(z[4] @ y))
     sign5 = 1
@@ -158,12 +213,24 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     six_x = math.cos(turn5) * five_x - math.sin(turn5) * forearm
     turn6 = math.atan2(float(flange[:3, 0] @ five_y), float(flange[:3, 0] @ six_x))
     turns = (turn1, turn2, _wrapped(turn23 - turn2), turn4, turn5, turn6)
-    signs = (1 if z[0, 2] > 0.0 else -1, sign2, sign2 if float(z[2] @ z[1]) > 0.0 else -sign2, sign4, sign5,
-             1 if float(z[5] @ out) > 0.0 else -1)
+    signs = (
+        1 if z[0, 2] > 0.0 else -1,
+        sign2,
+        sign2 if float(z[2] @ z[1]) > 0.0 else -sign2,
+        sign4,
+        sign5,
+        1 if float(z[5] @ out) > 0.0 else -1,
+    )
     return OpwArm(
-        a1=clean(float(shoulder @ x)), a2=clean(float(to_wrist @ across)), b=clean(side), c1=clean(float(p[1, 2])),
-        c2=clean(upper), c3=clean(abs(length)), c4=clean(float(offset @ out)),
-        offsets=tuple(_offset(turn) for turn in turns), signs=signs,
+        a1=clean(float(shoulder @ x)),
+        a2=clean(float(to_wrist @ across)),
+        b=clean(side),
+        c1=clean(float(p[1, 2])),
+        c2=clean(upper),
+        c3=clean(abs(length)),
+        c4=clean(float(offset @ out)),
+        offsets=tuple(_offset(turn) for turn in turns),
+        signs=signs,
     )
 
 
@@ -174,7 +241,9 @@ def _shoulder(z: Array, p: Array) -> tuple[float, int, Array]:
     sign = 1
     turn = math.atan2(-z[1, 0], z[1, 1])  # axis 2 is the y of the arm's plane
     ahead = float(point[0] * math.cos(turn) + point[1] * math.sin(turn))
-    turned = ahead < -NEAR_MM or (abs(ahead) <= NEAR_MM and not -0.5 * math.pi + STRAIGHT < turn <= 0.5 * math.pi + STRAIGHT)
+    turned = ahead < -NEAR_MM or (
+        abs(ahead) <= NEAR_MM and not -0.5 * math.pi + STRAIGHT < turn <= 0.5 * math.pi + STRAIGHT
+    )
     if turned:
         turn, sign = (turn + math.pi if turn <= 0.0 else turn - math.pi), -1
     return turn, sign, point
@@ -198,4 +267,10 @@ def clean(value: float) -> float:
 
 def refused(reason: str, remedy: str = "", where: str = "geometry") -> InputError:
     """The error of a machine that cannot be planned for, and what to do about it."""
-    return InputError("NO_CLOSED_FORM", where, "this cannot be planned for: {}; {}", reason, remedy or OTHER_GEOMETRY)
+    return InputError(
+        "NO_CLOSED_FORM",
+        where,
+        "this cannot be planned for: {}; {}",
+        reason,
+        remedy or OTHER_GEOMETRY,
+    )

@@ -120,7 +120,9 @@ class ParallelAxesArm:
         along = np.sqrt(np.maximum(along, 0.0))
         along[lost] = np.nan
         for back in (0, 1):
-            of_side = {index & 3: out[slot] for slot, index in enumerate(branches) if index >> 2 == back}
+            of_side = {
+                index & 3: out[slot] for slot, index in enumerate(branches) if index >> 2 == back
+            }
             if not of_side:
                 continue
             signed = -along if back else along
@@ -128,7 +130,11 @@ class ParallelAxesArm:
             cosine = ((centre[0] + HINT) * signed + centre[1] * self.offset) / squared
             one = self._to_machine(0, np.arctan2(sine, cosine))
             # axis 6 in the arm's frame: ahead, along its normal, up
-            six = rows[0, 2] * cosine + rows[1, 2] * sine, rows[1, 2] * cosine - rows[0, 2] * sine, rows[2, 2]
+            six = (
+                rows[0, 2] * cosine + rows[1, 2] * sine,
+                rows[1, 2] * cosine - rows[0, 2] * sine,
+                rows[2, 2],
+            )
             off = np.hypot(six[0], six[2])
             # axis 5 is square to the normal and to axis 6; where these are parallel, it is free
             five_x, five_z = six[2] / off, -six[0] / off
@@ -137,12 +143,19 @@ class ParallelAxesArm:
                 away = signed[free] - self.ahead, centre[2, free] - self.above
                 five_x[free], five_z[free] = self._chosen(*away)
             bent = np.arctan2(off, six[1])
-            five = [(rows[0, k] * cosine + rows[1, k] * sine) * five_x + rows[2, k] * five_z for k in (0, 1)]
+            five = [
+                (rows[0, k] * cosine + rows[1, k] * sine) * five_x + rows[2, k] * five_z
+                for k in (0, 1)
+            ]
             last = np.arctan2(-five[1], five[0])
             for turned in (0, 1):
                 # the solution with theta 5 > 0 has axis 5 the way found
                 flip = turned if self.signs[4] > 0 else 1 - turned
-                pair = [(down, of_side[2 * down + flip]) for down in (0, 1) if 2 * down + flip in of_side]
+                pair = [
+                    (down, of_side[2 * down + flip])
+                    for down in (0, 1)
+                    if 2 * down + flip in of_side
+                ]
                 if not pair:
                     continue
                 side = -1.0 if turned else 1.0
@@ -170,8 +183,14 @@ class ParallelAxesArm:
         far = np.hypot(ahead, above) + HINT
         wanted = np.clip(math.hypot(self.upper, self.fore), np.abs(far - length), far + length)
         # from the point of axes 5 and 6 back to axis 4, by the angle at that point towards the shoulder
-        cosine = np.clip((far**2 + length**2 - wanted**2) / (2.0 * far * max(length, TOUCH)), -1.0, 1.0)
-        turn = np.arctan2(-ahead, -above) + np.arccos(cosine) - math.atan2(-self.wrist[0], -self.wrist[1])
+        cosine = np.clip(
+            (far**2 + length**2 - wanted**2) / (2.0 * far * max(length, TOUCH)), -1.0, 1.0
+        )
+        turn = (
+            np.arctan2(-ahead, -above)
+            + np.arccos(cosine)
+            - math.atan2(-self.wrist[0], -self.wrist[1])
+        )
         return np.sin(turn), np.cos(turn)
 
     def _triangle(self, ahead: Array, above: Array) -> tuple[Array, Array, Array]:

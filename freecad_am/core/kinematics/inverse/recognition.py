@@ -61,11 +61,17 @@ def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
     last[:3, :3] = np.stack([z[4], np.cross(six, z[4]), six], axis=1)
     last[:3, 3] = meeting
     arm = ParallelAxesArm(
-        ahead=float(shoulder[0]), above=float(shoulder[1]), upper=float(np.hypot(*upper)), fore=float(np.hypot(*fore)),
+        ahead=float(shoulder[0]),
+        above=float(shoulder[1]),
+        upper=float(np.hypot(*upper)),
+        fore=float(np.hypot(*fore)),
         wrist=(float(away[0] * cosine - away[1] * sine), float(away[0] * sine + away[1] * cosine)),
-        offset=float(normal @ meeting), tip=frames.inverse(last) @ at_rest.flange,
+        offset=float(normal @ meeting),
+        tip=frames.inverse(last) @ at_rest.flange,
         signs=(_sign(z[0, 2]), *(_sign(axis @ normal) for axis in z[1:4]), 1, _sign(six @ z[5])),
-        zeros=tuple(clean(turn) for turn in (turn1, turn2, turn23 - turn2, turn234 - turn23, bent, 0.0)),
+        zeros=tuple(
+            clean(turn) for turn in (turn1, turn2, turn23 - turn2, turn234 - turn23, bent, 0.0)
+        ),
     )
     return arm if _agrees(arm, chain) else None
 
@@ -80,8 +86,9 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     for first, second in ((0, 1), (2, 3)):
         if not _square(z[first], z[second]):
             off = math.degrees(math.acos(min(1.0, abs(float(z[first] @ z[second])))))
-            raise opw_recognition.refused(Text("axes {} and {} are {:.6g} deg apart, not 90 deg", first + 1, second + 1,
-                                               off))
+            raise opw_recognition.refused(
+                Text("axes {} and {} are {:.6g} deg apart, not 90 deg", first + 1, second + 1, off)
+            )
     if not _parallel(z[1], z[2]):
         raise opw_recognition.refused("axes 2 and 3 are not parallel")
     point = None if _parallel(z[3], z[4]) else _meeting(p[3], z[3], p[4], z[4])
@@ -92,23 +99,31 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     plane = np.stack([ahead, (0.0, 0.0, 1.0)])
     shoulder, elbow, centre = (plane @ at for at in (p[1], p[2], point))
     if abs(offset := float(normal @ point)) > NEAR_MM:
-        raise opw_recognition.refused(Text("the wrist is not spherical, and axis 4 passes {:.6g} mm off axis 1",
-                                           abs(offset)))
+        raise opw_recognition.refused(
+            Text("the wrist is not spherical, and axis 4 passes {:.6g} mm off axis 1", abs(offset))
+        )
     upper, fore = elbow - shoulder, centre - elbow
     away = point - p[5] - z[5] * float(z[5] @ (point - p[5]))
     if min(np.hypot(*upper), np.hypot(*fore), np.linalg.norm(away)) < NEAR_MM:
         raise opw_recognition.refused("axes that follow each other are the same line")
     turn3 = math.atan2(*fore)
     arm = OffsetWristArm(
-        chain=chain, above=float(shoulder[1]), upper=float(np.hypot(*upper)), fore=float(np.hypot(*fore)),
+        chain=chain,
+        above=float(shoulder[1]),
+        upper=float(np.hypot(*upper)),
+        fore=float(np.hypot(*fore)),
         turns=(math.atan2(ahead[1], ahead[0]), math.atan2(*upper), turn3),
         signs=(_sign(z[0, 2]), _sign(z[1] @ normal), _sign(z[2] @ normal)),
-        lean=math.atan2(*(plane @ z[3])) - turn3, point=point, flips=(True,) * 4,
+        lean=math.atan2(*(plane @ z[3])) - turn3,
+        point=point,
+        flips=(True,) * 4,
         ahead=float(shoulder[0]) if abs(shoulder[0]) > NEAR_MM else 0.0,
     )
     arm = replace(arm, flips=_flips(arm))
     if not _agrees(arm, chain):
-        raise opw_recognition.refused("its solutions do not give back its poses", "give the geometry with more digits")
+        raise opw_recognition.refused(
+            "its solutions do not give back its poses", "give the geometry with more digits"
+        )
     return arm
 
 
@@ -131,8 +146,11 @@ def _agrees(arm: SerialArm, chain: Chain) -> bool:
     known = np.isfinite(found).all(axis=2)
     off = np.where(known[..., None, None], np.abs(there - poses), 0.0)
     given = np.abs(np.exp(1j * found) - np.exp(1j * q)).max(axis=2)
-    return bool(off[..., :3, 3].max() < POSITION and off[..., :3, :3].max() < ROTATION * 10.0
-                and (np.nanmin(given, axis=0) < 1e-5).all())
+    return bool(
+        off[..., :3, 3].max() < POSITION
+        and off[..., :3, :3].max() < ROTATION * 10.0
+        and (np.nanmin(given, axis=0) < 1e-5).all()
+    )
 
 
 def _upright(z: Array, p: Array) -> bool:

@@ -79,14 +79,18 @@ class Locked(NamedTuple):
     residual: Array
 
 
-def with_first_locked(first: Array, second: Array, at: Array | float, source: Array, target: Array) -> Locked:
+def with_first_locked(
+    first: Array, second: Array, at: Array | float, source: Array, target: Array
+) -> Locked:
     """Four axes: the first axis stands at an angle (rad, one or (n,)); the second turns the source as near as it can."""
     target = np.broadcast_to(target, source.shape)
     turned = frames.rotation_about(first, -np.broadcast_to(at, len(source)))
     return nearest(second, source, np.einsum("nij,nj->ni", turned, target))
 
 
-def with_second_locked(first: Array, second: Array, at: Array | float, source: Array, target: Array) -> Locked:
+def with_second_locked(
+    first: Array, second: Array, at: Array | float, source: Array, target: Array
+) -> Locked:
     """Four axes: the second axis stands at an angle; the first turns."""
     target = np.broadcast_to(target, source.shape)
     turned = frames.rotation_about(second, np.broadcast_to(at, len(source)))
@@ -110,7 +114,9 @@ def least_residual(
         else:
             stands = _heights(source, second, first, angles)
             turns = target @ first
-        apart = np.arccos(np.clip(stands, -1.0, 1.0)) - np.arccos(np.clip(turns, -1.0, 1.0))[:, None]
+        apart = (
+            np.arccos(np.clip(stands, -1.0, 1.0)) - np.arccos(np.clip(turns, -1.0, 1.0))[:, None]
+        )
         found: Array = np.abs(apart).max(axis=0)
         return found
 
@@ -126,7 +132,9 @@ def _heights(vectors: Array, axis: Array, other: Array, angles: Array) -> Array:
     """(n, k) other . Rot(axis, angle) vector for vectors (n, 3) and angles (k,), by Rodrigues' formula."""
     along = (vectors @ axis) * float(axis @ other)
     straight, sideways = vectors @ other - along, vectors @ np.cross(other, axis)
-    turned: Array = along[:, None] + straight[:, None] * np.cos(angles) + sideways[:, None] * np.sin(angles)
+    turned: Array = (
+        along[:, None] + straight[:, None] * np.cos(angles) + sideways[:, None] * np.sin(angles)
+    )
     return turned
 
 

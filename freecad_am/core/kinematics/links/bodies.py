@@ -31,7 +31,9 @@ class Primitive(Solid):
         return replace(self, points=solid.points, normals=solid.normals, pose=at)
 
 
-def link_bodies(top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | None, ...]) -> tuple[Pieces, ...]:
+def link_bodies(
+    top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | None, ...]
+) -> tuple[Pieces, ...]:
     """The bodies (axes + 1) of a machine file's links, base first, each in the frame of its link: those under `bodies`, else
     the file under `shapes` (axes + 1); none where neither tells.
 
@@ -43,7 +45,9 @@ def link_bodies(top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | No
     text = top["bodies"].only("source", *links)
     text["source"].text()
     return tuple(
-        tuple(_piece(piece, last=name == links[-1]) for piece in text[name].items()) if text.has(name) else ()
+        tuple(_piece(piece, last=name == links[-1]) for piece in text[name].items())
+        if text.has(name)
+        else ()
         for name in links
     )
 
@@ -55,7 +59,9 @@ def _piece(node: Node, last: bool) -> LinkShape | Solid:
     kind, count = ("box", 3) if node.has("box") else ("cylinder", 2)
     size = node[kind].numbers(count)
     if (size <= 0.0).any():
-        raise node[kind].bad("give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length")
+        raise node[kind].bad(
+            "give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length"
+        )
     pose = node.pose() if node.has("origin") or node.has("rpy") else np.eye(4)
     tone = BRIGHT if last else BODY
     return (box if kind == "box" else cylinder)(size, tone).moved(pose)
@@ -64,15 +70,27 @@ def _piece(node: Node, last: bool) -> LinkShape | Solid:
 def box(size: Array, tone: str = BODY) -> Primitive:
     """A box of `size` (3,) mm about the origin."""
     x, y, z = size.tolist()
-    return _primitive(solids.box(np.zeros(3), np.eye(3)[0], np.eye(3)[1], (x, y, z), tone), "box", size)
+    return _primitive(
+        solids.box(np.zeros(3), np.eye(3)[0], np.eye(3)[1], (x, y, z), tone), "box", size
+    )
 
 
 def cylinder(size: Array, tone: str = BODY) -> Primitive:
     """A cylinder of a diameter and a length, `size` (2,) mm, along Z about the origin, as a polygon that holds it."""
     radius, half = 0.5 * float(size[0]) / np.cos(np.pi / solids.SIDES), 0.5 * float(size[1])
     outline = [(0.0, 0.0), (radius, 0.0), (radius, 1.0), (0.0, 1.0)]
-    return _primitive(solids.turned(outline, [0.0, 0.0, -half], [0.0, 0.0, half], tone), "cylinder", size)
+    return _primitive(
+        solids.turned(outline, [0.0, 0.0, -half], [0.0, 0.0, half], tone), "cylinder", size
+    )
 
 
 def _primitive(solid: Solid, kind: str, size: Array) -> Primitive:
-    return Primitive(solid.points, solid.normals, solid.triangles, solid.tone, kind, tuple(size.tolist()), np.eye(4))
+    return Primitive(
+        solid.points,
+        solid.normals,
+        solid.triangles,
+        solid.tone,
+        kind,
+        tuple(size.tolist()),
+        np.eye(4),
+    )

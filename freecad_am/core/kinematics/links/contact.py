@@ -52,7 +52,10 @@ WORLD = "world"
 OWN = "link "  # before the axis of a link, as it is touched
 LINKS_MORE = 4  # of `links` besides the axes, before those of what stands beside the robot
 PIECE = 4096  # joint vectors done together
-LINK_PIECE, SHARE = 50.0, 0.01  # longest edge of a triangle that links are looked at against, mm, and of the body's size
+LINK_PIECE, SHARE = (
+    50.0,
+    0.01,
+)  # longest edge of a triangle that links are looked at against, mm, and of the body's size
 SLICES = 8  # cylinders about a deposit that moves
 
 
@@ -110,30 +113,58 @@ class ArmContact:
         part = [*self._links(self._carries_part), *self._torch, *self._track(self.cell.part_moves)]
         about_nozzle = [nozzle_body(self.cell.nozzle)]
         about_nozzle += [] if held is None else [dataclasses.replace(held.body, name=TORCH)]
-        groups = [*(_of_body(body, holder, NOZZLE) for body in about_nozzle), *(_of_body(body, part) for body in around)]
+        groups = [
+            *(_of_body(body, holder, NOZZLE) for body in about_nozzle),
+            *(_of_body(body, part) for body in around),
+        ]
         names = [body.name for body in (*about_nozzle, *around)]
         more = ABOUT_FACES + self.clearance
         solids = [[of_cylinder(cylinder, more) for cylinder in link] for link in self.cylinders]
-        solids += [[of_cylinder(cylinder, more) for cylinder in self._part_cylinders(around)], [_of_nozzle(self.cell)]]
-        solids += [[of_cylinder(cylinder, more) for cylinder in (() if held is None else held.cylinders)]]
+        solids += [
+            [of_cylinder(cylinder, more) for cylinder in self._part_cylinders(around)],
+            [_of_nozzle(self.cell)],
+        ]
+        solids += [
+            [of_cylinder(cylinder, more) for cylinder in (() if held is None else held.cylinders)]
+        ]
         if self.deposit is not None:
             names.append(DEPOSIT)
             points = self.deposit.corners.reshape(-1, 3)
             centre, radius = ball(points)
             wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
-            groups.append(Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide))
+            groups.append(
+                Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide)
+            )
         groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
         names += [body.name for body in self.cell.obstacles]
-        groups += [_of_body(one.body, self._against(one), one.name) for one in self.cell.external_links]
+        groups += [
+            _of_body(one.body, self._against(one), one.name) for one in self.cell.external_links
+        ]
         names += [one.name for one in self.cell.external_links]
         solids += [
-            [of_cylinder(cylinder, more) for cylinder in (
-                one.cylinders if self.cell.obstacles or one.carries == ROBOT else ())]
+            [
+                of_cylinder(cylinder, more)
+                for cylinder in (
+                    one.cylinders if self.cell.obstacles or one.carries == ROBOT else ()
+                )
+            ]
             for one in self.cell.external_links
         ]
-        object.__setattr__(self, "links", (
-            BASE, *self.cell.robot.axes, PART, NOZZLE, TORCH, *(one.name for one in self.cell.external_links)))
-        object.__setattr__(self, "names", (*names, BASE, *(OWN + axis for axis in self.cell.robot.axes)))
+        object.__setattr__(
+            self,
+            "links",
+            (
+                BASE,
+                *self.cell.robot.axes,
+                PART,
+                NOZZLE,
+                TORCH,
+                *(one.name for one in self.cell.external_links),
+            ),
+        )
+        object.__setattr__(
+            self, "names", (*names, BASE, *(OWN + axis for axis in self.cell.robot.axes))
+        )
         object.__setattr__(self, "groups", tuple(groups))
         object.__setattr__(self, "solids", tuple(map(tuple, solids)))
         object.__setattr__(self, "balls", tuple(about_link(link) for link in solids))
@@ -163,9 +194,15 @@ class ArmContact:
         axes, cell = self.cell.robot.chain.axes, self.cell
         on_track = cell.external is not None and cell.external.slides is not None
         found = list(range(0 if on_track else 1, axes + 1))
-        adjacent = [axes + LINKS_MORE + k for k, one in enumerate(cell.external_links) if one.axis != STANDS]
-        return [*found, *([axes + 1] if cell.part_moves else []), *([] if cell.torch_stands else [axes + 2, *self._torch]),
-                *adjacent]
+        adjacent = [
+            axes + LINKS_MORE + k for k, one in enumerate(cell.external_links) if one.axis != STANDS
+        ]
+        return [
+            *found,
+            *([axes + 1] if cell.part_moves else []),
+            *([] if cell.torch_stands else [axes + 2, *self._torch]),
+            *adjacent,
+        ]
 
     def _against(self, one: ExternalLink) -> list[int]:
         """What is looked at against a link beside the robot: the robot's links two joints away or more where it carries
@@ -181,7 +218,8 @@ class ArmContact:
         """The links of a track that move against what moves in the world, or else stands."""
         first = self.cell.robot.chain.axes + LINKS_MORE
         return [
-            first + k for k, one in enumerate(self.cell.external_links)
+            first + k
+            for k, one in enumerate(self.cell.external_links)
             if one.carries == ROBOT and (one.axis != STANDS or moves)
         ]
 
@@ -192,7 +230,10 @@ class ArmContact:
         found = [cylinder for body in around for cylinder in row(body.vertices, body.triangles)]
         if self.deposit is not None:
             wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
-            found += [Cylinder(one.start, one.end, one.radius + wide) for one in _slices(self.deposit.corners)]
+            found += [
+                Cylinder(one.start, one.end, one.radius + wide)
+                for one in _slices(self.deposit.corners)
+            ]
         return found
 
     def touches(self, joints: ArrayLike, moment: Index | None = None) -> Touches:
@@ -216,14 +257,23 @@ class ArmContact:
         still = np.broadcast_to(self.cell.station, carried.shape)
         platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
         part = platform @ frames.inverse(self.cell.mount)
-        seen_from = {PART: part, NOZZLE: nozzle, WORLD: self.cell.world(joints) if self.cell.obstacles else part}
+        seen_from = {
+            PART: part,
+            NOZZLE: nozzle,
+            WORLD: self.cell.world(joints) if self.cell.obstacles else part,
+        }
         adjacent = self.cell.external_link_frames(joints)
         seen_from |= {one.name: adjacent[:, k] for k, one in enumerate(self.cell.external_links)}
-        return np.concatenate([links, part[:, None], nozzle[:, None], nozzle[:, None], adjacent], axis=1), seen_from
+        return np.concatenate(
+            [links, part[:, None], nozzle[:, None], nozzle[:, None], adjacent], axis=1
+        ), seen_from
 
     def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
         links, seen_from = self.seen(joints)
-        link, what = np.full(len(joints), NONE, dtype=np.int64), np.full(len(joints), NONE, dtype=np.int64)
+        link, what = (
+            np.full(len(joints), NONE, dtype=np.int64),
+            np.full(len(joints), NONE, dtype=np.int64),
+        )
         looked_at = sorted({number for group in self.groups for number in group.links})
         middles = {k: frames.at(links[:, k], self.balls[k][0]) for k in looked_at}
         for place, group in enumerate(self.groups):
@@ -235,7 +285,14 @@ class ArmContact:
                 within = self.balls[number][1] + group.radius + ABOUT_FACES
                 rows = np.flatnonzero((link == NONE) & (dots(away, away) < within**2))
                 if len(rows):
-                    met = rows[_meets(group, self.solids[number], back[rows] @ links[rows, number], moment[rows])]
+                    met = rows[
+                        _meets(
+                            group,
+                            self.solids[number],
+                            back[rows] @ links[rows, number],
+                            moment[rows],
+                        )
+                    ]
                     link[met], what[met] = number, place
         left = np.flatnonzero(link == NONE)
         outer, inner = self.own.touches(links[left])
@@ -262,7 +319,9 @@ def _meets(group: Group, solids: Sequence[Solid], seen: Array, moment: Index) ->
 def _of_nozzle(cell: Cell) -> Solid:
     """The nozzle in the frame of its tip, as it is looked at against bodies it deposits next to."""
     nozzle = cell.nozzle
-    solid = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, 0.0).bodies
+    solid = depositing(
+        0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, 0.0
+    ).bodies
     return Solid(solid, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.zeros(3), solid.reach)
 
 
@@ -270,7 +329,10 @@ def _slices(corners: Array) -> list[Cylinder]:
     """Cylinders that hold the hulls of corners (m, c, 3), of those next to each other along the longest side of all."""
     middle = corners.mean(axis=1)
     order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
-    return [about(corners[some].reshape(-1, 3)) for some in np.array_split(order, min(SLICES, len(order)))]
+    return [
+        about(corners[some].reshape(-1, 3))
+        for some in np.array_split(order, min(SLICES, len(order)))
+    ]
 
 
 # the tip's Z points out of the nozzle that is carried, that of the deposition point into the one that stands

@@ -20,7 +20,10 @@ def of_robot(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Cyli
     shapes: points (n, 3) and triangles (m, 3) of links that are not drawn plain, in the same frames.
     """
     plain = [of_solids(link) for link in robot_links.solids(chain)]
-    return [row(*shape) if shape is not None else link for shape, link in zip(shapes or [None] * len(plain), plain)]
+    return [
+        row(*shape) if shape is not None else link
+        for shape, link in zip(shapes or [None] * len(plain), plain)
+    ]
 
 
 def of_solids(link: Sequence[Solid]) -> list[Cylinder]:

@@ -31,10 +31,16 @@ def least_distance(contact: ArmContact, joints: ArrayLike, moment: Index, reach:
         return 0.0
     best, nozzle = reach, contact.links.index(NOZZLE)
     pairs = [
-        (group, number, solid) for group in contact.groups for number in group.links if number != nozzle
+        (group, number, solid)
+        for group in contact.groups
+        for number in group.links
+        if number != nozzle
         for solid in contact.solids[number]
     ]
-    bounds = [_bound(group, solid, seen_from[group.seen_from], links[:, number]) for group, number, solid in pairs]
+    bounds = [
+        _bound(group, solid, seen_from[group.seen_from], links[:, number])
+        for group, number, solid in pairs
+    ]
     for k in np.argsort([bound.min() for bound in bounds], kind="stable"):
         group, number, solid = pairs[k]
         order = np.argsort(bounds[k], kind="stable")

@@ -64,22 +64,35 @@ def external_links(
     for number, one in enumerate(external.mechanisms):
         pieces = one.machine.bodies or ((),) * (one.machine.chain.axes + 1)
         for link, parts in enumerate(pieces):
-            before = next((each for each in known if (each.machine, each.link) == (one.machine.id, link)), None)
+            before = next(
+                (each for each in known if (each.machine, each.link) == (one.machine.id, link)),
+                None,
+            )
             made = (before.body, before.cylinders) if before is not None else _made(parts, read)
             if made is None:
                 continue
             name = f"{one.machine.title} {'base' if link == 0 else f'e{one.values[link - 1] + 1}'}"
-            found.append(ExternalLink(
-                one.machine.id, number, link, _axis(external, number, link), one.carries, _after(external, number, link),
-                dataclasses.replace(made[0], name=name), made[1],
-            ))
+            found.append(
+                ExternalLink(
+                    one.machine.id,
+                    number,
+                    link,
+                    _axis(external, number, link),
+                    one.carries,
+                    _after(external, number, link),
+                    dataclasses.replace(made[0], name=name),
+                    made[1],
+                )
+            )
     return tuple(found)
 
 
 def of_unknown_shape(external: ExternalAxes, links: Sequence[ExternalLink]) -> list[str]:
     """Titles of the mechanisms of which nothing is known to be kept clear; links: those that are known."""
     known = {one.mechanism for one in links}
-    return [one.machine.title for number, one in enumerate(external.mechanisms) if number not in known]
+    return [
+        one.machine.title for number, one in enumerate(external.mechanisms) if number not in known
+    ]
 
 
 def _axis(external: ExternalAxes, number: int, link: int) -> int:

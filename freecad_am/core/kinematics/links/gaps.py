@@ -24,7 +24,10 @@ from .nozzle_body import NOZZLE
 from .own import placed
 from .rounds import Solid
 
-OFF_RADIUS, OFF_END = 0.9, 0.4  # shares that what is smaller than a link may lack of its radius, and of its length at an end
+OFF_RADIUS, OFF_END = (
+    0.9,
+    0.4,
+)  # shares that what is smaller than a link may lack of its radius, and of its length at an end
 SHARES = (0.2, 1.0)  # of these, one after the other
 DEEPEST = 1e-3  # mm that two solids which meet reach into each other, at the least
 
@@ -51,9 +54,14 @@ class Gaps:
         """All that can touch."""
         of_group = [
             Pair(link, group, (self._moved(link), self._moved_group(group)))
-            for group in self.contact.groups for link in group.links if self.contact.solids[link]
+            for group in self.contact.groups
+            for link in group.links
+            if self.contact.solids[link]
         ]
-        return (*of_group, *(Pair(outer, inner, (outer, inner)) for outer, inner in self.contact.own.pairs))
+        return (
+            *of_group,
+            *(Pair(outer, inner, (outer, inner)) for outer, inner in self.contact.own.pairs),
+        )
 
     def _moved(self, link: int) -> int:
         axes = self.contact.cell.robot.chain.axes
@@ -78,13 +86,24 @@ class Gaps:
             if not len(some):
                 continue
             if isinstance(pair.against, Group):
-                found = self._from_group(pair, links[some], seen_from[pair.against.seen_from][some], moment[some])
+                found = self._from_group(
+                    pair, links[some], seen_from[pair.against.seen_from][some], moment[some]
+                )
             else:
                 found = self._from_link(pair, links[some])
             gap[row, some], normal, place = found
             motion = sum(
-                sign * _velocity(axes.directions[some], axes.origins[some], place, rates[some], moved, self._sliding)
-                for sign, moved in zip((1.0, -1.0), pair.moved) if moved
+                sign
+                * _velocity(
+                    axes.directions[some],
+                    axes.origins[some],
+                    place,
+                    rates[some],
+                    moved,
+                    self._sliding,
+                )
+                for sign, moved in zip((1.0, -1.0), pair.moved)
+                if moved
             )
             change[row, some] = dots(normal, np.broadcast_to(motion, normal.shape))
         return gap, change
@@ -96,34 +115,51 @@ class Gaps:
     def _near(self, pair: Pair, links: Array, seen_from: dict[str, Array], some: Index) -> Mask:
         """(k,) whether balls about both are within reach."""
         if isinstance(pair.against, Group):
-            frame, other = seen_from[pair.against.seen_from][some], (pair.against.centre, pair.against.radius)
+            frame, other = (
+                seen_from[pair.against.seen_from][some],
+                (pair.against.centre, pair.against.radius),
+            )
             ball, more = self.contact.balls[pair.link], 0.0
         else:
             own = self.contact.own
             frame, other = links[:, pair.against], own.balls[pair.against]
             ball, more = own.balls[pair.link], own.gap
         link = links[:, pair.link]
-        away = link[:, :3, :3] @ ball[0] + link[:, :3, 3] - frame[:, :3, :3] @ other[0] - frame[:, :3, 3]
+        away = (
+            link[:, :3, :3] @ ball[0]
+            + link[:, :3, 3]
+            - frame[:, :3, :3] @ other[0]
+            - frame[:, :3, 3]
+        )
         near: Mask = lengths(away) - ball[1] - other[1] - more < self.reach
         return near
 
-    def _from_group(self, pair: Pair, link: Array, frame: Array, moment: Index) -> tuple[Array, Array, Array]:
+    def _from_group(
+        self, pair: Pair, link: Array, frame: Array, moment: Index
+    ) -> tuple[Array, Array, Array]:
         """Gaps (k,), directions (k, 3) in which they open and the places (k, 3) of the link where they are."""
         assert isinstance(pair.against, Group)
         seen = frames.inverse(frame) @ link[:, pair.link]
-        found = [self._of_solid(pair.against, one, seen, moment) for one in self.contact.solids[pair.link]]
+        found = [
+            self._of_solid(pair.against, one, seen, moment)
+            for one in self.contact.solids[pair.link]
+        ]
         gap, normal, place = _least(found)
         turn = frame[:, :3, :3]
         return gap, _turned(turn, normal), _turned(turn, place) + frame[:, :3, 3]
 
-    def _of_solid(self, group: Group, one: Solid, seen: Array, moment: Index) -> tuple[Array, Array, Array]:
+    def _of_solid(
+        self, group: Group, one: Solid, seen: Array, moment: Index
+    ) -> tuple[Array, Array, Array]:
         turn = seen[:, :3, :3]
         tip, axis = turn @ one.tip + seen[:, :3, 3], turn @ one.axis
         gap, normal, place = group.scene.nearest(one.solid, tip, axis, moment, self.reach)
         for share in SHARES:
             met = np.flatnonzero(gap == 0.0)
             if len(met):
-                gap[met], normal[met], place[met] = _reaching(group, one.solid, share, tip[met], axis[met], moment[met])
+                gap[met], normal[met], place[met] = _reaching(
+                    group, one.solid, share, tip[met], axis[met], moment[met]
+                )
         gap[gap == 0.0] = -one.solid.reach
         return gap, normal, place
 
@@ -132,9 +168,13 @@ class Gaps:
         own, found = self.contact.own, []
         for one in own.solids[pair.link]:
             for other in own.solids[pair.against]:
-                there, way = nearest(placed(one, link[:, pair.link]), placed(other, link[:, pair.against]))
+                there, way = nearest(
+                    placed(one, link[:, pair.link]), placed(other, link[:, pair.against])
+                )
                 size = lengths(way)
-                found.append((size - own.gap, way / np.where(size > 0.0, size, 1.0)[:, None], there + way))
+                found.append(
+                    (size - own.gap, way / np.where(size > 0.0, size, 1.0)[:, None], there + way)
+                )
         gap, normal, place = _least(found)
         return np.minimum(gap, self.reach), np.where(gap[:, None] < self.reach, normal, 0.0), place
 
@@ -152,7 +192,11 @@ def _reaching(
     across = normal - along[:, None] * axis
     size = lengths(across)
     gap = np.where(gap > 0.0, np.minimum(gap - thin * size - short * np.abs(along), -DEEPEST), 0.0)
-    place = place - thin * across / np.where(size > 0.0, size, 1.0)[:, None] - (short * np.sign(along))[:, None] * axis
+    place = (
+        place
+        - thin * across / np.where(size > 0.0, size, 1.0)[:, None]
+        - (short * np.sign(along))[:, None] * axis
+    )
     return gap, normal, place
 
 
@@ -168,7 +212,9 @@ def _turned(turn: Array, vectors: Array) -> Array:
     return np.asarray(np.einsum("kij,kj->ki", turn, vectors))
 
 
-def _velocity(directions: Array, origins: Array, place: Array, rates: Array, moved: int, sliding: Mask) -> Array:
+def _velocity(
+    directions: Array, origins: Array, place: Array, rates: Array, moved: int, sliding: Mask
+) -> Array:
     """(k, 3) at what rate places (k, 3) move with the first `moved` joints, whose axes are at (k, axes, 3)."""
     total = np.zeros_like(place)
     for joint in range(moved):

@@ -18,15 +18,21 @@ def nozzle_body(nozzle: NozzleParameters) -> Body:
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1) / np.cos(np.pi / SIDES)
     tip, length = 0.5 * nozzle.diameter, nozzle.length
     back = tip + length * float(np.tan(nozzle.half_angle))
-    vertices = np.concatenate([
-        np.column_stack([tip * ring, np.zeros(SIDES)]), np.column_stack([back * ring, np.full(SIDES, length)]),
-        [[0.0, 0.0, 0.0], [0.0, 0.0, length]],
-    ])
+    vertices = np.concatenate(
+        [
+            np.column_stack([tip * ring, np.zeros(SIDES)]),
+            np.column_stack([back * ring, np.full(SIDES, length)]),
+            [[0.0, 0.0, 0.0], [0.0, 0.0, length]],
+        ]
+    )
     here = np.arange(SIDES)
     on = np.roll(here, -1)
-    triangles = np.concatenate([
-        np.stack([here, on, on + SIDES], axis=1), np.stack([here, on + SIDES, here + SIDES], axis=1),
-        np.stack([on, here, np.full(SIDES, 2 * SIDES)], axis=1),
-        np.stack([here + SIDES, on + SIDES, np.full(SIDES, 2 * SIDES + 1)], axis=1),
-    ])
+    triangles = np.concatenate(
+        [
+            np.stack([here, on, on + SIDES], axis=1),
+            np.stack([here, on + SIDES, here + SIDES], axis=1),
+            np.stack([on, here, np.full(SIDES, 2 * SIDES)], axis=1),
+            np.stack([here + SIDES, on + SIDES, np.full(SIDES, 2 * SIDES + 1)], axis=1),
+        ]
+    )
     return Body(NOZZLE, vertices, triangles.astype(np.int64))

@@ -26,7 +26,10 @@ from ..chain import Chain
 from ..limits import Limits
 from .rounds import NONE, Solid, about_link, of_cylinder
 
-POSITIONS, LEFT_OUT = 128, 0.5  # looked at to see which pairs are left out, and the share at which they are not yet
+POSITIONS, LEFT_OUT = (
+    128,
+    0.5,
+)  # looked at to see which pairs are left out, and the share at which they are not yet
 EVERY = 4  # one position in so many is looked at first
 REMEMBERED = 8  # robots whose pairs are known: a job asks while planning, for its rapids, and when all is looked at again
 
@@ -42,7 +45,9 @@ class OwnLinks:
     pairs: tuple[tuple[int, int], ...]
 
     @classmethod
-    def of(cls, chain: Chain, limits: Limits, cylinders: Sequence[Sequence[Cylinder]], clearance: float) -> OwnLinks:
+    def of(
+        cls, chain: Chain, limits: Limits, cylinders: Sequence[Sequence[Cylinder]], clearance: float
+    ) -> OwnLinks:
         """The links of a robot of these cylinders, each (axes + 1) in the frame of the link, that are to be kept clearance
         mm apart; of the limits the first ones are its own."""
         return _found(_Asked(chain, limits, cylinders, clearance))
@@ -60,7 +65,9 @@ class OwnLinks:
                 outer[met], inner[met] = one, other
         return outer, inner
 
-    def often(self, pair: tuple[int, int], links: Array, middles: Sequence[Array], share: float) -> bool:
+    def often(
+        self, pair: tuple[int, int], links: Array, middles: Sequence[Array], share: float
+    ) -> bool:
         """Whether two links touch with more than a share of frames. Most are near each other with fewer, by their balls or
         the axes of their cylinders: then that is known without a closer look."""
         most, rows = share * len(links), self._near(*pair, middles)
@@ -114,10 +121,17 @@ class _Asked(ByNumbers):
 
 @lru_cache(REMEMBERED)
 def _found(asked: _Asked) -> OwnLinks:
-    solids = tuple(tuple(of_cylinder(cylinder, 0.0) for cylinder in link) for link in asked.cylinders)
+    solids = tuple(
+        tuple(of_cylinder(cylinder, 0.0) for cylinder in link) for link in asked.cylinders
+    )
     last = len(solids) - 1
     stopped = {(2, 0), (last, last - 2)}
-    every = [(one, other) for one in range(2, last + 1) for other in range(one - 1) if (one, other) not in stopped]
+    every = [
+        (one, other)
+        for one in range(2, last + 1)
+        for other in range(one - 1)
+        if (one, other) not in stopped
+    ]
     gap = asked.clearance + 2.0 * ABOUT_FACES
     found = OwnLinks(solids, tuple(about_link(link) for link in solids), gap, ())
     links = asked.chain.links(positions(asked.limits, asked.chain.axes))
@@ -127,7 +141,9 @@ def _found(asked: _Asked) -> OwnLinks:
     middles = found._middles(links)
     some = [middle[::EVERY] for middle in middles]
     usual = {
-        pair for pair in every if found.often(pair, links[::EVERY], some, 0.5 * LEFT_OUT)
+        pair
+        for pair in every
+        if found.often(pair, links[::EVERY], some, 0.5 * LEFT_OUT)
         and found.often(pair, links, middles, LEFT_OUT)
     }
     return OwnLinks(solids, found.balls, gap, tuple(pair for pair in every if pair not in usual))
@@ -141,10 +157,14 @@ def positions(limits: Limits, axes: int) -> Array:
     high = np.where(continuous, np.pi, limits.upper[:axes])
     found = low + spread(POSITIONS, axes) * (high - low)
     coupled = found @ limits.coefficients[:, :axes].T
-    return np.asarray(found[((coupled >= limits.coupled_lower) & (coupled <= limits.coupled_upper)).all(axis=1)])
+    return np.asarray(
+        found[((coupled >= limits.coupled_lower) & (coupled <= limits.coupled_upper)).all(axis=1)]
+    )
 
 
 def placed(solid: Solid, frame: Array) -> PlacedCylinders:
     """The cylinder that a solid is, with frames (k, 4, 4) of its link."""
     turn = frame[:, :3, :3]
-    return PlacedCylinders(turn @ solid.tip + frame[:, :3, 3], turn @ solid.axis, solid.solid.high, solid.solid.radius)
+    return PlacedCylinders(
+        turn @ solid.tip + frame[:, :3, 3], turn @ solid.axis, solid.solid.high, solid.solid.radius
+    )

@@ -64,7 +64,10 @@ def skeleton(chain: Chain) -> Skeleton:
             origins[axis], directions[axis], origins[axis + 1], directions[axis + 1], enter[axis]
         )
     leave[-1] = _on_axis(flange, origins[-1], directions[-1])
-    runs = np.linalg.norm(leave - enter, axis=1).sum() + np.linalg.norm(enter[1:] - leave[:-1], axis=1).sum()
+    runs = (
+        np.linalg.norm(leave - enter, axis=1).sum()
+        + np.linalg.norm(enter[1:] - leave[:-1], axis=1).sum()
+    )
     return Skeleton(directions, enter, leave, flange, float(max(runs, 1.0)))
 
 
@@ -108,12 +111,29 @@ def _joint(bones: Skeleton, axis: int, before: list[Solid], own: list[Solid]) ->
     last = bones.radius(min(axis + 1, len(bones.directions) - 1)) if axis else slim
     # the housing of a forearm begins behind its elbow
     back = start - 0.9 * slim * along if axis and axis + 1 < len(bones.directions) else start
-    before.append(cylinder(back, middle, 1.08 * slim) if axis else turned(
-        [(0.0, 0.0), (1.45 * slim, 0.0), (1.45 * slim, 0.12), (1.12 * slim, 0.45), (1.12 * slim, 1.0), (0.0, 1.0)],
-        start, middle))
+    before.append(
+        cylinder(back, middle, 1.08 * slim)
+        if axis
+        else turned(
+            [
+                (0.0, 0.0),
+                (1.45 * slim, 0.0),
+                (1.45 * slim, 0.12),
+                (1.12 * slim, 0.45),
+                (1.12 * slim, 1.0),
+                (0.0, 1.0),
+            ],
+            start,
+            middle,
+        )
+    )
     seam = min(0.06 * run, 0.2 * slim)
     own.append(cylinder(middle, middle + seam * along, 0.98 * slim, DARK, 0.02))
-    own.append(turned([(0.0, 0.0), (slim, 0.0), (0.92 * last, 1.0), (0.0, 1.0)], middle + seam * along, end))
+    own.append(
+        turned(
+            [(0.0, 0.0), (slim, 0.0), (0.92 * last, 1.0), (0.0, 1.0)], middle + seam * along, end
+        )
+    )
 
 
 def _between(bones: Skeleton, axis: int, own: list[Solid]) -> None:
@@ -123,7 +143,10 @@ def _between(bones: Skeleton, axis: int, own: list[Solid]) -> None:
     length = float(np.linalg.norm(end - start))
     if length < _NONE * bones.size:
         return
-    if np.linalg.norm(np.cross(bones.directions[axis], bones.directions[axis + 1])) < _PARALLEL and length > first - last:
+    if (
+        np.linalg.norm(np.cross(bones.directions[axis], bones.directions[axis + 1])) < _PARALLEL
+        and length > first - last
+    ):
         own.append(strut(start, end, bones.directions[axis], 0.9 * first, 0.9 * last, 1.1 * last))
     else:
         own.append(capsule(start, end, 0.82 * min(first, 1.3 * last), 0.82 * last))
@@ -131,10 +154,16 @@ def _between(bones: Skeleton, axis: int, own: list[Solid]) -> None:
 
 def _flange(bones: Skeleton, last: list[Solid]) -> None:
     radius = 0.95 * bones.radius(len(bones.directions) - 1)
-    direction = bones.directions[-1] if bones.run(len(bones.directions) - 1) == 0.0 else (
-        (bones.leave[-1] - bones.enter[-1]) / np.linalg.norm(bones.leave[-1] - bones.enter[-1])
+    direction = (
+        bones.directions[-1]
+        if bones.run(len(bones.directions) - 1) == 0.0
+        else (
+            (bones.leave[-1] - bones.enter[-1]) / np.linalg.norm(bones.leave[-1] - bones.enter[-1])
+        )
     )
-    last.append(cylinder(bones.flange - 0.3 * radius * direction, bones.flange, 1.1 * radius, BRIGHT, 0.05))
+    last.append(
+        cylinder(bones.flange - 0.3 * radius * direction, bones.flange, 1.1 * radius, BRIGHT, 0.05)
+    )
 
 
 def _on_axis(point: Array, origin: Array, direction: Array) -> Array:
@@ -142,7 +171,9 @@ def _on_axis(point: Array, origin: Array, direction: Array) -> Array:
     return np.asarray(origin + ((point - origin) @ direction) * direction)
 
 
-def _feet(first: Array, along: Array, second: Array, other: Array, at: Array) -> tuple[Array, Array]:
+def _feet(
+    first: Array, along: Array, second: Array, other: Array, at: Array
+) -> tuple[Array, Array]:
     """Where the common perpendicular of two axes meets them; of parallel ones that through the point `at`."""
     normal = np.cross(along, other)
     square = float(normal @ normal)

@@ -29,9 +29,18 @@ class Solid:
 
 def of_cylinder(cylinder: Cylinder, more: float) -> Solid:
     """A rod, larger by so many mm on all sides."""
-    centre, axis = 0.5 * (cylinder.start + cylinder.end), (cylinder.end - cylinder.start) / cylinder.length
+    centre, axis = (
+        0.5 * (cylinder.start + cylinder.end),
+        (cylinder.end - cylinder.start) / cylinder.length,
+    )
     solid = Frustum(cylinder.radius + more, 0.0, -more, cylinder.length + more)
-    return Solid(solid, cylinder.start, axis, centre, float(np.hypot(0.5 * cylinder.length + more, cylinder.radius + more)))
+    return Solid(
+        solid,
+        cylinder.start,
+        axis,
+        centre,
+        float(np.hypot(0.5 * cylinder.length + more, cylinder.radius + more)),
+    )
 
 
 def about_link(link: Sequence[Solid]) -> tuple[Array, float]:

@@ -46,7 +46,9 @@ def shape_of(node: Node) -> LinkShape:
     node.only("file", "origin", "rpy", "scale", "colour")
     path = Path(node["file"].text())
     if path.suffix.lower() not in FORMATS:
-        raise node["file"].bad(Text("{} is not a shape that can be drawn; use {}", path.name, ", ".join(FORMATS)))
+        raise node["file"].bad(
+            Text("{} is not a shape that can be drawn; use {}", path.name, ", ".join(FORMATS))
+        )
     pose = np.eye(4)
     if node.has("origin") or node.has("rpy"):
         pose = node.pose()
@@ -57,7 +59,11 @@ def shape_of(node: Node) -> LinkShape:
     if node.has("colour"):
         values = node["colour"].numbers(3)
         if ((values < 0.0) | (values > 1.0)).any():
-            raise node["colour"].bad(Text("{} is not a colour; give red, green and blue from 0 to 1", node["colour"].value))
+            raise node["colour"].bad(
+                Text(
+                    "{} is not a colour; give red, green and blue from 0 to 1", node["colour"].value
+                )
+            )
         colour = (float(values[0]), float(values[1]), float(values[2]))
     file = path if path.is_absolute() else node.path.parent / path
     return LinkShape(file, pose, scale, colour, f"{node.path}: {node.key}.file")

@@ -26,16 +26,24 @@ class Solid:
     def moved(self, pose: Array) -> Solid:
         """The solid moved by a pose (4, 4)."""
         turn = pose[:3, :3].T
-        return Solid(self.points @ turn + pose[:3, 3], self.normals @ turn, self.triangles, self.tone)
+        return Solid(
+            self.points @ turn + pose[:3, 3], self.normals @ turn, self.triangles, self.tone
+        )
 
 
-def turned(outline: ArrayLike, start: ArrayLike, end: ArrayLike, tone: str = BODY, sides: int = SIDES) -> Solid:
+def turned(
+    outline: ArrayLike, start: ArrayLike, end: ArrayLike, tone: str = BODY, sides: int = SIDES
+) -> Solid:
     """A solid of revolution whose axis runs from `start` to `end` (3,), mm.
 
     outline: (k, 2) of (radius in mm, place on the axis: 0 at its start, 1 at its end), along the outside from start to
     end. Every stretch of it keeps its own normals, so that edges stay sharp.
     """
-    shape, first, last = np.asarray(outline, float), np.asarray(start, float), np.asarray(end, float)
+    shape, first, last = (
+        np.asarray(outline, float),
+        np.asarray(start, float),
+        np.asarray(end, float),
+    )
     length = float(np.linalg.norm(last - first))
     shape = np.column_stack([shape[:, 0], shape[:, 1] * length])
     angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
@@ -49,20 +57,34 @@ def turned(outline: ArrayLike, start: ArrayLike, end: ArrayLike, tone: str = BOD
     count = len(ring)
     points, normals = np.empty((2, len(kept), 2, count, 3))
     points[..., :2], points[..., 2] = ends[:, :, None, :1] * ring, ends[:, :, None, 1]
-    normals[..., :2], normals[..., 2] = (rise / size)[:, None, None, None] * ring, (-run / size)[:, None, None]
+    normals[..., :2], normals[..., 2] = (
+        (rise / size)[:, None, None, None] * ring,
+        (-run / size)[:, None, None],
+    )
     i = np.arange(count - 1) + 2 * count * np.arange(len(kept))[:, None]
     halves = [(i, i + 1, i + count), (i + 1, i + count + 1, i + count)]
     triangles = np.stack([np.stack(half, axis=2) for half in halves], axis=1)
     pose = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), (last - first) / length), first)
-    return Solid(points.reshape(-1, 3), normals.reshape(-1, 3), triangles.reshape(-1, 3), tone).moved(pose)
+    return Solid(
+        points.reshape(-1, 3), normals.reshape(-1, 3), triangles.reshape(-1, 3), tone
+    ).moved(pose)
 
 
-def cylinder(start: ArrayLike, end: ArrayLike, radius: float, tone: str = BODY, bevel: float = 0.12) -> Solid:
+def cylinder(
+    start: ArrayLike, end: ArrayLike, radius: float, tone: str = BODY, bevel: float = 0.12
+) -> Solid:
     """A cylinder with bevelled edges; bevel as a share of the radius, at most of half the length."""
     length = float(np.linalg.norm(np.asarray(end, float) - np.asarray(start, float)))
     cut = min(bevel * radius, 0.4 * length)
     rise = cut / length
-    outline = [(0, 0), (radius - cut, 0), (radius, rise), (radius, 1 - rise), (radius - cut, 1), (0, 1)]
+    outline = [
+        (0, 0),
+        (radius - cut, 0),
+        (radius, rise),
+        (radius, 1 - rise),
+        (radius - cut, 1),
+        (0, 1),
+    ]
     return turned(outline, start, end, tone)
 
 
@@ -77,7 +99,13 @@ def capsule(start: ArrayLike, end: ArrayLike, first: float, last: float, tone: s
 
 
 def strut(
-    start: ArrayLike, end: ArrayLike, axis: ArrayLike, first: float, last: float, thick: float, tone: str = BODY
+    start: ArrayLike,
+    end: ArrayLike,
+    axis: ArrayLike,
+    first: float,
+    last: float,
+    thick: float,
+    tone: str = BODY,
 ) -> Solid:
     """A plate `thick` mm along the unit `axis`, as wide as two discs of radii `first` and `last` mm at its ends."""
     begin, stop, normal = (np.asarray(value, float) for value in (start, end, axis))
@@ -89,10 +117,14 @@ def strut(
     # where the common tangents of both discs touch
     lean = float(np.arccos(np.clip((first - last) / length, -1.0, 1.0)))
     low, high = np.linspace(lean, 2.0 * np.pi - lean, 24), np.linspace(-lean, lean, 24)
-    outline = np.concatenate([
-        begin + first * (np.cos(low)[:, None] * along + np.sin(low)[:, None] * across),
-        begin + along * length + last * (np.cos(high)[:, None] * along + np.sin(high)[:, None] * across),
-    ])
+    outline = np.concatenate(
+        [
+            begin + first * (np.cos(low)[:, None] * along + np.sin(low)[:, None] * across),
+            begin
+            + along * length
+            + last * (np.cos(high)[:, None] * along + np.sin(high)[:, None] * across),
+        ]
+    )
     angle = np.concatenate([low, high])
     outward = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
     return _prism(outline, outward, normal, thick, tone)
@@ -104,15 +136,26 @@ def _prism(outline: Array, outward: Array, normal: Array, thick: float, tone: st
     rim = np.concatenate([outline - half, outline + half])
     ends = np.concatenate([-np.ones(n), np.ones(n)])[:, None] * normal
     i, following = np.arange(n), np.roll(np.arange(n), -1)
-    side = np.concatenate([np.column_stack([i, following, i + n]), np.column_stack([following, following + n, i + n])])
+    side = np.concatenate(
+        [np.column_stack([i, following, i + n]), np.column_stack([following, following + n, i + n])]
+    )
     fan = np.column_stack([np.zeros(n - 2, dtype=np.int64), np.arange(1, n - 1), np.arange(2, n)])
     caps = np.concatenate([fan + 2 * n, fan + 3 * n])
     return Solid(
-        np.concatenate([rim, rim]), np.concatenate([outward, outward, ends]), np.concatenate([side, caps]), tone
+        np.concatenate([rim, rim]),
+        np.concatenate([outward, outward, ends]),
+        np.concatenate([side, caps]),
+        tone,
     )
 
 
-def box(centre: ArrayLike, x: ArrayLike, y: ArrayLike, size: tuple[float, float, float], tone: str = BODY) -> Solid:
+def box(
+    centre: ArrayLike,
+    x: ArrayLike,
+    y: ArrayLike,
+    size: tuple[float, float, float],
+    tone: str = BODY,
+) -> Solid:
     """A box about its centre (3,) with edges along unit vectors x, y and x cross y, of `size` mm."""
     first, second = np.asarray(x, float), np.asarray(y, float)
     axes = np.stack([first, second, np.cross(first, second)])
@@ -120,11 +163,21 @@ def box(centre: ArrayLike, x: ArrayLike, y: ArrayLike, size: tuple[float, float,
     normals: list[Array] = []
     triangles: list[Integers] = []
     for axis in range(3):
-        u, v = axes[(axis + 1) % 3] * size[(axis + 1) % 3], axes[(axis + 2) % 3] * size[(axis + 2) % 3]
+        u, v = (
+            axes[(axis + 1) % 3] * size[(axis + 1) % 3],
+            axes[(axis + 2) % 3] * size[(axis + 2) % 3],
+        )
         for sign in (-1.0, 1.0):
             base = 4 * len(normals)
             middle = np.asarray(centre, float) + 0.5 * sign * size[axis] * axes[axis]
-            points.append(np.stack([middle + 0.5 * (a * u + b * v) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]))
+            points.append(
+                np.stack(
+                    [
+                        middle + 0.5 * (a * u + b * v)
+                        for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+                    ]
+                )
+            )
             normals.append(np.tile(sign * axes[axis], (4, 1)))
             triangles.append(np.array([[0, 1, 2], [0, 2, 3]]) + base)
     return Solid(np.concatenate(points), np.concatenate(normals), np.concatenate(triangles), tone)

@@ -54,13 +54,22 @@ def read(path: Path) -> tuple[Array, str]:
     Raises InputError UNKNOWN_MACHINE without the file, BAD_CALIBRATION naming line or key.
     """
     if not is_there(path):
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no calibration {}; give the path of the YAML file "
-                         "that ur_calibration wrote of this arm", path)
+        raise InputError(
+            "UNKNOWN_MACHINE",
+            "cell.machine",
+            "there is no calibration {}; give the path of the YAML file "
+            "that ur_calibration wrote of this arm",
+            path,
+        )
     try:
         text = content(path, LARGEST, "BAD_CALIBRATION", str(path)).decode("utf-8")
     except (OSError, ValueError) as error:
-        raise InputError("BAD_CALIBRATION", str(path), "cannot be read as a calibration: {}; give the file as "
-                         "ur_calibration wrote it", error) from None
+        raise InputError(
+            "BAD_CALIBRATION",
+            str(path),
+            "cannot be read as a calibration: {}; give the file as ur_calibration wrote it",
+            error,
+        ) from None
     entries = _entries(text, path)
     poses = [_pose(entries, joint, path) for joint in JOINTS]
     return np.stack(poses), entries.get("kinematics.hash", "").strip("'\"")
@@ -75,11 +84,16 @@ def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
     origins[0] = base @ poses[0]
     for joint, was, now in zip(JOINTS, chain.origins, origins, strict=True):
         off = float(np.linalg.norm(now[:3, 3] - was[:3, 3]))
-        turned = math.acos(float(np.clip(0.5 * (np.trace(was[:3, :3].T @ now[:3, :3]) - 1.0), -1.0, 1.0)))
+        turned = math.acos(
+            float(np.clip(0.5 * (np.trace(was[:3, :3].T @ now[:3, :3]) - 1.0), -1.0, 1.0))
+        )
         if off > FAR_MM or turned > FAR_RAD:
             raise InputError(
-                "BAD_CALIBRATION", f"{path}: kinematics.{joint}", "it is {:.3g} mm and {:.3g} deg from where the machine "
-                "file has this joint, which is more than a calibration corrects; name the machine that it is of", off,
+                "BAD_CALIBRATION",
+                f"{path}: kinematics.{joint}",
+                "it is {:.3g} mm and {:.3g} deg from where the machine "
+                "file has this joint, which is more than a calibration corrects; name the machine that it is of",
+                off,
                 math.degrees(turned),
             )
     return Chain(origins, chain.directions.copy(), chain.flange.copy())
@@ -95,15 +109,23 @@ def _entries(text: str, path: Path) -> dict[str, str]:
             continue
         entry = _ENTRY.fullmatch(shown)
         if entry is None:
-            raise InputError("BAD_CALIBRATION", f"{path}: line {number}", "{} is not `key: value`; give the file as "
-                             "ur_calibration wrote it", _short(line))
+            raise InputError(
+                "BAD_CALIBRATION",
+                f"{path}: line {number}",
+                "{} is not `key: value`; give the file as ur_calibration wrote it",
+                _short(line),
+            )
         indent = len(entry["indent"])
         while open_ and open_[-1][0] >= indent:
             open_.pop()
         key = ".".join([*(name for _, name in open_), entry["key"]])
         if key in found:
-            raise InputError("BAD_CALIBRATION", f"{path}: line {number}", "the key {} is there twice; give the file as "
-                             "ur_calibration wrote it", key)
+            raise InputError(
+                "BAD_CALIBRATION",
+                f"{path}: line {number}",
+                "the key {} is there twice; give the file as ur_calibration wrote it",
+                key,
+            )
         found[key] = entry["value"] or ""
         open_.append((indent, entry["key"]))
     return found
@@ -114,15 +136,22 @@ def _pose(entries: dict[str, str], joint: str, path: Path) -> Array:
     for name in NUMBERS:
         key = f"kinematics.{joint}.{name}"
         if key not in entries:
-            raise InputError("BAD_CALIBRATION", f"{path}: {key}", "this key is missing; give the file as ur_calibration "
-                             "wrote it")
+            raise InputError(
+                "BAD_CALIBRATION",
+                f"{path}: {key}",
+                "this key is missing; give the file as ur_calibration wrote it",
+            )
         try:
             number = float(entries[key])
         except ValueError:
             number = math.nan
         if not math.isfinite(number):
-            raise InputError("BAD_CALIBRATION", f"{path}: {key}", "{} is not a number; give the file as ur_calibration "
-                             "wrote it", _short(entries[key]))
+            raise InputError(
+                "BAD_CALIBRATION",
+                f"{path}: {key}",
+                "{} is not a number; give the file as ur_calibration wrote it",
+                _short(entries[key]),
+            )
         numbers.append(number)
     return frames.from_rpy(np.array(numbers[:3]) * 1000.0, np.array(numbers[3:]))
 

@@ -27,7 +27,10 @@ class Entry:
         """Whether title or id begin with the words of a maker, as 'Yaskawa' and 'motoman' of a Yaskawa; accents and
         capitals do not count."""
         wanted = _plain(maker)
-        return any(_plain(name).startswith(f"{wanted} ") for name in (self.title, self.id.replace("-", " ")))
+        return any(
+            _plain(name).startswith(f"{wanted} ")
+            for name in (self.title, self.id.replace("-", " "))
+        )
 
 
 def entries(folders: Sequence[Path | str] = ()) -> list[Entry]:
@@ -35,20 +38,33 @@ def entries(folders: Sequence[Path | str] = ()) -> list[Entry]:
 
     Raises InputError BAD_MACHINE for reach or payload that are not figures.
     """
-    names = [name for name, title in machine.known(folders) if not title.startswith(machine.REFUSED)]
+    names = [
+        name for name, title in machine.known(folders) if not title.startswith(machine.REFUSED)
+    ]
     return [_entry(name, read(machine.file_of(name, folders))) for name in names]
 
 
 def chosen(
-    known: Sequence[Entry], maker: str | None = None, reach: float = 0.0, payload: float = 0.0, post: str | None = None
+    known: Sequence[Entry],
+    maker: str | None = None,
+    reach: float = 0.0,
+    payload: float = 0.0,
+    post: str | None = None,
 ) -> list[Entry]:
     """Those of a maker, that reach and carry so much at least (mm, kg), and whose controllers read a post; where a file does
     not tell a figure that is asked for, its machine is left out. InputError USAGE for a maker that no machine is of."""
     if maker is not None and not any(entry.is_of(maker) for entry in known):
         makers = ", ".join(sorted({entry.title.split()[0] for entry in known}))
-        raise InputError("USAGE", "freecad-am machines", "no machine known is of {!r}; use one of {}", maker, makers)
+        raise InputError(
+            "USAGE",
+            "freecad-am machines",
+            "no machine known is of {!r}; use one of {}",
+            maker,
+            makers,
+        )
     return [
-        entry for entry in known
+        entry
+        for entry in known
         if (maker is None or entry.is_of(maker))
         and (reach <= 0.0 or (entry.reach is not None and entry.reach >= reach))
         and (payload <= 0.0 or (entry.payload is not None and entry.payload >= payload))
@@ -59,7 +75,10 @@ def chosen(
 def _entry(name: str, top: Node) -> Entry:
     controller = top["controller"] if top.has("controller") else top
     return Entry(
-        name, top["title"].text(), _figure(top, "reach", "mm"), _figure(top, "payload", "kg"),
+        name,
+        top["title"].text(),
+        _figure(top, "reach", "mm"),
+        _figure(top, "payload", "kg"),
         controller["posts"].texts() if controller.has("posts") else None,
     )
 
@@ -70,4 +89,8 @@ def _figure(top: Node, key: str, unit: str) -> float | None:
 
 def _plain(text: str) -> str:
     letters = unicodedata.normalize("NFKD", text)
-    return "".join(letter for letter in letters if not unicodedata.combining(letter)).casefold().strip()
+    return (
+        "".join(letter for letter in letters if not unicodedata.combining(letter))
+        .casefold()
+        .strip()
+    )

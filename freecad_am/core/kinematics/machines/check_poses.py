@@ -23,11 +23,17 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
     of its closed form where it has one."""
     poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
-        raise node.bad(Text("there are {}; give at least 3 joint vectors with their flange poses", len(poses)))
-    q = np.array([pose["q"].numbers(chain.axes) for pose in poses]) * np.where(chain.sliding, 1.0, math.radians(1.0))
+        raise node.bad(
+            Text("there are {}; give at least 3 joint vectors with their flange poses", len(poses))
+        )
+    q = np.array([pose["q"].numbers(chain.axes) for pose in poses]) * np.where(
+        chain.sliding, 1.0, math.radians(1.0)
+    )
     if not (q == 0.0).all(axis=1).any():
         raise node.bad("the pose at all zeros is missing; add it")
-    wanted = np.stack([frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses])
+    wanted = np.stack(
+        [frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses]
+    )
     allowed = np.array([_within(pose) for pose in poses])
     solvers = {"the joint frames give": chain.forward}
     if opw is not None:
@@ -39,8 +45,13 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
         if wrong.any():
             index = int(np.argmax(wrong))
             raise poses[index].bad(
-                Text("{} a flange {:.6g} mm and {:.3g} (largest entry of the rotation) from it; correct the geometry or the "
-                    "pose", solver_gives, position[index], rotation[index])
+                Text(
+                    "{} a flange {:.6g} mm and {:.3g} (largest entry of the rotation) from it; correct the geometry or the "
+                    "pose",
+                    solver_gives,
+                    position[index],
+                    rotation[index],
+                )
             )
 
 
@@ -54,6 +65,12 @@ def _within(pose: Node) -> tuple[float, float]:
     for key, most in zip(("mm", "deg"), MOST_ROUNDING, strict=True):
         value = node[key].number()
         if not 0.0 <= value <= most:
-            raise node[key].bad(Text("{:g} is more than the rounding of a display leaves; give 0 to {:g}", value, most))
+            raise node[key].bad(
+                Text(
+                    "{:g} is more than the rounding of a display leaves; give 0 to {:g}",
+                    value,
+                    most,
+                )
+            )
         found.append(value)
     return max(found[0], POSITION_TOLERANCE), max(math.radians(found[1]), ROTATION_TOLERANCE)

@@ -81,7 +81,9 @@ def _check(table: Table) -> None:
     for number, row in enumerate(table.rows, 1):
         where = Text("table, row {}", number)
         if not np.isfinite([row.theta, row.d, row.a, row.alpha]).all():
-            raise InputError("BAD_TABLE", where, "theta, d, a and alpha must be numbers; give all four")
+            raise InputError(
+                "BAD_TABLE", where, "theta, d, a and alpha must be numbers; give all four"
+            )
         if row.sign not in (1, -1):
             raise InputError("BAD_TABLE", where, "{} is not a sign; use 1 or -1", row.sign)
 
@@ -116,8 +118,11 @@ def _modified_frames(axes: Sequence[Axis]) -> list[Array]:
             foot, normal = _normal((direction, origin), axes[index + 1], known)
             placed.append(_frame(direction, normal, foot[0]))
         else:
-            foot, normal = _normal(axes[index - 1], (direction, origin), placed[-1]) if placed else (
-                (origin, origin), _any_normal(direction))
+            foot, normal = (
+                _normal(axes[index - 1], (direction, origin), placed[-1])
+                if placed
+                else ((origin, origin), _any_normal(direction))
+            )
             placed.append(_frame(direction, normal, foot[1]))
     return [placed[0], *placed]
 
@@ -145,7 +150,9 @@ def _normal(first: Axis, second: Axis, before: Array) -> tuple[tuple[Array, Arra
         between = (p2 - start) - z1 * float(z1 @ (p2 - start))
         length = float(np.linalg.norm(between))
         # parallel axes without a distance are one: any normal will do, best the one before
-        normal: Array = between / length if length > 1e-9 else before[:3, 0] - z1 * float(z1 @ before[:3, 0])
+        normal: Array = (
+            between / length if length > 1e-9 else before[:3, 0] - z1 * float(z1 @ before[:3, 0])
+        )
         return (start, start + between), np.asarray(normal / np.linalg.norm(normal))
     across = p2 - p1
     t1 = float(np.cross(across, z2) @ cross) / size**2

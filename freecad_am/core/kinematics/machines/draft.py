@@ -81,8 +81,13 @@ def of_description(described: Description, source: str) -> Draft:
     found = urdf_machine.grounded(described)
     draft = _bare(found.chain, found.joints, found.name, source)
     return replace(
-        draft, lower=found.lower, upper=found.upper, max_speed=found.max_speed,
-        base=np.eye(4) if found.base is None else found.base, shapes=found.shapes, notes=found.notes,
+        draft,
+        lower=found.lower,
+        upper=found.upper,
+        max_speed=found.max_speed,
+        base=np.eye(4) if found.base is None else found.base,
+        shapes=found.shapes,
+        notes=found.notes,
         bodies=found.bodies,
     )
 
@@ -90,7 +95,9 @@ def of_description(described: Description, source: str) -> Draft:
 def of_chain(chain: Chain, source: str) -> Draft:
     """The draft of a bare chain, of a table or of closed-form figures."""
     grounded, moved = urdf_machine.grounded_chain(chain)
-    draft = _bare(grounded, tuple(f"joint_{number}" for number in range(1, chain.axes + 1)), "", source)
+    draft = _bare(
+        grounded, tuple(f"joint_{number}" for number in range(1, chain.axes + 1)), "", source
+    )
     return replace(draft, base=moved)
 
 
@@ -103,21 +110,50 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
     machine = machines.load(name, folders)
     checks = machine_file.read(machines.file_of(name, folders))["check_poses"].items()
     q = np.array([check["q"].numbers(len(machine.axes)) for check in checks]) * machine.unit_values
-    poses = np.stack([frames.pose(check["rotation"].matrix(3, 3), check["origin"].numbers(3)) for check in checks])
+    poses = np.stack(
+        [
+            frames.pose(check["rotation"].matrix(3, 3), check["origin"].numbers(3))
+            for check in checks
+        ]
+    )
     count, limits = len(machine.axes), machine.limits(machines.MAKER)
     shown = _shown(machine)
-    coupled = [span for span, row in zip(
-        np.degrees(np.column_stack((limits.coupled_lower, limits.coupled_upper))).tolist(), limits.coefficients, strict=True
-    ) if shown.coupling == pendant.HORIZONTAL and np.allclose(row, machine.controller_matrix[2])]
-    names = machine.axes if machine.arrangements[0].named_axes else tuple(f"joint_{1 + number}" for number in range(count))
+    coupled = [
+        span
+        for span, row in zip(
+            np.degrees(np.column_stack((limits.coupled_lower, limits.coupled_upper))).tolist(),
+            limits.coefficients,
+            strict=True,
+        )
+        if shown.coupling == pendant.HORIZONTAL and np.allclose(row, machine.controller_matrix[2])
+    ]
+    names = (
+        machine.axes
+        if machine.arrangements[0].named_axes
+        else tuple(f"joint_{1 + number}" for number in range(count))
+    )
     return Draft(
-        id=f"{machine.id}-copy", title=machine.title, chain=machine.chain, joints=names, lower=limits.lower[:count],
-        upper=limits.upper[:count], max_speed=machine.max_speed, max_acceleration=machine.max_acceleration,
-        max_jerk=machine.max_jerk, base=machine.base, shown=shown, shapes=machine.shapes,
+        id=f"{machine.id}-copy",
+        title=machine.title,
+        chain=machine.chain,
+        joints=names,
+        lower=limits.lower[:count],
+        upper=limits.upper[:count],
+        max_speed=machine.max_speed,
+        max_acceleration=machine.max_acceleration,
+        max_jerk=machine.max_jerk,
+        base=machine.base,
+        shown=shown,
+        shapes=machine.shapes,
         sources=(f"copy of {machine.id}", *machine.sources),
-        horizontal=(coupled[0][0] + shown.zeros[2], coupled[0][1] + shown.zeros[2]) if coupled else None,
-        posts=machine.posts, pulses_per_degree=machine.pulses_per_degree, speed_unit=machine.speed_unit,
-        values=machine.to_controller(q) / machine.unit_values, poses=poses,
+        horizontal=(coupled[0][0] + shown.zeros[2], coupled[0][1] + shown.zeros[2])
+        if coupled
+        else None,
+        posts=machine.posts,
+        pulses_per_degree=machine.pulses_per_degree,
+        speed_unit=machine.speed_unit,
+        values=machine.to_controller(q) / machine.unit_values,
+        poses=poses,
         labels=None if machine.axes == machine.columns else machine.axes,
     )
 
@@ -131,12 +167,21 @@ def text(draft: Draft) -> str:
     """The machine file. Raises InputError: BAD_NAME; NO_CLOSED_FORM; BAD_MACHINE naming the key that is wrong, such as check
     poses that are missing or missed."""
     if not NAME.fullmatch(draft.id):
-        raise InputError("BAD_NAME", "id", "{!r} cannot be the name of a machine; use a to z, digits and -", draft.id)
+        raise InputError(
+            "BAD_NAME",
+            "id",
+            "{!r} cannot be the name of a machine; use a to z, digits and -",
+            draft.id,
+        )
     if not draft.title:
         raise InputError("BAD_NAME", "title", "it is empty; give maker and model")
     content: dict[str, Any] = {
-        "id": draft.id, "title": draft.title, "sources": list(draft.sources), "joints": _joints(draft),
-        "flange": _pose(draft.chain.flange), "base": _pose(draft.base),
+        "id": draft.id,
+        "title": draft.title,
+        "sources": list(draft.sources),
+        "joints": _joints(draft),
+        "flange": _pose(draft.chain.flange),
+        "base": _pose(draft.base),
     }
     if draft.remarks:
         content["remarks"] = list(draft.remarks)
@@ -144,16 +189,22 @@ def text(draft: Draft) -> str:
     if isinstance(arm, OpwArm):
         content["opw"] = {
             **{name: getattr(arm, name) for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")},
-            "offsets": _figures(np.degrees(arm.offsets)), "signs": list(arm.signs),
+            "offsets": _figures(np.degrees(arm.offsets)),
+            "signs": list(arm.signs),
         }
     content |= {"controller": _controller(draft), "limits": {machines.MAKER: _limits(draft)}}
     shapes = _shapes(draft)
     if shapes:
         content["shapes"] = shapes
     if any(draft.bodies):
-        content["bodies"] = {"source": draft.sources[0], **{
-            name: [_piece(one) for one in pieces] for name, pieces in zip((BASE, *draft.joints), draft.bodies, strict=True)
-            if pieces}}
+        content["bodies"] = {
+            "source": draft.sources[0],
+            **{
+                name: [_piece(one) for one in pieces]
+                for name, pieces in zip((BASE, *draft.joints), draft.bodies, strict=True)
+                if pieces
+            },
+        }
     content["check_poses"] = _check_poses(draft)
     written = _compact(json.dumps(content, indent=2, ensure_ascii=False)) + "\n"
     machines.parse(written, Path(f"{draft.id}.json"))
@@ -163,9 +214,19 @@ def text(draft: Draft) -> str:
 def _bare(chain: Chain, joints: tuple[str, ...], title: str, source: str) -> Draft:
     unlimited = np.full(chain.axes, math.inf)
     return Draft(
-        id="", title=title, chain=chain, joints=joints, lower=-unlimited, upper=unlimited, max_speed=unlimited,
-        max_acceleration=unlimited, max_jerk=unlimited, base=np.eye(4), shown=Shown((1,) * chain.axes, (0.0,) * chain.axes),
-        shapes=(None,) * (chain.axes + 1), sources=(source,),
+        id="",
+        title=title,
+        chain=chain,
+        joints=joints,
+        lower=-unlimited,
+        upper=unlimited,
+        max_speed=unlimited,
+        max_acceleration=unlimited,
+        max_jerk=unlimited,
+        base=np.eye(4),
+        shown=Shown((1,) * chain.axes, (0.0,) * chain.axes),
+        shapes=(None,) * (chain.axes + 1),
+        sources=(source,),
     )
 
 
@@ -175,10 +236,15 @@ def _shown(machine: Machine) -> Shown:
     signs = tuple(int(np.sign(value)) for value in np.diag(machine.controller_matrix))
     for coupling in (pendant.NONE, pendant.HORIZONTAL) if len(signs) == 6 else (pendant.NONE,):
         shown = Shown(signs, zeros, coupling)
-        if 0 not in signs and np.allclose(pendant.matrix(shown, machine.chain)[0], machine.controller_matrix):
+        if 0 not in signs and np.allclose(
+            pendant.matrix(shown, machine.chain)[0], machine.controller_matrix
+        ):
             return shown
-    raise InputError("BAD_MACHINE", Text("{}: controller.matrix", machine.id),
-                     "it is none of signs and a coupling of axes 2 and 3; copy the file itself")
+    raise InputError(
+        "BAD_MACHINE",
+        Text("{}: controller.matrix", machine.id),
+        "it is none of signs and a coupling of axes 2 and 3; copy the file itself",
+    )
 
 
 def _joints(draft: Draft) -> list[dict[str, Any]]:
@@ -205,7 +271,11 @@ def _controller(draft: Draft) -> dict[str, Any]:
     remark = "as shown in the check poses"
     if draft.shown.coupling == pendant.HORIZONTAL:
         remark += f"; J3 is shown against the horizontal, {_coupled_label(matrix[2])}"
-    found: dict[str, Any] = {"matrix": [_figures(row) for row in matrix], "offset": _figures(offset), "remark": remark}
+    found: dict[str, Any] = {
+        "matrix": [_figures(row) for row in matrix],
+        "offset": _figures(offset),
+        "remark": remark,
+    }
     if draft.pulses_per_degree:
         found["pulses_per_degree"] = list(draft.pulses_per_degree)
     if draft.speed_unit:
@@ -215,12 +285,16 @@ def _controller(draft: Draft) -> dict[str, Any]:
 
 def _limits(draft: Draft) -> dict[str, Any]:
     spans = np.column_stack((draft.lower / draft.units, draft.upper / draft.units))
-    found: dict[str, Any] = {"axes": [None if not np.isfinite(span).all() else _figures(span) for span in spans]}
+    found: dict[str, Any] = {
+        "axes": [None if not np.isfinite(span).all() else _figures(span) for span in spans]
+    }
     if draft.shown.coupling == pendant.HORIZONTAL and draft.horizontal is not None:
         row = pendant.matrix(draft.shown, draft.chain)[0][2]
         label = f"J3 as shown ({_coupled_label(row)})"
         span = np.array(draft.horizontal) - draft.shown.zeros[2]
-        found["coupled"] = [{"label": label, "coefficients": _figures(row), "range": _figures(span)}]
+        found["coupled"] = [
+            {"label": label, "coefficients": _figures(row), "range": _figures(span)}
+        ]
     return {**found, "source": "entered when the machine was made"}
 
 
@@ -256,9 +330,15 @@ def _check_poses(draft: Draft) -> list[dict[str, Any]]:
     found = []
     for angles, pose, deviation in zip(q / draft.units, draft.poses, off, strict=True):
         check = {
-            "q": _figures(angles), "origin": _figures(pose[:3, 3]), "rotation": [_figures(row) for row in pose[:3, :3]],
+            "q": _figures(angles),
+            "origin": _figures(pose[:3, 3]),
+            "rotation": [_figures(row) for row in pose[:3, :3]],
         }
-        fits = [entry for entry in _ROUNDINGS if deviation.position <= entry[0] and deviation.angle <= entry[1]]
+        fits = [
+            entry
+            for entry in _ROUNDINGS
+            if deviation.position <= entry[0] and deviation.angle <= entry[1]
+        ]
         if fits and (deviation.position > 0.5e-6 or deviation.angle > 1e-8):
             check["within"] = {"mm": fits[0][0], "deg": fits[0][1]}
         found.append(check)
@@ -267,7 +347,10 @@ def _check_poses(draft: Draft) -> list[dict[str, Any]]:
 
 def _pose(pose: Array) -> dict[str, Any]:
     # + 0.0 leaves no -0.0
-    return {"origin": _figures(pose[:3, 3]), "rpy": _figures(np.degrees(-frames.to_bryant(pose[:3, :3].T)))}
+    return {
+        "origin": _figures(pose[:3, 3]),
+        "rpy": _figures(np.degrees(-frames.to_bryant(pose[:3, :3].T))),
+    }
 
 
 def _figures(values: Any) -> list[float]:
@@ -288,4 +371,6 @@ def _known(value: float) -> float | None:
 def _compact(text: str) -> str:
     """JSON with lists of numbers, and objects of such lists alone, in one line each."""
     lists = re.compile(r"\[\s+((?:-?[\d.eE+-]+|null),?\s*)+\]")
-    return lists.sub(lambda found: re.sub(r"\s+", " ", found[0]).replace("[ ", "[").replace(" ]", "]"), text)
+    return lists.sub(
+        lambda found: re.sub(r"\s+", " ", found[0]).replace("[ ", "[").replace(" ]", "]"), text
+    )

@@ -27,14 +27,20 @@ def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
     node = controller["pulses_per_degree"]
     pulses = node.numbers(count)
     if (pulses == 0.0).any():
-        raise node.bad(Text("{} has a 0; give the pulses of a degree of each axis, negative where they count down",
-                            node.value))
+        raise node.bad(
+            Text(
+                "{} has a 0; give the pulses of a degree of each axis, negative where they count down",
+                node.value,
+            )
+        )
     return tuple(pulses.tolist())
 
 
 def speed_unit_of(node: Node) -> str:
     if node.text() not in SPEED_UNITS:
-        raise node.bad(Text("{!r} is not a unit of path speeds; use {}", node.value, ", ".join(SPEED_UNITS)))
+        raise node.bad(
+            Text("{!r} is not a unit of path speeds; use {}", node.value, ", ".join(SPEED_UNITS))
+        )
     return node.text()
 
 
@@ -56,7 +62,9 @@ def unit_of(node: Node) -> Array:
 def slides(joint: Node) -> bool:
     kind = joint["type"].text() if joint.has("type") else "revolute"
     if kind not in ("revolute", "prismatic"):
-        raise joint["type"].bad(Text("{!r} is not a type of joint; use revolute or prismatic", kind))
+        raise joint["type"].bad(
+            Text("{!r} is not a type of joint; use revolute or prismatic", kind)
+        )
     return kind == "prismatic"
 
 
@@ -65,7 +73,9 @@ def most_of(joint: Node, key: str, what: str) -> float:
         return math.inf
     most = joint[key].number()
     if most <= 0.0:
-        raise joint[key].bad(Text("{:g} is not {}; give more than 0, or null where not known", most, what))
+        raise joint[key].bad(
+            Text("{:g} is not {}; give more than 0, or null where not known", most, what)
+        )
     return most
 
 
@@ -91,33 +101,56 @@ def opw_arm(node: Node, count: int) -> OpwArm:
     lengths = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
     node.only(*lengths, "offsets", "signs")
     if count != 6:
-        raise node.bad(Text("the closed form is for six joints, there are {}; leave opw out", count))
+        raise node.bad(
+            Text("the closed form is for six joints, there are {}; leave opw out", count)
+        )
     signs = node["signs"].numbers(6)
     if (np.abs(signs) != 1.0).any():
-        raise node["signs"].bad(Text("{} must be 1 or -1 each; give one for each joint", node["signs"].value))
+        raise node["signs"].bad(
+            Text("{} must be 1 or -1 each; give one for each joint", node["signs"].value)
+        )
     offsets = node["offsets"].numbers(6)
     if (np.abs(offsets) > 180.0).any():
-        raise node["offsets"].bad(Text("{} must lie within +-180; give the same angles in that range",
-                                       node["offsets"].value))
+        raise node["offsets"].bad(
+            Text(
+                "{} must lie within +-180; give the same angles in that range",
+                node["offsets"].value,
+            )
+        )
     for name in ("c2", "c3"):
         if node[name].number() <= 0.0:
-            raise node[name].bad(Text("{} is not the length of an arm; give more than 0 mm", node[name].value))
+            raise node[name].bad(
+                Text("{} is not the length of an arm; give more than 0 mm", node[name].value)
+            )
     return OpwArm(
         **{name: node[name].number() for name in lengths},
-        offsets=tuple(np.radians(offsets).tolist()), signs=tuple(int(sign) for sign in signs),
+        offsets=tuple(np.radians(offsets).tolist()),
+        signs=tuple(int(sign) for sign in signs),
     )
 
 
 def limits_of(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limits:
     node.only("axes", "coupled", "source")
     count = len(axes)
-    spans = np.array([axis.span(unit) for axis, unit in zip(node["axes"].items(count), units, strict=True)])
-    coupled = [c.only("label", "coefficients", "range") for c in node["coupled"].items()] if node.has("coupled") else []
+    spans = np.array(
+        [axis.span(unit) for axis, unit in zip(node["axes"].items(count), units, strict=True)]
+    )
+    coupled = (
+        [c.only("label", "coefficients", "range") for c in node["coupled"].items()]
+        if node.has("coupled")
+        else []
+    )
     ranges = np.array([row["range"].span() for row in coupled]).reshape(len(coupled), 2)
-    coefficients = np.array([row["coefficients"].numbers(count) for row in coupled]).reshape(len(coupled), count)
+    coefficients = np.array([row["coefficients"].numbers(count) for row in coupled]).reshape(
+        len(coupled), count
+    )
     return Limits(
-        name=name, lower=spans[:, 0].copy(), upper=spans[:, 1].copy(), coefficients=coefficients,
-        coupled_lower=ranges[:, 0].copy(), coupled_upper=ranges[:, 1].copy(),
+        name=name,
+        lower=spans[:, 0].copy(),
+        upper=spans[:, 1].copy(),
+        coefficients=coefficients,
+        coupled_lower=ranges[:, 0].copy(),
+        coupled_upper=ranges[:, 1].copy(),
         labels=axes + tuple(row["label"].text() for row in coupled),
         source=node["source"].text(),
     )

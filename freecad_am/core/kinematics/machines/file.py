@@ -31,13 +31,20 @@ class Node:
 
     def bad(self, message: str) -> InputError:
         """The error about this part."""
-        return InputError("BAD_MACHINE", f"{self.path}{': ' if self.key else ''}{self.key}", message)
+        return InputError(
+            "BAD_MACHINE", f"{self.path}{': ' if self.key else ''}{self.key}", message
+        )
 
     def only(self, *known: str) -> Node:
         """Itself, if it is an object without unknown keys."""
         if not isinstance(self.value, dict):
-            raise self.bad(Text("{} is not an object with the keys {}; write it as one in braces", _short(self.value),
-                                ", ".join(known)))
+            raise self.bad(
+                Text(
+                    "{} is not an object with the keys {}; write it as one in braces",
+                    _short(self.value),
+                    ", ".join(known),
+                )
+            )
         for key in self.value:
             if key not in known:
                 raise self.bad(Text("the key {!r} is not known; use {}", key, ", ".join(known)))
@@ -55,9 +62,16 @@ class Node:
     def items(self, length: int | None = None) -> list[Node]:
         """The parts of a list, of `length` where given."""
         if not isinstance(self.value, list) or (length is not None and len(self.value) != length):
-            raise self.bad(Text("{} is not a list{}; write one in square brackets", _short(self.value),
-                                Word(Text(" of {}", length) if length is not None else "")))
-        return [Node(value, self.path, f"{self.key}[{index}]") for index, value in enumerate(self.value)]
+            raise self.bad(
+                Text(
+                    "{} is not a list{}; write one in square brackets",
+                    _short(self.value),
+                    Word(Text(" of {}", length) if length is not None else ""),
+                )
+            )
+        return [
+            Node(value, self.path, f"{self.key}[{index}]") for index, value in enumerate(self.value)
+        ]
 
     def pairs(self) -> Iterator[tuple[str, Node]]:
         """The keys and values of an object."""
@@ -77,14 +91,25 @@ class Node:
 
     def number(self) -> float:
         """A finite number."""
-        if isinstance(self.value, bool) or not isinstance(self.value, (int, float)) or not abs(self.value) <= LARGEST_NUMBER:
+        if (
+            isinstance(self.value, bool)
+            or not isinstance(self.value, (int, float))
+            or not abs(self.value) <= LARGEST_NUMBER
+        ):
             raise self.bad(Text("{} is not a number; write one such as 12.5", _short(self.value)))
         return float(self.value)
 
     def numbers(self, length: int) -> Array:
         """A list of finite numbers (length,)."""
-        are_numbers = isinstance(self.value, list) and {type(value) for value in self.value} <= {int, float}
-        if are_numbers and len(self.value) == length and all(abs(value) <= LARGEST_NUMBER for value in self.value):
+        are_numbers = isinstance(self.value, list) and {type(value) for value in self.value} <= {
+            int,
+            float,
+        }
+        if (
+            are_numbers
+            and len(self.value) == length
+            and all(abs(value) <= LARGEST_NUMBER for value in self.value)
+        ):
             return np.array(self.value, float)
         # something is wrong: find which
         return np.array([item.number() for item in self.items(length)])
@@ -95,7 +120,12 @@ class Node:
             return -math.inf, math.inf
         lower, upper = (item.number() for item in self.items(2))
         if not lower < upper:
-            raise self.bad(Text("{} is not a range; give the smaller one first, or null for endless", _short(self.value)))
+            raise self.bad(
+                Text(
+                    "{} is not a range; give the smaller one first, or null for endless",
+                    _short(self.value),
+                )
+            )
         return lower * unit, upper * unit
 
     def matrix(self, rows: int, columns: int) -> Array:
@@ -110,13 +140,22 @@ class Node:
 def read(path: Path) -> Node:
     """The content of a machine file; InputError 'BAD_MACHINE' when it cannot be read as JSON."""
     try:
-        return Node(json.loads(content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8")), path)
+        return Node(
+            json.loads(content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8")), path
+        )
     except RecursionError:
-        raise InputError("BAD_MACHINE", str(path), "it is nested too deeply to be a machine file; choose another "
-                         "file") from None
+        raise InputError(
+            "BAD_MACHINE",
+            str(path),
+            "it is nested too deeply to be a machine file; choose another file",
+        ) from None
     except (OSError, ValueError) as error:
-        raise InputError("BAD_MACHINE", str(path), "cannot be read as a machine file: {}; mend that place, or choose "
-                         "another file", error) from None
+        raise InputError(
+            "BAD_MACHINE",
+            str(path),
+            "cannot be read as a machine file: {}; mend that place, or choose another file",
+            error,
+        ) from None
 
 
 def _short(value: Any) -> str:

@@ -39,10 +39,26 @@ from .file import Node, read
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
 UNKNOWN_REMARK = "a URDF does not say what the controller shows"
-REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is not a machine file
+REFUSED = (
+    "BAD_MACHINE: "  # begins what stands in place of the title of a file that is not a machine file
+)
 KEYS = (
-    "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
-    "verified", "check_poses", "shapes", "bodies",
+    "id",
+    "title",
+    "sources",
+    "remarks",
+    "joints",
+    "flange",
+    "base",
+    "opw",
+    "controller",
+    "limits",
+    "reach",
+    "payload",
+    "verified",
+    "check_poses",
+    "shapes",
+    "bodies",
 )
 
 
@@ -95,7 +111,11 @@ class Machine:
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:
         """What it can do in a cell, the usual one first."""
-        return OF_FIVE_AXES if is_five_axis(self.chain.sliding[: len(self.axes) - self.external]) else OF_ROBOTS
+        return (
+            OF_FIVE_AXES
+            if is_five_axis(self.chain.sliding[: len(self.axes) - self.external])
+            else OF_ROBOTS
+        )
 
     @property
     def free(self) -> int:
@@ -124,7 +144,12 @@ class Machine:
         """The set of limits of that name; InputError 'UNKNOWN_LIMITS' when there is none."""
         if name not in self.limit_sets:
             raise InputError(
-                "UNKNOWN_LIMITS", "cell.limits", "{} has no limits {!r}; use {}", self.id, name, ", ".join(self.limit_sets)
+                "UNKNOWN_LIMITS",
+                "cell.limits",
+                "{} has no limits {!r}; use {}",
+                self.id,
+                name,
+                ", ".join(self.limit_sets),
             )
         return self.limit_sets[name]
 
@@ -174,15 +199,30 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
     if text.lower().endswith(".json"):
         path = Path(text).expanduser()
         if not is_there(path):
-            raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no machine file {}; check the path", text)
+            raise InputError(
+                "UNKNOWN_MACHINE",
+                "cell.machine",
+                "there is no machine file {}; check the path",
+                text,
+            )
         return _parse(read(path))
     meant = reference(text)
     if meant is not None:
         return of_description(f"{meant}", *urdf_machine.described(meant))
     path = file_of(text, folders)
-    machine = _built_in(path, located(path).stat().st_mtime_ns) if path.parent == BUILT_IN else _parse(read(path))
+    machine = (
+        _built_in(path, located(path).stat().st_mtime_ns)
+        if path.parent == BUILT_IN
+        else _parse(read(path))
+    )
     if machine.id != text:
-        raise InputError("BAD_MACHINE", f"{path}: id", "{!r} is not the name of the file, {!r}; rename it", machine.id, text)
+        raise InputError(
+            "BAD_MACHINE",
+            f"{path}: id",
+            "{!r} is not the name of the file, {!r}; rename it",
+            machine.id,
+            text,
+        )
     return machine
 
 
@@ -198,7 +238,9 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
         path = Path(folder).expanduser() / f"{name}.json"
         if path.stem == name and is_there(path):  # a name may be too long for a file
             return path
-    from .near_names import unknown  # only when a name was wrong: starting is most of a small job's time
+    from .near_names import (
+        unknown,  # only when a name was wrong: starting is most of a small job's time
+    )
 
     raise unknown(name, sorted(_files(folders)))
 
@@ -220,7 +262,17 @@ def _files(folders: Sequence[Path | str]) -> dict[str, Path]:
 
 def _parse(top: Node) -> Machine:
     top.only(*KEYS)
-    keys = ("name", "label", "type", "origin", "rpy", "axis", "max_speed", "max_acceleration", "max_jerk")
+    keys = (
+        "name",
+        "label",
+        "type",
+        "origin",
+        "rpy",
+        "axis",
+        "max_speed",
+        "max_acceleration",
+        "max_jerk",
+    )
     joints = [joint.only(*keys) for joint in top["joints"].items()]
     if not joints:
         raise top["joints"].bad("there is no joint; add one for each axis")
@@ -228,8 +280,13 @@ def _parse(top: Node) -> Machine:
     sliding = np.array([entry.slides(joint) for joint in joints])
     units = unit_values(sliding)
     # the axes of a robot go by number unless the file has what its pendant shows; those of a machine tool have names
-    names = tuple(entry.name_of(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
-    controller = top["controller"].only("matrix", "offset", "remark", "posts", "pulses_per_degree", "speed_unit")
+    names = tuple(
+        entry.name_of(joint, f"q{index + 1}", bool(sliding.any()))
+        for index, joint in enumerate(joints)
+    )
+    controller = top["controller"].only(
+        "matrix", "offset", "remark", "posts", "pulses_per_degree", "speed_unit"
+    )
     chain = Chain(
         np.stack([joint.pose() for joint in joints]),
         np.stack([entry.unit_of(joint["axis"]) for joint in joints]),
@@ -238,29 +295,53 @@ def _parse(top: Node) -> Machine:
     )
     links = tuple(joint["name"].text() for joint in joints)
     shapes = link_shapes(top, links)
-    arm, no_arm = (entry.opw_arm(top["opw"], count), "") if top.has("opw") else entry.recognised(chain)
+    arm, no_arm = (
+        (entry.opw_arm(top["opw"], count), "") if top.has("opw") else entry.recognised(chain)
+    )
     machine = Machine(
-        id=top["id"].text(), title=top["title"].text(), axes=names,
-        chain=chain, arm=arm, no_arm=no_arm,
+        id=top["id"].text(),
+        title=top["title"].text(),
+        axes=names,
+        chain=chain,
+        arm=arm,
+        no_arm=no_arm,
         base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
-        max_speed=np.array([entry.most_of(joint, "max_speed", "a speed") for joint in joints]) * units,
-        limit_sets={name: entry.limits_of(name, node, names, units) for name, node in top["limits"].pairs()},
+        max_speed=np.array([entry.most_of(joint, "max_speed", "a speed") for joint in joints])
+        * units,
+        limit_sets={
+            name: entry.limits_of(name, node, names, units) for name, node in top["limits"].pairs()
+        },
         controller_matrix=controller["matrix"].matrix(count, count),
-        controller_offset=controller["offset"].numbers(count) * units, controller_remark=controller["remark"].text(),
+        controller_offset=controller["offset"].numbers(count) * units,
+        controller_remark=controller["remark"].text(),
         posts=controller["posts"].texts() if controller.has("posts") else None,
         pulses_per_degree=entry.pulses_of(controller, count),
-        speed_unit=entry.speed_unit_of(controller["speed_unit"]) if controller.has("speed_unit") else "",
-        sources=top["sources"].texts(), remarks=top["remarks"].texts() if top.has("remarks") else (),
-        max_acceleration=np.array([entry.most_of(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
+        speed_unit=entry.speed_unit_of(controller["speed_unit"])
+        if controller.has("speed_unit")
+        else "",
+        sources=top["sources"].texts(),
+        remarks=top["remarks"].texts() if top.has("remarks") else (),
+        max_acceleration=np.array(
+            [entry.most_of(joint, "max_acceleration", "an acceleration") for joint in joints]
+        )
+        * units,
         max_jerk=np.array([entry.most_of(joint, "max_jerk", "a jerk") for joint in joints]) * units,
-        shapes=shapes, payload=entry.payload_of(top), bodies=link_bodies(top, links, shapes),
+        shapes=shapes,
+        payload=entry.payload_of(top),
+        bodies=link_bodies(top, links, shapes),
     )
     if MAKER not in machine.limit_sets:
         raise top["limits"].bad(Text("the set {!r} is missing; add it", MAKER))
     if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
         raise controller["matrix"].bad("the matrix has no inverse; give that of the controller")
-    for array in (machine.base, machine.max_speed, machine.max_acceleration, machine.max_jerk, machine.controller_matrix,
-                  machine.controller_offset):
+    for array in (
+        machine.base,
+        machine.max_speed,
+        machine.max_acceleration,
+        machine.max_jerk,
+        machine.controller_matrix,
+        machine.controller_offset,
+    ):
         array.flags.writeable = False
     check_poses.check(chain, machine.opw, top["check_poses"])
     return machine
@@ -269,28 +350,64 @@ def _parse(top: Node) -> Machine:
 def _calibrated(machine: Machine, path: Path) -> Machine:
     """The machine with the joint frames that were measured of one robot, and the inverse of these."""
     if not isinstance(machine.arm, ParallelAxesArm):
-        raise InputError("BAD_CALIBRATION", "cell.machine", "{} takes no calibration; those of Universal Robots do: leave "
-                         "it out", machine.title)
+        raise InputError(
+            "BAD_CALIBRATION",
+            "cell.machine",
+            "{} takes no calibration; those of Universal Robots do: leave it out",
+            machine.title,
+        )
     poses, robot = calibration.read(path)
     chain = calibration.calibrated(machine.chain, machine.base, poses, path)
     text = f"{path.name} ({robot})" if robot else path.name
-    return replace(machine, chain=chain, arm=CalibratedArm(machine.arm, chain), sources=(*machine.sources, text))
+    return replace(
+        machine,
+        chain=chain,
+        arm=CalibratedArm(machine.arm, chain),
+        sources=(*machine.sources, text),
+    )
 
 
 def of_description(source: str, found: Description, arm: SerialArm | None) -> Machine:
     """The machine of a URDF, with its limits and speeds; no post writes for a controller that it does not tell of."""
     count = found.chain.axes
     none = np.zeros((0, count))
-    names = found.joints if found.chain.sliding.any() else tuple(f"q{index + 1}" for index in range(count))
+    names = (
+        found.joints
+        if found.chain.sliding.any()
+        else tuple(f"q{index + 1}" for index in range(count))
+    )
     limits = Limits(
-        name=MAKER, lower=found.lower, upper=found.upper, coefficients=none, coupled_lower=none[:, 0],
-        coupled_upper=none[:, 0], labels=names, source=source,
+        name=MAKER,
+        lower=found.lower,
+        upper=found.upper,
+        coefficients=none,
+        coupled_lower=none[:, 0],
+        coupled_upper=none[:, 0],
+        labels=names,
+        source=source,
     )
     unknown = np.full(count, math.inf)
     return Machine(
-        id=found.name, title=found.name, axes=names, chain=found.chain, arm=arm, no_arm="",
-        base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
-        controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=UNKNOWN_REMARK, posts=(),
-        pulses_per_degree=(), speed_unit="", sources=(source,), remarks=found.notes,
-        max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes, bodies=found.bodies, of_urdf=True,
+        id=found.name,
+        title=found.name,
+        axes=names,
+        chain=found.chain,
+        arm=arm,
+        no_arm="",
+        base=np.eye(4) if found.base is None else found.base,
+        max_speed=found.max_speed,
+        limit_sets={MAKER: limits},
+        controller_matrix=np.eye(count),
+        controller_offset=np.zeros(count),
+        controller_remark=UNKNOWN_REMARK,
+        posts=(),
+        pulses_per_degree=(),
+        speed_unit="",
+        sources=(source,),
+        remarks=found.notes,
+        max_acceleration=unknown,
+        max_jerk=unknown,
+        shapes=found.shapes,
+        bodies=found.bodies,
+        of_urdf=True,
     )

@@ -11,7 +11,9 @@ from ...issues import InputError, Text
 
 def unknown(name: str, names: Sequence[str]) -> InputError:
     """UNKNOWN_MACHINE, of the names that there are."""
-    return InputError("UNKNOWN_MACHINE", "cell.machine", "{!r} is not known; {}", name, _near(name, names))
+    return InputError(
+        "UNKNOWN_MACHINE", "cell.machine", "{!r} is not known; {}", name, _near(name, names)
+    )
 
 
 def _near(name: str, names: Sequence[str]) -> str:
@@ -22,5 +24,7 @@ def _near(name: str, names: Sequence[str]) -> str:
     of_makers = {one.partition("-")[0]: one for one in reversed(names)}
     return Text(
         "none of {} machines has a name like it; use one that `freecad-am machines` lists, such as {}, or the path of a "
-        "machine file or URDF", len(names), ", ".join(sorted(of_makers.values())),
+        "machine file or URDF",
+        len(names),
+        ", ".join(sorted(of_makers.values())),
     )

@@ -18,7 +18,10 @@ from ...types import Array
 from ..chain import Chain
 
 NONE, HORIZONTAL = "none", "horizontal"  # what axis 3 is shown against: link 2, or the base
-TOLERANCE_MM, TOLERANCE_DEG = 0.5, 0.1  # joints that are shown to 0.01 deg leave so much at the end of a long arm
+TOLERANCE_MM, TOLERANCE_DEG = (
+    0.5,
+    0.1,
+)  # joints that are shown to 0.01 deg leave so much at the end of a long arm
 _QUARTERS = (90.0, -90.0, 180.0)
 
 
@@ -53,7 +56,14 @@ class Suspect:
     left: Deviation
 
 
-SIGN, ZERO, SIGN_AND_ZERO, COUPLED, BASE, FLANGE = "sign", "zero", "sign and zero", "coupling", "base", "flange"
+SIGN, ZERO, SIGN_AND_ZERO, COUPLED, BASE, FLANGE = (
+    "sign",
+    "zero",
+    "sign and zero",
+    "coupling",
+    "base",
+    "flange",
+)
 
 
 def matrix(shown: Shown, chain: Chain) -> tuple[Array, Array]:
@@ -72,7 +82,10 @@ def serial(shown: Shown, chain: Chain, values: Array) -> Array:
 
 def _serial(ways: Sequence[Shown], chain: Chain, values: Array) -> Array:
     """The serial values (ways, n, axes) of what is shown (n, axes)."""
-    signs, zeros = np.array([way.signs for way in ways], float), np.array([way.zeros for way in ways])
+    signs, zeros = (
+        np.array([way.signs for way in ways], float),
+        np.array([way.zeros for way in ways]),
+    )
     plain = (np.asarray(values, float) - zeros[:, None]) * signs[:, None]
     coupled = np.array([way.coupling == HORIZONTAL for way in ways])
     if coupled.any():
@@ -90,12 +103,18 @@ def _sense(chain: Chain) -> float:
 
 def deviations(chain: Chain, shown: Shown, values: Array, poses: Array) -> list[Deviation]:
     """How far the flange poses (n, 4, 4) in base_link are from those of the machine at values (n, axes) as shown."""
-    return [Deviation(*pair) for pair in _off(chain.forward(serial(shown, chain, values)), poses).tolist()]
+    return [
+        Deviation(*pair)
+        for pair in _off(chain.forward(serial(shown, chain, values)), poses).tolist()
+    ]
 
 
 def fits(found: list[Deviation]) -> bool:
     """Whether all deviations are such as the rounding of a display leaves."""
-    return all(deviation.position <= TOLERANCE_MM and deviation.angle <= TOLERANCE_DEG for deviation in found)
+    return all(
+        deviation.position <= TOLERANCE_MM and deviation.angle <= TOLERANCE_DEG
+        for deviation in found
+    )
 
 
 def suspects(chain: Chain, shown: Shown, values: Array, poses: Array) -> list[Suspect]:
@@ -108,16 +127,24 @@ def suspects(chain: Chain, shown: Shown, values: Array, poses: Array) -> list[Su
     values, poses = np.asarray(values, float), np.asarray(poses, float)
     if not len(poses) or fits(deviations(chain, shown, values, poses)):
         return []
-    found = [*_of_frames(chain, shown, values, poses), *_of_joints(chain, shown, values, poses, False)]
+    found = [
+        *_of_frames(chain, shown, values, poses),
+        *_of_joints(chain, shown, values, poses, False),
+    ]
     if not found and len(poses) > 2:
         found = _of_joints(chain, shown, values, poses, True)
     order = (COUPLED, SIGN, ZERO, BASE, FLANGE, SIGN_AND_ZERO)
-    ranked = sorted(found, key=lambda suspect: (len(suspect.axes), order.index(suspect.kind), suspect.left.position))
+    ranked = sorted(
+        found,
+        key=lambda suspect: (len(suspect.axes), order.index(suspect.kind), suspect.left.position),
+    )
     fewest = [suspect for suspect in ranked if len(suspect.axes) == len(ranked[0].axes)]
     return fewest[:4]
 
 
-def _of_joints(chain: Chain, shown: Shown, values: Array, poses: Array, any_base: bool) -> list[Suspect]:
+def _of_joints(
+    chain: Chain, shown: Shown, values: Array, poses: Array, any_base: bool
+) -> list[Suspect]:
     tried: list[tuple[str, tuple[int, ...], Shown]] = []
     couplings = (NONE, HORIZONTAL) if chain.axes == 6 else (shown.coupling,)
     for flips in itertools.product((1, -1), repeat=chain.axes):
@@ -126,27 +153,44 @@ def _of_joints(chain: Chain, shown: Shown, values: Array, poses: Array, any_base
             wrong = tuple(axis for axis, flip in enumerate(flips) if flip < 0)
             plain = Shown(signs, shown.zeros, coupling)
             coupled = coupling != shown.coupling
-            tried.append((SIGN if wrong else COUPLED, tuple(sorted({*wrong, 2})) if coupled else wrong, plain))
+            tried.append(
+                (
+                    SIGN if wrong else COUPLED,
+                    tuple(sorted({*wrong, 2})) if coupled else wrong,
+                    plain,
+                )
+            )
             if len(wrong) > 1 or coupled:
                 continue
             for axis, quarter in itertools.product(range(chain.axes), _QUARTERS):
                 if not chain.sliding[axis]:
                     zeros = _changed(shown.zeros, axis, quarter)
                     axes = tuple(sorted({*wrong, axis}))
-                    tried.append((SIGN_AND_ZERO if wrong else ZERO, axes, replace(plain, zeros=zeros)))
+                    tried.append(
+                        (SIGN_AND_ZERO if wrong else ZERO, axes, replace(plain, zeros=zeros))
+                    )
     tried = [one for one in tried if one[1]]
     given = _given(chain, [trial for _, _, trial in tried], values)
     # in the base frame by which the first pose is given, or in that there is
-    bases = given[:, 0] @ frames.inverse(poses[0]) if any_base else np.broadcast_to(np.eye(4), (len(tried), 4, 4))
+    bases = (
+        given[:, 0] @ frames.inverse(poses[0])
+        if any_base
+        else np.broadcast_to(np.eye(4), (len(tried), 4, 4))
+    )
     off = _off(given, bases[:, None] @ poses).max(axis=1)
     found = [
         Suspect(kind, axes, trial, base if any_base else None, Deviation(*left))
-        for (kind, axes, trial), base, left in zip(tried, bases, off.tolist(), strict=True) if fits([Deviation(*left)])
+        for (kind, axes, trial), base, left in zip(tried, bases, off.tolist(), strict=True)
+        if fits([Deviation(*left)])
     ]
     if any_base:
         return found
     named = {suspect.axes for suspect in found}
-    free = [_any_zero(axis, chain, shown, values, poses) for axis in range(chain.axes) if (axis,) not in named]
+    free = [
+        _any_zero(axis, chain, shown, values, poses)
+        for axis in range(chain.axes)
+        if (axis,) not in named
+    ]
     return found + [suspect for suspect in free if fits([suspect.left])]
 
 
@@ -155,7 +199,9 @@ def _any_zero(axis: int, chain: Chain, shown: Shown, values: Array, poses: Array
     span = np.linspace(-500.0, 500.0, 41) if chain.sliding[axis] else np.linspace(-180.0, 170.0, 36)
 
     def errors(changes: Array) -> Array:
-        trials = [replace(shown, zeros=_changed(shown.zeros, axis, float(change))) for change in changes]
+        trials = [
+            replace(shown, zeros=_changed(shown.zeros, axis, float(change))) for change in changes
+        ]
         off = (_given(chain, trials, values) - poses).reshape(len(trials), -1, 4, 4)[:, :, :3]
         # an entry of a rotation counts as 500 mm: the size of the arm
         off[..., :3] *= 500.0
@@ -186,7 +232,10 @@ def _of_frames(chain: Chain, shown: Shown, values: Array, poses: Array) -> list[
     given = chain.forward(serial(shown, chain, values))
     found = []
     base, flange = given[0] @ frames.inverse(poses[0]), frames.inverse(given[0]) @ poses[0]
-    for kind, change, left_of in ((BASE, base, (given, base @ poses)), (FLANGE, flange, (given @ flange, poses))):
+    for kind, change, left_of in (
+        (BASE, base, (given, base @ poses)),
+        (FLANGE, flange, (given @ flange, poses)),
+    ):
         left = Deviation(*_off(*left_of).max(axis=0).tolist())
         if fits([left]):
             found.append(Suspect(kind, (0,), None, change, left))
@@ -196,13 +245,21 @@ def _of_frames(chain: Chain, shown: Shown, values: Array, poses: Array) -> list[
 def _off(given: Array, wanted: Array) -> Array:
     """Distance, mm, and angle, deg, (..., 2) between poses (..., 4, 4)."""
     turned = np.swapaxes(given[..., :3, :3], -1, -2) @ wanted[..., :3, :3]
-    across = np.stack([
-        turned[..., 2, 1] - turned[..., 1, 2], turned[..., 0, 2] - turned[..., 2, 0], turned[..., 1, 0] - turned[..., 0, 1],
-    ], axis=-1)
-    sine, cosine = 0.5 * np.linalg.norm(across, axis=-1), 0.5 * (np.trace(turned, axis1=-2, axis2=-1) - 1.0)
+    across = np.stack(
+        [
+            turned[..., 2, 1] - turned[..., 1, 2],
+            turned[..., 0, 2] - turned[..., 2, 0],
+            turned[..., 1, 0] - turned[..., 0, 1],
+        ],
+        axis=-1,
+    )
+    sine, cosine = (
+        0.5 * np.linalg.norm(across, axis=-1),
+        0.5 * (np.trace(turned, axis1=-2, axis2=-1) - 1.0),
+    )
     away = np.linalg.norm(given[..., :3, 3] - wanted[..., :3, 3], axis=-1)
     return np.stack((away, np.degrees(np.arctan2(sine, cosine))), axis=-1)
 
 
 def _changed(zeros: tuple[float, ...], axis: int, change: float) -> tuple[float, ...]:
-    return (*zeros[:axis], zeros[axis] + change, *zeros[axis + 1:])
+    return (*zeros[:axis], zeros[axis] + change, *zeros[axis + 1 :])

@@ -71,12 +71,21 @@ def _of_quaternion(q: Array) -> Array:
 def _to_quaternion(turned: Array) -> Array:
     """Unit quaternions (n, 4), the scalar first and not negative: of four ways that which divides by the largest figure."""
     diagonal = np.diagonal(turned, axis1=1, axis2=2)
-    squares = np.column_stack((diagonal.sum(axis=1), 2.0 * diagonal - diagonal.sum(axis=1, keepdims=True))) + 1.0
+    squares = (
+        np.column_stack(
+            (diagonal.sum(axis=1), 2.0 * diagonal - diagonal.sum(axis=1, keepdims=True))
+        )
+        + 1.0
+    )
     (_, b, c), (d, _, f), (g, h, _) = np.moveaxis(turned, 0, -1)
-    products = np.array([
-        [squares[:, 0], h - f, c - g, d - b], [h - f, squares[:, 1], b + d, c + g],
-        [c - g, b + d, squares[:, 2], f + h], [d - b, c + g, f + h, squares[:, 3]],
-    ])
+    products = np.array(
+        [
+            [squares[:, 0], h - f, c - g, d - b],
+            [h - f, squares[:, 1], b + d, c + g],
+            [c - g, b + d, squares[:, 2], f + h],
+            [d - b, c + g, f + h, squares[:, 3]],
+        ]
+    )
     q = products[np.argmax(squares, axis=1), :, np.arange(len(turned))]
     q = q / np.linalg.norm(q, axis=1, keepdims=True)
     result: Array = q * np.where(q[:, :1] < 0.0, -1.0, 1.0)
@@ -90,5 +99,8 @@ def _to_zyz(turned: Array) -> Array:
     second = np.arctan2(np.hypot(turned[:, 0, 2], turned[:, 1, 2]), turned[:, 2, 2])
     # the frame's Y as O turned it
     across = np.column_stack((-np.sin(first), np.cos(first), np.zeros_like(first)))
-    third = np.arctan2(np.einsum("ni,ni->n", across, turned[:, :, 0]), np.einsum("ni,ni->n", across, turned[:, :, 1]))
+    third = np.arctan2(
+        np.einsum("ni,ni->n", across, turned[:, :, 0]),
+        np.einsum("ni,ni->n", across, turned[:, :, 1]),
+    )
     return np.column_stack((first, second, third))

@@ -40,7 +40,9 @@ class UrdfCell:
         self.ways: dict[str, Way] = {link: self._way(link) for link in self.urdf.links}
         self.joints = {joint.text("name"): joint for joint in self.urdf.parent.values()}
         known = set(self.ways.values()) - {()}
-        self.farthest = sorted(way for way in known if not any(one[: len(way)] == way and one != way for one in known))
+        self.farthest = sorted(
+            way for way in known if not any(one[: len(way)] == way and one != way for one in known)
+        )
         robots = sorted({robot for way in self.farthest if (robot := self._robot(way))})
         if len(robots) != 1:
             self._refuse(self._several(robots) if robots else self._no_robot())
@@ -57,7 +59,10 @@ class UrdfCell:
         robot = self.machine()
         assert robot.base is not None  # named by _reference
         world, found = frames.inverse(self._stands(robot)), []
-        external = ((self.track, robot.base, ROBOT), (self.positioner, self._tip(self.positioner), PART))
+        external = (
+            (self.track, robot.base, ROBOT),
+            (self.positioner, self._tip(self.positioner), PART),
+        )
         for way, tip, carried in external:
             if way:
                 meant = self._reference(way, tip)
@@ -82,8 +87,12 @@ class UrdfCell:
         end = first + AXES
         if len(way) < end or not all(self._turns(joint) for joint in way[first:end]):
             return ()
-        further = {one[end] for one in self.ways.values() if one[:end] == way[:end] and len(one) > end}
-        seventh = len(further) == 1 and self._turns(next(iter(further)))  # an arm; fingers are two, slide, or follow
+        further = {
+            one[end] for one in self.ways.values() if one[:end] == way[:end] and len(one) > end
+        }
+        seventh = len(further) == 1 and self._turns(
+            next(iter(further))
+        )  # an arm; fingers are two, slide, or follow
         return () if seventh else way[:end]
 
     def _positioner(self, robot: Way) -> Way:
@@ -91,12 +100,24 @@ class UrdfCell:
         others = [way for way in self.farthest if way[: len(robot)] != robot]
         for way in others:
             if way[0] == robot[0]:
-                self._refuse(Text("{!r} is carried by {!r}, as the robot is; let the positioner stand on the floor", way[-1],
-                                  way[0]))
+                self._refuse(
+                    Text(
+                        "{!r} is carried by {!r}, as the robot is; let the positioner stand on the floor",
+                        way[-1],
+                        way[0],
+                    )
+                )
         if len(others) > 1:
             names = ", ".join(" - ".join(way) for way in others)
-            self._refuse(Text("{} chains move beside the robot ({}), and one can carry the part; name it in `{}`, with base "
-                              "and tip", len(others), names, WHERE))
+            self._refuse(
+                Text(
+                    "{} chains move beside the robot ({}), and one can carry the part; name it in `{}`, with base "
+                    "and tip",
+                    len(others),
+                    names,
+                    WHERE,
+                )
+            )
         return others[0] if others else ()
 
     def _tip(self, way: Way) -> str:
@@ -106,8 +127,15 @@ class UrdfCell:
             return ""
         links = [link for link, moved in self.ways.items() if moved == way]
         depth = {link: len(self.urdf.above(link)) for link in links}
-        return min(links, key=lambda link: (
-            not self.urdf.points_out(link), not link.endswith(TIPS), -depth[link], link))
+        return min(
+            links,
+            key=lambda link: (
+                not self.urdf.points_out(link),
+                not link.endswith(TIPS),
+                -depth[link],
+                link,
+            ),
+        )
 
     def _reference(self, way: Way, tip: str) -> Reference:
         return Reference(str(self.urdf.path), self.joints[way[0]].one("parent").text("link"), tip)
@@ -123,12 +151,20 @@ class UrdfCell:
 
     def _no_robot(self) -> str:
         longest = max(self.farthest, key=len, default=())
-        return Text("there is no robot in it: no chain has six turning axes on nothing but axes that slide; the longest is "
-                    "{}", " - ".join(longest) or "none")
+        return Text(
+            "there is no robot in it: no chain has six turning axes on nothing but axes that slide; the longest is "
+            "{}",
+            " - ".join(longest) or "none",
+        )
 
     def _several(self, robots: Sequence[Way]) -> str:
-        return Text("there are {} robots in it, the last axes of which are {}; name one in `cell.machine`, with base and "
-                    "tip, and what stands beside it in `{}`", len(robots), ", ".join(one[-1] for one in robots), WHERE)
+        return Text(
+            "there are {} robots in it, the last axes of which are {}; name one in `cell.machine`, with base and "
+            "tip, and what stands beside it in `{}`",
+            len(robots),
+            ", ".join(one[-1] for one in robots),
+            WHERE,
+        )
 
     def _refuse(self, message: str) -> NoReturn:
         raise InputError(CODE, self.urdf.path.name, message)
@@ -140,10 +176,17 @@ def texts_of(meant: Reference) -> tuple[str, str]:
     Raises InputError BAD_URDF where they cannot be told apart, BAD_VALUE where links of one of them are named.
     """
     if meant.base is not None or meant.tip is not None:
-        raise InputError("BAD_VALUE", WHERE, "{} takes all of the file; leave out base and tip of the machine, or name the "
-                         "mechanisms one by one", WHOLE)
+        raise InputError(
+            "BAD_VALUE",
+            WHERE,
+            "{} takes all of the file; leave out base and tip of the machine, or name the "
+            "mechanisms one by one",
+            WHOLE,
+        )
     if not is_there(meant.file):
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no URDF {}; check the path", meant.file)
+        raise InputError(
+            "UNKNOWN_MACHINE", "cell.machine", "there is no URDF {}; check the path", meant.file
+        )
     found = UrdfCell(meant.file)
     external = f"{MORE} ".join(map(str, found.external()))
     return str(found.machine()), external or "none"
@@ -153,11 +196,18 @@ def texts_of_machine(machine: object) -> tuple[str, str]:
     """The same of what a cell names as its machine; InputError BAD_VALUE where that is no URDF."""
     meant = reference(machine) if isinstance(machine, str) else None
     if meant is None:
-        raise InputError("BAD_VALUE", WHERE, "{} is for a machine that is the URDF of the whole cell, such as machine: "
-                         "bay.urdf; or give a list of mechanisms", WHOLE)
+        raise InputError(
+            "BAD_VALUE",
+            WHERE,
+            "{} is for a machine that is the URDF of the whole cell, such as machine: "
+            "bay.urdf; or give a list of mechanisms",
+            WHOLE,
+        )
     return texts_of(meant)
 
 
 def _six(pose: Array) -> Pose:
-    x, y, z, a, b, c = (np.round([*pose[:3, 3], *frames.to_bryant(pose[:3, :3])], 12) + 0.0).tolist()
+    x, y, z, a, b, c = (
+        np.round([*pose[:3, 3], *frames.to_bryant(pose[:3, :3])], 12) + 0.0
+    ).tolist()
     return x, y, z, a, b, c

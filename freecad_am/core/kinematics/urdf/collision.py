@@ -37,16 +37,22 @@ def collision(urdf: Urdf, base: str, tip: str, notes: list[str]) -> tuple[Pieces
         for link, pose in list(group):
             group.extend(_fixed_to(urdf, link, pose, chain))
     return tuple(
-        tuple(piece for link, pose in group for piece in _pieces(urdf, link, pose, notes)) for group in groups
+        tuple(piece for link, pose in group for piece in _pieces(urdf, link, pose, notes))
+        for group in groups
     )
 
 
 def _moves_others(urdf: Urdf, link: str) -> bool:
     """Whether joints move what stands on a link."""
-    return any(urdf.parent[one].text("type") != FIXED or _moves_others(urdf, one) for one in urdf.carried(link))
+    return any(
+        urdf.parent[one].text("type") != FIXED or _moves_others(urdf, one)
+        for one in urdf.carried(link)
+    )
 
 
-def _fixed_to(urdf: Urdf, link: str, pose: Array, but: Sequence[str]) -> Iterator[tuple[str, Array]]:
+def _fixed_to(
+    urdf: Urdf, link: str, pose: Array, but: Sequence[str]
+) -> Iterator[tuple[str, Array]]:
     """The links that are fixed to a link that stands at a pose, with theirs."""
     for child in urdf.carried(link):
         joint = urdf.parent[child]
@@ -86,5 +92,7 @@ def _solid(element: Element) -> Solid | None:
 
 def _sizes(element: Element, sizes: Array) -> Array:
     if (sizes <= 0.0).any():
-        raise element.bad(Text("<{}> has a size that is not larger than 0; give its sizes in m", element.tag))
+        raise element.bad(
+            Text("<{}> has a size that is not larger than 0; give its sizes in m", element.tag)
+        )
     return sizes

@@ -62,13 +62,22 @@ class Element:
         """So many words of an attribute, or of the default where it is left out."""
         words = self.attributes.get(name, default).split()
         if len(words) != count:
-            raise self.bad(Text("{}={!r} of <{}> is not {} numbers; write so many, with blanks between", name,
-                                self.attributes.get(name, ""), self.tag, count))
+            raise self.bad(
+                Text(
+                    "{}={!r} of <{}> is not {} numbers; write so many, with blanks between",
+                    name,
+                    self.attributes.get(name, ""),
+                    self.tag,
+                    count,
+                )
+            )
         return words
 
     def number(self, name: str, default: str | None = None) -> float:
         """An attribute that is a finite number."""
-        return self._float(self.text(name) if default is None else self.attributes.get(name, default), name)
+        return self._float(
+            self.text(name) if default is None else self.attributes.get(name, default), name
+        )
 
     def numbers(self, name: str, count: int, default: str) -> Array:
         """So many finite numbers (count,) of an attribute."""
@@ -95,8 +104,13 @@ class Element:
             value = math.nan
         if not math.isfinite(value):
             raise self.bad(
-                Text("{}={!r} of <{}> holds {!r}, which is not a number; write one such as 0.25", name,
-                     self.attributes.get(name, word), self.tag, word)
+                Text(
+                    "{}={!r} of <{}> holds {!r}, which is not a number; write one such as 0.25",
+                    name,
+                    self.attributes.get(name, word),
+                    self.tag,
+                    word,
+                )
             )
         return value
 
@@ -112,8 +126,12 @@ def read(path: Path) -> Element:
         stack.append(element)
 
     def refuse(name: str, *_: object) -> None:
-        raise InputError(CODE, f"{path.name}: line {parser.CurrentLineNumber}", "entities such as {!r} are not read; write "
-                         "out what they stand for", name)
+        raise InputError(
+            CODE,
+            f"{path.name}: line {parser.CurrentLineNumber}",
+            "entities such as {!r} are not read; write out what they stand for",
+            name,
+        )
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: stack.pop()
@@ -121,11 +139,17 @@ def read(path: Path) -> Element:
     try:
         parser.Parse(content(path, LARGEST, CODE, str(path)), True)
     except OSError as error:
-        raise InputError(CODE, str(path), "cannot be read: {}; choose a file that can", error.strerror or error) from None
+        raise InputError(
+            CODE, str(path), "cannot be read: {}; choose a file that can", error.strerror or error
+        ) from None
     except xml.parsers.expat.ExpatError as error:
         text = xml.parsers.expat.errors.messages[error.code]
-        raise InputError(CODE, f"{path.name}: line {error.lineno}", "this is not XML: {}; export the URDF again",
-                         text) from None
+        raise InputError(
+            CODE,
+            f"{path.name}: line {error.lineno}",
+            "this is not XML: {}; export the URDF again",
+            text,
+        ) from None
     return stack[0].children[0]
 
 

@@ -35,10 +35,25 @@ def described(meant: Reference) -> tuple[Description, SerialArm | None]:
         return found, closed_form(found.chain)
     except InputError as error:
         track = opw_recognition.track_of(found.chain)
-        begin = "" if not track else Text("; the robot begins at the link {!r}; or write `external: {}`, which takes track "
-                                          "and positioner of the file", robot.moved_by(found.joints[track - 1]), WHOLE)
+        begin = (
+            ""
+            if not track
+            else Text(
+                "; the robot begins at the link {!r}; or write `external: {}`, which takes track "
+                "and positioner of the file",
+                robot.moved_by(found.joints[track - 1]),
+                WHOLE,
+            )
+        )
         raise InputError(
-            error.code, "cell.machine", "{} from {} to {}: {}{}", robot.path.name, base, tip, error.message, Word(begin)
+            error.code,
+            "cell.machine",
+            "{} from {} to {}: {}{}",
+            robot.path.name,
+            base,
+            tip,
+            error.message,
+            Word(begin),
         ) from None
 
 
@@ -59,17 +74,26 @@ def _ends(meant: Reference, where: str) -> tuple[Urdf, str, str]:
     """A file, and the links that a chain begins and ends with: those that are meant, or that the file proposes."""
     path = Path(meant.file).expanduser()
     if not is_there(path):
-        raise InputError("UNKNOWN_MACHINE", where, "there is no URDF {}; check the path", meant.file)
+        raise InputError(
+            "UNKNOWN_MACHINE", where, "there is no URDF {}; check the path", meant.file
+        )
     robot = Urdf(path)
     base = meant.base or robot.bases()[0]
     tips = robot.tips(base) if base in robot.links else []
     for link in (base, meant.tip):
         if link is not None and link not in robot.links:
             known = ", ".join(robot.links)
-            raise InputError("BAD_URDF", where, "{} has no link {!r}; name one of {}", path.name, link, known)
+            raise InputError(
+                "BAD_URDF", where, "{} has no link {!r}; name one of {}", path.name, link, known
+            )
     if meant.tip is None and not tips:
-        raise InputError("BAD_URDF", where, "no joint of {} moves anything against {!r}; name another link as base",
-                         path.name, base)
+        raise InputError(
+            "BAD_URDF",
+            where,
+            "no joint of {} moves anything against {!r}; name another link as base",
+            path.name,
+            base,
+        )
     return robot, base, meant.tip or tips[0]
 
 
@@ -86,13 +110,19 @@ def grounded(found: Description) -> Description:
         shape if index or shape is None else replace(shape, pose=moved @ shape.pose)
         for index, shape in enumerate(found.shapes)
     )
-    return replace(found, chain=chain, base=moved if found.base is None else moved @ found.base, shapes=shapes)
+    return replace(
+        found, chain=chain, base=moved if found.base is None else moved @ found.base, shapes=shapes
+    )
 
 
 def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
     """A chain seen from a base_link whose Z is axis 1, as `opw_recognition.rooted` has it. Machines with rotary axes begin
     at the torch, wherever that is, and mechanisms where they stand."""
-    return (chain, np.eye(4)) if chain.sliding.any() or is_mechanism(chain) else opw_recognition.rooted(chain)
+    return (
+        (chain, np.eye(4))
+        if chain.sliding.any() or is_mechanism(chain)
+        else opw_recognition.rooted(chain)
+    )
 
 
 def is_mechanism(chain: Chain) -> bool:

@@ -28,7 +28,10 @@ FIXED = "fixed"
 # names that ROS-Industrial gives them, and FANUC
 BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
 ROBOT = 6  # joints of one
-STRAIGHT, BEHIND_MM = 1e-6, 1e-3  # of a tip: rad that its Z is off the axis, mm that it may lie behind
+STRAIGHT, BEHIND_MM = (
+    1e-6,
+    1e-3,
+)  # of a tip: rad that its Z is off the axis, mm that it may lie behind
 DEGREE = math.radians(1.0)
 
 
@@ -60,13 +63,24 @@ class Urdf:
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path).expanduser()
         if self.path.suffix.lower() == ".xacro":
-            raise InputError(CODE, self.path.name, "this is xacro; make a URDF of it first, with the program xacro of ROS")
+            raise InputError(
+                CODE,
+                self.path.name,
+                "this is xacro; make a URDF of it first, with the program xacro of ROS",
+            )
         self.top = urdf_xml.read(self.path)
         if self.top.tag != "robot":
-            raise self.top.bad(Text("this is <{}>, not the <robot> of a URDF; choose the URDF of a robot", self.top.tag))
+            raise self.top.bad(
+                Text(
+                    "this is <{}>, not the <robot> of a URDF; choose the URDF of a robot",
+                    self.top.tag,
+                )
+            )
         # what xacro wrote may still name its namespace
         if any(child.tag.startswith("xacro:") for child in self.top.children):
-            raise self.top.bad("this is xacro; make a URDF of it first, with the program xacro of ROS")
+            raise self.top.bad(
+                "this is xacro; make a URDF of it first, with the program xacro of ROS"
+            )
         self.name = self.top.attributes.get("name", self.path.stem)
         self.links = self._named("link")
         self.parent: dict[str, Element] = {}  # the joint that moves a link
@@ -74,10 +88,18 @@ class Urdf:
             for end in ("parent", "child"):
                 link = joint.one(end).text("link")
                 if link not in self.links:
-                    raise joint.one(end).bad(Text("there is no link {!r}; name one that is there", link))
+                    raise joint.one(end).bad(
+                        Text("there is no link {!r}; name one that is there", link)
+                    )
             child = joint.one("child").text("link")
             if child in self.parent:
-                raise joint.bad(Text("the link {!r} is moved by {!r} already", child, self.parent[child].text("name")))
+                raise joint.bad(
+                    Text(
+                        "the link {!r} is moved by {!r} already",
+                        child,
+                        self.parent[child].text("name"),
+                    )
+                )
             self.parent[child] = joint
 
     def _named(self, tag: str) -> dict[str, Element]:
@@ -85,8 +107,14 @@ class Urdf:
         for element in self.top.all(tag):
             name = element.text("name")
             if name in found:
-                raise element.bad(Text("there is a {} {!r} already, in line {}; rename one of the two", tag, name,
-                                       found[name].line))
+                raise element.bad(
+                    Text(
+                        "there is a {} {!r} already, in line {}; rename one of the two",
+                        tag,
+                        name,
+                        found[name].line,
+                    )
+                )
             found[name] = element
         if not found:
             raise self.top.bad(Text("there is no <{}>; choose the URDF of a robot", tag))
@@ -94,7 +122,10 @@ class Urdf:
 
     def bases(self) -> list[str]:
         """Links that a machine may begin with, the likeliest first."""
-        return sorted(self.links, key=lambda link: (link not in BASES, link in self.parent, link in self._leaves()))
+        return sorted(
+            self.links,
+            key=lambda link: (link not in BASES, link in self.parent, link in self._leaves()),
+        )
 
     def tips(self, base: str) -> list[str]:
         """Links that a machine from `base` may end in, the likeliest first: those that as many joints move as the one with
@@ -139,7 +170,13 @@ class Urdf:
         joints = list(self._between(base, tip))
         moving = [joint for joint in joints if joint.text("type") != FIXED]
         if not moving:
-            raise InputError(CODE, self.path.name, "no joint moves {!r} against {!r}; choose another link", tip, base)
+            raise InputError(
+                CODE,
+                self.path.name,
+                "no joint moves {!r} against {!r}; choose another link",
+                tip,
+                base,
+            )
         origins, rest = [], np.eye(4)
         for joint in joints:
             rest = rest @ joint.pose()
@@ -148,14 +185,21 @@ class Urdf:
                 rest = np.eye(4)
         limits = [_limits(joint) for joint in moving]
         notes: list[str] = []
-        shapes = tuple(self._mesh(link, notes) for link in (base, *(joint.one("child").text("link") for joint in moving)))
+        shapes = tuple(
+            self._mesh(link, notes)
+            for link in (base, *(joint.one("child").text("link") for joint in moving))
+        )
         sliding = np.array([joint.text("type") == "prismatic" for joint in moving])
         if len(moving) == ROBOT and not sliding.any():
             rest = _turned_out(rest, _axis(moving[-1]), tip, notes)
-        chain = Chain(np.stack(origins), np.stack([_axis(joint) for joint in moving]), rest, sliding)
+        chain = Chain(
+            np.stack(origins), np.stack([_axis(joint) for joint in moving]), rest, sliding
+        )
         lower, upper, speed = (np.array(values) for values in zip(*limits, strict=True))
         names = tuple(joint.text("name") for joint in moving)
-        return Description(self.name, names, chain, lower, upper, speed, self._makers(base), shapes, tuple(notes))
+        return Description(
+            self.name, names, chain, lower, upper, speed, self._makers(base), shapes, tuple(notes)
+        )
 
     def above(self, link: str) -> list[str]:
         """The links that carry a link, next first."""
@@ -163,32 +207,54 @@ class Urdf:
         while link in self.parent:
             link = self.parent[link].one("parent").text("link")
             if link in found:
-                raise self.parent[link].bad(Text("the link {!r} carries itself; correct parent and child of its joints",
-                                                 link))
+                raise self.parent[link].bad(
+                    Text(
+                        "the link {!r} carries itself; correct parent and child of its joints", link
+                    )
+                )
             found.append(link)
         return found
 
     def carried(self, link: str) -> list[str]:
         """The links that stand on a link."""
-        return [child for child, joint in self.parent.items() if joint.one("parent").text("link") == link]
+        return [
+            child
+            for child, joint in self.parent.items()
+            if joint.one("parent").text("link") == link
+        ]
 
     def _leaves(self) -> set[str]:
-        return set(self.links) - {joint.one("parent").text("link") for joint in self.parent.values()}
+        return set(self.links) - {
+            joint.one("parent").text("link") for joint in self.parent.values()
+        }
 
     def _between(self, base: str, tip: str) -> Iterator[Element]:
         """The joints from a link to another, in order."""
         above = [tip, *self.above(tip)]
         if base not in above:
-            raise InputError(CODE, self.path.name, "the link {!r} does not carry {!r}; choose others", base, tip)
+            raise InputError(
+                CODE, self.path.name, "the link {!r} does not carry {!r}; choose others", base, tip
+            )
         for link in reversed(above[: above.index(base)]):
             joint = self.parent[link]
             kind = joint.text("type")
             if kind not in (*MOVING, FIXED):
-                raise joint.bad(Text("the joint {!r} is {}; only {} and fixed ones are read", joint.text("name"), kind,
-                                     ", ".join(MOVING)))
+                raise joint.bad(
+                    Text(
+                        "the joint {!r} is {}; only {} and fixed ones are read",
+                        joint.text("name"),
+                        kind,
+                        ", ".join(MOVING),
+                    )
+                )
             mimic = joint.first("mimic")
             if mimic is not None:
-                raise mimic.bad(Text("the joint {!r} follows another one, which a serial chain cannot", joint.text("name")))
+                raise mimic.bad(
+                    Text(
+                        "the joint {!r} follows another one, which a serial chain cannot",
+                        joint.text("name"),
+                    )
+                )
             yield joint
 
     def _makers(self, base: str) -> Array | None:
@@ -200,7 +266,10 @@ class Urdf:
 
     def _mesh(self, link: str, notes: list[str]) -> LinkShape | None:
         """The first mesh of a link that is there and can be drawn; what stands in the way is noted."""
-        found = (self.mesh_of(visual, f"{link} is drawn plain", notes) for visual in self.links[link].all("visual"))
+        found = (
+            self.mesh_of(visual, f"{link} is drawn plain", notes)
+            for visual in self.links[link].all("visual")
+        )
         return next((shape for shape in found if shape is not None), None)
 
     def mesh_of(self, element: Element, otherwise: str, notes: list[str]) -> LinkShape | None:
@@ -217,19 +286,23 @@ class Urdf:
         elif file.suffix.lower() not in FORMATS:
             notes.append(f"line {mesh.line}: {file.name} cannot be drawn; {otherwise}")
         elif (scales <= 0.0).any():
-            notes.append(f"line {mesh.line}: {file.name} is mirrored or flat by its scale {mesh.attributes['scale']}; "
-                         f"write a mirrored mesh out as it is; {otherwise}")
+            notes.append(
+                f"line {mesh.line}: {file.name} is mirrored or flat by its scale {mesh.attributes['scale']}; "
+                f"write a mirrored mesh out as it is; {otherwise}"
+            )
         elif np.ptp(scales) > 1e-9:
             notes.append(f"line {mesh.line}: {file.name} has unequal scales; {otherwise}")
         else:
             where = f"{self.path.name}: line {mesh.line}"
-            return LinkShape(file, element.pose(), 1000.0 * float(scales[0]), self._colour(element), where)
+            return LinkShape(
+                file, element.pose(), 1000.0 * float(scales[0]), self._colour(element), where
+            )
         return None
 
     def _file(self, name: str) -> Path | None:
         """The file of a mesh. A package is a folder of its name above the URDF, or beside one that is."""
         if name.startswith("package://"):
-            package, _, rest = name[len("package://"):].partition("/")
+            package, _, rest = name[len("package://") :].partition("/")
             folders = [folder / package for folder in located(self.path).resolve().parents]
             return next((folder / rest for folder in folders if is_there(folder / rest)), None)
         file = Path(name.removeprefix("file://"))
@@ -244,7 +317,9 @@ class Urdf:
         for element in (material, shared.get(material.attributes.get("name"))):
             colour = None if element is None else element.first("color")
             if colour is not None:
-                red, green, blue = np.clip(colour.numbers("rgba", 4, "0.8 0.8 0.8 1")[:3], 0.0, 1.0).tolist()
+                red, green, blue = np.clip(
+                    colour.numbers("rgba", 4, "0.8 0.8 0.8 1")[:3], 0.0, 1.0
+                ).tolist()
                 return (red, green, blue)
         return None
 
@@ -258,9 +333,17 @@ def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
     of ROS-Industrial has its X outwards, where tool0 has its Z."""
     if _along(rest[:3, 2], axis) or not _along(rest[:3, 0], axis):
         return rest
-    notes.append(Text("the X of {} points out of the flange, not its Z: it is turned there, as tool0 stands to flange", tip))
+    notes.append(
+        Text(
+            "the X of {} points out of the flange, not its Z: it is turned there, as tool0 stands to flange",
+            tip,
+        )
+    )
     inwards = float(rest[:3, 0] @ rest[:3, 3]) < -BEHIND_MM
-    return np.asarray(rest @ frames.pose(frames.about_y(-0.5 * math.pi if inwards else 0.5 * math.pi), (0.0, 0.0, 0.0)))
+    return np.asarray(
+        rest
+        @ frames.pose(frames.about_y(-0.5 * math.pi if inwards else 0.5 * math.pi), (0.0, 0.0, 0.0))
+    )
 
 
 def _axis(joint: Element) -> Array:
@@ -279,17 +362,31 @@ def _limits(joint: Element) -> tuple[float, float, float]:
     unit = 1000.0 if kind == "prismatic" else 1.0
     if limit is None:
         if kind != "continuous":
-            raise joint.bad(Text("the joint {!r} has no <limit>; one that turns without end is continuous",
-                                 joint.text("name")))
+            raise joint.bad(
+                Text(
+                    "the joint {!r} has no <limit>; one that turns without end is continuous",
+                    joint.text("name"),
+                )
+            )
         return -math.inf, math.inf, math.inf
     values = []
     for name in ("lower", "upper", "velocity"):
         value = limit.number(name, "0")
-        values.append(unit * value if unit != 1.0 else urdf_xml.nearest(limit.attributes.get(name, "0").strip(), DEGREE))
+        values.append(
+            unit * value
+            if unit != 1.0
+            else urdf_xml.nearest(limit.attributes.get(name, "0").strip(), DEGREE)
+        )
     lower, upper, speed = values
     if kind == "continuous":
         lower, upper = -math.inf, math.inf
     if not lower < upper:
-        raise limit.bad(Text("the limits of {!r} run from {:g} to {:g}; give the lower one first", joint.text("name"), lower,
-                             upper))
+        raise limit.bad(
+            Text(
+                "the limits of {!r} run from {:g} to {:g}; give the lower one first",
+                joint.text("name"),
+                lower,
+                upper,
+            )
+        )
     return lower, upper, speed if speed > 0.0 else math.inf

@@ -6,7 +6,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-_TEXT = re.compile(r"(?P<file>.+\.(?:urdf|xacro))(?:\s+base=(?P<base>\S+))?(?:\s+tip=(?P<tip>\S+))?", re.IGNORECASE)
+_TEXT = re.compile(
+    r"(?P<file>.+\.(?:urdf|xacro))(?:\s+base=(?P<base>\S+))?(?:\s+tip=(?P<tip>\S+))?", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,10 @@ class Reference:
     tip: str | None = None
 
     def __str__(self) -> str:
-        words = [self.file, *(f"{key}={value}" for key, value in (("base", self.base), ("tip", self.tip)) if value)]
+        words = [
+            self.file,
+            *(f"{key}={value}" for key, value in (("base", self.base), ("tip", self.tip)) if value),
+        ]
         return " ".join(words)
 
 

@@ -66,7 +66,9 @@ class _Solid:
     def __init__(self, bodies: Sequence[Body]) -> None:
         counts = np.cumsum([0, *(len(body.vertices) for body in bodies)])
         self.vertices = np.vstack([body.vertices for body in bodies])
-        self.triangles: Index = np.vstack([body.triangles + k for body, k in zip(bodies, counts)]).astype(np.intp)
+        self.triangles: Index = np.vstack(
+            [body.triangles + k for body, k in zip(bodies, counts)]
+        ).astype(np.intp)
         self.edges = Edges(self.triangles)
 
     def section(self, point: Array, normal: Array, reach: float | None) -> Section | None:
@@ -81,7 +83,9 @@ class _Solid:
         low, high = above[ends[known, 0]], above[ends[known, 1]]
         crossed = (low >= 0.0) != (high >= 0.0)
         share = np.where(crossed, low / np.where(crossed, low - high, 1.0), 0.0)
-        at = self.vertices[ends[known, 0]] + share[:, None] * (self.vertices[ends[known, 1]] - self.vertices[ends[known, 0]])
+        at = self.vertices[ends[known, 0]] + share[:, None] * (
+            self.vertices[ends[known, 1]] - self.vertices[ends[known, 0]]
+        )
         row = np.ravel(of).reshape(-1, 3)
         side = side[cut]
         following = np.roll(side, -1, axis=1)
@@ -90,7 +94,9 @@ class _Solid:
         kept = np.ones(len(start), dtype=bool)
         if reach is not None:
             size = len(known)
-            label = connected_components(coo_matrix((np.ones(len(start)), (start, end)), (size, size)), directed=False)[1]
+            label = connected_components(
+                coo_matrix((np.ones(len(start)), (start, end)), (size, size)), directed=False
+            )[1]
             away = np.zeros(label.max() + 1)
             np.maximum.at(away, label[start], np.linalg.norm(at[start] - point, axis=1))
             kept = away[label[start]] < reach
@@ -102,8 +108,12 @@ class _Solid:
         if abs(total) < 1e-9:
             return None
         middle = point + (area[:, None] * (a + b)).sum(axis=0) / (3.0 * total)
-        return Section(middle, abs(total), float(np.linalg.norm(at[start[kept]] - middle, axis=1).max()), normal)
-
+        return Section(
+            middle,
+            abs(total),
+            float(np.linalg.norm(at[start[kept]] - middle, axis=1).max()),
+            normal,
+        )
 
     def end(self, last: Section) -> _Plane | None:
         """The flat face in which the solid ends after a section; None where there is none."""
@@ -111,13 +121,19 @@ class _Solid:
         doubled = doubled_areas(corner)
         size = np.linalg.norm(doubled, axis=1)
         near = np.linalg.norm(corner - last.middle, axis=2).max(axis=1) < 2.0 * last.reach
-        ahead = (((corner.mean(axis=1) - last.middle) * last.normal).sum(axis=1) > 0.0) & near & (size > 0.0)
+        ahead = (
+            (((corner.mean(axis=1) - last.middle) * last.normal).sum(axis=1) > 0.0)
+            & near
+            & (size > 0.0)
+        )
         facing = ahead & (doubled @ last.normal > FACING * size)
         if not facing.any():
             return None
         total: Array = doubled[facing].sum(axis=0)
         area = float(np.linalg.norm(total))
-        return _Plane(corner[facing][0, 0], total / area) if area > ENDED * 2.0 * last.area else None
+        return (
+            _Plane(corner[facing][0, 0], total / area) if area > ENDED * 2.0 * last.area else None
+        )
 
 
 def centre_line(bodies: Sequence[Body], start: Array, way: Array, depth: float) -> Nodes:
@@ -128,7 +144,9 @@ def centre_line(bodies: Sequence[Body], start: Array, way: Array, depth: float) 
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
     first = solid.section(start + depth * way, way, None)
     if first is None or len(bodies) > 1:
-        raise _not_found(name, "it is several solids" if len(bodies) > 1 else "no section lies where it stands")
+        raise _not_found(
+            name, "it is several solids" if len(bodies) > 1 else "no section lies where it stands"
+        )
     found = _followed(solid, first, way)
     if len(found) < 3:
         raise _not_found(name, "the solid ends after one section")
@@ -136,14 +154,21 @@ def centre_line(bodies: Sequence[Body], start: Array, way: Array, depth: float) 
     length = np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum()
     led = float(length * np.mean(areas)) / SolidMesh(bodies[0].vertices, bodies[0].triangles).volume
     if not LED < led < 2.0 - LED:
-        raise _not_found(name, Text("the line of {:.4g} mm leads through {:.3g} % of the volume", length, 100.0 * led))
+        raise _not_found(
+            name,
+            Text("the line of {:.4g} mm leads through {:.3g} % of the volume", length, 100.0 * led),
+        )
     return nodes
 
 
 def _not_found(name: str, why: str) -> InputError:
     return InputError(
-        "GUIDE_NOT_FOUND", "strategy.guide", "auto finds no centre line of {} from where it stands: {}; choose an edge, a "
-        "wire or a sketch as guide, or set strategy.direction so that the part stands on one of its ends", name, why,
+        "GUIDE_NOT_FOUND",
+        "strategy.guide",
+        "auto finds no centre line of {} from where it stands: {}; choose an edge, a "
+        "wire or a sketch as guide, or set strategy.direction so that the part stands on one of its ends",
+        name,
+        why,
     )
 
 
@@ -153,16 +178,24 @@ def _followed(solid: _Solid, first: Section, way: Array) -> list[Section]:
     stride = STEP_SHARE * first.reach
     while len(found) < MAX_SECTIONS:
         last = found[-1]
-        here: Section | None = solid.section(last.middle + stride * normal, normal, REACH * last.reach)
+        here: Section | None = solid.section(
+            last.middle + stride * normal, normal, REACH * last.reach
+        )
         for _ in range(2):
             if here is None:
                 break
-            chord = (here.middle - last.middle) / max(float(np.linalg.norm(here.middle - last.middle)), 1e-9)
+            chord = (here.middle - last.middle) / max(
+                float(np.linalg.norm(here.middle - last.middle)), 1e-9
+            )
             turned = 2.0 * (chord @ normal) * chord - normal  # as along an arc
             ahead = chord + 0.5 * (turned - chord)
             ahead /= np.linalg.norm(ahead)
             here = solid.section(here.middle, ahead, REACH * last.reach)
-        if here is None or here.area < ENDED * last.area or (here.middle - last.middle) @ normal < 0.3 * stride:
+        if (
+            here is None
+            or here.area < ENDED * last.area
+            or (here.middle - last.middle) @ normal < 0.3 * stride
+        ):
             break
         found.append(here)
         normal = ahead
@@ -180,15 +213,23 @@ def _smoothed(solid: _Solid, found: Sequence[Section], start: _Plane) -> tuple[N
         line, places = _line(middles, start, end)
         points, along = _at(line, places)
         cuts = [solid.section(point, normal, REACH * size) for point, normal in zip(points, along)]
-        kept = [one for one in cuts if one is not None and one.area > ENDED * float(np.median(areas))]
+        kept = [
+            one for one in cuts if one is not None and one.area > ENDED * float(np.median(areas))
+        ]
         if len(kept) < 3:
             break
-        middles, areas = np.array([one.middle for one in kept]), np.array([one.area for one in kept])
+        middles, areas = (
+            np.array([one.middle for one in kept]),
+            np.array([one.area for one in kept]),
+        )
     line, places = _line(middles, start, end)
-    before, after = (0.0 if plane is None else float(plane.above(middle)) for plane, middle in (
-        (start, middles[0]), (end, middles[-1])
-    ))
-    dense = np.linspace(places[0] - before, places[-1] + max(-after, 0.0), NODES * (len(places) - 1) + 1)
+    before, after = (
+        0.0 if plane is None else float(plane.above(middle))
+        for plane, middle in ((start, middles[0]), (end, middles[-1]))
+    )
+    dense = np.linspace(
+        places[0] - before, places[-1] + max(-after, 0.0), NODES * (len(places) - 1) + 1
+    )
     return Nodes(*_at(line, dense)), areas
 
 

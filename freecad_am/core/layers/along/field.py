@@ -24,7 +24,9 @@ from ..planes import field as planes
 from ..surface import Slice
 from .layer import AlongLayer, between
 
-BENDS = np.cos(np.radians(10.0))  # between the planes of the ends of an edge; edges that see more of a bend are halved
+BENDS = np.cos(
+    np.radians(10.0)
+)  # between the planes of the ends of an edge; edges that see more of a bend are halved
 BEYOND = 0.02  # of the extent of a section by which the guide may be outside of what encloses it
 HEIGHT = "LAYER_HEIGHT"
 
@@ -43,10 +45,13 @@ class AlongCuts(PlaneCuts):
             distances = guide.distance(points)
             if (point := guide.crossing(points, triangles, distances)) is not None:
                 raise InputError(
-                    "GUIDE_TIGHT", body.name, "the guide bends more tightly at {} than the part is wide there: planes "
+                    "GUIDE_TIGHT",
+                    body.name,
+                    "the guide bends more tightly at {} than the part is wide there: planes "
                     "normal to it cross one another within the part, at {}; choose a guide nearer to the inside of the bend "
                     "or with a larger radius, or strategy.layers: geodesic",
-                    base.where(guide.at(guide.distance(point[None]))[0][0]), base.where(point),
+                    base.where(guide.at(guide.distance(point[None]))[0][0]),
+                    base.where(point),
                 )
             normals = guide.at(distances)[1]
 
@@ -60,7 +65,9 @@ class AlongCuts(PlaneCuts):
     def _places(self, edge: Index, height: Array) -> Array:
         known, of = np.unique(height, return_inverse=True)
         poses = np.stack([self.guide.frame(way) for way in known.tolist()])[np.ravel(of)]
-        below, above = (self.points[ends[edge]] - poses[:, :3, 3] for ends in (self._lower, self._upper))
+        below, above = (
+            self.points[ends[edge]] - poses[:, :3, 3] for ends in (self._lower, self._upper)
+        )
         near, far = ((one * poses[:, :3, 2]).sum(axis=1) for one in (below, above))
         apart = np.where(np.abs(far - near) > 1e-12, far - near, 1.0)
         point = below + np.clip(-near / apart, 0.0, 1.0)[:, None] * (above - below)
@@ -77,15 +84,23 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
     layers = planes.count(top, strategy)
     if not layers:
         raise InputError(
-            "TOO_LOW", "strategy.layer_height", "{:g} mm is too much for {}, {:.4g} mm long along the guide: no layer is "
-            "cut in its {}; give at most {:.3g} mm", height, ", ".join(body.name for body in bodies), top, strategy.cut_at,
+            "TOO_LOW",
+            "strategy.layer_height",
+            "{:g} mm is too much for {}, {:.4g} mm long along the guide: no layer is "
+            "cut in its {}; give at most {:.3g} mm",
+            height,
+            ", ".join(body.name for body in bodies),
+            top,
+            strategy.cut_at,
             0.99 * top / max(strategy.share_of_cut, 0.001),
         )
     made: list[Slice] = []
     for number, regions, issues in planes.cut_together(cuts, layers, strategy):
         surface = between(guide, number * height, (number + 1) * height, strategy.share_of_cut)
         layer = Slice(number, base, surface, regions, issues)
-        if guide.reaches((number + strategy.share_of_cut) * height):  # beyond, slanted ends may be aside
+        if guide.reaches(
+            (number + strategy.share_of_cut) * height
+        ):  # beyond, slanted ends may be aside
             _refuse_outside(layer)
         made.append(layer._replace(heights=_heights(layer), before=number / layers))
     _refuse_uneven(made, strategy)
@@ -103,17 +118,31 @@ def _heights(layer: Slice) -> tuple[float, float, float]:
         cross = border[:, 0] * following[:, 1] - border[:, 1] * following[:, 0]
         area += 0.5 * float(cross.sum())
         moment += (cross[:, None] * (border + following)).sum(axis=0) / 6.0
-    mean = float(surface.heights((moment / area)[None])[0]) if abs(area) > 0.0 else float(high.mean())
+    mean = (
+        float(surface.heights((moment / area)[None])[0]) if abs(area) > 0.0 else float(high.mean())
+    )
     return float(high.min()), mean, float(high.max())
 
 
 def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
     """InfeasibleError LAYER_HEIGHT at the worst place of all."""
-    height, most = strategy.layer_height, strategy.band * strategy.layer_height + strategy.chord_error * 1e-3
-    uneven = [one for one in made if one.heights and max(height - one.heights[0], one.heights[2] - height) > most]
+    height, most = (
+        strategy.layer_height,
+        strategy.band * strategy.layer_height + strategy.chord_error * 1e-3,
+    )
+    uneven = [
+        one
+        for one in made
+        if one.heights and max(height - one.heights[0], one.heights[2] - height) > most
+    ]
     if not uneven:
         return
-    worst = max(uneven, key=lambda one: max(height - one.heights[0], one.heights[2] - height) if one.heights else 0.0)
+    worst = max(
+        uneven,
+        key=lambda one: (
+            max(height - one.heights[0], one.heights[2] - height) if one.heights else 0.0
+        ),
+    )
     assert isinstance(worst.surface, AlongLayer) and worst.heights
     points = np.vstack([border for border, _ in worst.borders])
     off = worst.surface.heights(points) - height
@@ -122,11 +151,22 @@ def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
     message = Text(
         "{} of {} layers are not as high everywhere as asked for: layer {} is {:.3g} to {:.3g} mm high, farthest off the "
         "{:g} mm at {}; strategy.band allows {:.3g} %, and {:.3g} % would be needed: raise it, or choose a guide in the "
-        "middle of the part or one that bends less", len(uneven), len(made), worst.number, worst.heights[0],
-        worst.heights[2], height, worst.where(point), 100.0 * strategy.band, 100.0 * need
+        "middle of the part or one that bends less",
+        len(uneven),
+        len(made),
+        worst.number,
+        worst.heights[0],
+        worst.heights[2],
+        height,
+        worst.where(point),
+        100.0 * strategy.band,
+        100.0 * need,
     )
     raise InfeasibleError(
-        HEIGHT, f"{worst.base.name} layer {worst.number}", message, issues=(Issue(ERROR, HEIGHT, message, worst.number),)
+        HEIGHT,
+        f"{worst.base.name} layer {worst.number}",
+        message,
+        issues=(Issue(ERROR, HEIGHT, message, worst.number),),
     )
 
 
@@ -140,7 +180,11 @@ def _refuse_outside(layer: Slice) -> None:
     away = float(hull.equations[:, 2].max())
     if away > BEYOND * float(np.ptp(points, axis=0).max()):
         raise InputError(
-            "GUIDE_OUTSIDE", "strategy.guide", "the guide leaves the part: at layer {} it is {:.3g} mm off it, at {}; "
-            "choose a guide in the part or along one of its edges, or guide: auto", layer.number, away,
+            "GUIDE_OUTSIDE",
+            "strategy.guide",
+            "the guide leaves the part: at layer {} it is {:.3g} mm off it, at {}; "
+            "choose a guide in the part or along one of its edges, or guide: auto",
+            layer.number,
+            away,
             layer.where(np.zeros(2)),
         )

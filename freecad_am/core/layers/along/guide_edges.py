@@ -35,25 +35,45 @@ def chained(edges: Sequence[Nodes]) -> Nodes:
 
     InputError GUIDE_OPEN, GUIDE_CLOSED, GUIDE_CORNER, GUIDE_DOUBLES_BACK.
     """
-    left = [edge for edge in edges if np.linalg.norm(np.diff(edge.points, axis=0), axis=1).sum() > LEAST]
+    left = [
+        edge for edge in edges if np.linalg.norm(np.diff(edge.points, axis=0), axis=1).sum() > LEAST
+    ]
     if not left:
-        raise InputError("GUIDE_OPEN", WHERE, "the guide has no edge with a length; choose edges, a wire or a sketch")
+        raise InputError(
+            "GUIDE_OPEN",
+            WHERE,
+            "the guide has no edge with a length; choose edges, a wire or a sketch",
+        )
     chain = [left.pop(0)]
     while left:
         ends = chain[0].points[0], chain[-1].points[-1]
-        found = next((
-            (k, behind, edge if straight else edge.reversed())
-            for k, edge in enumerate(left) for behind, end in ((True, ends[1]), (False, ends[0]))
-            for straight in (True, False) if np.linalg.norm(edge.points[0 if straight == behind else -1] - end) < TOUCHING
-        ), None)
+        found = next(
+            (
+                (k, behind, edge if straight else edge.reversed())
+                for k, edge in enumerate(left)
+                for behind, end in ((True, ends[1]), (False, ends[0]))
+                for straight in (True, False)
+                if np.linalg.norm(edge.points[0 if straight == behind else -1] - end) < TOUCHING
+            ),
+            None,
+        )
         if found is None:
             away = min(
-                float(np.linalg.norm(edge.points[k] - end)) for edge in left for k in (0, -1) for end in ends
+                float(np.linalg.norm(edge.points[k] - end))
+                for edge in left
+                for k in (0, -1)
+                for end in ends
             )
             raise InputError(
-                "GUIDE_OPEN", WHERE, "its edges are not one curve: {} of {} do not go on from where the others end, at {} "
-                "and {}, and the nearest is {:.3g} mm off; choose edges that meet end to end", len(left), len(edges),
-                place(ends[0]), place(ends[1]), away,
+                "GUIDE_OPEN",
+                WHERE,
+                "its edges are not one curve: {} of {} do not go on from where the others end, at {} "
+                "and {}, and the nearest is {:.3g} mm off; choose edges that meet end to end",
+                len(left),
+                len(edges),
+                place(ends[0]),
+                place(ends[1]),
+                away,
             )
         k, behind, edge = found
         left.pop(k)
@@ -61,8 +81,11 @@ def chained(edges: Sequence[Nodes]) -> Nodes:
     _refuse_corners(chain)
     if np.linalg.norm(chain[0].points[0] - chain[-1].points[-1]) < TOUCHING:
         raise InputError(
-            "GUIDE_CLOSED", WHERE, "it comes back to where it begins, at {}: the last layer would lie on the first; leave "
-            "an edge of it out", place(chain[0].points[0]),
+            "GUIDE_CLOSED",
+            WHERE,
+            "it comes back to where it begins, at {}: the last layer would lie on the first; leave "
+            "an edge of it out",
+            place(chain[0].points[0]),
         )
     return Nodes(
         np.vstack([chain[0].points[:1], *(edge.points[1:] for edge in chain)]),
@@ -76,11 +99,19 @@ def _refuse_corners(chain: Sequence[Nodes]) -> None:
         at = place(after.points[0])
         if turn > BACK:
             raise InputError(
-                "GUIDE_DOUBLES_BACK", WHERE, "it turns back by {:.4g} deg at {}: layers would go through what was "
-                "deposited; choose edges that lead on", np.degrees(turn), at,
+                "GUIDE_DOUBLES_BACK",
+                WHERE,
+                "it turns back by {:.4g} deg at {}: layers would go through what was "
+                "deposited; choose edges that lead on",
+                np.degrees(turn),
+                at,
             )
         if turn > CORNER:
             raise InputError(
-                "GUIDE_CORNER", WHERE, "it has a corner of {:.3g} deg at {}, where layers would have no height on the "
-                "inside; round it with a radius, or choose guide: auto", np.degrees(turn), at,
+                "GUIDE_CORNER",
+                WHERE,
+                "it has a corner of {:.3g} deg at {}, where layers would have no height on the "
+                "inside; round it with a radius, or choose guide: auto",
+                np.degrees(turn),
+                at,
             )

@@ -22,7 +22,10 @@ LEVEL = 1e-6  # of its length; a guide whose ends are no farther apart along the
 
 
 def guided(
-    bodies: Sequence[Body], edges: Sequence[tuple[Array, Array]] | None, strategy: SolidParameters, label: str,
+    bodies: Sequence[Body],
+    edges: Sequence[tuple[Array, Array]] | None,
+    strategy: SolidParameters,
+    label: str,
     issues: tuple[Issue, ...] = (),
 ) -> SolidsOnHub:
     """The bodies along a guide of edges, points and unit tangents (n, 3) of each, by default their centre line, which a note
@@ -33,23 +36,43 @@ def guided(
     found = standing.issues
     nodes = None if edges is None else chained([Nodes(*edge) for edge in edges])
     if nodes is None:
-        nodes = centre_line(bodies, standing.groups[0].base.frame[:3, 3], way, 0.5 * strategy.layer_height)
+        nodes = centre_line(
+            bodies, standing.groups[0].base.frame[:3, 3], way, 0.5 * strategy.layer_height
+        )
         found = (*found, _note(nodes, label))
-    elif (nodes.points[-1] - nodes.points[0]) @ way < -LEVEL * np.linalg.norm(nodes.points[-1] - nodes.points[0]):
+    elif (nodes.points[-1] - nodes.points[0]) @ way < -LEVEL * np.linalg.norm(
+        nodes.points[-1] - nodes.points[0]
+    ):
         nodes = nodes.reversed()
     whole = guide(*nodes)
     start = float(min(whole.distance(body.vertices).min() for body in bodies))
     origin, z = (rows[0] for rows in whole.at(np.array([start])))
     frame = upright(origin, z)
-    local = guide((nodes.points - origin) @ frame[:3, :3], nodes.tangents @ frame[:3, :3], np.array([1.0, 0.0, 0.0]), start)
+    local = guide(
+        (nodes.points - origin) @ frame[:3, :3],
+        nodes.tangents @ frame[:3, :3],
+        np.array([1.0, 0.0, 0.0]),
+        start,
+    )
     base = Base("the guide", local, frame)
     return SolidsOnHub(label, (Group(base, tuple(bodies)),), strategy.chord_error, (), found)
 
 
 def _note(nodes: Nodes, label: str) -> Issue:
     length = float(np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum())
-    turn = np.degrees(np.arccos(np.clip((nodes.tangents[1:] * nodes.tangents[:-1]).sum(axis=1), -1.0, 1.0)).sum())
+    turn = np.degrees(
+        np.arccos(np.clip((nodes.tangents[1:] * nodes.tangents[:-1]).sum(axis=1), -1.0, 1.0)).sum()
+    )
     return Issue(
-        NOTE, "GUIDE", Text("layers of {} stand normal to its centre line, {:.4g} mm from {} to {}, which turns by {:.3g} "
-            "deg in all", label, length, place(nodes.points[0]), place(nodes.points[-1]), turn),
+        NOTE,
+        "GUIDE",
+        Text(
+            "layers of {} stand normal to its centre line, {:.4g} mm from {} to {}, which turns by {:.3g} "
+            "deg in all",
+            label,
+            length,
+            place(nodes.points[0]),
+            place(nodes.points[-1]),
+            turn,
+        ),
     )

@@ -55,6 +55,8 @@ def between(guide: Guide, low: float, high: float, share: float = 0.5) -> AlongL
     height, slope = 0.0, np.zeros(2)
     for pose, sense in ((top, 1.0), (start, -1.0)):
         normal = pose[:3, 2]
-        height += sense * float((pose[:3, 3] - middle[:3, 3]) @ normal) / float(middle[:3, 2] @ normal)
+        height += (
+            sense * float((pose[:3, 3] - middle[:3, 3]) @ normal) / float(middle[:3, 2] @ normal)
+        )
         slope -= sense * (normal @ middle[:3, :2]) / float(middle[:3, 2] @ normal)
     return AlongLayer(start, height, slope)

@@ -37,12 +37,16 @@ class Chart:
 
     def at(self, place: Place) -> Array:
         """Where in the part (n, 3) places of the picture are."""
-        wrapped: Array = np.einsum("nk,nkc->nc", place.share, self.mesh.vertices[self.mesh.faces[place.triangle]])
+        wrapped: Array = np.einsum(
+            "nk,nkc->nc", place.share, self.mesh.vertices[self.mesh.faces[place.triangle]]
+        )
         return wrapped
 
     def heading(self, place: Place) -> Array:
         """The way (n, 3) in the part that the picture's x runs there, not of unit length."""
-        corners, flat = (of[self.mesh.faces[place.triangle]] for of in (self.mesh.vertices, self.flat))
+        corners, flat = (
+            of[self.mesh.faces[place.triangle]] for of in (self.mesh.vertices, self.flat)
+        )
         one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         a, b = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
         way: Array = b[:, 1, None] * one - a[:, 1, None] * other
@@ -53,7 +57,11 @@ class Chart:
         square, here = self._squares.at(points)
         count = self._squares.count[square]
         of = np.repeat(np.arange(len(points)), count)
-        at = np.repeat(self._squares.first[square], count) + np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+        at = (
+            np.repeat(self._squares.first[square], count)
+            + np.arange(len(of))
+            - np.repeat(np.cumsum(count) - count, count)
+        )
         triangle = self._squares.triangles[at]
         share = self._shares(triangle, points[of])
         inmost = share.min(axis=1)
@@ -104,7 +112,11 @@ class _Squares:
         total = across[:, 0] * across[:, 1]
         of = np.repeat(np.arange(len(corners)), total)
         number = np.arange(len(of)) - np.repeat(np.cumsum(total) - total, total)
-        square = (low[of, 0] + number // across[of, 1]) * self.shape[1] + low[of, 1] + number % across[of, 1]
+        square = (
+            (low[of, 0] + number // across[of, 1]) * self.shape[1]
+            + low[of, 1]
+            + number % across[of, 1]
+        )
         order = np.argsort(square, kind="stable")
         self.triangles = of[order]
         self.count = np.bincount(square, minlength=int(self.shape.prod()))

@@ -54,7 +54,11 @@ class Charted:
         points, normals = self.in_part(place)
         first, second = self.axes(normals)
         x = self.chart.heading(place)
-        return Wrapped(points, normals, -np.unwrap(np.arctan2((x * second).sum(axis=1), (x * first).sum(axis=1))))
+        return Wrapped(
+            points,
+            normals,
+            -np.unwrap(np.arctan2((x * second).sum(axis=1), (x * first).sum(axis=1))),
+        )
 
     def heights(self, flat: Array) -> None:
         """The layer height everywhere."""
@@ -73,10 +77,15 @@ class Charted:
         length = np.linalg.norm(edge, axis=1)
         looks = np.maximum(np.ceil(length / self.look), 2.0).astype(np.intp)
         of = np.repeat(np.arange(len(edge)), looks + 1)
-        share = (np.arange(len(of)) - np.repeat(np.cumsum(looks + 1) - looks - 1, looks + 1)) / looks[of]
+        share = (
+            np.arange(len(of)) - np.repeat(np.cumsum(looks + 1) - looks - 1, looks + 1)
+        ) / looks[of]
         points = self.in_part(self.chart.find(flat[of] + share[:, None] * edge[of]))[0]
         inner = np.flatnonzero((of[1:-1] == of[:-2]) & (of[1:-1] == of[2:])) + 1
-        bend = np.linalg.norm(points[inner - 1] - 2.0 * points[inner] + points[inner + 1], axis=1) / 8.0
+        bend = (
+            np.linalg.norm(points[inner - 1] - 2.0 * points[inner] + points[inner + 1], axis=1)
+            / 8.0
+        )
         most = np.zeros(len(edge))
         np.maximum.at(most, of[inner], bend)
         count = np.maximum(np.ceil(looks * np.sqrt(most / chord_error) - 1e-9), 1.0)

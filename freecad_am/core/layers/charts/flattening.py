@@ -73,9 +73,16 @@ def stretched(mesh: Mesh, flat: Array) -> tuple[Array, Array]:
     local = _corners(mesh)
     here, there = _sides(local), _sides(flat[mesh.faces])
     area = here[:, 0, 0] * here[:, 1, 1] - here[:, 0, 1] * here[:, 1, 0]
-    inverse = np.stack([
-        np.stack([here[:, 1, 1], -here[:, 0, 1]], axis=1), np.stack([-here[:, 1, 0], here[:, 0, 0]], axis=1),
-    ], axis=1) / np.maximum(area, 1e-300)[:, None, None]
+    inverse = (
+        np.stack(
+            [
+                np.stack([here[:, 1, 1], -here[:, 0, 1]], axis=1),
+                np.stack([-here[:, 1, 0], here[:, 0, 0]], axis=1),
+            ],
+            axis=1,
+        )
+        / np.maximum(area, 1e-300)[:, None, None]
+    )
     map_ = inverse @ there
     a, b, c, d = map_[:, 0, 0], map_[:, 0, 1], map_[:, 1, 0], map_[:, 1, 1]
     one, other = np.hypot(a + d, b - c), np.hypot(a - d, b + c)
@@ -96,7 +103,9 @@ def _corners(mesh: Mesh) -> Array:
     x = (along * other).sum(axis=1) / np.maximum(length, 1e-300)
     y = np.linalg.norm(np.cross(along, other), axis=1) / np.maximum(length, 1e-300)
     zero = np.zeros(len(length))
-    return np.stack([np.stack([zero, zero], 1), np.stack([length, zero], 1), np.stack([x, y], 1)], axis=1)
+    return np.stack(
+        [np.stack([zero, zero], 1), np.stack([length, zero], 1), np.stack([x, y], 1)], axis=1
+    )
 
 
 def _sides(corners: Array) -> Array:
@@ -143,7 +152,10 @@ def _conformal(mesh: Mesh, weights: Array) -> Array:
 def _of_size(mesh: Mesh, flat: Array) -> Array:
     """The flat points scaled to the area that the piece has."""
     here, there = (_sides(corners) for corners in (_corners(mesh), flat[mesh.faces]))
-    size = [0.5 * np.abs(one[:, 0, 0] * one[:, 1, 1] - one[:, 0, 1] * one[:, 1, 0]).sum() for one in (here, there)]
+    size = [
+        0.5 * np.abs(one[:, 0, 0] * one[:, 1, 1] - one[:, 0, 1] * one[:, 1, 0]).sum()
+        for one in (here, there)
+    ]
     scaled: Array = flat * np.sqrt(size[0] / max(float(size[1]), 1e-300))
     return scaled
 
@@ -161,7 +173,8 @@ def _rigid(mesh: Mesh, local: Array, weights: Array, flat: Array) -> Array:
         size = np.maximum(np.hypot(cos, sin), 1e-300)
         cos, sin = (cos / size)[:, None], (sin / size)[:, None]
         wanted = weights[..., None] * np.stack(
-            [cos * side[..., 0] - sin * side[..., 1], sin * side[..., 0] + cos * side[..., 1]], axis=2
+            [cos * side[..., 0] - sin * side[..., 1], sin * side[..., 0] + cos * side[..., 1]],
+            axis=2,
         )
         right = np.zeros((n, 2))
         for axis in range(2):

@@ -15,10 +15,15 @@ from ...geometry.regions.region import regions
 from ...types import Array, Index, Mask
 from .flattening import Flattened, flattened
 
-OUTER = 0.02  # share of the area whose stretch does not count: slivers, and the very corners of fans
+OUTER = (
+    0.02  # share of the area whose stretch does not count: slivers, and the very corners of fans
+)
 OVERLAID = 0.01  # share of the area by which a picture may lie on itself
 HALVINGS = 8
-ONTO, ASIDE = 0.3, 0.05  # typical edges; vertices so near to a cut are moved onto it, those of the border count as beside it
+ONTO, ASIDE = (
+    0.3,
+    0.05,
+)  # typical edges; vertices so near to a cut are moved onto it, those of the border count as beside it
 
 
 def stretch_of(flat: Flattened, weight: Array) -> float:
@@ -47,13 +52,17 @@ def connected(mesh: Mesh) -> Iterator[Mesh]:
     """The pieces of a mesh that hang together."""
     pairs = mesh.edges
     n = len(mesh.vertices)
-    label = connected_components(coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False)[1]
+    label = connected_components(
+        coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False
+    )[1]
     owner = label[mesh.faces[:, 0]]
     for one in np.unique(owner):
         yield mesh.part(np.flatnonzero(owner == one))[0]
 
 
-def split(mesh: Mesh, middle: Array, across: Array, where: Callable[[Array], Mask] | None = None) -> Mesh:
+def split(
+    mesh: Mesh, middle: Array, across: Array, where: Callable[[Array], Mask] | None = None
+) -> Mesh:
     """The mesh cut by the plane through a point (3,) with a unit normal (3,); with `where`(points (k, 3)) it hangs together
     at places of the cut for which that is not true."""
     value = (mesh.vertices - middle) @ across
@@ -71,10 +80,15 @@ def split(mesh: Mesh, middle: Array, across: Array, where: Callable[[Array], Mas
     row = np.arange(len(corners))
     a, b, c = corners[row, odd], corners[row, (odd + 1) % 3], corners[row, (odd + 2) % 3]
     pairs = np.vstack([np.stack([a, b], 1), np.stack([a, c], 1)])
-    edges, index = np.unique(np.where(low[pairs[:, :1]], pairs, pairs[:, ::-1]), axis=0, return_inverse=True)
+    edges, index = np.unique(
+        np.where(low[pairs[:, :1]], pairs, pairs[:, ::-1]), axis=0, return_inverse=True
+    )
     ab, ac = np.split(np.ravel(index), 2)
     start, end = edges.T  # from the low side to the other
-    share = (np.where(on[start], 0.0, value[start]) / (np.where(on[start], 0.0, value[start]) - value[end]))[:, None]
+    share = (
+        np.where(on[start], 0.0, value[start])
+        / (np.where(on[start], 0.0, value[start]) - value[end])
+    )[:, None]
     points = (1.0 - share) * vertices[start] + share * vertices[end]
     n, k = len(vertices), len(points)
     below = np.where(on[start], start, n + np.arange(k))
@@ -82,16 +96,25 @@ def split(mesh: Mesh, middle: Array, across: Array, where: Callable[[Array], Mas
     if where is not None:
         above = np.where(where(points), above, below)
     own, rest = (
-        np.where(low[a][:, None], np.stack([one[ab], one[ac]], 1), np.stack([other[ab], other[ac]], 1))
+        np.where(
+            low[a][:, None], np.stack([one[ab], one[ac]], 1), np.stack([other[ab], other[ac]], 1)
+        )
         for one, other in ((below, above), (above, below))
     )
-    faces = np.vstack([
-        mesh.faces[~mixed], np.stack([a, own[:, 0], own[:, 1]], 1), np.stack([rest[:, 0], b, c], 1),
-        np.stack([rest[:, 0], c, rest[:, 1]], 1),
-    ])
+    faces = np.vstack(
+        [
+            mesh.faces[~mixed],
+            np.stack([a, own[:, 0], own[:, 1]], 1),
+            np.stack([rest[:, 0], b, c], 1),
+            np.stack([rest[:, 0], c, rest[:, 1]], 1),
+        ]
+    )
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     used, index = np.unique(faces, return_inverse=True)
-    return Mesh(np.vstack([vertices, points, points, vertices])[used], np.ravel(index).reshape(-1, 3).astype(np.intp))
+    return Mesh(
+        np.vstack([vertices, points, points, vertices])[used],
+        np.ravel(index).reshape(-1, 3).astype(np.intp),
+    )
 
 
 def _onto(mesh: Mesh, value: Array, across: Array, border: Mask) -> Mask:

@@ -38,7 +38,9 @@ def _one_more(grid: Voxels, field: Array, known: Mask) -> tuple[Array, Mask]:
                 said = field[linked.nodes[new]] + slope[new] @ away
                 weight = 1.0 / max(np.abs(away).sum(), 1) ** 2
                 total += np.bincount(to[new], weights=weight * said, minlength=field.size)
-                count += np.bincount(to[new], minlength=field.size, weights=np.full(int(new.sum()), weight))
+                count += np.bincount(
+                    to[new], minlength=field.size, weights=np.full(int(new.sum()), weight)
+                )
     found = count > 0.0
     field = field.copy()
     field[found] = total[found] / count[found]
@@ -64,5 +66,7 @@ def _mean(values: Array) -> Array:
     """The mean (n,) of those of values (k, n) that are known; nan where none is."""
     known = np.isfinite(values)
     count = known.sum(axis=0)
-    mean: Array = np.where(count > 0, np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1), np.nan)
+    mean: Array = np.where(
+        count > 0, np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1), np.nan
+    )
     return mean

@@ -38,7 +38,10 @@ def links(grid: Voxels) -> Links:
     nodes = grid.nodes
     number = np.full(grid.solid.size + 1, len(nodes), dtype=np.intp)
     number[nodes] = np.arange(len(nodes))
-    return Links(nodes, np.stack([number[nodes + sign * stride] for stride in grid.strides() for sign in (-1, 1)]))
+    return Links(
+        nodes,
+        np.stack([number[nodes + sign * stride] for stride in grid.strides() for sign in (-1, 1)]),
+    )
 
 
 def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
@@ -49,7 +52,9 @@ def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
     fixed[seeds] = fixed[-1] = True
     active = _around(linked, seeds, fixed)
     while len(active):
-        found = _godunov(u[linked.neighbours[0::2, active]], u[linked.neighbours[1::2, active]], step)
+        found = _godunov(
+            u[linked.neighbours[0::2, active]], u[linked.neighbours[1::2, active]], step
+        )
         better = found < u[active] - CONVERGED * step
         u[active[better]] = found[better]
         active = _around(linked, active[better], fixed)
@@ -75,12 +80,18 @@ def _root(values: Array, steps: Array) -> Array:
     v, h = np.take_along_axis(values, order, axis=0), np.take_along_axis(steps, order, axis=0)
     found: Array = v[0] + h[0]
     weight, first, second = np.zeros(v.shape[1]), np.zeros(v.shape[1]), np.zeros(v.shape[1])
-    base = np.where(np.isfinite(v[0]), v[0], 0.0)  # relative to the least: far from the seeds squares would lose digits
+    base = np.where(
+        np.isfinite(v[0]), v[0], 0.0
+    )  # relative to the least: far from the seeds squares would lose digits
     for k in range(3):
         use = (found > v[k]) & np.isfinite(v[k])
         relative = np.where(use, v[k] - base, 0.0)
         share = np.where(use, h[k] ** -2, 0.0)
-        weight, first, second = weight + share, first + share * relative, second + share * relative**2
+        weight, first, second = (
+            weight + share,
+            first + share * relative,
+            second + share * relative**2,
+        )
         inside = first**2 - weight * (second - 1.0)
         root = base + (first + np.sqrt(np.maximum(inside, 0.0))) / np.maximum(weight, 1e-300)
         found = np.where(use & (inside >= 0.0), root, found)
@@ -103,7 +114,9 @@ def _sharpened(linked: Links, step: float, u: Array, fixed: Mask) -> Array:
     return sharp
 
 
-def _upwind(linked: Links, step: float, first: Array, sharp: Array, nodes: Index) -> tuple[Array, Array]:
+def _upwind(
+    linked: Links, step: float, first: Array, sharp: Array, nodes: Index
+) -> tuple[Array, Array]:
     """What stands for the neighbour along each axis, and its step, (3, k): of second order where the second node behind it
     is no farther from the seeds. `first` decides which neighbour is upwind."""
     values, steps = np.full((3, len(nodes)), np.inf), np.full((3, len(nodes)), step)
@@ -111,10 +124,14 @@ def _upwind(linked: Links, step: float, first: Array, sharp: Array, nodes: Index
         sides = linked.neighbours[2 * axis : 2 * axis + 2, nodes]
         lower = np.argmin(first[sides], axis=0)
         near = sides[lower, np.arange(len(nodes))]
-        far = np.where(lower == 0, linked.beyond(2 * axis, nodes), linked.beyond(2 * axis + 1, nodes))
+        far = np.where(
+            lower == 0, linked.beyond(2 * axis, nodes), linked.beyond(2 * axis + 1, nodes)
+        )
         upwind = first[near] < first[nodes]
         two = upwind & (first[far] <= first[near])
         a, b = sharp[near], np.where(two, sharp[far], 0.0)
-        values[axis] = np.where(two, (4.0 * np.where(two, a, 0.0) - b) / 3.0, np.where(upwind, a, np.inf))
+        values[axis] = np.where(
+            two, (4.0 * np.where(two, a, 0.0) - b) / 3.0, np.where(upwind, a, np.inf)
+        )
         steps[axis] = np.where(two, 2.0 * step / 3.0, step)
     return values, steps

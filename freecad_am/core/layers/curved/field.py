@@ -30,19 +30,35 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
     start faces; several of one number where a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
     _refuse(strategy)
     base, bodies = group.base, group.bodies
-    start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
-    meshes = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
+    start = (
+        None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
+    )
+    meshes = [
+        SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp))
+        for body in bodies
+    ]
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
     worst, height, cut = 0.0, strategy.layer_height, max(strategy.share_of_cut, 1e-3)
     volume = sum(one.volume for one in meshes)
     step = step_of(volume, height)
     if step > COARSE * height:
         raise InputError(
-            "TOO_FINE", "strategy.layer_height", "{:g} mm is too fine for curved layers of {}, {:.4g} cm3; give at least "
-            "{:.2g} mm, or layers: planes", height, name, volume / 1000.0, step / COARSE,
+            "TOO_FINE",
+            "strategy.layer_height",
+            "{:g} mm is too fine for curved layers of {}, {:.4g} cm3; give at least "
+            "{:.2g} mm, or layers: planes",
+            height,
+            name,
+            volume / 1000.0,
+            step / COARSE,
         )
     field = _field(
-        meshes, [base.inside(body.vertices)[body.triangles] for body in solids.surroundings], name, start, step, strategy
+        meshes,
+        [base.inside(body.vertices)[body.triangles] for body in solids.surroundings],
+        name,
+        start,
+        step,
+        strategy,
     )
     layers = int(np.ceil(field.top / height - cut + 1e-6))
     for number in range(max(layers, 0)):
@@ -50,28 +66,49 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
             issues: tuple[Issue, ...] = ()
             if stretch > max(worst, REPORTED_DISTORTION):
                 worst = stretch
-                issues = (Issue(
-                    NOTE if stretch <= 3.0 * REPORTED_DISTORTION else WARNING, "DISTORTED",
-                    Text("a curved layer cannot be laid flat without distortion: beads are up to {:.2g} % nearer together "
-                        "or farther apart than the bead spacing", 100.0 * stretch), number,
-                ),)
-            yield Slice(number, base, ChartLayer(chart, field, number * height), regions, issues, before=number / layers)
+                issues = (
+                    Issue(
+                        NOTE if stretch <= 3.0 * REPORTED_DISTORTION else WARNING,
+                        "DISTORTED",
+                        Text(
+                            "a curved layer cannot be laid flat without distortion: beads are up to {:.2g} % nearer together "
+                            "or farther apart than the bead spacing",
+                            100.0 * stretch,
+                        ),
+                        number,
+                    ),
+                )
+            yield Slice(
+                number,
+                base,
+                ChartLayer(chart, field, number * height),
+                regions,
+                issues,
+                before=number / layers,
+            )
 
 
 def _refuse(strategy: SolidParameters) -> None:
     """InputError NOT_FOR_FAMILY for what only plane layers have."""
     for key, given, instead in (
-        ("margin", strategy.margin != 0.0, "0 mm"), ("solid_layers", strategy.solid_layers != 0, "0"),
+        ("margin", strategy.margin != 0.0, "0 mm"),
+        ("solid_layers", strategy.solid_layers != 0, "0"),
     ):
         if given:
             raise InputError(
-                "NOT_FOR_FAMILY", f"strategy.{key}", "it is for plane layers, not for curved ones; use {}, or layers: "
-                "planes", instead,
+                "NOT_FOR_FAMILY",
+                f"strategy.{key}",
+                "it is for plane layers, not for curved ones; use {}, or layers: planes",
+                instead,
             )
 
 
 def _field(
-    solids: Sequence[SolidMesh], substrate: Sequence[Array], name: str, chosen: Array | None, step: float,
+    solids: Sequence[SolidMesh],
+    substrate: Sequence[Array],
+    name: str,
+    chosen: Array | None,
+    step: float,
     strategy: SolidParameters,
 ) -> GeodesicField:
     near = STANDING * strategy.layer_height
@@ -86,26 +123,37 @@ def _field(
         if not len(start):
             away = min(float(np.abs(_to(chosen, one.vertices, near)).min()) for one in solids)
             raise InputError(
-                "NOT_STANDING", "strategy.start_faces", "no face of {} lies on the faces chosen to start from, which are "
-                "{:.4g} mm away; choose faces that it touches, or none", name, away,
+                "NOT_STANDING",
+                "strategy.start_faces",
+                "no face of {} lies on the faces chosen to start from, which are "
+                "{:.4g} mm away; choose faces that it touches, or none",
+                name,
+                away,
             )
     try:
         field = geodesic.field(solids, start, step, through=strategy.layers == "geodesic")
     except ValueError:
         raise InputError(
-            "NOT_STANDING", name, "no face of it lies on the plane through its lowest place along strategy.direction, or "
+            "NOT_STANDING",
+            name,
+            "no face of it lies on the plane through its lowest place along strategy.direction, or "
             "on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a "
             "substrate that it touches",
         ) from None
     if field.unreached > UNREACHED:
         raise InputError(
-            "NOT_CONNECTED", name, "{:.3g} % of it hang together with nothing that stands on the platform or the substrate; "
-            "deposit these by themselves, or set strategy.direction", 100.0 * field.unreached,
+            "NOT_CONNECTED",
+            name,
+            "{:.3g} % of it hang together with nothing that stands on the platform or the substrate; "
+            "deposit these by themselves, or set strategy.direction",
+            100.0 * field.unreached,
         )
     return field
 
 
-def _standing(solid: SolidMesh, substrate: Sequence[Array], near: float, plane: bool = True) -> Array:
+def _standing(
+    solid: SolidMesh, substrate: Sequence[Array], near: float, plane: bool = True
+) -> Array:
     """The triangles (k, 3, 3) of a solid that lie on the plane z = 0 facing down, or on triangles of the substrate, to
     `near` mm."""
     corners = solid.vertices[solid.triangles]

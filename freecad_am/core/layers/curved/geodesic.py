@@ -88,9 +88,13 @@ class GeodesicField:
             loops = _loops(chart, inside)
             found = regions(loops)
             bounded = 0.5 * sum(doubled_area(loop) for loop in loops)
-            if halvings == 0 or abs(sum(one.area for one in found) - bounded) <= OVERLAID * max(bounded, 0.0):
+            if halvings == 0 or abs(sum(one.area for one in found) - bounded) <= OVERLAID * max(
+                bounded, 0.0
+            ):
                 if found:
-                    yield Piece(chart, tuple(one.simple(BORDER * self.grid.step) for one in found), stretch)
+                    yield Piece(
+                        chart, tuple(one.simple(BORDER * self.grid.step) for one in found), stretch
+                    )
                 return
         for half in _halves(mesh, inside, MARGIN * self.grid.step):
             for part, own in _connected(half.mesh, half.inside > 0.0):
@@ -102,7 +106,9 @@ class _Half(NamedTuple):
     inside: Array
 
 
-def field(solids: Sequence[SolidMesh], start: Array, step: float, through: bool = True) -> GeodesicField:
+def field(
+    solids: Sequence[SolidMesh], start: Array, step: float, through: bool = True
+) -> GeodesicField:
     """The distance through solids, which may touch or overlap, from triangles (k, 3, 3) where they stand, on a grid of
     `step` mm; through=False: straight from there. ValueError where no node of the grid is near the start."""
     searches = [Search(one, 2.0 * step) for one in solids]
@@ -114,14 +120,25 @@ def field(solids: Sequence[SolidMesh], start: Array, step: float, through: bool 
     seeds, values = _seeds(start, grid.places(linked.nodes), step)
     if not len(seeds):
         raise ValueError("no node of the grid is near the start")
-    u = arrival(linked, step, seeds, values) if through else _away(start, grid.places(linked.nodes), step)
+    u = (
+        arrival(linked, step, seeds, values)
+        if through
+        else _away(start, grid.places(linked.nodes), step)
+    )
     reached = np.isfinite(u)
     way = _smoothed(linked, gradients(linked, np.where(reached, u, np.nan), step))
     carried = carried_on(grid, linked, u)
-    ways = [Cubes(carried_on(grid, linked, np.where(reached, one, np.inf)), grid.origin, step) for one in way.T]
+    ways = [
+        Cubes(carried_on(grid, linked, np.where(reached, one, np.inf)), grid.origin, step)
+        for one in way.T
+    ]
     return GeodesicField(
-        grid, Cubes(carried, grid.origin, step), Cubes(_depths(grid, inner.solid, searches, carried), grid.origin, step),
-        (ways[0], ways[1], ways[2]), float(u[reached].max()), float((~reached).mean()),
+        grid,
+        Cubes(carried, grid.origin, step),
+        Cubes(_depths(grid, inner.solid, searches, carried), grid.origin, step),
+        (ways[0], ways[1], ways[2]),
+        float(u[reached].max()),
+        float((~reached).mean()),
     )
 
 
@@ -129,7 +146,10 @@ def _seeds(start: Array, places: Array, step: float) -> tuple[Index, Array]:
     """Nodes near the start and their distances from it."""
     if not len(start):
         return np.zeros(0, dtype=np.intp), np.zeros(0)
-    low, high = start.min(axis=(0, 1)) - EXACT_STEPS * step, start.max(axis=(0, 1)) + EXACT_STEPS * step
+    low, high = (
+        start.min(axis=(0, 1)) - EXACT_STEPS * step,
+        start.max(axis=(0, 1)) + EXACT_STEPS * step,
+    )
     near = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
     if not len(near):
         return near, np.zeros(0)
@@ -171,8 +191,12 @@ def _depths(grid: Voxels, wound: Mask, searches: Sequence[Search], carried: Arra
     inner = grid.solid.copy()
     for _ in range(DEEP):
         inner[1:-1, 1:-1, 1:-1] &= (
-            inner[:-2, 1:-1, 1:-1] & inner[2:, 1:-1, 1:-1] & inner[1:-1, :-2, 1:-1] & inner[1:-1, 2:, 1:-1]
-            & inner[1:-1, 1:-1, :-2] & inner[1:-1, 1:-1, 2:]
+            inner[:-2, 1:-1, 1:-1]
+            & inner[2:, 1:-1, 1:-1]
+            & inner[1:-1, :-2, 1:-1]
+            & inner[1:-1, 2:, 1:-1]
+            & inner[1:-1, 1:-1, :-2]
+            & inner[1:-1, 1:-1, 2:]
         )
     asked = np.flatnonzero(~np.isnan(depth) & ~inner.ravel())
     found = -_outside(searches, grid.places(asked))
@@ -194,7 +218,9 @@ def _connected(mesh: Mesh, inside: Mask) -> Iterator[tuple[Mesh, Index]]:
     """The pieces of a mesh that hang together by vertices inside, each with the triangles about it and its vertices here."""
     pairs = mesh.edges[inside[mesh.edges].all(axis=1)]
     n = len(inside)
-    label = connected_components(coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False)[1]
+    label = connected_components(
+        coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False
+    )[1]
     label = np.where(inside, label, -1)
     owner = label[mesh.faces].max(axis=1)
     for one in np.unique(owner[owner >= 0]):

@@ -54,12 +54,18 @@ class Cubes:
         corners = (cubes[:, None, None] + TETRAHEDRA @ self._strides).reshape(-1, 4)
         high = self.field[corners] >= value
         count = high.sum(axis=1)
-        kinds = [_single(corners, high, count == 1), _single(corners, ~high, count == 3), _double(corners, high, count == 2)]
+        kinds = [
+            _single(corners, high, count == 1),
+            _single(corners, ~high, count == 3),
+            _double(corners, high, count == 2),
+        ]
         pairs = np.concatenate(kinds)
         # every pair of a triangle begins on the same side: that of the higher values, but for those about a low corner
         sign = np.repeat([1.0, -1.0, 1.0], [len(one) for one in kinds])
         edges, of = np.unique(np.sort(pairs.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
-        return self._oriented(self._crossed(edges, value), of.reshape(-1, 3).astype(np.intp), pairs[:, 0, 0], sign)
+        return self._oriented(
+            self._crossed(edges, value), of.reshape(-1, 3).astype(np.intp), pairs[:, 0, 0], sign
+        )
 
     def _crossed(self, edges: Index, value: float) -> Array:
         a, b = self.field[edges[:, 0]], self.field[edges[:, 1]]
@@ -100,7 +106,9 @@ def _single(corners: Index, apart: Mask, which: Mask) -> Index:
     corners, apart = corners[which], apart[which]
     row = np.arange(len(corners))
     k = np.argmax(apart, axis=1)
-    return np.stack([np.stack([corners[row, k], corners[row, (k + j) % 4]], axis=1) for j in (1, 2, 3)], axis=1)
+    return np.stack(
+        [np.stack([corners[row, k], corners[row, (k + j) % 4]], axis=1) for j in (1, 2, 3)], axis=1
+    )
 
 
 def _double(corners: Index, high: Mask, which: Mask) -> Index:

@@ -33,7 +33,9 @@ from ..surface import Slice
 
 PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
 FOLDED = 0.05  # share of its area that a triangle keeps in a layer that does not fold
-PROBE = 0.15  # of the extent of a picture, about the middle of it, along which its direction is told
+PROBE = (
+    0.15  # of the extent of a picture, about the middle of it, along which its direction is told
+)
 ROUNDS = 5  # of turning it: between bent ends the way is not the picture's
 HALVES = 4  # of an edge of a border, where that bows
 
@@ -55,7 +57,9 @@ class FaceLayer(Charted):
 
     def in_part(self, place: Place) -> tuple[Array, Array]:
         """The exact places above the faces, and their normals."""
-        near = np.einsum("nk,nkc->nc", place.share, self.feet[self.chart.mesh.faces[place.triangle]])
+        near = np.einsum(
+            "nk,nkc->nc", place.share, self.feet[self.chart.mesh.faces[place.triangle]]
+        )
         feet, normals = self.sheet.project(near)
         return feet + self.distance * normals, normals
 
@@ -85,9 +89,18 @@ def slices(sheet: PatchWall, piece: Piece, strategy: CladdingParameters) -> Iter
         _refuse_folded(mesh, here, number, sheet.label, strategy)
         flat = flattened(here)
         surface = _along_x(
-            FaceLayer(Chart(here, flat.points), sheet, mesh.vertices, distance, stretch_of(flat, here.areas))
+            FaceLayer(
+                Chart(here, flat.points),
+                sheet,
+                mesh.vertices,
+                distance,
+                stretch_of(flat, here.areas),
+            )
         )
-        found = tuple(one.simple(BORDER * strategy.chord_error) for one in _regions(surface.chart, strategy.chord_error))
+        found = tuple(
+            one.simple(BORDER * strategy.chord_error)
+            for one in _regions(surface.chart, strategy.chord_error)
+        )
         yield Slice(number, PART, surface, found)
 
 
@@ -100,7 +113,9 @@ def _along_x(layer: FaceLayer) -> FaceLayer:
         centres = flat[chart.mesh.faces].mean(axis=1)
         middle = centres[int(np.argmin(np.hypot(*centres.T)))]
         reach = max(PROBE * float(np.ptp(flat[:, 0])), layer.look)
-        points, normals = layer.in_part(chart.find(middle + reach * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])))
+        points, normals = layer.in_part(
+            chart.find(middle + reach * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]))
+        )
         first, second = axes(normals[2:])
         way = points[1] - points[0]
         angle = np.arctan2(second[0] @ way, first[0] @ way)
@@ -127,14 +142,24 @@ def _smooth(loop: Array, chord_error: float) -> Array:
     return found
 
 
-def _refuse_folded(mesh: Mesh, above: Mesh, layer: int, label: str, strategy: CladdingParameters) -> None:
-    share = dot(above.area_vectors, mesh.area_vectors) / np.maximum(dot(mesh.area_vectors, mesh.area_vectors), 1e-300)
+def _refuse_folded(
+    mesh: Mesh, above: Mesh, layer: int, label: str, strategy: CladdingParameters
+) -> None:
+    share = dot(above.area_vectors, mesh.area_vectors) / np.maximum(
+        dot(mesh.area_vectors, mesh.area_vectors), 1e-300
+    )
     big = mesh.areas > 0.01 * np.median(mesh.areas)
     if (share[big] > FOLDED).all():
         return
     at = int(np.argmin(np.where(big, share, np.inf)))
     raise InputError(
-        "FOLDED", "strategy.layers", "layer {} of {} would lie {:.4g} mm above the faces, as far as a hollow reaches at {}, "
-        "and fold there; lay at most {} layer(s), or leave out what is so hollow", layer, label,
-        layer * strategy.layer_height, place(mesh.vertices[mesh.faces[at]].mean(axis=0)), layer,
+        "FOLDED",
+        "strategy.layers",
+        "layer {} of {} would lie {:.4g} mm above the faces, as far as a hollow reaches at {}, "
+        "and fold there; lay at most {} layer(s), or leave out what is so hollow",
+        layer,
+        label,
+        layer * strategy.layer_height,
+        place(mesh.vertices[mesh.faces[at]].mean(axis=0)),
+        layer,
     )

@@ -31,7 +31,9 @@ class Voxels:
 
     def places(self, nodes: Index) -> Array:
         """Where nodes (n,) of the flat grid are, (n, 3) mm."""
-        at: Array = self.origin + self.step * np.stack(np.unravel_index(nodes, self.solid.shape), axis=1)
+        at: Array = self.origin + self.step * np.stack(
+            np.unravel_index(nodes, self.solid.shape), axis=1
+        )
         return at
 
     def strides(self) -> tuple[int, int, int]:
@@ -51,7 +53,9 @@ def voxels(vertices: Array, triangles: Index, step: float) -> Voxels:
     corners = (vertices[triangles] - origin) / step
     column, height, way = _crossings(corners, shape)
     first = np.clip(np.ceil(height).astype(np.intp), 0, shape[2] - 1)
-    change = np.bincount(column * shape[2] + first, weights=-way, minlength=int(shape.prod())).reshape(shape)
+    change = np.bincount(
+        column * shape[2] + first, weights=-way, minlength=int(shape.prod())
+    ).reshape(shape)
     return Voxels(origin, step, np.cumsum(change, axis=2) > 0.5)
 
 
@@ -63,12 +67,16 @@ def _crossings(corners: Array, shape: Index) -> tuple[Index, Array, Array]:
     total = count[:, 0] * count[:, 1]
     of = np.repeat(np.arange(len(corners)), total)
     number = np.arange(len(of)) - np.repeat(np.cumsum(total) - total, total)
-    at = low[of] + np.stack([number // np.maximum(count[of, 1], 1), number % np.maximum(count[of, 1], 1)], axis=1)
+    at = low[of] + np.stack(
+        [number // np.maximum(count[of, 1], 1), number % np.maximum(count[of, 1], 1)], axis=1
+    )
     offset = corners[of, :, :2] - at[:, None]
     after = np.roll(offset, -1, axis=1)
     # the column against each edge: twice the area, the same to the last bit for both triangles beside the edge
     area = np.roll(_side(offset, after), -1, axis=1)
-    way = np.where((area >= 0.0).all(axis=1), 1.0, 0.0) - np.where((area < 0.0).all(axis=1), 1.0, 0.0)
+    way = np.where((area >= 0.0).all(axis=1), 1.0, 0.0) - np.where(
+        (area < 0.0).all(axis=1), 1.0, 0.0
+    )
     hit = way != 0.0
     of, at, area, way = of[hit], at[hit], area[hit], way[hit]
     whole = area.sum(axis=1)
@@ -80,7 +88,9 @@ def _crossings(corners: Array, shape: Index) -> tuple[Index, Array, Array]:
 
 def _side(start: Array, end: Array) -> Array:
     """Twice the area of the origin with edges from start to end (..., 2); exactly opposite for an edge turned round."""
-    turned = (start[..., 0] > end[..., 0]) | ((start[..., 0] == end[..., 0]) & (start[..., 1] > end[..., 1]))
+    turned = (start[..., 0] > end[..., 0]) | (
+        (start[..., 0] == end[..., 0]) & (start[..., 1] > end[..., 1])
+    )
     a = np.where(turned[..., None], end, start)
     b = np.where(turned[..., None], start, end)
     area = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -38,9 +38,16 @@ def slabs(group: Group, layer_height: float, points: Array, volumes: Array) -> S
     used = int(layer[volumes > 0.0].max(initial=-1)) + 1
     count = max(int(np.ceil(top / layer_height - EXACT)), used)
     planes = layer_height * np.arange(count + 1)
-    part = sum((np.diff(below(group.base.inside(body.vertices), body.triangles, planes)) for body in group.bodies),
-               np.zeros(count))
-    deposited: Array = np.bincount(layer[volumes > 0.0], volumes[volumes > 0.0], minlength=count).astype(np.float64)
+    part = sum(
+        (
+            np.diff(below(group.base.inside(body.vertices), body.triangles, planes))
+            for body in group.bodies
+        ),
+        np.zeros(count),
+    )
+    deposited: Array = np.bincount(
+        layer[volumes > 0.0], volumes[volumes > 0.0], minlength=count
+    ).astype(np.float64)
     return Slabs(part, deposited)
 
 
@@ -52,7 +59,9 @@ def below(vertices: Array, triangles: Index, heights: Sequence[float] | Array) -
     corners = np.sort(vertices[triangles][..., 2], axis=1)
     edges = vertices[triangles][..., :2]
     across, along = edges[:, 1] - edges[:, 0], edges[:, 2] - edges[:, 0]
-    area = 0.5 * (across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0])  # as seen from above, with its sign
+    area = 0.5 * (
+        across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0]
+    )  # as seen from above, with its sign
     return np.array([_below(corners, area, float(height)) for height in heights])
 
 

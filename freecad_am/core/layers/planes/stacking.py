@@ -18,7 +18,9 @@ from ...issues import NOTE, Issue, Text, Word
 from ...parameters.filled import SolidParameters
 from ...types import Array, Index
 
-AXES = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64)
+AXES = np.array(
+    [[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64
+)
 LARGEST = 12  # flat faces that the part may be laid on, beside the axes
 PARALLEL = np.cos(np.radians(2.0))
 STANDING = 0.5  # layer heights above the lowest place; what is no higher stands there
@@ -36,19 +38,26 @@ class Stacked(NamedTuple):
     height: float
 
 
-def stacked(bodies: Sequence[Body], strategy: SolidParameters, label: str, issues: tuple[Issue, ...] = ()) -> SolidsOnHub:
+def stacked(
+    bodies: Sequence[Body], strategy: SolidParameters, label: str, issues: tuple[Issue, ...] = ()
+) -> SolidsOnHub:
     """The bodies standing on the plane through their lowest place, with a frame whose Z is the stacking direction, in the
     middle under them. With the direction `auto` a note says which it is and why."""
     asked = strategy.stacking()
     if asked is None:
         found = best(bodies, strategy)
-        way, issues = found[0].way, (*issues, _note(found, label, np.degrees(strategy.max_overhang)))
+        way, issues = (
+            found[0].way,
+            (*issues, _note(found, label, np.degrees(strategy.max_overhang))),
+        )
     else:
         way = np.array(asked) / np.linalg.norm(asked)
     turned = upright(np.zeros(3), way)
     local = np.vstack([body.vertices for body in bodies]) @ turned[:3, :3]
     low, high = local.min(axis=0), local.max(axis=0)
-    turned[:3, 3] = turned[:3, :3] @ np.array([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2]])
+    turned[:3, 3] = turned[:3, :3] @ np.array(
+        [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2]]
+    )
     base = Base("the first layer", Plane(), turned)
     return SolidsOnHub(label, (Group(base, tuple(bodies)),), strategy.chord_error, (), issues)
 
@@ -57,7 +66,9 @@ def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
     """The axes and the directions out of large flat faces, the best first: of those with the least area over nothing, but
     for CLOSE, the one with the least height, but for LEVEL, and of these the first; then of the others likewise. Any mesh of
     the same part has the same order."""
-    vertices, normals, areas = facets(bodies, strategy.chord_error if strategy.fuse == "auto" else None)
+    vertices, normals, areas = facets(
+        bodies, strategy.chord_error if strategy.fuse == "auto" else None
+    )
     ways = _candidates(normals, areas)
     steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
     found = [judged(way, vertices, normals, areas, steep, standing) for way in ways]
@@ -133,7 +144,9 @@ def _candidates(normals: Array, areas: Array) -> list[Array]:
     return ways
 
 
-def judged(way: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float) -> Stacked:
+def judged(
+    way: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float
+) -> Stacked:
     """A unit direction (3,) by the facets of a part: what of them leans out by more than `steep`, the sine of an angle from
     the direction, and reaches more than `standing` mm above the lowest place."""
     heights = corners @ way
@@ -144,12 +157,34 @@ def judged(way: Array, corners: Array, normals: Array, areas: Array, steep: floa
 
 def _note(found: Sequence[Stacked], label: str, lean: float) -> Issue:
     chosen = found[0]
-    upright_one = next(one for one in found if one.way is AXES[0] or np.array_equal(one.way, AXES[0]))
-    other = "" if chosen is upright_one else (
-        Text("; along (0, 0, 1) it would be {:.4g} mm^2 and {:.4g} mm", upright_one.area, upright_one.height)
+    upright_one = next(
+        one for one in found if one.way is AXES[0] or np.array_equal(one.way, AXES[0])
+    )
+    other = (
+        ""
+        if chosen is upright_one
+        else (
+            Text(
+                "; along (0, 0, 1) it would be {:.4g} mm^2 and {:.4g} mm",
+                upright_one.area,
+                upright_one.height,
+            )
+        )
     )
     x, y, z = (round(float(value), 6) + 0.0 for value in chosen.way)
     return Issue(
-        NOTE, "DIRECTION", Text("{} is stacked along ({:g}, {:g}, {:g}): {:.4g} mm^2 of it lean over nothing by more than "
-            "{:.4g} deg, and it is {:.4g} mm high{}", label, x, y, z, chosen.area, lean, chosen.height, Word(other)),
+        NOTE,
+        "DIRECTION",
+        Text(
+            "{} is stacked along ({:g}, {:g}, {:g}): {:.4g} mm^2 of it lean over nothing by more than "
+            "{:.4g} deg, and it is {:.4g} mm high{}",
+            label,
+            x,
+            y,
+            z,
+            chosen.area,
+            lean,
+            chosen.height,
+            Word(other),
+        ),
     )

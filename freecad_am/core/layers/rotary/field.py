@@ -45,24 +45,51 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
         surface = base.surface.offset(number * height)
         if sum(loop.turns for loop in loops):
             raise InputError(
-                "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, at {}, where equidistant surfaces "
-                "have an apex or an end; let it end beside the axis", base.where(_apex(loops, surface)),
+                "APEX_INSIDE",
+                where,
+                "the solid reaches over the end of the hub's axis, at {}, where equidistant surfaces "
+                "have an apex or an end; let it end beside the axis",
+                base.where(_apex(loops, surface)),
             )
         below.append(loops)
         lots = within_margin(below, height, strategy.margin, facets.moved)
         if any(loop.turns for _, loops in lots for loop in loops):
             buried = () if thick > min(number, layers - 1 - number) else None
-            layer = Slice(number, base, RoundLayer(surface), _all_round(lots, surface, strategy), (), azimuth, buried)
+            layer = Slice(
+                number,
+                base,
+                RoundLayer(surface),
+                _all_round(lots, surface, strategy),
+                (),
+                azimuth,
+                buried,
+            )
         else:
-            neighbours = [facets.moved(loops, -k * height) for k, loops in _neighbours(below, ahead, thick)]
+            neighbours = [
+                facets.moved(loops, -k * height) for k, loops in _neighbours(below, ahead, thick)
+            ]
             flat = opened(surface, [*(loops for _, loops in lots), *neighbours], azimuth, where)
-            layer = Slice(number, base, RoundLayer(surface, flat.middle), *regions_of(
-                [(distance, borders) for (distance, _), borders in zip(lots, flat.borders)], strategy.margin, error, number,
-            ), azimuth)
+            layer = Slice(
+                number,
+                base,
+                RoundLayer(surface, flat.middle),
+                *regions_of(
+                    [(distance, borders) for (distance, _), borders in zip(lots, flat.borders)],
+                    strategy.margin,
+                    error,
+                    number,
+                ),
+                azimuth,
+            )
             if thick:
-                layer = layer._replace(buried=under_and_over([
-                    grown(regions(borders), strategy.margin, ARCS * error) for borders in flat.borders[len(lots):]
-                ]))
+                layer = layer._replace(
+                    buried=under_and_over(
+                        [
+                            grown(regions(borders), strategy.margin, ARCS * error)
+                            for borders in flat.borders[len(lots) :]
+                        ]
+                    )
+                )
         if layer.regions:
             yield layer._replace(before=number / layers)
 
@@ -83,7 +110,9 @@ def _neighbours(
 def _apex(loops: Sequence[Loop], surface: Developable) -> Array:
     """About where (3,) the axis ends within loops that go round it."""
     round_it = np.vstack([loop.points for loop in loops if loop.turns])
-    return np.array([0.0, 0.0, float(round_it[:, 2].mean()) if surface.is_cylinder else surface.height])
+    return np.array(
+        [0.0, 0.0, float(round_it[:, 2].mean()) if surface.is_cylinder else surface.height]
+    )
 
 
 def _all_round(
@@ -91,5 +120,7 @@ def _all_round(
 ) -> tuple[Region | Strip, ...]:
     """The strips and regions of a layer that runs all the way round the hub; above what ends below there is no margin."""
     margin, loops = next((lot for lot in lots if lot[1]), lots[0])
-    found = strips([(surface.flat(loop.points), loop.turns) for loop in loops], RoundLayer(surface).period)
+    found = strips(
+        [(surface.flat(loop.points), loop.turns) for loop in loops], RoundLayer(surface).period
+    )
     return found if margin == 0.0 else grown(found, margin, ARCS * strategy.chord_error)

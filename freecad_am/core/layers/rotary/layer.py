@@ -42,8 +42,10 @@ class RoundLayer:
     def wrap(self, flat: Array) -> Wrapped:
         """Azimuths are counted on where the curve goes far round."""
         theta, z = _unwrapped(flat, self.surface)
-        rho = np.full(len(z), self.surface.radius) if self.surface.is_cylinder else (
-            (self.surface.height - z) * math.tan(self.surface.taper)
+        rho = (
+            np.full(len(z), self.surface.radius)
+            if self.surface.is_cylinder
+            else ((self.surface.height - z) * math.tan(self.surface.taper))
         )
         angle = theta + self.middle
         points = np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=1)
@@ -75,8 +77,10 @@ class RoundLayer:
         heading = np.arctan2(across, along)
         share = np.maximum(np.abs(np.cos(heading - phi[:-1])), np.abs(np.cos(heading - phi[1:])))
         share = np.minimum(share + np.abs(np.diff(phi)), 1.0)
-        rho = np.full(len(z), self.surface.radius) if self.surface.is_cylinder else (
-            (self.surface.height - z) * math.tan(self.surface.taper)
+        rho = (
+            np.full(len(z), self.surface.radius)
+            if self.surface.is_cylinder
+            else ((self.surface.height - z) * math.tan(self.surface.taper))
         )
         # an edge comes nearer to the apex than its ends by no more than its sagitta seen from there
         least = np.minimum(rho[:-1], rho[1:]) * np.cos(0.5 * np.abs(np.diff(phi)))

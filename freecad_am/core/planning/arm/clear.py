@@ -28,14 +28,19 @@ from ..task import FITS, Task, condition_margin
 from .kept import ArmKept, Place, clearance_issue
 from .refined import refined_clear
 
-FIRST_LOOK, TURNS = 4, 72  # candidates of a bead looked at before there is a map, and rotations of that
+FIRST_LOOK, TURNS = (
+    4,
+    72,
+)  # candidates of a bead looked at before there is a map, and rotations of that
 ENDS = 3  # points of a bead looked at before all of them: where no rotation serves one of these, none serves the bead
 POINTS_PER_BEAD = 24  # and turn, at which the links are looked at
 SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way from where the local search began to what it found
 TOUCHING = -1e-3  # margin of the candidate that is planned where none is clear, so that what is in its way can be named
 
 
-def without_touching(task: Task, kept: ArmKept, points: Points, places: Sequence[Place], found: Found) -> Found:
+def without_touching(
+    task: Task, kept: ArmKept, points: Points, places: Sequence[Place], found: Found
+) -> Found:
     """The candidates, without a margin where a link comes too near: of each bead the best ones are looked at themselves,
     until one is clear; where the first few are not, all by a map of the rotations at which links come too near. Where none
     is clear the one that was best has next to none."""
@@ -57,22 +62,33 @@ def without_touching(task: Task, kept: ArmKept, points: Points, places: Sequence
 
 
 def _mapped(
-    task: Task, kept: ArmKept, points: Points, places: Sequence[Place], coefficients: Array, asked: Mask
+    task: Task,
+    kept: ArmKept,
+    points: Points,
+    places: Sequence[Place],
+    coefficients: Array,
+    asked: Mask,
 ) -> Mask:
     """(C, B) for which of the candidates (C, B, degree + 1) of beads asked about a link comes too near at a rotation next to
     one of theirs."""
-    joints = task.raw_joints(points, np.broadcast_to(np.arange(TURNS)[:, None] * (TURN / TURNS), (TURNS, len(points))))
+    joints = task.raw_joints(
+        points, np.broadcast_to(np.arange(TURNS)[:, None] * (TURN / TURNS), (TURNS, len(points)))
+    )
     near, hopeless = _map(kept, points, places, joints, asked)
     every, found = np.arange(len(points)), np.zeros(coefficients.shape[:2], dtype=bool)
     for row, candidate in zip(found, coefficients):
         phi = task.rotation(points, points.polynomial(candidate))[0]
         at = np.mod(phi / (TURN / TURNS), TURNS).astype(np.intp) % TURNS
-        row[:] = asked & np.logical_or.reduceat(near[at, every] | near[(at + 1) % TURNS, every], points.first)
+        row[:] = asked & np.logical_or.reduceat(
+            near[at, every] | near[(at + 1) % TURNS, every], points.first
+        )
     found[:, hopeless] = True
     return found
 
 
-def _map(kept: ArmKept, points: Points, places: Sequence[Place], joints: Array, asked: Mask) -> tuple[Mask, Mask]:
+def _map(
+    kept: ArmKept, points: Points, places: Sequence[Place], joints: Array, asked: Mask
+) -> tuple[Mask, Mask]:
     """(TURNS, T) at which rotations, whose joints are (TURNS, T, axes), a link comes too near at points of the beads asked
     about; and which beads (B,) have a point that no rotation serves. Of these no more than ENDS points are known."""
     near, hopeless = np.zeros(joints.shape[:2], dtype=bool), np.zeros(points.beads, dtype=bool)
@@ -90,26 +106,41 @@ def _map(kept: ArmKept, points: Points, places: Sequence[Place], joints: Array, 
 
 
 def brought_clear(
-    task: Task, kept: ArmKept, beads: Sequence[Bead], places: Sequence[Place], start: Array, reached: Refined
+    task: Task,
+    kept: ArmKept,
+    beads: Sequence[Bead],
+    places: Sequence[Place],
+    start: Array,
+    reached: Refined,
 ) -> tuple[Refined, Mask]:
     """Polynomials that keep the links clear in place of those `reached` that do not, where there are any, and which (B,)
     these are. start: (B, degree + 1) coefficients with which the local search began."""
     points = gather(beads, task.cell, POINTS_PER_BEAD)
-    near = _touched(task, kept, points, places, reached.coefficients, np.ones(points.beads, dtype=bool))
+    near = _touched(
+        task, kept, points, places, reached.coefficients, np.ones(points.beads, dtype=bool)
+    )
     some = np.flatnonzero(near)
     if not len(some):
         return reached, near
     points = gather([beads[k] for k in some], task.cell, POINTS_PER_BEAD)
     serves = _Serving(task, kept, points, [places[k] for k in some])
-    back, near[some] = _stepped_back(start[some], reached.coefficients[some], task.joined & points.closed, serves)
-    coefficients, reason, iterations = reached.coefficients.copy(), list(reached.reason), list(reached.iterations)
+    back, near[some] = _stepped_back(
+        start[some], reached.coefficients[some], task.joined & points.closed, serves
+    )
+    coefficients, reason, iterations = (
+        reached.coefficients.copy(),
+        list(reached.reason),
+        list(reached.iterations),
+    )
     coefficients[some] = back
     some = np.flatnonzero(near)
     if len(some):
         full = gather([beads[k] for k in some], task.cell)
         again = refined_clear(task, kept, full, [places[k] for k in some], coefficients[some])
         points = gather([beads[k] for k in some], task.cell, POINTS_PER_BEAD)
-        for k in np.flatnonzero(_Serving(task, kept, points, [places[k] for k in some])(again.coefficients)):
+        for k in np.flatnonzero(
+            _Serving(task, kept, points, [places[k] for k in some])(again.coefficients)
+        ):
             coefficients[some[k]] = again.coefficients[k]
             reason[some[k]], iterations[some[k]] = again.reason[k], again.iterations[k]
     return Refined(coefficients, reached.objective, tuple(reason), tuple(iterations)), near
@@ -134,7 +165,9 @@ class _Serving:
         return np.asarray(~near & _fits(self.task, self.points, self._threshold, coefficients))
 
 
-def _stepped_back(start: Array, reached: Array, joined: Mask, serves: Callable[[Array], Mask]) -> tuple[Array, Mask]:
+def _stepped_back(
+    start: Array, reached: Array, joined: Mask, serves: Callable[[Array], Mask]
+) -> tuple[Array, Mask]:
     """Coefficients (B, degree + 1) that serve, as near as may be to those reached, and which (B,) do; where none does, those
     reached. joined: (B,) which beads have to join up."""
     result, changed = reached.copy(), np.zeros(len(start), dtype=bool)
@@ -153,8 +186,12 @@ def findings(kept: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
     """An error for each bead at whose points a link comes too near, with the link and what it comes near to."""
     found = []
     for path in paths:
-        some = np.unique(np.linspace(0, len(path.bead) - 1, min(len(path.bead), POINTS_PER_BEAD)).astype(np.intp))
-        met = kept.contact.touches(path.joints[some], np.full(len(some), kept.moment((path.layer, path.index))))
+        some = np.unique(
+            np.linspace(0, len(path.bead) - 1, min(len(path.bead), POINTS_PER_BEAD)).astype(np.intp)
+        )
+        met = kept.contact.touches(
+            path.joints[some], np.full(len(some), kept.moment((path.layer, path.index)))
+        )
         if met.any.any():
             first = int(np.argmax(met.link != NONE))
             link, what = kept.contact.links[met.link[first]], kept.contact.names[met.what[first]]
@@ -162,7 +199,14 @@ def findings(kept: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
     return found
 
 
-def _touched(task: Task, kept: ArmKept, points: Points, places: Sequence[Place], coefficients: Array, asked: Mask) -> Mask:
+def _touched(
+    task: Task,
+    kept: ArmKept,
+    points: Points,
+    places: Sequence[Place],
+    coefficients: Array,
+    asked: Mask,
+) -> Mask:
     """(B,) on which of the beads asked about a link comes too near."""
     joints = task.joints(points, task.rotation(points, points.polynomial(coefficients))[0])
     met = kept.touches(np.where(asked[points.bead, None], joints, np.nan), points, places)
@@ -173,5 +217,7 @@ def _fits(task: Task, points: Points, threshold: Array, coefficients: Array) -> 
     """(B,) whether limits and condition hold."""
     phi = task.rotation(points, points.polynomial(coefficients))[0]
     joints = task.joints(points, phi)
-    margin = np.minimum(task.rows.margin(joints), condition_margin(task.condition(points, phi, joints), threshold))
+    margin = np.minimum(
+        task.rows.margin(joints), condition_margin(task.condition(points, phi, joints), threshold)
+    )
     return np.asarray(points.worst(margin) >= FITS)

@@ -24,7 +24,10 @@ Place = tuple[int, int]
 Cylinders = Sequence[Sequence[Cylinder]]
 
 CODE = "ARM_CLEARANCE"
-STEP, SLIDE = float(np.radians(2.0)), 10.0  # of the joint that moves most on rapids, rad and mm, between two looks
+STEP, SLIDE = (
+    float(np.radians(2.0)),
+    10.0,
+)  # of the joint that moves most on rapids, rad and mm, between two looks
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,9 @@ class ArmKept:
 
     def touches(self, joints: Array, points: Points, places: Sequence[Place]) -> Touches:
         """What links come too near with joints (T, axes) at the points of beads at these places."""
-        return self.contact.touches(joints, np.array([self.moment(place) for place in places], dtype=np.int64)[points.bead])
+        return self.contact.touches(
+            joints, np.array([self.moment(place) for place in places], dtype=np.int64)[points.bead]
+        )
 
     def rotations_near(self, joints: Array, bead: Index, places: Sequence[Place]) -> Mask:
         """(R, T) with which joints (R, T, axes), of R rotations at points of the beads (T,), a link comes too near."""
@@ -52,17 +57,31 @@ class ArmKept:
 def of_job(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | None:
     """What keeps the links, `cylinders` of each, clear in a job; None where that is not asked for, or no link known."""
     beads = [bead for _, _, bead in toolpath]
-    contact = contact_of(beads, cell, cylinders, toolpath.surroundings, toolpath.bead_width or toolpath.layer_height,
-                         toolpath.layer_height)
+    contact = contact_of(
+        beads,
+        cell,
+        cylinders,
+        toolpath.surroundings,
+        toolpath.bead_width or toolpath.layer_height,
+        toolpath.layer_height,
+    )
     if contact is None:
         return None
     counts = np.cumsum([0, *(len(bead) for bead in beads)])
-    before = {(layer, index): int(count) for (layer, index, _), count in zip(toolpath, counts, strict=False)}
+    before = {
+        (layer, index): int(count)
+        for (layer, index, _), count in zip(toolpath, counts, strict=False)
+    }
     return ArmKept(contact, before)
 
 
 def contact_of(
-    beads: Sequence[Bead], cell: Cell, cylinders: Cylinders, bodies: Sequence[Body], width: float, height: float
+    beads: Sequence[Bead],
+    cell: Cell,
+    cylinders: Cylinders,
+    bodies: Sequence[Body],
+    width: float,
+    height: float,
 ) -> ArmContact | None:
     """The links against bodies and all beads; width, height: mm, of those that do not tell theirs."""
     if cell.arm_clearance is None or not cylinders:
@@ -71,7 +90,9 @@ def contact_of(
     return ArmContact(cell, cylinders, bodies, deposited, cell.arm_clearance)
 
 
-def on_moves(contact: ArmContact, start: Array, end: Array, deposited: Index) -> tuple[Index, Touches]:
+def on_moves(
+    contact: ArmContact, start: Array, end: Array, deposited: Index
+) -> tuple[Index, Touches]:
     """What links come too near on moves straight in the joints (k, axes), where so many points (k,) are laid: the move (l,)
     of each look, and what it found. Of moves whose joints are NaN nothing."""
     steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
@@ -88,15 +109,44 @@ def clearance_issue(
     where = " on the rapid way to the bead" if on_way else ""
     stands = what in [one.name for one in cell.external_links]
     if link == NOZZLE:
-        moved = "lift the part over it by cell.platform, or move it in cell.external" if stands else (
-            "move it in cell.obstacles, the part or cell.deposition_point")
-        return Issue(ERROR, CODE, Text("the nozzle touches {}{}; {}", what, Word(where), Word(moved)), layer, bead)
+        moved = (
+            "lift the part over it by cell.platform, or move it in cell.external"
+            if stands
+            else ("move it in cell.obstacles, the part or cell.deposition_point")
+        )
+        return Issue(
+            ERROR,
+            CODE,
+            Text("the nozzle touches {}{}; {}", what, Word(where), Word(moved)),
+            layer,
+            bead,
+        )
     name = (
-        "the part" if link == PART else "the torch" if link == TORCH else "the base" if link == BASE else Text("link {}",
-            link)
+        "the part"
+        if link == PART
+        else "the torch"
+        if link == TORCH
+        else "the base"
+        if link == BASE
+        else Text("link {}", link)
     )
-    remedy = "move one of them in cell.external or the part" if stands else "move the part or cell.deposition_point"
+    remedy = (
+        "move one of them in cell.external or the part"
+        if stands
+        else "move the part or cell.deposition_point"
+    )
     return Issue(
-        ERROR, CODE, Text("{} comes nearer than {:g} mm to {}, or touches it{}; {}, try another cell.branch, or lower "
-            "cell.arm_clearance", Word(name), cell.arm_clearance, what, Word(where), Word(remedy)), layer, bead,
+        ERROR,
+        CODE,
+        Text(
+            "{} comes nearer than {:g} mm to {}, or touches it{}; {}, try another cell.branch, or lower "
+            "cell.arm_clearance",
+            Word(name),
+            cell.arm_clearance,
+            what,
+            Word(where),
+            Word(remedy),
+        ),
+        layer,
+        bead,
     )

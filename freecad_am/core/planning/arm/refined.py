@@ -29,10 +29,15 @@ UNCHANGED = 1e-4  # rad, and share of the objective, less than which is no chang
 STOPPED = "the way to what is better comes too near"
 
 
-def refined_clear(task: Task, kept: ArmKept, points: Points, places: Sequence[Place], start: Array) -> Refined:
+def refined_clear(
+    task: Task, kept: ArmKept, points: Points, places: Sequence[Place], start: Array
+) -> Refined:
     """Polynomials that are better than those of the beads at these places which it starts with (B, degree + 1), and keep the
     links as clear; those it starts with where none was found. points: all of the beads."""
-    thresholds, directions = task.thresholds(points), basis.changes(task, points, start.shape[1] - 1)
+    thresholds, directions = (
+        task.thresholds(points),
+        basis.changes(task, points, start.shape[1] - 1),
+    )
     gaps = Gaps(kept.contact, WITHIN)
     moment = np.array([kept.moment(place) for place in places], dtype=np.int64)
     tried, best = start.copy(), start.copy()
@@ -51,12 +56,18 @@ def refined_clear(task: Task, kept: ArmKept, points: Points, places: Sequence[Pl
         for bead in np.flatnonzero(left):
             part, chosen = points.only(int(bead))
             more = Linear(
-                value[chosen], np.where(gap[:, chosen] < WITHIN, (gap[:, chosen] - SLACK) / WITHIN, FAR_OFF),
-                slope[:, chosen] / WITHIN, reach[bead],
+                value[chosen],
+                np.where(gap[:, chosen] < WITHIN, (gap[:, chosen] - SLACK) / WITHIN, FAR_OFF),
+                slope[:, chosen] / WITHIN,
+                reach[bead],
             )
-            found, why, count = refine_along(task, part, thresholds[chosen], tried[bead], directions[bead], more)
+            found, why, count = refine_along(
+                task, part, thresholds[chosen], tried[bead], directions[bead], more
+            )
             reason[bead], iterations[bead] = why, iterations[bead] + count
-            left[bead] = bool(np.abs(part.polynomial((found - tried[bead])[None])).max() > UNCHANGED)
+            left[bead] = bool(
+                np.abs(part.polynomial((found - tried[bead])[None])).max() > UNCHANGED
+            )
             tried[bead] = found
         if not left.any():
             break
@@ -76,5 +87,7 @@ def _looked(
     some = np.flatnonzero(asked[points.bead] & np.isfinite(joints).all(axis=1))
     rates, _ = task.rotation_rates(points.frames.of(some), phi[some], joints[some])
     wanted = np.ones((len(gaps.pairs), len(some)), dtype=bool)
-    gap[:, some], slope[:, some] = gaps.at(joints[some], rates * phi_rate[some, None], moment[points.bead[some]], wanted)
+    gap[:, some], slope[:, some] = gaps.at(
+        joints[some], rates * phi_rate[some, None], moment[points.bead[some]], wanted
+    )
     return value, gap, slope

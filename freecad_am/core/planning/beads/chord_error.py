@@ -16,18 +16,28 @@ from ..joint_path import BeadPath
 from ..task import Task
 
 INSIDE = np.array([0.25, 0.5, 0.75])
-MORE = np.array([1.0, 2.0, 4.0, 5.0]) / 6.0  # of segments that use up more than half of the chord error
+MORE = (
+    np.array([1.0, 2.0, 4.0, 5.0]) / 6.0
+)  # of segments that use up more than half of the chord error
 # what the polynomials through both ends, where the tip is on the bead, and INSIDE are there: (4, 3)
-BETWEEN = np.array([
-    [np.prod([(x - node) / (own - node) for node in (0.0, *INSIDE, 1.0) if node != own]) for own in INSIDE] for x in MORE
-])
+BETWEEN = np.array(
+    [
+        [
+            np.prod([(x - node) / (own - node) for node in (0.0, *INSIDE, 1.0) if node != own])
+            for own in INSIDE
+        ]
+        for x in MORE
+    ]
+)
 ROUNDS = 8
 TOGETHER = 4096  # points of beads that are looked at together, about
 # rounding room: beads of revolution use their chord error up by themselves, mm
 ROUNDING = 1e-6
 
 
-def refined_to_chord_error(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadPath, list[Issue]]:
+def refined_to_chord_error(
+    task: Task, path: BeadPath, chord_error: float
+) -> tuple[BeadPath, list[Issue]]:
     """The path with as many points added as it takes to stay within the chord error (mm) of the bead between them.
 
     Points are added on the curve that the points of the bead outline, not on its chords; at corners on the segments.
@@ -40,13 +50,21 @@ def refined_to_chord_error(task: Task, path: BeadPath, chord_error: float) -> tu
             return path, []
         path = _halved(task, path, np.flatnonzero(off))
     worst = int(deviation(task, path.bead, path.joints, chord_error).argmax())
-    return path, [Issue(
-        ERROR, "NOT_STRAIGHT", "joint motion leaves the bead between two points however many are added: near a singularity",
-        path.layer, path.index, worst,
-    )]
+    return path, [
+        Issue(
+            ERROR,
+            "NOT_STRAIGHT",
+            "joint motion leaves the bead between two points however many are added: near a singularity",
+            path.layer,
+            path.index,
+            worst,
+        )
+    ]
 
 
-def all_refined(task: Task, paths: Sequence[BeadPath], chord_error: float) -> list[tuple[BeadPath, list[Issue]]]:
+def all_refined(
+    task: Task, paths: Sequence[BeadPath], chord_error: float
+) -> list[tuple[BeadPath, list[Issue]]]:
     """`refined_to_chord_error` of each path. Most need no more points, which is seen of several beads together: calls take
     longer than the work on one."""
     reachable = [k for k, path in enumerate(paths) if path.reachable]
@@ -57,12 +75,16 @@ def all_refined(task: Task, paths: Sequence[BeadPath], chord_error: float) -> li
         if not some:
             continue
         last = np.cumsum([len(path.bead) for path in some]) - 1
-        points, joints = (np.concatenate(rows) for rows in zip(*((path.bead.points, path.joints) for path in some)))
+        points, joints = (
+            np.concatenate(rows)
+            for rows in zip(*((path.bead.points, path.joints) for path in some))
+        )
         segments = np.delete(np.arange(len(points)), last)
         off = _deviation(task, points, joints, segments, chord_error) > chord_error + ROUNDING
         bent.update(together[np.searchsorted(last, segments[off])].tolist())
     return [
-        refined_to_chord_error(task, path, chord_error) if k in bent else (path, []) for k, path in enumerate(paths)
+        refined_to_chord_error(task, path, chord_error) if k in bent else (path, [])
+        for k, path in enumerate(paths)
     ]
 
 
@@ -71,21 +93,27 @@ def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Arra
     return _deviation(task, bead.points, joints, np.arange(len(joints) - 1), chord_error)
 
 
-def _deviation(task: Task, points: Array, joints: Array, segments: Index, chord_error: float) -> Array:
+def _deviation(
+    task: Task, points: Array, joints: Array, segments: Index, chord_error: float
+) -> Array:
     """(k,) the same of the segments (k,) that begin at those of the points (n, 3) with their joints (n, axes)."""
     seen = _looked_at(task, points, joints, segments, INSIDE)
     away: Array = np.maximum.reduce(seen)
     # nearly all leave it evenly, most in the middle: between what was seen it is no more
     near = np.flatnonzero((away > 0.5 * chord_error) & (np.maximum.reduce(BETWEEN @ seen) > away))
     if len(near):
-        away[near] = np.maximum.reduce([away[near], *_looked_at(task, points, joints, segments[near], MORE)])
+        away[near] = np.maximum.reduce(
+            [away[near], *_looked_at(task, points, joints, segments[near], MORE)]
+        )
     return away
 
 
 def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
     """(n - 1,) rad, by what angle the tool strays from the directions at the ends of each segment as joints run straight."""
     way, count = np.diff(joints, axis=0)[:, None], len(INSIDE)
-    flange = cell.machine.chain.forward((joints[:-1, None] + INSIDE[:, None] * way).reshape(-1, joints.shape[1]))
+    flange = cell.machine.chain.forward(
+        (joints[:-1, None] + INSIDE[:, None] * way).reshape(-1, joints.shape[1])
+    )
     tool = cell.tip_in_part(flange)[1].reshape(-1, count, 3)
     asked = bead.tool[:-1, None] + INSIDE[:, None] * np.diff(bead.tool, axis=0)[:, None]
     sine = np.linalg.norm(np.cross(asked, tool), axis=-1)
@@ -96,7 +124,9 @@ def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
 def _looked_at(task: Task, points: Array, joints: Array, segments: Index, shares: Array) -> Array:
     """The same at shares (s,) of their length: (s, k) mm."""
     start, way = joints[segments], joints[segments + 1] - joints[segments]
-    away = task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - points[segments, None]
+    away = (
+        task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - points[segments, None]
+    )
     along = points[segments + 1] - points[segments]
     length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
     share = np.clip(np.einsum("nki,ni->nk", away, along) / length[:, None], 0.0, 1.0)
@@ -121,5 +151,10 @@ def _halved(task: Task, path: BeadPath, segments: Integers) -> BeadPath:
     joints[new] = found - 2.0 * np.pi * np.round((found - joints[new]) / (2.0 * np.pi))
     condition = np.insert(path.condition, at, task.condition_at(flange, joints[new]))
     return dataclasses.replace(
-        path, bead=finer, phi=phi, joints=joints, condition=condition, threshold=middle(path.threshold)
+        path,
+        bead=finer,
+        phi=phi,
+        joints=joints,
+        condition=condition,
+        threshold=middle(path.threshold),
     )

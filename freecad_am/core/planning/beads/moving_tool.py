@@ -22,7 +22,9 @@ from ...types import Array, Integers
 from ..turns import configurations as following
 
 
-def refined_to_chord_error(motion: Motion, cell: Cell, chord_error: float, beads: Sequence[Bead]) -> Motion:
+def refined_to_chord_error(
+    motion: Motion, cell: Cell, chord_error: float, beads: Sequence[Bead]
+) -> Motion:
     """The motion with as many points added to its beads as it takes to stay within the chord error (mm) of them.
 
     beads: all those of the motion, in its order. For the part on the robot. Added points lie on the curves of the beads,
@@ -49,7 +51,9 @@ def refined_to_chord_error(motion: Motion, cell: Cell, chord_error: float, beads
     columns["tool"][added] = cell.tip_in_part(flange)[1]
     columns["halt"][added] = False
     columns["duration"] = columns["duration"] / pieces[row]
-    first = np.repeat(np.maximum.accumulate(np.where(motion.point == 0, np.cumsum(pieces) - pieces, 0)), pieces)
+    first = np.repeat(
+        np.maximum.accumulate(np.where(motion.point == 0, np.cumsum(pieces) - pieces, 0)), pieces
+    )
     columns["point"] = np.arange(len(row)) - first
     return Motion(**columns)
 
@@ -72,31 +76,50 @@ def _on_curves(motion: Motion, beads: Sequence[Bead], end: Integers, share: Arra
 def _pieces(motion: Motion, cell: Cell, chord_error: float) -> Integers:
     """(n,) into how many pieces the segment that ends at each row is cut; 1 where it is none of a bead."""
     pieces = np.ones(len(motion), dtype=np.int64)
-    inside = motion.deposit[1:] & (motion.point[1:] > 0) & motion.reachable[1:] & motion.reachable[:-1]
+    inside = (
+        motion.deposit[1:] & (motion.point[1:] > 0) & motion.reachable[1:] & motion.reachable[:-1]
+    )
     ends = np.flatnonzero(inside) + 1
-    start, end = (cell.machine.chain.forward(motion.joints[rows])[:, :3, :3] for rows in (ends - 1, ends))
+    start, end = (
+        cell.machine.chain.forward(motion.joints[rows])[:, :3, :3] for rows in (ends - 1, ends)
+    )
     angle = np.linalg.norm(_rotation_vector(start, end), axis=1)
     length = np.linalg.norm(motion.position[ends] - motion.position[ends - 1], axis=1)
-    pieces[ends] = np.maximum(np.ceil(np.sqrt(length * angle / (4.0 * chord_error)) - 1e-9), 1).astype(np.int64)
+    pieces[ends] = np.maximum(
+        np.ceil(np.sqrt(length * angle / (4.0 * chord_error)) - 1e-9), 1
+    ).astype(np.int64)
     return pieces
 
 
 def _rotation_vector(start: Array, end: Array) -> Array:
     """(n, 3) axis times angle of the rotation that takes start to end (n, 3, 3), in the axes of both their frames."""
     turn = np.swapaxes(start, 1, 2) @ end
-    twice = np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], axis=1)
+    twice = np.stack(
+        [
+            turn[:, 2, 1] - turn[:, 1, 2],
+            turn[:, 0, 2] - turn[:, 2, 0],
+            turn[:, 1, 0] - turn[:, 0, 1],
+        ],
+        axis=1,
+    )
     sine = 0.5 * np.linalg.norm(twice, axis=1)
     angle = np.arctan2(sine, 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1.0))
     vector: Array = twice * (0.5 * angle / np.maximum(sine, 1e-12))[:, None]
     return vector
 
 
-def _turned(motion: Motion, cell: Cell, start: Integers, end: Integers, share: Array, position: Array) -> Array:
+def _turned(
+    motion: Motion, cell: Cell, start: Integers, end: Integers, share: Array, position: Array
+) -> Array:
     """(n, 4, 4) flange poses a share of the way from row to row in rotation, with points of the part at the nozzle."""
-    first, last = (cell.machine.chain.forward(motion.joints[rows])[:, :3, :3] for rows in (start, end))
+    first, last = (
+        cell.machine.chain.forward(motion.joints[rows])[:, :3, :3] for rows in (start, end)
+    )
     vector = _rotation_vector(first, last)
     angle = np.linalg.norm(vector, axis=1)
-    axis = np.where(angle[:, None] > 1e-12, vector / np.maximum(angle, 1e-12)[:, None], [0.0, 0.0, 1.0])
+    axis = np.where(
+        angle[:, None] > 1e-12, vector / np.maximum(angle, 1e-12)[:, None], [0.0, 0.0, 1.0]
+    )
     rotation = first @ frames.rotation_about(axis, share * angle)
     on_flange = cell.carried @ frames.inverse(cell.mount)
     carried = position @ on_flange[:3, :3].T + on_flange[:3, 3]
@@ -108,6 +131,10 @@ def _joints(motion: Motion, cell: Cell, flange: Array, near: Array) -> Array:
     arm = cell.machine.arm
     assert arm is not None
     branch = int(np.bincount(arm.branch_of(motion.joints[motion.reachable])).argmax())
-    joints = following.from_before(arm, flange, branch, near) if arm.followed else arm.inverse_branch(flange, branch)
+    joints = (
+        following.from_before(arm, flange, branch, near)
+        if arm.followed
+        else arm.inverse_branch(flange, branch)
+    )
     turned: Array = joints + 2.0 * np.pi * np.round((near - joints) / (2.0 * np.pi))
     return turned

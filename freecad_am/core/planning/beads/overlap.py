@@ -24,7 +24,9 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
         return path
     bead, n = path.bead.run_on(overlap), len(path.bead)
     fresh = slice(n, None)
-    share = (bead.parameter - bead.parameter[0])[fresh] - (path.bead.parameter[-1] - path.bead.parameter[0])
+    share = (bead.parameter - bead.parameter[0])[fresh] - (
+        path.bead.parameter[-1] - path.bead.parameter[0]
+    )
 
     def again(column: Array) -> Array:
         since = path.bead.parameter - path.bead.parameter[0]
@@ -42,12 +44,21 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
 
 
 def longer(
-    task: Task, path: BeadPath, bead: Bead, flange: Array, phi: Array, joints: Array, threshold: Array
+    task: Task,
+    path: BeadPath,
+    bead: Bead,
+    flange: Array,
+    phi: Array,
+    joints: Array,
+    threshold: Array,
 ) -> BeadPath:
     """The path of a bead that has got m more points at its end: where the flange is there (m, 4, 4), rotations (m,), joints
     (m, axes), and how near to a singularity they may come (m,)."""
     return dataclasses.replace(
-        path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
+        path,
+        bead=bead,
+        phi=np.concatenate([path.phi, phi]),
+        joints=np.concatenate([path.joints, joints]),
         condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
         threshold=np.concatenate([path.threshold, threshold]),
     )

@@ -48,10 +48,20 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
     used = first + last + sum(path.bead.ends[4:])
     along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
     if used > along[-1] + END_MM:
-        return path, [Issue(
-            ERROR, CODE, Text("start and end take {:.4g} mm of this bead of {:.4g} mm; make process.start and process.end "
-                "shorter, or those of its class", used, along[-1]), path.layer, path.index,
-        )]
+        return path, [
+            Issue(
+                ERROR,
+                CODE,
+                Text(
+                    "start and end take {:.4g} mm of this bead of {:.4g} mm; make process.start and process.end "
+                    "shorter, or those of its class",
+                    used,
+                    along[-1],
+                ),
+                path.layer,
+                path.index,
+            )
+        ]
     stretches = _stretches(path.bead, float(along[-1]))
     borders = _borders(stretches, along)
     if len(borders):
@@ -65,7 +75,14 @@ def _borders(stretches: Sequence[Stretch], along: Array) -> Array:
     those of the steps of ramps where none is near."""
     known = along
     for of_phase, apart in ((True, END_MM), (False, STEP_MM)):
-        at = np.unique([at for one in stretches if (one.phase != MIDDLE) == of_phase for at in (one.begin, one.end)])
+        at = np.unique(
+            [
+                at
+                for one in stretches
+                if (one.phase != MIDDLE) == of_phase
+                for at in (one.begin, one.end)
+            ]
+        )
         at = at[np.abs(known[:, None] - at).min(axis=0) > apart] if len(at) else at
         known = np.r_[known, at[np.r_[True, np.diff(at) > apart]] if len(at) else at]
     return np.sort(known[len(along) :])
@@ -80,7 +97,10 @@ def _stretches(bead: Bead, length: float) -> list[Stretch]:
     found = [Stretch(0.0, first, AT_START, slow), Stretch(length - last, length, AT_END, late)]
     for begin, size, speeds in ((first, up, rising), (length - last - down, down, falling)):
         at = begin + np.linspace(0.0, size, len(speeds) + 1)
-        found += [Stretch(float(a), float(b), MIDDLE, float(speed)) for a, b, speed in zip(at, at[1:], speeds)]
+        found += [
+            Stretch(float(a), float(b), MIDDLE, float(speed))
+            for a, b, speed in zip(at, at[1:], speeds)
+        ]
     return [one for one in found if one.end > one.begin]
 
 
@@ -97,12 +117,17 @@ def _timed(bead: Bead, along: Array, stretches: Sequence[Stretch]) -> Bead:
 
 def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Array:
     """(k,) shares of the turn of the joints at which the tip is so far (k,) mm into segments (k,): it runs unevenly."""
-    start, way = path.bead.points[segment], path.bead.points[segment + 1] - path.bead.points[segment]
+    start, way = (
+        path.bead.points[segment],
+        path.bead.points[segment + 1] - path.bead.points[segment],
+    )
     size = lengths(way)
     share = lengths_in / size
     turned = path.joints[segment + 1] - path.joints[segment]
     for _ in range(STEPS):
-        place = cell.tip_in_part(cell.machine.chain.forward(path.joints[segment] + share[:, None] * turned))[0]
+        place = cell.tip_in_part(
+            cell.machine.chain.forward(path.joints[segment] + share[:, None] * turned)
+        )[0]
         share = np.clip(share + (lengths_in - dots(place - start, way) / size) / size, 0.0, 1.0)
     return np.asarray(share)
 
@@ -117,12 +142,15 @@ def _with_points(
 
     def between(column: Array) -> Array:
         part = share.reshape(-1, *(1,) * (column.ndim - 1))
-        return np.asarray(np.insert(column, at, column[segment] + part * (column[at] - column[segment]), axis=0))
+        return np.asarray(
+            np.insert(column, at, column[segment] + part * (column[at] - column[segment]), axis=0)
+        )
 
     bead, new = path.bead, at + np.arange(len(at))
     joints = between(path.joints)
     columns: dict[str, Any] = {
-        field.name: between(getattr(bead, field.name)) for field in dataclasses.fields(bead)
+        field.name: between(getattr(bead, field.name))
+        for field in dataclasses.fields(bead)
         if isinstance(getattr(bead, field.name), np.ndarray)
     }
     flange, condition = cell.machine.chain.forward(joints[new]), between(path.condition)
@@ -135,6 +163,10 @@ def _with_points(
         if name in columns:
             columns[name] /= np.linalg.norm(columns[name], axis=-1, keepdims=True)
     return dataclasses.replace(
-        path, bead=dataclasses.replace(bead, **columns), phi=between(path.phi), joints=joints,
-        condition=condition, threshold=between(path.threshold),
+        path,
+        bead=dataclasses.replace(bead, **columns),
+        phi=between(path.phi),
+        joints=joints,
+        condition=condition,
+        threshold=between(path.threshold),
     )

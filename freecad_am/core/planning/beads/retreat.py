@@ -60,13 +60,17 @@ def gone_back(bead: Bead, length: float) -> Bead:
     turning = np.stack([tangents[-1, 0], back[0, 1]])[None]
     ends = np.repeat(-tangent[None, None], 2, axis=1)
     return dataclasses.replace(
-        bead, points=np.concatenate([bead.points, points]),
+        bead,
+        points=np.concatenate([bead.points, points]),
         tangents=np.concatenate([tangents[:-1], turning, back[1 : way.past], ends]),
-        build=extended(directions)(bead.build), tool=extended(directions)(bead.tool),
+        build=extended(directions)(bead.build),
+        tool=extended(directions)(bead.tool),
         # it goes on in the same sense: how far along a bead is told by it
         parameter=extended(lambda column: 2.0 * column[-1] - way.of(column))(bead.parameter),
         speed=np.concatenate([bead.speed, bead.speed[::-1][: way.past]]),
-        width=both(bead.width), height=both(bead.height), external=both(bead.external),
+        width=both(bead.width),
+        height=both(bead.height),
+        external=both(bead.external),
     )
 
 

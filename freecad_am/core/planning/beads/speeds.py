@@ -44,12 +44,19 @@ def rings_slowed(
     if not slowed:
         return result, []
     slowest = min(float(path.bead.speed.min()) for path in slowed)
-    return result, [Issue(
-        WARNING, SLOWED,
-        Text("{} bead(s) where the wall closes are run at down to {:.3g} mm/s: the axes turn no faster", len(slowed),
-            slowest),
-        slowed[0].layer, slowed[0].index,
-    )]
+    return result, [
+        Issue(
+            WARNING,
+            SLOWED,
+            Text(
+                "{} bead(s) where the wall closes are run at down to {:.3g} mm/s: the axes turn no faster",
+                len(slowed),
+                slowest,
+            ),
+            slowed[0].layer,
+            slowed[0].index,
+        )
+    ]
 
 
 class _Place(NamedTuple):
@@ -85,16 +92,29 @@ def corners_slowed(
     if not places:
         return result, []
     worst = min(places, key=lambda place: place.speed)
-    return result, [Issue(
-        WARNING, SLOWED,
-        Text("at {} short places, {:.3g} mm in all, the deposit is slowed, here to {:.3g} mm/s, for the axes go no faster; "
-            "up to {:.2g} mm of the bead more than meant lie there{}", len(places), sum(place.length for place in places),
-            worst.speed, max(place.pile for place in places), _growth(places, worst, law)),
-        worst.path.layer, worst.path.index, worst.point,
-    )]
+    return result, [
+        Issue(
+            WARNING,
+            SLOWED,
+            Text(
+                "at {} short places, {:.3g} mm in all, the deposit is slowed, here to {:.3g} mm/s, for the axes go no faster; "
+                "up to {:.2g} mm of the bead more than meant lie there{}",
+                len(places),
+                sum(place.length for place in places),
+                worst.speed,
+                max(place.pile for place in places),
+                _growth(places, worst, law),
+            ),
+            worst.path.layer,
+            worst.path.index,
+            worst.point,
+        )
+    ]
 
 
-def _slowed(path: BeadPath, ratio: Array, layer_height: float, law: SpeedLaw | None) -> tuple[BeadPath, list[_Place]]:
+def _slowed(
+    path: BeadPath, ratio: Array, layer_height: float, law: SpeedLaw | None
+) -> tuple[BeadPath, list[_Place]]:
     """A path whose axes would turn at `ratio` (n - 1,) of what they can, and where it is slowed."""
     bead = path.bead
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
@@ -118,8 +138,12 @@ def _slowed(path: BeadPath, ratio: Array, layer_height: float, law: SpeedLaw | N
     wider, higher = _gains(bead, slower)
     return path, [
         _Place(
-            path, run.start + 1 + int(np.argmin(speed[run])), float(length[run].sum()), float(speed[run].min()),
-            float(more[run].sum()), float(wider[run.start : run.stop + 1].max()),
+            path,
+            run.start + 1 + int(np.argmin(speed[run])),
+            float(length[run].sum()),
+            float(speed[run].min()),
+            float(more[run].sum()),
+            float(wider[run.start : run.stop + 1].max()),
             float(higher[run.start : run.stop + 1].max()),
         )
         for run in runs
@@ -132,12 +156,16 @@ def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None)
     if law is None or (share == 1.0).all():
         return np.asarray(speed * share)
     square = np.where(share < 1.0, speed * share, np.inf) ** 2
-    return np.minimum(np.sqrt(below(np.asarray(square, float), 2.0 * law.acceleration * middle)), speed * share)
+    return np.minimum(
+        np.sqrt(below(np.asarray(square, float), 2.0 * law.acceleration * middle)), speed * share
+    )
 
 
 def _runs(chosen: Mask) -> list[list[int]]:
     """First and one past the last of each run of true values."""
-    ends: list[list[int]] = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int))).reshape(-1, 2).tolist()
+    ends: list[list[int]] = (
+        np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int))).reshape(-1, 2).tolist()
+    )
     return ends
 
 
@@ -155,9 +183,17 @@ def _growth(places: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> st
     if law is None or not wider > 0.0:
         return ""
     higher = max(place.higher for place in places)
-    beyond = Text("; slower than {:.3g} mm/s nothing was measured", law.slowest) if worst.speed < law.slowest * JUST else ""
-    return Text(": it is up to {:.2g} mm wider there{}, by the bead model{}", wider,
-                Word(Text(" and {:.2g} mm higher", higher) if higher > 0.0 else ""), Word(beyond))
+    beyond = (
+        Text("; slower than {:.3g} mm/s nothing was measured", law.slowest)
+        if worst.speed < law.slowest * JUST
+        else ""
+    )
+    return Text(
+        ": it is up to {:.2g} mm wider there{}, by the bead model{}",
+        wider,
+        Word(Text(" and {:.2g} mm higher", higher) if higher > 0.0 else ""),
+        Word(beyond),
+    )
 
 
 def _width(bead: Bead, segments: slice, layer_height: float) -> float:
@@ -179,8 +215,17 @@ def _axis_speeds(path: BeadPath) -> Array:
 
 def share_of_speed(cell: Cell, paths: Sequence[BeadPath]) -> float:
     """The share of their speeds at which the axes can follow all paths, at most 1."""
-    return float(min((1.0 / max(float((_axis_speeds(path) / cell.machine.max_speed).max(initial=0.0)), 1.0)
-                      for path in paths if path.reachable), default=1.0))
+    return float(
+        min(
+            (
+                1.0
+                / max(float((_axis_speeds(path) / cell.machine.max_speed).max(initial=0.0)), 1.0)
+                for path in paths
+                if path.reachable
+            ),
+            default=1.0,
+        )
+    )
 
 
 def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
@@ -193,13 +238,23 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
         if ratio[point, axis] > 1.0:
             value, unit = cell.machine.unit_values[axis], cell.machine.units[axis]
             able = path.bead.speed[point + 1] / ratio[point, axis]
-            found.append(Issue(
-                ERROR, "SPEED",
-                Text("axis {} would move at {:.0f} {}/s, it can do {:.0f}; {}", cell.machine.axes[axis],
-                    speed[point, axis] / value, unit, cell.machine.max_speed[axis] / value, _advice(path.bead,
-                        int(point) + 1, float(able))),
-                path.layer, path.index, int(point) + 1,
-            ))
+            found.append(
+                Issue(
+                    ERROR,
+                    "SPEED",
+                    Text(
+                        "axis {} would move at {:.0f} {}/s, it can do {:.0f}; {}",
+                        cell.machine.axes[axis],
+                        speed[point, axis] / value,
+                        unit,
+                        cell.machine.max_speed[axis] / value,
+                        _advice(path.bead, int(point) + 1, float(able)),
+                    ),
+                    path.layer,
+                    path.index,
+                    int(point) + 1,
+                )
+            )
     return found
 
 
@@ -209,5 +264,7 @@ def _advice(bead: Bead, point: int, able: float) -> str:
     return Text(
         "it could at {:.2f} mm/s, but the bead model asks for {:.3g} mm/s and too much would pile up: turn the torch more "
         "slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider bead "
-        "(process.bead_width), which is laid more slowly", able, bead.speed[point]
+        "(process.bead_width), which is laid more slowly",
+        able,
+        bead.speed[point],
     )

@@ -19,13 +19,19 @@ OFF = 0.4  # of the chord error, that points left out may lie off
 REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
 
 
-def programmed(motion: Motion, controller: Controller, chord_error: float, blend: float) -> tuple[Motion, Index]:
+def programmed(
+    motion: Motion, controller: Controller, chord_error: float, blend: float
+) -> tuple[Motion, Index]:
     """The motion that programs of a controller tell, and which rows (m,) of all these are. blend: percent."""
     step, blended = controller.least_step, controller.least_blend
     if not step:
         return motion, np.arange(len(motion))
-    rows = np.flatnonzero(_kept(motion, step, 100.0 * blended / blend if blend else 0.0, chord_error))
-    columns = {field.name: getattr(motion, field.name)[rows] for field in dataclasses.fields(motion)}
+    rows = np.flatnonzero(
+        _kept(motion, step, 100.0 * blended / blend if blend else 0.0, chord_error)
+    )
+    columns = {
+        field.name: getattr(motion, field.name)[rows] for field in dataclasses.fields(motion)
+    }
     inside = columns["deposit"] & (columns["point"] > 0)
     duration = np.diff(np.cumsum(motion.duration)[rows], prepend=0.0)
     # the time of what was left out goes to the move that takes its place
@@ -33,8 +39,12 @@ def programmed(motion: Motion, controller: Controller, chord_error: float, blend
     columns["duration"] = np.where(joined, duration, columns["duration"])
     slow = inside & (columns["duration"] < step)
     columns["duration"] = np.where(slow, step, columns["duration"])
-    way = np.linalg.norm(np.diff(columns["position"], axis=0, prepend=columns["position"][:1]), axis=1)
-    columns["speed"] = np.where(joined | slow, way / np.where(inside, columns["duration"], 1.0), columns["speed"])
+    way = np.linalg.norm(
+        np.diff(columns["position"], axis=0, prepend=columns["position"][:1]), axis=1
+    )
+    columns["speed"] = np.where(
+        joined | slow, way / np.where(inside, columns["duration"], 1.0), columns["speed"]
+    )
     return Motion(**columns), rows
 
 
@@ -78,7 +88,9 @@ def _with_needed(motion: Motion, kept: Mask, off: float) -> Mask:
         start, end = rows[after - 1], rows[after]
         way = motion.position[end] - motion.position[start]
         offset = motion.position[gone] - motion.position[start]
-        share = np.einsum("nk,nk->n", offset, way) / np.maximum(np.einsum("nk,nk->n", way, way), 1e-300)
+        share = np.einsum("nk,nk->n", offset, way) / np.maximum(
+            np.einsum("nk,nk->n", way, way), 1e-300
+        )
         away = np.linalg.norm(offset - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
         turn = np.linalg.norm(motion.joints[end] - motion.joints[start], axis=1)
         away = np.maximum(away, 0.125 * REACH * turn * turn)

@@ -28,7 +28,12 @@ from .lattice import Lattice, lattice
 from .point_bounds import point_bound
 
 CLOSE = 0.005  # share of the objective at which a bound is near enough
-ROTATIONS = (180, 360, 720, 1440)  # of a turn at every point, the finer where the coarser are not near enough
+ROTATIONS = (
+    180,
+    360,
+    720,
+    1440,
+)  # of a turn at every point, the finer where the coarser are not near enough
 BETWEEN_BEADS = 180  # of a turn where whole jobs are looked at
 PIECE = 100_000  # rotations at points that are held together
 FEWEST = 4  # groups of steps of a bead
@@ -56,10 +61,14 @@ def summed(
     largest, of each bead, and of the whole job with the ways between beads; none of arms that cannot be bounded, and a note
     that says so. report(share) may raise to cancel."""
     if task.arm.followed:
-        return None, [Issue(
-            NOTE, "NO_BOUND", "joints.certificate: several solutions of this arm bear the same configuration, so no lower "
-            "bound is known; leave it out",
-        )]
+        return None, [
+            Issue(
+                NOTE,
+                "NO_BOUND",
+                "joints.certificate: several solutions of this arm bear the same configuration, so no lower "
+                "bound is known; leave it out",
+            )
+        ]
     displacement = task.parameters.objective == "displacement"
     share = 0.6 if displacement and len(paths) > 1 else 1.0
     found = certified(task, paths, lambda done: report(share * done))
@@ -71,12 +80,18 @@ def summed(
         for path, objective, bound in zip(paths, found.objective, found.bound)
     ]
     if displacement:
-        shown["with_ways_between"] = _figures(*whole_job(task, paths, lambda done: report(share + (1.0 - share) * done)))
+        shown["with_ways_between"] = _figures(
+            *whole_job(task, paths, lambda done: report(share + (1.0 - share) * done))
+        )
     return shown, []
 
 
 def _figures(objective: float, bound: float) -> dict[str, object]:
-    return {"objective": objective, "bound": bound, "gap": 1.0 - bound / objective if objective > 0.0 else 0.0}
+    return {
+        "objective": objective,
+        "bound": bound,
+        "gap": 1.0 - bound / objective if objective > 0.0 else 0.0,
+    }
 
 
 def certified(
@@ -107,7 +122,9 @@ def whole_job(
     below."""
     every = [gather([path.bead], task.cell) for path in paths]
     taken = [_taken(task, points, path) for points, path in zip(every, paths)]
-    ways = np.array([after.joints[0] - before.joints[-1] for before, after in zip(paths, paths[1:])])
+    ways = np.array(
+        [after.joints[0] - before.joints[-1] for before, after in zip(paths, paths[1:])]
+    )
     ways = (ways * ways) @ task.weights if len(ways) else np.zeros(0)
     objective = float(sum(taken) + ways.sum())
     value, following = np.zeros(BETWEEN_BEADS), None
@@ -115,7 +132,9 @@ def whole_job(
         report(1.0 - (number + 1) / len(paths))
         # what a step may take before it is no longer looked at by itself: more than it takes to reach any better course
         far = max([taken[number], *ways[max(0, number - 1) : number + 1]])
-        value, first = _through(task, every[number], paths[number], BETWEEN_BEADS, far, value, following)
+        value, first = _through(
+            task, every[number], paths[number], BETWEEN_BEADS, far, value, following
+        )
         following = first
     assert following is not None
     return objective, min(objective, least_ahead.least_of(value, following))
@@ -146,16 +165,28 @@ def _displacement_bound(task: Task, points: Points, path: BeadPath, objective: f
 def _best_known(task: Task, points: Points, path: BeadPath) -> float:
     """What the best course of the rotation takes that is found from that of the path."""
     at = _grouped(steps(path.joints, points), task.weights)
-    chosen, scale, threshold = points.each(at), task.weights / np.diff(at)[:, None], path.threshold[at]
+    chosen, scale, threshold = (
+        points.each(at),
+        task.weights / np.diff(at)[:, None],
+        path.threshold[at],
+    )
 
     def broken(phi: Array, joints: Array) -> Mask:
         return course.broken_by(task, chosen, threshold, phi, joints)
 
-    return course.best(lambda phi: task.raw_joints(chosen, phi), scale, path.phi[at], False, broken)[1]
+    return course.best(
+        lambda phi: task.raw_joints(chosen, phi), scale, path.phi[at], False, broken
+    )[1]
 
 
 def _through(
-    task: Task, points: Points, path: BeadPath, count: int, far: float, value: Array, following: Lattice | None
+    task: Task,
+    points: Points,
+    path: BeadPath,
+    count: int,
+    far: float,
+    value: Array,
+    following: Lattice | None,
 ) -> tuple[Array, Lattice]:
     """(count,) the least sum from every rotation at the first point of a bead on, and the lattice of that point; value
     (count,): from the first point of the bead after it on, whose lattice is `following`, or from this one's end on."""

@@ -26,12 +26,16 @@ def divided(phi: Array, half: float) -> Array:
     return np.asarray((phi[:, None] + parts).ravel())
 
 
-def possible(task: Task, points: Points, index: Index, phi: Array, half: Array, threshold: Array) -> Mask:
+def possible(
+    task: Task, points: Points, index: Index, phi: Array, half: Array, threshold: Array
+) -> Mask:
     """(n,) whether a rotation in the cells phi +- half (n,), rad, at points `index` (n,) may keep limits and condition, of
     which threshold (n,) is the smallest allowed, from their middle and ends. Joints are taken to bend at most twice as much
     between these as their second differences say."""
     count = len(phi)
-    begins = ~_goes_on(index, phi, half)  # where the end of the cell before is not the beginning of this one
+    begins = ~_goes_on(
+        index, phi, half
+    )  # where the end of the cell before is not the beginning of this one
     sampled = np.concatenate([phi[begins] - half[begins], phi, phi + half])
     looked = points.each(np.concatenate([index[begins], index, index]))
     joints, first = task.raw_joints(looked, sampled), int(begins.sum())
@@ -42,7 +46,10 @@ def possible(task: Task, points: Points, index: Index, phi: Array, half: Array, 
     # a cell at the edge of reach goes on beyond the edge as it does before it
     lost_ahead, lost_behind = (np.isnan(one).any(axis=1) for one in (ahead, behind))
     found = np.isfinite(middle).all(axis=1) & ~(lost_ahead & lost_behind)
-    ahead, behind = np.where(lost_ahead[:, None], behind, ahead), np.where(lost_behind[:, None], ahead, behind)
+    ahead, behind = (
+        np.where(lost_ahead[:, None], behind, ahead),
+        np.where(lost_behind[:, None], ahead, behind),
+    )
     turned, bend = 0.5 * np.abs(ahead + behind), np.abs(ahead - behind)
     # of a parabola the line through its ends, a quarter of the second difference away, is off by as much: twice that here
     off = 0.5 * bend + (half**2)[:, None] * turned.max(axis=1, keepdims=True)
@@ -68,11 +75,15 @@ def _goes_on(index: Index, phi: Array, half: Array) -> Mask:
 def _within(task: Task, joints: Array, reach: Array) -> Mask:
     """Whether joints (n, axes), moved by up to `reach` and by whole turns, can be within the limits of each axis."""
     limits = task.cell.limits
-    beyond = np.abs(_short(joints - task.middle)) - np.where(task.continuous, np.inf, 0.5 * (limits.upper - limits.lower))
+    beyond = np.abs(_short(joints - task.middle)) - np.where(
+        task.continuous, np.inf, 0.5 * (limits.upper - limits.lower)
+    )
     return np.asarray((beyond <= reach).all(axis=1))
 
 
-def _condition(task: Task, points: Points, phi: Array, joints: Array, rows: Index, threshold: Array) -> Array:
+def _condition(
+    task: Task, points: Points, phi: Array, joints: Array, rows: Index, threshold: Array
+) -> Array:
     """The condition at chosen rows, 0 out of reach; where a bound tells that it is far above the threshold, that bound."""
     ratio = np.zeros(len(rows))
     good = np.flatnonzero(np.isfinite(joints[rows]).all(axis=1))

@@ -20,13 +20,17 @@ FOUND = "each point free"
 WORTH = 1e-3  # share of the objective that has to be won, else the polynomial stays
 
 
-def where_asked(task: Task, paths: list[tuple[BeadPath, list[Issue]]]) -> list[tuple[BeadPath, list[Issue]]]:
+def where_asked(
+    task: Task, paths: list[tuple[BeadPath, list[Issue]]]
+) -> list[tuple[BeadPath, list[Issue]]]:
     """The paths and what was found about each, with their gaps closed where the task asks for it, and on their new courses
     the points that straight motion asks for."""
     if not task.parameters.close_gap or not task.cell.machine.free or task.arm.followed:
         return paths
     return [
-        (path, issues) if (best := closed(task, path)) is path else refined_to_chord_error(task, best, task.chord_error)
+        (path, issues)
+        if (best := closed(task, path)) is path
+        else refined_to_chord_error(task, best, task.chord_error)
         for path, issues in paths
     ]
 
@@ -35,7 +39,12 @@ def closed(task: Task, path: BeadPath) -> BeadPath:
     """The path with the best course of the rotation that is found, where it is better: limits, condition and range of the
     rotation kept, a joined bead still joined, links clear where they are to be. Paths that were
     given, or do not serve as they are, stay."""
-    if task.parameters.objective != "displacement" or path.reason == given.GIVEN or not path.reachable or len(path.phi) < 3:
+    if (
+        task.parameters.objective != "displacement"
+        or path.reason == given.GIVEN
+        or not path.reachable
+        or len(path.phi) < 3
+    ):
         return path
     points = gather([path.bead], task.cell)
 
@@ -57,6 +66,12 @@ def closed(task: Task, path: BeadPath) -> BeadPath:
             return path
     margin = np.minimum(task.rows.margin(joints), condition_margin(condition, path.threshold))
     return dataclasses.replace(
-        path, phi=phi, joints=joints, condition=condition, objective=least, margin=float(margin.min()), coefficients=None,
+        path,
+        phi=phi,
+        joints=joints,
+        condition=condition,
+        objective=least,
+        margin=float(margin.min()),
+        coefficients=None,
         reason=FOUND,
     )

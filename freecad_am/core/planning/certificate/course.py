@@ -13,9 +13,15 @@ from ..points import Points
 from ..task import FITS, Task
 
 STEPS = 30
-STARTS, EQUAL = 24, 1e-6  # courses about a turn, and the share by which one has to be better than those before it
+STARTS, EQUAL = (
+    24,
+    1e-6,
+)  # courses about a turn, and the share by which one has to be better than those before it
 APART = 1e-5  # rad, between the rotations of which a slope is taken
-HELD, HOLDS = 6, 1e9  # groups of points that are held, and times the largest curvature of those that are not
+HELD, HOLDS = (
+    6,
+    1e9,
+)  # groups of points that are held, and times the largest curvature of those that are not
 SHORTEST = 0.02  # of a Newton step that is still tried
 DONE = 1e-7  # share of the value by which a step has to lower it
 
@@ -59,7 +65,12 @@ def found(
 
 
 def _stepped(
-    joints_at: Joints, scale: Array, phi: Array, known: tuple[Array, Array], joined: bool, broken: Broken
+    joints_at: Joints,
+    scale: Array,
+    phi: Array,
+    known: tuple[Array, Array],
+    joined: bool,
+    broken: Broken,
 ) -> tuple[Array, Array] | None:
     """Rotations that take less and may be, and their steps; None where no step of Newton's leads to any. Points that are at
     what they may not be beyond are held, one group after the other, and the others go on."""
@@ -81,7 +92,10 @@ def _stepped(
 
 
 def best(
-    joints_at: Joints, scale: Array, phi: Array, joined: bool,
+    joints_at: Joints,
+    scale: Array,
+    phi: Array,
+    joined: bool,
     broken: Broken = none_broken,
 ) -> tuple[Array, float]:
     """The best of what is `found` from phi (n,) on and from the same turned by parts of a turn, of those that may be: the
@@ -131,7 +145,9 @@ def broken_by(task: Task, points: Points, threshold: Array, phi: Array, joints: 
     lost = ~np.isfinite(joints).all(axis=1)
     if lost.any():
         return np.asarray(lost)
-    run = joints[0] + np.concatenate([np.zeros((1, joints.shape[1])), np.cumsum(_steps(joints), axis=0)])
+    run = joints[0] + np.concatenate(
+        [np.zeros((1, joints.shape[1])), np.cumsum(_steps(joints), axis=0)]
+    )
     turns = np.round((task.middle - 0.5 * (run.min(axis=0) + run.max(axis=0))) / TURN)
     beyond = task.rows.margin(run + np.where(task.unturned, 0.0, TURN * turns)) < FITS
     low, high = task.parameters.rotation_range

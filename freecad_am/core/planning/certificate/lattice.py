@@ -15,13 +15,15 @@ from ..task import Task
 from .cells import possible
 
 NO_FIVE = 9
-RATE_SAMPLES, HARMONICS = 180, 36  # rotations at which the rate of joints is seen, and how finely it is followed
+RATE_SAMPLES, HARMONICS = (
+    180,
+    36,
+)  # rotations at which the rate of joints is seen, and how finely it is followed
 SMOOTH = 0.06  # rad
 KNOWN = 1000  # rotations between which those of the lattice are looked for
 EVENLY = 0.25  # share of rotations that are not where joints move much
 LARGEST_SHARE = 12.0  # times the mean
 COARSE = 60  # cells of a turn that are looked at first: those beside an impossible one are divided
-
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +40,9 @@ class Lattice:
     @cached_property
     def passable(self) -> Mask:
         """(m, N) rotations at the ends of possible cells."""
-        ends: Mask = (self.possible | np.roll(self.possible, 1, axis=1)) & np.isfinite(self.joints).all(axis=2)
+        ends: Mask = (self.possible | np.roll(self.possible, 1, axis=1)) & np.isfinite(
+            self.joints
+        ).all(axis=2)
         return ends
 
     @cached_property
@@ -100,23 +104,36 @@ class Lattice:
         """(m, COARSE, 2 axes) coordinates that lie as far apart as the joints at each of COARSE rotations, or less: eq. 17
         of a step is not below the square of their distance."""
         some, scale = self.joints[:, :: self.count // COARSE], np.sqrt(self.weights)
-        return np.concatenate([
-            np.where(self.turning, np.cos(some), some) * scale, np.where(self.turning, np.sin(some), 0.0) * scale
-        ], axis=2)
+        return np.concatenate(
+            [
+                np.where(self.turning, np.cos(some), some) * scale,
+                np.where(self.turning, np.sin(some), 0.0) * scale,
+            ],
+            axis=2,
+        )
 
 
 def lattice(task: Task, points: Points, at: Index, threshold: Array, count: int) -> Lattice:
     """The lattice of points `at` (m,) with `count` rotations; threshold (m,) is the smallest condition allowed there."""
     ends = _rotations(task, points, at, count)
-    joints = task.raw_joints(points.each(np.repeat(at, count)), np.tile(ends[:-1], len(at))).reshape(len(at), count, -1)
-    return Lattice(joints, _possible(task, points, at, threshold, ends), task.weights, ~task.cell.machine.chain.sliding)
+    joints = task.raw_joints(
+        points.each(np.repeat(at, count)), np.tile(ends[:-1], len(at))
+    ).reshape(len(at), count, -1)
+    return Lattice(
+        joints,
+        _possible(task, points, at, threshold, ends),
+        task.weights,
+        ~task.cell.machine.chain.sliding,
+    )
 
 
 def _rotations(task: Task, points: Points, at: Index, count: int) -> Array:
     """(count + 1,) rotations of a turn, the last a turn after the first, the nearer to each other the more joints move there
     at one of the points."""
     phi = -np.pi + TURN / RATE_SAMPLES * np.arange(RATE_SAMPLES)
-    joints = task.raw_joints(points.each(np.repeat(at, len(phi))), np.tile(phi, len(at))).reshape(len(at), len(phi), -1)
+    joints = task.raw_joints(points.each(np.repeat(at, len(phi))), np.tile(phi, len(at))).reshape(
+        len(at), len(phi), -1
+    )
     moved = np.nan_to_num(shortest(np.roll(joints, -1, axis=1) - joints))
     rate = np.sqrt(((moved * moved) @ task.weights).max(axis=0))
     if not rate.any():
@@ -126,7 +143,12 @@ def _rotations(task: Task, points: Points, at: Index, count: int) -> Array:
     # of a smooth density its harmonics; what is counted up is exact, and no joint bends more than it does by itself
     smooth = np.exp(-0.5 * (np.arange(HARMONICS + 1) * SMOOTH) ** 2)
     waves = np.fft.rfft(EVENLY + (1.0 - EVENLY) * rate)[: HARMONICS + 1] * smooth
-    factor = 2.0 * waves[1:] / waves[0].real * np.exp(1j * order * np.pi - 0.5j * order * TURN / RATE_SAMPLES)
+    factor = (
+        2.0
+        * waves[1:]
+        / waves[0].real
+        * np.exp(1j * order * np.pi - 0.5j * order * TURN / RATE_SAMPLES)
+    )
 
     def cumulative(phi: Array) -> tuple[Array, Array]:
         wave = np.exp(1j * phi[:, None] * order) * factor

@@ -38,7 +38,9 @@ def ahead(lattice: Lattice, last: Array, counts: Array, far: float) -> Array:
     return value
 
 
-def before(one: Lattice, i: int, other: Lattice, j: int, value: Array, count: float, far: float) -> Array:
+def before(
+    one: Lattice, i: int, other: Lattice, j: int, value: Array, count: float, far: float
+) -> Array:
     """(N,) the least sum from every rotation at point i of a lattice on, of a step, which stands for `count` of them, to
     point j of another with `value` (N,) there."""
     offsets = _neighbours(one, i, other, j, count * far)
@@ -59,7 +61,17 @@ def before(one: Lattice, i: int, other: Lattice, j: int, value: Array, count: fl
 def least_of(value: Array, first: Lattice) -> float:
     """The least of sums (N,) at the rotations of the first point of a lattice, between them too."""
     columns = np.arange(-1, first.count + 1)[None] % first.count
-    return float(_least(value[columns], columns, first.joints[0, :1], first, 0, value, np.zeros_like(first.weights))[0])
+    return float(
+        _least(
+            value[columns],
+            columns,
+            first.joints[0, :1],
+            first,
+            0,
+            value,
+            np.zeros_like(first.weights),
+        )[0]
+    )
 
 
 def _least(
@@ -75,7 +87,10 @@ def _least(
     ragged = other.ragged[j]
     if ragged.any():  # sums go on beyond the edge of reach as they come to it
         here = total[:, 1:-1]
-        jumps = [np.where(np.isfinite(one), np.abs(here - one), 0.0) for one in (total[:, 2:], total[:, :-2])]
+        jumps = [
+            np.where(np.isfinite(one), np.abs(here - one), 0.0)
+            for one in (total[:, 2:], total[:, :-2])
+        ]
         with np.errstate(invalid="ignore"):
             beyond = np.where(ragged[inner] & np.isfinite(here), here - np.maximum(*jumps), np.inf)
         least = np.minimum(least, beyond.min(axis=1))
@@ -87,8 +102,12 @@ def _neighbours(one: Lattice, i: int, other: Lattice, j: int, far: float) -> Ind
     cell = one.count // COARSE
     near = np.sqrt(far) + 0.5 * cell * (one.rate[i] + other.rate[j])
     from_, to = one.flat[i], other.flat[j]
-    apart = np.nan_to_num((from_ * from_).sum(axis=1)[:, None] + (to * to).sum(axis=1) - 2.0 * from_ @ to.T)
-    there = (apart < near * near) & _any(one.possible[i], cell)[:, None] & _any(other.possible[j], cell)
+    apart = np.nan_to_num(
+        (from_ * from_).sum(axis=1)[:, None] + (to * to).sum(axis=1) - 2.0 * from_ @ to.T
+    )
+    there = (
+        (apart < near * near) & _any(one.possible[i], cell)[:, None] & _any(other.possible[j], cell)
+    )
     start, end = np.nonzero(there)
     met = np.unique((end - start) % COARSE) if len(start) else np.zeros(1, dtype=np.int64)
     # what is left out is the widest part of the turn in which no step ends
@@ -113,7 +132,9 @@ def _parabolas(total: Array, low: Array, high: Array, there: Mask) -> tuple[Arra
     here, after, first = total[:, 1:-1], total[:, 2:], total[:, :-2]
     with np.errstate(invalid="ignore", over="ignore"):
         slope, bend = 0.5 * (after - first), after - 2.0 * here + first
-        to = np.where(bend > 0.0, -slope / np.where(bend > 0.0, bend, 1.0), np.where(slope > 0.0, -1.0, 1.0))
+        to = np.where(
+            bend > 0.0, -slope / np.where(bend > 0.0, bend, 1.0), np.where(slope > 0.0, -1.0, 1.0)
+        )
         to = np.clip(to, low, high)
         guess = here + to * (slope + 0.5 * to * bend)
     known = np.isfinite(guess)
@@ -121,7 +142,15 @@ def _parabolas(total: Array, low: Array, high: Array, there: Mask) -> tuple[Arra
 
 
 def _at_best(
-    guess: Array, to: Array, known: Array, columns: Index, start: Array, other: Lattice, j: int, value: Array, weights: Array
+    guess: Array,
+    to: Array,
+    known: Array,
+    columns: Index,
+    start: Array,
+    other: Lattice,
+    j: int,
+    value: Array,
+    weights: Array,
 ) -> Array:
     """(n,) the least near the best of guesses (n, k), which are about rotations `columns` (n, k) and lie `to` from them, and
     near all others that are better than those beside them; no more than what is `known` (n,) of a rotation itself."""
@@ -130,15 +159,20 @@ def _at_best(
     edge = np.full((len(guess), 1), np.inf)
     neighbours = np.minimum(np.c_[edge, guess[:, :-1]], np.c_[guess[:, 1:], edge])
     # one that is far above what is known, by more than guesses are off, cannot be the least
-    worth, others = np.nonzero((guess <= neighbours) & (guess < FAR_ABOVE * known[:, None]) & (
-        np.abs(number - first[:, None]) >= APART))
+    worth, others = np.nonzero(
+        (guess <= neighbours)
+        & (guess < FAR_ABOVE * known[:, None])
+        & (np.abs(number - first[:, None]) >= APART)
+    )
     row, best = np.concatenate([rows, worth]), np.concatenate([first, others])
     column, step = columns[row, best], to[row, best]
     near = _near(column, start[row], other, j, value)
     finer, step, doubt = near.least(step, weights)
     nearest = np.nan_to_num(np.round(step)).astype(np.int64)
     near = _near((column + nearest) % len(value), start[row], other, j, value)
-    finer, step, doubt = near.least(step - nearest, weights)  # about the rotation that is the nearest then
+    finer, step, doubt = near.least(
+        step - nearest, weights
+    )  # about the rotation that is the nearest then
     torn = np.flatnonzero(doubt > TORN * np.abs(finer))
     if len(torn):
         finer[torn] = np.maximum(finer[torn], near.of(torn).least_by_lines(weights))
@@ -167,8 +201,14 @@ class _Near:
     def of(self, rows: Index) -> _Near:
         """Some of them."""
         return _Near(
-            self.moved[:, rows], self.later[:, rows], self.off[rows], self.doubt[rows], self.shift[rows], self.low[rows],
-            self.high[rows], self.around[rows],
+            self.moved[:, rows],
+            self.later[:, rows],
+            self.off[rows],
+            self.doubt[rows],
+            self.shift[rows],
+            self.low[rows],
+            self.high[rows],
+            self.around[rows],
         )
 
     def least(self, to: Array, weights: Array) -> tuple[Array, Array, Array]:
@@ -177,26 +217,41 @@ class _Near:
         x = self._minimised(to - self.shift, self.later, self.low, self.high, weights)
         doubt = np.where(np.abs(x) <= 1.0, OFF, FURTHER_OFF) * self.doubt
         with np.errstate(invalid="ignore", over="ignore"):
-            return self._step(x, weights) + _polynomial(self.later, x, 0) - doubt, x + self.shift, doubt
+            return (
+                self._step(x, weights) + _polynomial(self.later, x, 0) - doubt,
+                x + self.shift,
+                doubt,
+            )
 
     def least_by_lines(self, weights: Array) -> Array:
         """(n,) the least sum where polynomials say little of what is ahead, as beside rotations from which nothing leads
         on: in a cell it is not below its ends, but for a dip, which is not below the lines that lead down into it."""
         least = np.full(len(self.low), np.inf)
-        for first, (before_, here, after, last) in ((-1.0, self.around.T[:4]), (0.0, self.around.T[1:])):
+        for first, (before_, here, after, last) in (
+            (-1.0, self.around.T[:4]),
+            (0.0, self.around.T[1:]),
+        ):
             begin = first - self.shift
             low, high = np.maximum(self.low, begin), np.minimum(self.high, begin + 1.0)
             with np.errstate(invalid="ignore"):
-                down = [np.nan_to_num(one - other, posinf=0.0, neginf=0.0) for one, other in (
-                    (here, before_), (last, after))]
-            dip = (down[0] < 0.0) & ((down[1] > 0.0) | ~np.isfinite(last)) | (down[1] > 0.0) & ~np.isfinite(before_)
+                down = [
+                    np.nan_to_num(one - other, posinf=0.0, neginf=0.0)
+                    for one, other in ((here, before_), (last, after))
+                ]
+            dip = (down[0] < 0.0) & ((down[1] > 0.0) | ~np.isfinite(last)) | (
+                down[1] > 0.0
+            ) & ~np.isfinite(before_)
             found = np.full(len(least), -np.inf)
             for value, slope, at in ((here, down[0], begin), (after, down[1], begin + 1.0)):
                 slope = np.where(dip, slope, 0.0)
                 line = np.zeros_like(self.later)
                 line[1], line[0] = slope, np.where(dip, value, np.minimum(here, after)) - slope * at
-                sums = self._step(x := self._minimised(0.5 * (low + high), line, low, high, weights), weights)
-                found = np.fmax(found, np.where(dip & (slope == 0.0), -np.inf, sums + line[0] + line[1] * x))
+                sums = self._step(
+                    x := self._minimised(0.5 * (low + high), line, low, high, weights), weights
+                )
+                found = np.fmax(
+                    found, np.where(dip & (slope == 0.0), -np.inf, sums + line[0] + line[1] * x)
+                )
             least = np.minimum(least, np.where(low < high, found, np.inf))
         return np.where(np.isfinite(least), least, -np.inf)
 
@@ -208,10 +263,16 @@ class _Near:
     def _minimised(self, x: Array, later: Array, low: Array, high: Array, weights: Array) -> Array:
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
             for _ in range(NEWTON):
-                here, slope, bend = (_polynomial(self.moved, x[:, None], order) for order in range(3))
+                here, slope, bend = (
+                    _polynomial(self.moved, x[:, None], order) for order in range(3)
+                )
                 rate = 2.0 * (here * slope) @ weights + _polynomial(later, x, 1)
                 curve = 2.0 * (slope * slope + here * bend) @ weights + _polynomial(later, x, 2)
-                down = np.where(curve > 0.0, rate / np.where(curve > 0.0, curve, 1.0), MOST_STEPS * np.sign(rate))
+                down = np.where(
+                    curve > 0.0,
+                    rate / np.where(curve > 0.0, curve, 1.0),
+                    MOST_STEPS * np.sign(rate),
+                )
                 x = np.clip(x - down, low, high)
         return x
 
@@ -227,9 +288,14 @@ def _near(column: Index, start: Array, other: Lattice, j: int, value: Array) -> 
     whole = other.whole[j]
     with np.errstate(invalid="ignore"):
         return _Near(
-            np.einsum("pk,nka->pna", POWERS, to_five), POWERS @ ahead_.T, np.abs(np.einsum("k,nka->na", FOURTH, to_five)),
-            np.abs(ahead_ @ FOURTH), shift, np.where(whole[column - 1], -1.0, 0.0) - shift,
-            np.where(whole[column], 1.0, 0.0) - shift, value[(column[:, None] + np.arange(-2, 3)) % count],
+            np.einsum("pk,nka->pna", POWERS, to_five),
+            POWERS @ ahead_.T,
+            np.abs(np.einsum("k,nka->na", FOURTH, to_five)),
+            np.abs(ahead_ @ FOURTH),
+            shift,
+            np.where(whole[column - 1], -1.0, 0.0) - shift,
+            np.where(whole[column], 1.0, 0.0) - shift,
+            value[(column[:, None] + np.arange(-2, 3)) % count],
         )
 
 

@@ -26,7 +26,9 @@ def point_bound(task: Task, points: Points, threshold: Array) -> float:
     for level in range(LEVELS):
         feasible = possible(task, points, index, phi, np.full(len(phi), half), threshold[index])
         index, phi = index[feasible], phi[feasible]
-        three = np.stack([_values(task, points, index, phi + side * half) for side in (-1.0, 0.0, 1.0)])
+        three = np.stack(
+            [_values(task, points, index, phi + side * half) for side in (-1.0, 0.0, 1.0)]
+        )
         bend = np.nan_to_num(np.abs(three[0] - 2.0 * three[1] + three[2]), nan=0.0)
         lower = np.maximum(np.nanmin(three, axis=0) - bend, 0.0)
         bound = np.full(count, np.inf)

@@ -42,10 +42,16 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
     """All ways (n, k) to turn the directions (n, 3) of the face upright, up to whole turns."""
     source = directions @ external.at_zero.T
     if len(external.turning) == 1:
-        return [np.unwrap(rotary_pair.nearest(external.turning[0], source, external.up).angle)[:, None]]
+        return [
+            np.unwrap(rotary_pair.nearest(external.turning[0], source, external.up).angle)[:, None]
+        ]
     first, second = external.turning
-    found = rotary_pair.between(first, second, rotary_courses.onto_pole(source, second), external.up)
-    if not np.isfinite(found.first + found.second).all():  # axes that are not at right angles reach no farther
+    found = rotary_pair.between(
+        first, second, rotary_courses.onto_pole(source, second), external.up
+    )
+    if not np.isfinite(
+        found.first + found.second
+    ).all():  # axes that are not at right angles reach no farther
         angle = rotary_pair.nearest(second, source, external.up).angle
         return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]
     return rotary_courses.courses(found)
@@ -55,8 +61,13 @@ def chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
     """Of all courses and whole turns the one within the limits that moves least, then the one that starts nearest to the
     values before (k,)."""
     rows, lower, upper = limits_of(cell)
-    speed, every = cell.machine.max_speed[cell.robot.chain.axes + rows], np.ones(len(rows), dtype=bool)
-    best = rotary_courses.chosen(courses, before[rows], lower, upper, speed, every, least_motion=True)
+    speed, every = (
+        cell.machine.max_speed[cell.robot.chain.axes + rows],
+        np.ones(len(rows), dtype=bool),
+    )
+    best = rotary_courses.chosen(
+        courses, before[rows], lower, upper, speed, every, least_motion=True
+    )
     values = np.tile(before, (len(best), 1))
     values[:, rows] = best
     return values

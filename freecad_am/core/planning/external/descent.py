@@ -39,15 +39,23 @@ def least_objective(freedom: Freedom, start: Array, margin: float) -> tuple[Arra
 
     def value(z: Array) -> tuple[float, Array]:
         found = seen.at(z)
-        return (LOST, np.zeros(len(z))) if found is None else (found.objective / scale, np.nan_to_num(found.slope) / scale)
+        return (
+            (LOST, np.zeros(len(z)))
+            if found is None
+            else (found.objective / scale, np.nan_to_num(found.slope) / scale)
+        )
 
     def kept(found: Bound, z: Array) -> tuple[Array, Array]:
-        return np.concatenate([found.margins - margin, found.hard]), np.concatenate([found.margin_slopes, found.hard_slopes])
+        return np.concatenate([found.margins - margin, found.hard]), np.concatenate(
+            [found.margin_slopes, found.hard_slopes]
+        )
 
     return _solved(seen, start, start, value, kept)
 
 
-def largest_margin(freedom: Freedom, start: Array, objective: float, enough: float) -> tuple[Array, int]:
+def largest_margin(
+    freedom: Freedom, start: Array, objective: float, enough: float
+) -> tuple[Array, int]:
     """The changes (v,) with the largest margin, `enough` at most, of all with no more than an objective, and after how many
     iterations."""
     seen, v = Seen(freedom), len(start)
@@ -60,9 +68,13 @@ def largest_margin(freedom: Freedom, start: Array, objective: float, enough: flo
         return float(-z[-1]), np.concatenate([np.zeros(v), [-1.0]])
 
     def kept(found: Bound, z: Array) -> tuple[Array, Array]:
-        values = np.concatenate([
-            found.margins - z[-1], found.hard, [(objective - found.objective) / scale, enough - z[-1]],
-        ])
+        values = np.concatenate(
+            [
+                found.margins - z[-1],
+                found.hard,
+                [(objective - found.objective) / scale, enough - z[-1]],
+            ]
+        )
         slopes = np.zeros((len(values), v + 1))
         count = len(found.margins)
         slopes[:count, :v], slopes[:count, v] = found.margin_slopes, -1.0
@@ -75,7 +87,10 @@ def largest_margin(freedom: Freedom, start: Array, objective: float, enough: flo
 
 
 def _solved(
-    seen: Seen, start: Array, z: Array, value: Callable[[Array], tuple[float, Array]],
+    seen: Seen,
+    start: Array,
+    z: Array,
+    value: Callable[[Array], tuple[float, Array]],
     kept: Callable[[Bound, Array], tuple[Array, Array]],
 ) -> tuple[Array, int]:
     """The best z that SLSQP finds; run again where it came upon constraints that it had not been told of."""
@@ -87,7 +102,9 @@ def _solved(
         if here is None:
             break
         before, values = len(rows), kept(here, z)[0]
-        rows = np.union1d(rows, np.flatnonzero(values < ACTIVE if not before else values < 0.1 * ACTIVE))
+        rows = np.union1d(
+            rows, np.flatnonzero(values < ACTIVE if not before else values < 0.1 * ACTIVE)
+        )
         if len(rows) == before and before:
             break
         reported = rows
@@ -100,10 +117,19 @@ def _solved(
             return values[reported], np.nan_to_num(slopes[reported])
 
         result: Any = minimize(
-            lambda z: value(z)[0], z, jac=lambda z: value(z)[1], method="SLSQP",
-            constraints=[{
-                "type": "ineq", "fun": lambda z: constraints(z)[0], "jac": lambda z: constraints(z)[1],
-            }] if len(reported) else [],
+            lambda z: value(z)[0],
+            z,
+            jac=lambda z: value(z)[1],
+            method="SLSQP",
+            constraints=[
+                {
+                    "type": "ineq",
+                    "fun": lambda z: constraints(z)[0],
+                    "jac": lambda z: constraints(z)[1],
+                }
+            ]
+            if len(reported)
+            else [],
             options={"ftol": TOLERANCE, "maxiter": ITERATIONS},
         )
         count += int(result.nit)

@@ -78,7 +78,9 @@ class Freedom:
         """The coefficients (degree + 1,) of the rotation and the external axes (T, k) for changes x (v,)."""
         rows = x.reshape(1 + self.external.axes, -1)
         assert self.points.external is not None
-        return self.start + self.changes @ rows[0], self.points.external + self.shape @ rows[1:].T * self.unit
+        return self.start + self.changes @ rows[0], self.points.external + self.shape @ rows[
+            1:
+        ].T * self.unit
 
     def look(self, x: Array) -> Bound | None:
         """What holds with changes x (v,); None where a point is out of reach."""
@@ -90,25 +92,43 @@ class Freedom:
         if np.isnan(joints).any():
             return None
         rate, matrix = task.rotation_rates(points.frames, phi, joints)
-        rates = [rate * phi_rate[:, None], *(one * unit for one, unit in zip(
-            external_rates(task.cell, points.position, joints), self.unit, strict=True))]
-        slope = np.concatenate([criteria.rate(task, points, joints, one, matrix) @ self.shape for one in rates])
+        rates = [
+            rate * phi_rate[:, None],
+            *(
+                one * unit
+                for one, unit in zip(
+                    external_rates(task.cell, points.position, joints), self.unit, strict=True
+                )
+            ),
+        ]
+        slope = np.concatenate(
+            [criteria.rate(task, points, joints, one, matrix) @ self.shape for one in rates]
+        )
         margins, margin_slopes = self._margins(joints, rates, matrix)
         hard, hard_slopes = self._hard(values, phi, phi_rate)
         return Bound(
-            float(criteria.value(task, points, joints, matrix)[0]), slope, margins, margin_slopes, hard, hard_slopes,
+            float(criteria.value(task, points, joints, matrix)[0]),
+            slope,
+            margins,
+            margin_slopes,
+            hard,
+            hard_slopes,
         )
 
     def _margins(self, joints: Array, rates: list[Array], matrix: Array) -> tuple[Array, Array]:
         rows, length = self.task.rows, self.task.parameters.characteristic_length
         offset = rows.offset(joints)
         ratio = np.maximum(jac.condition(matrix, length), 1e-12)
-        values = np.concatenate([1.0 - offset, 1.0 + offset, (1.0 - self.thresholds / ratio)[:, None]], axis=1)
+        values = np.concatenate(
+            [1.0 - offset, 1.0 + offset, (1.0 - self.thresholds / ratio)[:, None]], axis=1
+        )
         near, slopes = values[:, -1] < AMPLE, []
         for one in rates:
             along, turned = one @ rows.matrix.T / rows.half, np.zeros(len(ratio))
             if near.any():
-                change = np.nan_to_num(criteria.condition_rate(self.task, joints[near], one[near], matrix[near]))
+                change = np.nan_to_num(
+                    criteria.condition_rate(self.task, joints[near], one[near], matrix[near])
+                )
                 turned[near] = change * self.thresholds[near] / ratio[near] ** 2
             slopes.append(self._by_number(np.concatenate([-along, along, turned[:, None]], axis=1)))
         return values.T.ravel(), np.concatenate(slopes, axis=1)
@@ -123,12 +143,19 @@ class Freedom:
             share = (phi - 0.5 * (low + high)) / (0.5 * (high - low))
             rate = phi_rate / (0.5 * (high - low))
             none = [np.zeros((len(phi), 2))] * (count - 1)
-            found.append((
-                np.concatenate([1.0 - share, 1.0 + share]),
-                np.concatenate([self._by_number(one) for one in (np.stack([-rate, rate], axis=1), *none)], axis=1),
-            ))
+            found.append(
+                (
+                    np.concatenate([1.0 - share, 1.0 + share]),
+                    np.concatenate(
+                        [self._by_number(one) for one in (np.stack([-rate, rate], axis=1), *none)],
+                        axis=1,
+                    ),
+                )
+            )
         found.append(self._speeds(values))
-        return np.concatenate([value for value, _ in found]), np.concatenate([slope for _, slope in found])
+        return np.concatenate([value for value, _ in found]), np.concatenate(
+            [slope for _, slope in found]
+        )
 
     def _tilts(self, values: Array) -> tuple[Array, Array]:
         external = self.external
@@ -143,7 +170,9 @@ class Freedom:
         own, k = self.task.cell.robot.chain.axes, self.external.axes
         assert self.points.external is not None
         fastest = self.task.cell.machine.max_speed[own:]
-        most = np.maximum(STEEP * fastest * self.times[1:, None], np.abs(np.diff(self.points.external, axis=0)))
+        most = np.maximum(
+            STEEP * fastest * self.times[1:, None], np.abs(np.diff(self.points.external, axis=0))
+        )
         step, change = np.diff(values, axis=0) / most, np.diff(self.shape, axis=0)
         slopes = np.zeros((k, len(step), (1 + k) * self.shape.shape[1]))
         for j in range(k):
@@ -160,7 +189,9 @@ class Freedom:
 
 def moved(points: Points, cell: Cell, values: Array) -> Points:
     """The same points with the external axes at other values (T, k)."""
-    return dataclasses.replace(points, external=values, frames=cell.pose_frames(points.position, points.tool, values))
+    return dataclasses.replace(
+        points, external=values, frames=cell.pose_frames(points.position, points.tool, values)
+    )
 
 
 def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
@@ -187,7 +218,9 @@ def axes_in_world(external: ExternalAxes, values: Array) -> list[Array]:
     found = []
     for number, axis in enumerate(external.turning):
         seen = np.tile(axis, (len(values), 1))
-        for before, which in reversed(list(zip(external.turning[:number], external.turned[:number], strict=True))):
+        for before, which in reversed(
+            list(zip(external.turning[:number], external.turned[:number], strict=True))
+        ):
             seen = np.einsum("nij,nj->ni", frames.rotation_about(before, values[:, which]), seen)
         found.append(seen)
     return found

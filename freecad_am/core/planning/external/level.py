@@ -34,12 +34,18 @@ def ways(cell: Cell, toolpath: Toolpath) -> Iterator[Levelled]:
     """The beads of a toolpath as `levelled` gives them, and where that changes them once more, with seams and cuts already
     chosen for axes that have a whole turn too: others are chosen with the rotation, where that is planned for."""
     if cell.external is None:
-        yield [bead for _, _, bead in toolpath], [(layer, index) for layer, index, _ in toolpath], standing(cell, toolpath)
+        yield (
+            [bead for _, _, bead in toolpath],
+            [(layer, index) for layer, index, _ in toolpath],
+            standing(cell, toolpath),
+        )
         return
     first = levelled(cell, toolpath)
     yield first
     again = levelled(cell, toolpath, whole_turns=True)
-    if [(len(bead), *bead.points[0]) for bead in again[0]] != [(len(bead), *bead.points[0]) for bead in first[0]]:
+    if [(len(bead), *bead.points[0]) for bead in again[0]] != [
+        (len(bead), *bead.points[0]) for bead in first[0]
+    ]:
         yield again
 
 
@@ -52,20 +58,30 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
     assert external is not None
     allowed = allowed_by_layer(toolpath.parts)
     seen = [on_face(cell, bead.tool) for _, _, bead in toolpath]
-    before, hold = _standing_all(external, cell, seen, min(allowed[layer] for layer, _, _ in toolpath))
+    before, hold = _standing_all(
+        external, cell, seen, min(allowed[layer] for layer, _, _ in toolpath)
+    )
     done: list[Bead] = []
     places: list[Place] = []
     issues: list[Issue] = []
     helped: tuple[list[int], list[int]] = [], []
     for (layer, index, bead), directions in zip(toolpath, seen, strict=True):
         most = allowed[layer]
-        values = np.tile(before, (len(bead), 1)) if hold else _followed(external, cell, directions, most, before)
+        values = (
+            np.tile(before, (len(bead), 1))
+            if hold
+            else _followed(external, cell, directions, most, before)
+        )
         pieces = [dataclasses.replace(bead, external=values)]
-        if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(cell, pieces[0], most, toolpath.overlap):
+        if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(
+            cell, pieces[0], most, toolpath.overlap
+        ):
             pieces = stroke.found(cell, bead, most, before, toolpath.overlap) or pieces
         for piece in pieces:
             assert piece.external is not None
-            tilt = tilt_from(external.upright(on_face(cell, piece.tool), piece.external), external.up)
+            tilt = tilt_from(
+                external.upright(on_face(cell, piece.tool), piece.external), external.up
+            )
             issues += _not_level(bool(external.turning), tilt, most, (layer, index))
             before = piece.external[-1]
         done += pieces
@@ -83,7 +99,9 @@ def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
         most = allowed[layer]
         if most >= math.pi:
             continue
-        directions = cell.station[None, :3, 2] if cell.arrangement.carries_part else on_face(cell, bead.tool)
+        directions = (
+            cell.station[None, :3, 2] if cell.arrangement.carries_part else on_face(cell, bead.tool)
+        )
         issues += _not_level(False, tilt_from(directions, up), most, (layer, index))
     return issues
 
@@ -96,16 +114,35 @@ def _not_level(turning: bool, tilt: Array, most: float, place: Place) -> list[Is
         return []
     leans, allowed = math.degrees(tilt[worst]), math.degrees(most)
     if not turning:
-        return [Issue(
-            ERROR, "NOT_LEVEL", Text("the tool axis would be {:.3g} deg from the vertical, "
-                "build_direction.max_from_vertical allows {:.3g} deg, and nothing turns the part; put it on a positioner, "
-                "or allow more", leans, allowed), *place, worst,
-        )]
-    return [Issue(
-        ERROR, "NOT_LEVEL", Text("the tool axis would be {:.3g} deg from the vertical, build_direction.max_from_vertical "
-            "allows {:.3g} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more", leans,
-            allowed), *place, worst,
-    )]
+        return [
+            Issue(
+                ERROR,
+                "NOT_LEVEL",
+                Text(
+                    "the tool axis would be {:.3g} deg from the vertical, "
+                    "build_direction.max_from_vertical allows {:.3g} deg, and nothing turns the part; put it on a positioner, "
+                    "or allow more",
+                    leans,
+                    allowed,
+                ),
+                *place,
+                worst,
+            )
+        ]
+    return [
+        Issue(
+            ERROR,
+            "NOT_LEVEL",
+            Text(
+                "the tool axis would be {:.3g} deg from the vertical, build_direction.max_from_vertical "
+                "allows {:.3g} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more",
+                leans,
+                allowed,
+            ),
+            *place,
+            worst,
+        )
+    ]
 
 
 def figures(cell: Cell, path: JointPath) -> dict[str, object]:
@@ -139,7 +176,9 @@ def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
             turned += np.abs(np.diff(values, axis=0)).sum(axis=0)
     names, slides = cell.machine.axes[-len(turned) :], external.slides
     return {
-        "turned_deg": {names[k]: math.degrees(way) for k, way in enumerate(turned.tolist()) if k != slides},
+        "turned_deg": {
+            names[k]: math.degrees(way) for k, way in enumerate(turned.tolist()) if k != slides
+        },
         **({} if slides is None else {"moved_mm": {names[slides]: float(turned[slides])}}),
     }
 
@@ -169,7 +208,9 @@ def _standing(external: ExternalAxes, cell: Cell, direction: Array, before: Arra
     return np.asarray(courses.chosen(cell, courses.upright(external, direction[None]), before)[0])
 
 
-def _followed(external: ExternalAxes, cell: Cell, directions: Array, most: float, before: Array) -> Array:
+def _followed(
+    external: ExternalAxes, cell: Cell, directions: Array, most: float, before: Array
+) -> Array:
     """Values (n, k) along a bead: one and the same where that is near enough, else each direction upright."""
     one = middle(directions)
     if one is not None and float(tilt_from(directions, one).max()) <= most:

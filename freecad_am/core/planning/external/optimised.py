@@ -34,12 +34,17 @@ ENOUGH = 0.5  # a margin that need not be larger: half way from the limit to the
 TRIES = 2  # of a bead that leans too far between the points looked at
 SPARE = 1e-4  # of margin and angle, so that what lies between the points keeps them too
 STANDING = 12  # places of an axis that is free to stand anywhere
-LEANING = np.array([-1.0, -0.5, 0.5, 1.0])  # shares of the largest angle from the vertical, tried of every axis
+LEANING = np.array(
+    [-1.0, -0.5, 0.5, 1.0]
+)  # shares of the largest angle from the vertical, tried of every axis
 SLIDING = np.array([-0.2, -0.1, 0.1, 0.2])  # shares of the arm's reach
 
 
 def optimised(
-    task: Task, paths: Sequence[BeadPath], directions: Callable[[Array], Array], allowed: Mapping[int, float],
+    task: Task,
+    paths: Sequence[BeadPath],
+    directions: Callable[[Array], Array],
+    allowed: Mapping[int, float],
     report: Callable[[float], None] = lambda share: None,
 ) -> list[BeadPath]:
     """The paths with better ones in the place of those there are: less objective, and no less margin.
@@ -48,7 +53,9 @@ def optimised(
     told: the share of the beads that is done; it may raise to cancel.
     """
     usable = [
-        k for k, path in enumerate(paths) if path.coefficients is not None and path.reason != GIVEN and len(path.bead) > 2
+        k
+        for k, path in enumerate(paths)
+        if path.coefficients is not None and path.reason != GIVEN and len(path.bead) > 2
     ]
     if not usable:
         return list(paths)
@@ -73,7 +80,10 @@ Start = tuple[Array, Array]  # shift (k,) of the external axes, coefficients of 
 
 
 def _elsewhere(
-    task: Task, paths: Sequence[BeadPath], directions: Callable[[Array], Array], allowed: Mapping[int, float]
+    task: Task,
+    paths: Sequence[BeadPath],
+    directions: Callable[[Array], Array],
+    allowed: Mapping[int, float],
 ) -> list[Start | None]:
     """For each path the shift of its external axes, and the rotation there, that serve best; None where its own are."""
     external = task.cell.external
@@ -81,7 +91,9 @@ def _elsewhere(
     beads = [path.bead for path in paths]
     points = gather(beads, task.cell, search.POINTS_PER_BEAD)
     most = np.array([allowed[path.layer] for path in paths])
-    thresholds = np.concatenate([path.threshold[thinned(path.bead, search.POINTS_PER_BEAD)] for path in paths])
+    thresholds = np.concatenate(
+        [path.threshold[thinned(path.bead, search.POINTS_PER_BEAD)] for path in paths]
+    )
     best = _here(task, points, thresholds, most, directions, np.zeros((len(paths), external.axes)))
     for axis in reversed(range(external.axes)):
         tried = [best]
@@ -94,12 +106,18 @@ def _elsewhere(
             np.stack([tried[r][part][k] for k, r in enumerate(rank)]) for part in range(4)
         )
     return [
-        (best[0][k], best[1][k]) if best[3][k] >= 0.0 and best[0][k].any() else None for k in range(len(paths))
+        (best[0][k], best[1][k]) if best[3][k] >= 0.0 and best[0][k].any() else None
+        for k in range(len(paths))
     ]
 
 
 def _here(
-    task: Task, points: Points, thresholds: Array, most: Array, directions: Callable[[Array], Array], shifts: Array
+    task: Task,
+    points: Points,
+    thresholds: Array,
+    most: Array,
+    directions: Callable[[Array], Array],
+    shifts: Array,
 ) -> tuple[Array, Array, Array, Array]:
     """Of each bead with its external axes shifted by (B, k): these, the best coefficients, objective and margin there."""
     assert points.external is not None
@@ -129,7 +147,11 @@ def _steps(task: Task, axis: int, most: float) -> Array:
 
 
 def _bead(
-    task: Task, path: BeadPath, start: Start | None, directions: Callable[[Array], Array], allowed: float
+    task: Task,
+    path: BeadPath,
+    start: Start | None,
+    directions: Callable[[Array], Array],
+    allowed: float,
 ) -> BeadPath:
     """The best of what the path, and another start, lead to."""
     best = path
@@ -138,13 +160,22 @@ def _bead(
         values = path.bead.external if shift is None else path.bead.external + shift
         shifted = dataclasses.replace(path, bead=dataclasses.replace(path.bead, external=values))
         found = _upright_enough(task, path, shifted, coefficients, directions, allowed)
-        if found is not None and better(found, best) and (best is path or found.objective < best.objective):
+        if (
+            found is not None
+            and better(found, best)
+            and (best is path or found.objective < best.objective)
+        ):
             best = found
     return best
 
 
 def _upright_enough(
-    task: Task, path: BeadPath, shifted: BeadPath, coefficients: Array, directions: Callable[[Array], Array], allowed: float
+    task: Task,
+    path: BeadPath,
+    shifted: BeadPath,
+    coefficients: Array,
+    directions: Callable[[Array], Array],
+    allowed: float,
 ) -> BeadPath | None:
     """What a start leads to, kept so much more upright where it is looked at that no point in between leans too far."""
     external, spare = task.cell.external, SPARE
@@ -153,7 +184,9 @@ def _upright_enough(
         freedom = _freedom(task, shifted, coefficients, directions, allowed - spare)
         found = _judged(task, shifted, *_climbed(freedom, path))
         assert found.bead.external is not None
-        leans = tilt_from(external.upright(directions(found.bead.tool), found.bead.external), external.up)
+        leans = tilt_from(
+            external.upright(directions(found.bead.tool), found.bead.external), external.up
+        )
         over = float(leans.max()) - allowed
         if over <= 0.0:
             return found
@@ -162,7 +195,11 @@ def _upright_enough(
 
 
 def _freedom(
-    task: Task, path: BeadPath, coefficients: Array, directions: Callable[[Array], Array], allowed: float
+    task: Task,
+    path: BeadPath,
+    coefficients: Array,
+    directions: Callable[[Array], Array],
+    allowed: float,
 ) -> Freedom:
     thin = thinned(path.bead, POINTS_PER_BEAD)
     points = gather([path.bead], task.cell, POINTS_PER_BEAD)
@@ -172,7 +209,9 @@ def _freedom(
     changes = changes[:, np.abs(changes).any(axis=0)]
     way = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1) / path.bead.speed[1:]
     times = np.diff(np.concatenate([[0.0], np.cumsum(way)])[thin], prepend=0.0)
-    return Freedom(task, points, path.threshold[thin], full, changes, allowed, directions(points.tool), times)
+    return Freedom(
+        task, points, path.threshold[thin], full, changes, allowed, directions(points.tool), times
+    )
 
 
 def _judged(task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: int) -> BeadPath:
@@ -182,10 +221,20 @@ def _judged(task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: 
     rows = x.reshape(1 + freedom.external.axes, -1)
     assert points.external is not None
     shape = points.powers(len(coefficients) - 1) @ freedom.changes
-    bead = dataclasses.replace(path.bead, external=points.external + shape @ rows[1:].T * freedom.unit)
+    bead = dataclasses.replace(
+        path.bead, external=points.external + shape @ rows[1:].T * freedom.unit
+    )
     points = gather([bead], task.cell)
     why = refine.Refined(coefficients[None], np.zeros(1), (OPTIMISED,), (iterations,))
-    (found,) = judged(task, [bead], [(path.layer, path.index)], points, task.thresholds(points), coefficients[None], why)
+    (found,) = judged(
+        task,
+        [bead],
+        [(path.layer, path.index)],
+        points,
+        task.thresholds(points),
+        coefficients[None],
+        why,
+    )
     return found
 
 
@@ -201,6 +250,10 @@ def _climbed(freedom: Freedom, path: BeadPath) -> tuple[Freedom, Array, int]:
     here = freedom.look(x)
     if here is None:
         return freedom, x, count
-    most = here.objective + GIVEN_BACK * max(0.0, path.objective - here.objective) if sound else 2.0 * here.objective
+    most = (
+        here.objective + GIVEN_BACK * max(0.0, path.objective - here.objective)
+        if sound
+        else 2.0 * here.objective
+    )
     x, more = largest_margin(freedom, x, most, ENOUGH)
     return freedom, x, count + more

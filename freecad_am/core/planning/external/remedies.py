@@ -47,13 +47,21 @@ def moved(settings: CellParameters, folders: Sequence[str]) -> Cells:
         for k in carriers:
             x, y, z, a, b, c = named[k].pose
             moved = np.round((x, y, z) + (place - face))
-            others[k] = dataclasses.replace(named[k], pose=(float(moved[0]), float(moved[1]), float(moved[2]), a, b, c))
-        remedy = Text.joined(" and ", (Text("`{}[{}].pose: {}`", WHERE, k, _shown(others[k].pose)) for k in carriers))
+            others[k] = dataclasses.replace(
+                named[k], pose=(float(moved[0]), float(moved[1]), float(moved[2]), a, b, c)
+            )
+        remedy = Text.joined(
+            " and ", (Text("`{}[{}].pose: {}`", WHERE, k, _shown(others[k].pose)) for k in carriers)
+        )
         yield remedy, dataclasses.replace(settings, external=_text(others))
 
 
 def added(
-    settings: CellParameters, folders: Sequence[str], toolpath: Toolpath, codes: set[str], mass: float = 0.0
+    settings: CellParameters,
+    folders: Sequence[str],
+    toolpath: Toolpath,
+    codes: set[str],
+    mass: float = 0.0,
 ) -> Cells:
     """A positioner that carries so many kg under a part whose tool axes may not lean, a track along one that is long, of the
     robot's maker where there is one; nothing of a cell with external axes, or a robot that holds the part."""
@@ -69,8 +77,13 @@ def added(
             face = _face(suited, (0.0,) * 6)
             for place in _before(robot, platform[:2], float(face[2]))[:3]:
                 x, y, _ = place - face
-                one = External(suited.id, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART)
-                yield Text(AUTO, _key_text(one)), dataclasses.replace(settings, external=_text([one]), branch="auto")
+                one = External(
+                    suited.id, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART
+                )
+                yield (
+                    Text(AUTO, _key_text(one)),
+                    dataclasses.replace(settings, external=_text([one]), branch="auto"),
+                )
         return
     spans = np.ptp(points, axis=0)
     longest = int(spans.argmax())
@@ -81,7 +94,10 @@ def added(
     for track in offered.tracks(robot, folders)[:1]:
         height = float(track.chain.forward(np.zeros(1))[2, 3])
         one = External(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
-        yield Text(AUTO, _key_text(one)), dataclasses.replace(settings, external=_text([one]), branch="auto")
+        yield (
+            Text(AUTO, _key_text(one)),
+            dataclasses.replace(settings, external=_text([one]), branch="auto"),
+        )
 
 
 def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
@@ -89,13 +105,21 @@ def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
     volume, usual = enclosed(toolpath.surroundings)[0], toolpath.bead_width or process.bead_width
     for _, _, bead in toolpath:
         width = usual if bead.width is None else float(np.mean(bead.width))
-        volume += width * toolpath.layer_height * float(np.linalg.norm(np.diff(bead.points, axis=0), axis=1).sum())
+        volume += (
+            width
+            * toolpath.layer_height
+            * float(np.linalg.norm(np.diff(bead.points, axis=0), axis=1).sum())
+        )
     return 1e-6 * process.density * volume  # g/cm3 times mm3
 
 
 def _face(mechanism: Machine, pose: Pose) -> Array:
     """(3,) where its face is in the world at zero, mm."""
-    at = frames.bryant(pose) @ frames.inverse(mechanism.base) @ mechanism.chain.forward(np.zeros(mechanism.chain.axes))
+    at = (
+        frames.bryant(pose)
+        @ frames.inverse(mechanism.base)
+        @ mechanism.chain.forward(np.zeros(mechanism.chain.axes))
+    )
     return np.asarray(at[:3, 3])
 
 
@@ -105,7 +129,10 @@ def _before(robot: Machine, towards: Array, height: float) -> list[Array]:
     shoulder, _ = robot.arm.shoulder
     turn = math.atan2(towards[1], towards[0]) if math.hypot(*towards) > 1.0 else 0.0
     out = np.array([math.cos(turn), math.sin(turn)])
-    return [np.array([*((shoulder + share * robot.arm.reach) * out), height + up]) for share, up in AHEAD]
+    return [
+        np.array([*((shoulder + share * robot.arm.reach) * out), height + up])
+        for share, up in AHEAD
+    ]
 
 
 def _text(named: Sequence[External]) -> str:
@@ -113,7 +140,9 @@ def _text(named: Sequence[External]) -> str:
 
 
 def _key_text(one: External) -> str:
-    return f"`{WHERE}: [{{machine: {one.machine}, pose: {_shown(one.pose)}, carries: {one.carries}}}]`"
+    return (
+        f"`{WHERE}: [{{machine: {one.machine}, pose: {_shown(one.pose)}, carries: {one.carries}}}]`"
+    )
 
 
 def _shown(pose: Any) -> str:

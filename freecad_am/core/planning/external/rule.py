@@ -25,20 +25,35 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
     if parameters.external_axes == LEVEL:
         return False, []
     if cell.external is None:
-        return False, [Issue(
-            NOTE, "NOT_USED", Text("joints.external_axes: {} is of no effect without cell.external; leave it out",
-                parameters.external_axes),
-        )]
+        return False, [
+            Issue(
+                NOTE,
+                "NOT_USED",
+                Text(
+                    "joints.external_axes: {} is of no effect without cell.external; leave it out",
+                    parameters.external_axes,
+                ),
+            )
+        ]
     if parameters.method != METHOD:
         raise InputError(
-            "NOT_FOR_SETUP", "joints.external_axes", "{} are polynomials per bead, the method {} has none; use method: {}, "
-            "or external_axes: {}", parameters.external_axes, parameters.method, METHOD, LEVEL,
+            "NOT_FOR_SETUP",
+            "joints.external_axes",
+            "{} are polynomials per bead, the method {} has none; use method: {}, "
+            "or external_axes: {}",
+            parameters.external_axes,
+            parameters.method,
+            METHOD,
+            LEVEL,
         )
     return True, []
 
 
 def bettered(
-    task: Task, level: Found, planned: Sequence[BeadPath], finish: Callable[[list[BeadPath]], Found],
+    task: Task,
+    level: Found,
+    planned: Sequence[BeadPath],
+    finish: Callable[[list[BeadPath]], Found],
     report: Callable[[float], None],
 ) -> tuple[Found, dict[str, object]]:
     """What is planned with all external axes optimised, and the figures of `level`, which stays where it is no worse.
@@ -48,11 +63,18 @@ def bettered(
     from .optimised import optimised  # few jobs have external axes
 
     paths = list(planned)
-    tried = optimised(task, paths, lambda tool: on_face(task.cell, tool), allowed_by_layer(task.parts), report)
+    tried = optimised(
+        task, paths, lambda tool: on_face(task.cell, tool), allowed_by_layer(task.parts), report
+    )
     found = finish(tried)
     if not _better(task, found, level):
         wrong = _worse(task, found, level)
-        found = finish([old if (new.layer, new.index) in wrong else new for old, new in zip(paths, tried, strict=True)])
+        found = finish(
+            [
+                old if (new.layer, new.index) in wrong else new
+                for old, new in zip(paths, tried, strict=True)
+            ]
+        )
     return (found if _better(task, found, level) else level), figures(task, level[0])
 
 
@@ -61,7 +83,11 @@ def _worse(task: Task, found: Found, level: Found) -> set[tuple[int | None, int 
     wrong = {(issue.layer, issue.bead) for issue in found[1] if issue.level == ERROR}
     if not has_errors(level[1]):
         least = least_margin(task, level[0])
-        wrong |= {(path.layer, path.index) for path in found[0] if path.reachable and least_margin(task, [path]) < least}
+        wrong |= {
+            (path.layer, path.index)
+            for path in found[0]
+            if path.reachable and least_margin(task, [path]) < least
+        }
     return wrong
 
 
@@ -81,7 +107,9 @@ def least_margin(task: Task, paths: Sequence[BeadPath]) -> float:
     """The least share of any axis that is left to its limit, the reserve beside it taken off (1: in the middle), or of the
     condition to the one asked for."""
     margins = [
-        np.minimum(task.rows.margin(path.joints), condition_margin(path.condition, path.threshold)).min()
+        np.minimum(
+            task.rows.margin(path.joints), condition_margin(path.condition, path.threshold)
+        ).min()
         for path in paths
     ]
     return float(min(margins))

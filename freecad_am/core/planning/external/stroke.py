@@ -55,7 +55,9 @@ def found(cell: Cell, bead: Bead, most: float, before: Array, overlap: float) ->
     return []
 
 
-def _begun_elsewhere(cell: Cell, bead: Bead, most: float, before: Array, overlap: float) -> Bead | None:
+def _begun_elsewhere(
+    cell: Cell, bead: Bead, most: float, before: Array, overlap: float
+) -> Bead | None:
     """A closed bead from a seam that leaves room for all of it."""
     for _ in range(ROUNDS):
         ways, count = _Ways.along(cell, bead, most), len(bead) - 1
@@ -119,7 +121,11 @@ def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
     every = np.concatenate([values[:, rows], turned])
     fewest = np.ceil((lower - every.min(axis=0)) / TURN - ROUNDING)
     greatest = np.floor((upper - every.max(axis=0)) / TURN + ROUNDING)
-    return beginning if (fewest <= greatest).all() else np.asarray(np.tile(values[-1], (len(beginning), 1)))
+    return (
+        beginning
+        if (fewest <= greatest).all()
+        else np.asarray(np.tile(values[-1], (len(beginning), 1)))
+    )
 
 
 @dataclasses.dataclass(frozen=True)
@@ -149,16 +155,27 @@ class _Ways:
         for course in upright(external, directions):
             for turned in _turned(course, lower - most, upper + most):
                 inside = ((turned >= lower) & (turned <= upper)).all(axis=1)
-                clipped = np.where(inside[:, None], turned, np.clip(turned, lower + WAITS, upper - WAITS))
+                clipped = np.where(
+                    inside[:, None], turned, np.clip(turned, lower + WAITS, upper - WAITS)
+                )
                 every = np.zeros((len(clipped), external.axes))
                 every[:, rows] = clipped
                 values.append(clipped)
                 held.append(np.abs(clipped - turned).sum(axis=1))
-                fits.append(inside | (tilt_from(external.upright(directions, every), external.up) <= most))
+                fits.append(
+                    inside | (tilt_from(external.upright(directions, every), external.up) <= most)
+                )
         count = len(directions)
         return cls(
-            cell, bead, external, directions, most, rows, np.array(values).reshape(-1, count, len(rows)),
-            np.array(held).reshape(-1, count), np.array(fits, dtype=bool).reshape(-1, count),
+            cell,
+            bead,
+            external,
+            directions,
+            most,
+            rows,
+            np.array(values).reshape(-1, count, len(rows)),
+            np.array(held).reshape(-1, count),
+            np.array(fits, dtype=bool).reshape(-1, count),
         )
 
     @cached_property
@@ -175,13 +192,20 @@ class _Ways:
 
     def last(self, start: int, overlap: float) -> int:
         """The point at which the bead ends if it begins at one, or up to which it runs on."""
-        return start + len(self.bead) - 1 + (_run_on(self.bead, start, overlap) if self.bead.closed else 0)
+        return (
+            start
+            + len(self.bead)
+            - 1
+            + (_run_on(self.bead, start, overlap) if self.bead.closed else 0)
+        )
 
     def nearly_round(self, count: int) -> Index:
         """Segments of a closed bead in which what a way has room for ends, where all but these two are in it."""
         way, start = np.nonzero(self.fits[:, 1 : count + 1] & ~self.fits[:, :count])
         end = self.furthest[way, start + 1]
-        near = end - start > count - 2  # and so with a share of the segments at both ends perhaps all round
+        near = (
+            end - start > count - 2
+        )  # and so with a share of the segments at both ends perhaps all round
         return np.asarray(np.unique(np.concatenate([start[near], end[near] % count])))
 
     def seams(self, count: int, before: Array) -> Iterator[tuple[int, Array]]:
@@ -228,7 +252,10 @@ def _turned(course: Array, lower: Array, upper: Array) -> Iterator[Array]:
     with np.errstate(invalid="ignore"):
         fewest = np.ceil((lower - course.max(axis=0)) / TURN)
         greatest = np.floor((upper - course.min(axis=0)) / TURN)
-    ranges = [range(int(a), int(b) + 1) if np.isfinite(b - a) else range(1) for a, b in zip(fewest, greatest, strict=True)]
+    ranges = [
+        range(int(a), int(b) + 1) if np.isfinite(b - a) else range(1)
+        for a, b in zip(fewest, greatest, strict=True)
+    ]
     for turns in itertools.product(*ranges):
         yield course + TURN * np.array(turns, float)
 

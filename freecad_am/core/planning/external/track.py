@@ -26,7 +26,9 @@ OFFSETS = (0.0, 0.4, -0.4)
 MAX_TRIALS = 3  # that are worth planning
 
 
-def placed(beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]], float]) -> Iterator[list[Bead]]:
+def placed(
+    beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]], float]
+) -> Iterator[list[Bead]]:
     """The beads with the values of the track at their points, in the ways worth planning, MOST of them, those with less
     motion first; beads as they are where the robot stands. `served`: the share of beads looked at that the robot can do."""
     external = cell.external
@@ -65,7 +67,9 @@ def _at_points(bead: Bead, cell: Cell) -> Array:
     return np.asarray(seen @ external.along)
 
 
-def _along(beads: Sequence[Bead], ways: Sequence[Array], cell: Cell, window: float, offset: float) -> list[Bead]:
+def _along(
+    beads: Sequence[Bead], ways: Sequence[Array], cell: Cell, window: float, offset: float
+) -> list[Bead]:
     """The beads with the robot at most half a window from `offset` the deposit along the track, all mm, as far as the track
     goes."""
     external = cell.external

@@ -37,7 +37,9 @@ METHOD = "five-axis"
 MOST_PIECES = 4
 FEWEST_POINTS = 3  # of a piece
 ROUNDS = 10
-STRAY = math.radians(0.5)  # between two points the tool may lean this far from the direction asked for
+STRAY = math.radians(
+    0.5
+)  # between two points the tool may lean this far from the direction asked for
 KEPT = 1e-9  # a limit met exactly is kept, rad and mm
 # rad; how near to a pole directions count as on it, tried in turn where an axis would race round beside it; less than STRAY
 POLES = (AT_POLE, math.radians(0.2), math.radians(0.4))
@@ -134,13 +136,24 @@ def _finer(task: Task, bead: Bead, before: Array, pole: float) -> _Run:
         if not off.any():
             return _Run(bead, axes, not cell.limits.exceeded(axes, KEPT).any())
         looked, bead = bead, bead.halved(np.flatnonzero(off))
-    return _Run(looked, axes, False, (int(np.argmax(off)) + 1, float(away.max()), float(leans.max())))
+    return _Run(
+        looked, axes, False, (int(np.argmax(off)) + 1, float(away.max()), float(leans.max()))
+    )
 
 
 def _not_straight(point: int, away: float, leans: float, layer: int, bead: int) -> Issue:
     return Issue(
-        ERROR, "NOT_STRAIGHT", Text("the axes leave the bead by {:.3g} mm, its direction by {:.3g} deg between two points "
-            "however many are added: near a pole; tilt away from it", away, math.degrees(leans)), layer, bead, point,
+        ERROR,
+        "NOT_STRAIGHT",
+        Text(
+            "the axes leave the bead by {:.3g} mm, its direction by {:.3g} deg between two points "
+            "however many are added: near a pole; tilt away from it",
+            away,
+            math.degrees(leans),
+        ),
+        layer,
+        bead,
+        point,
     )
 
 
@@ -149,9 +162,18 @@ def _path(task: Task, run: _Run, place: Place) -> BeadPath:
     none, limits = np.full(len(run.bead), np.nan), task.cell.limits
     half = 0.5 * (limits.upper - limits.lower)
     moved = np.abs(np.diff(run.axes, axis=0)).sum(axis=0) / np.where(np.isfinite(half), half, TURN)
-    margin = float(limits.smallest_share(run.axes).min()) if np.isfinite(run.axes).all() else -math.inf
+    margin = (
+        float(limits.smallest_share(run.axes).min()) if np.isfinite(run.axes).all() else -math.inf
+    )
     return BeadPath(
-        *place, run.bead, np.zeros(len(run.bead)), run.axes, none, none, float(np.linalg.norm(moved)), margin,
+        *place,
+        run.bead,
+        np.zeros(len(run.bead)),
+        run.axes,
+        none,
+        none,
+        float(np.linalg.norm(moved)),
+        margin,
         reason="closed form",
     )
 
@@ -170,13 +192,17 @@ def _ways(task: Task, bead: Bead) -> Iterator[list[Bead]]:
     if bead.closed:
         for course in directed.courses(task.cell, task.lock, bead):
             for axis in np.flatnonzero(~task.unturned):
-                start = _start(course[:, axis], float(limits.lower[axis]), float(limits.upper[axis]))
+                start = _start(
+                    course[:, axis], float(limits.lower[axis]), float(limits.upper[axis])
+                )
                 if start:
                     yield [bead.started_at(start)]
     whole = bead.run_on(task.overlap)
     for count in range(2, min(MOST_PIECES, (len(whole) - 1) // (FEWEST_POINTS - 1)) + 1):
         cuts = np.round(np.linspace(0, len(whole) - 1, count + 1)).astype(int).tolist()
-        yield [whole.part(slice(low, high + 1)) for low, high in zip(cuts[:-1], cuts[1:], strict=True)]
+        yield [
+            whole.part(slice(low, high + 1)) for low, high in zip(cuts[:-1], cuts[1:], strict=True)
+        ]
 
 
 def _start(angles: Array, low: float, high: float) -> int:

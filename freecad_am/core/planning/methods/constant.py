@@ -42,19 +42,39 @@ def plan(
         clear = None if task.kept is None else _keeps_clear(task, beads, places)
         rz, margin, served = best_rz(task, coarse, task.thresholds(coarse), clear)
         if not served:
-            issues.append(Issue(
-                NOTE, "RZ_CONSTANT", Text("none of {} values of RZ keeps the links clear in the whole job; joints.method: "
-                    "layer-by-layer chooses one for each bead", LOOKED)))
+            issues.append(
+                Issue(
+                    NOTE,
+                    "RZ_CONSTANT",
+                    Text(
+                        "none of {} values of RZ keeps the links clear in the whole job; joints.method: "
+                        "layer-by-layer chooses one for each bead",
+                        LOOKED,
+                    ),
+                )
+            )
         if margin < 0.0:
-            issues.append(Issue(NOTE, "RZ_CONSTANT", Text("none of {} values of RZ serves for the whole job; the nearest to "
-                                                          "it is {:.1f} deg", TRIED, np.degrees(rz))))
+            issues.append(
+                Issue(
+                    NOTE,
+                    "RZ_CONSTANT",
+                    Text(
+                        "none of {} values of RZ serves for the whole job; the nearest to "
+                        "it is {:.1f} deg",
+                        TRIED,
+                        np.degrees(rz),
+                    ),
+                )
+            )
     else:
         rz = float(wanted)
     progress(0.7, "following the beads")
     return _paths(task, beads, places, full, threshold, rz), issues
 
 
-def best_rz(task: Task, points: Points, thresholds: Array, clear: Clear | None = None) -> tuple[float, float, bool]:
+def best_rz(
+    task: Task, points: Points, thresholds: Array, clear: Clear | None = None
+) -> tuple[float, float, bool]:
     """The RZ (rad) with the largest smallest margin over all points, of those with which links are clear, and that margin
     (negative: none is feasible); and whether there are such that links are clear with."""
     rough = np.linspace(-np.pi, np.pi, TRIED, endpoint=False)
@@ -67,7 +87,12 @@ def best_rz(task: Task, points: Points, thresholds: Array, clear: Clear | None =
         best, served = (best, False) if found is None else (found, True)
     near: Array = rough[best] + np.linspace(-1.0, 1.0, FINE) * (TURN / TRIED)
     fine = margins(task, points, thresholds, near)
-    if clear is not None and served and fine.max() >= 0.0 and not clear(near[int(first_most(fine))]):
+    if (
+        clear is not None
+        and served
+        and fine.max() >= 0.0
+        and not clear(near[int(first_most(fine))])
+    ):
         return float(rough[best]), float(there[best]), True
     return float(near[int(first_most(fine))]), float(fine.max()), served
 
@@ -83,7 +108,9 @@ def _keeps_clear(task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, 
         phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
         joints = task.joints(points, phi)
         return not any(
-            kept.touches(np.where(some[:, None], joints, np.nan), points, places).any.any() for some in (few, ~few))
+            kept.touches(np.where(some[:, None], joints, np.nan), points, places).any.any()
+            for some in (few, ~few)
+        )
 
     return clear
 
@@ -103,30 +130,58 @@ def margins(task: Task, points: Points, thresholds: Array, values: Array) -> Arr
 
 
 def _paths(
-    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], points: Points, threshold: Array, rz: float
+    task: Task,
+    beads: Sequence[Bead],
+    places: Sequence[tuple[int, int]],
+    points: Points,
+    threshold: Array,
+    rz: float,
 ) -> list[BeadPath]:
     phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
     phi = _unwrapped(phi, points)
     joints = task.joints(points, phi)
-    return bead_paths(task, beads, places, points, threshold, phi, joints, f"constant RZ {np.degrees(rz):.4f} deg")
+    return bead_paths(
+        task, beads, places, points, threshold, phi, joints, f"constant RZ {np.degrees(rz):.4f} deg"
+    )
 
 
 def bead_paths(
-    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], points: Points, threshold: Array, phi: Array,
-    joints: Array, reason: str,
+    task: Task,
+    beads: Sequence[Bead],
+    places: Sequence[tuple[int, int]],
+    points: Points,
+    threshold: Array,
+    phi: Array,
+    joints: Array,
+    reason: str,
 ) -> list[BeadPath]:
     """Paths without a polynomial, from the rotation phi (T,) and joints (T, axes) of all points."""
     condition = task.condition(points, phi, joints)
-    margin = points.worst(np.minimum(task.rows.margin(joints), condition_margin(condition, threshold)))
+    margin = points.worst(
+        np.minimum(task.rows.margin(joints), condition_margin(condition, threshold))
+    )
     objective = criteria.displacement(task, points, joints)
     ends = np.append(points.first, len(points))
-    return numbered([
-        BeadPath(
-            layer, index, bead, phi[a:b], joints[a:b], condition[a:b], threshold[a:b], float(objective[k]),
-            float(margin[k]), None, reason,
-        )
-        for k, (bead, (layer, index), a, b) in enumerate(zip(beads, places, ends[:-1], ends[1:]))
-    ])
+    return numbered(
+        [
+            BeadPath(
+                layer,
+                index,
+                bead,
+                phi[a:b],
+                joints[a:b],
+                condition[a:b],
+                threshold[a:b],
+                float(objective[k]),
+                float(margin[k]),
+                None,
+                reason,
+            )
+            for k, (bead, (layer, index), a, b) in enumerate(
+                zip(beads, places, ends[:-1], ends[1:])
+            )
+        ]
+    )
 
 
 def _unwrapped(phi: Array, points: Points) -> Array:

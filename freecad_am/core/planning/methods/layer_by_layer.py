@@ -40,7 +40,11 @@ def plan(
     """
     fixed = given.coefficients(task.parameters, places)
     free = [k for k in range(len(beads)) if k not in fixed]
-    paths, helped = _searched(task, [beads[k] for k in free], [places[k] for k in free], progress) if free else ([], {})
+    paths, helped = (
+        _searched(task, [beads[k] for k in free], [places[k] for k in free], progress)
+        if free
+        else ([], {})
+    )
     of_bead = dict(zip(free, paths)) | given.paths(task, beads, places, fixed)
     together, issues = fit.put_in(
         task, [of_bead[k] for k in range(len(beads))], {free[k]: some for k, some in helped.items()}
@@ -56,7 +60,9 @@ def _searched(
     coarse_threshold, threshold = task.thresholds(coarse), task.thresholds(full)
     progress(0.1, "searching rotations")
     joined = task.joined & full.closed
-    found = search.everywhere(task, coarse, coarse_threshold, best_alone=task.kept is None and not joined.any())
+    found = search.everywhere(
+        task, coarse, coarse_threshold, best_alone=task.kept is None and not joined.any()
+    )
     if task.kept is not None:
         progress(0.2, "keeping the arm clear")
         looked = gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
@@ -73,7 +79,12 @@ def _searched(
     wanted = np.array([k not in helped for k in each])
     wanted |= np.array([len(helped.get(int(k), ())) > 1 and bool(joined[k]) for k in each])
     refined = refine.refine(
-        task, full, threshold, starts, wanted, lambda share: progress(0.4 + 0.3 * share, "refining layers")
+        task,
+        full,
+        threshold,
+        starts,
+        wanted,
+        lambda share: progress(0.4 + 0.3 * share, "refining layers"),
     )
     progress(0.7, "settling")
     paths = _resolved(task, beads, places, (coarse, coarse_threshold), (full, threshold), refined)
@@ -83,24 +94,44 @@ def _searched(
     paths = [others.get(k) or path for k, path in enumerate(paths)]
     if task.kept is not None:
         progress(0.8, "keeping the arm clear")
-        reached = dataclasses.replace(refined, coefficients=np.array([path.coefficients for path in paths]))
+        reached = dataclasses.replace(
+            refined, coefficients=np.array([path.coefficients for path in paths])
+        )
         clear, changed = arm_clear.brought_clear(task, task.kept, beads, places, start, reached)
         if changed.any():
             moved = judged(task, beads, places, full, threshold, clear.coefficients, clear)
             paths = [other if one else path for path, other, one in zip(paths, moved, changed)]
     # a joined bead that a higher degree serves in one piece need not be split
-    helped = {k: some for k, some in helped.items() if len(some) == 1 or not joined[k] or paths[k].margin < FITS}
-    late = [k for k in range(len(beads)) if k not in helped and k not in hopeless
-            and (paths[k].margin < FITS or (task.kept is None and others.get(k, paths[k]) is None))]
-    helped.update({
-        k: found for k, found in zip(late, fit.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))
-        if found is not None
-    })
+    helped = {
+        k: some
+        for k, some in helped.items()
+        if len(some) == 1 or not joined[k] or paths[k].margin < FITS
+    }
+    late = [
+        k
+        for k in range(len(beads))
+        if k not in helped
+        and k not in hopeless
+        and (paths[k].margin < FITS or (task.kept is None and others.get(k, paths[k]) is None))
+    ]
+    helped.update(
+        {
+            k: found
+            for k, found in zip(
+                late, fit.for_beads(task, [beads[k] for k in late], [places[k] for k in late])
+            )
+            if found is not None
+        }
+    )
     return paths, helped
 
 
 def _resolved(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], coarse: tuple[Points, Array], full: tuple[Points, Array],
+    task: Task,
+    beads: Sequence[Bead],
+    places: Sequence[Place],
+    coarse: tuple[Points, Array],
+    full: tuple[Points, Array],
     refined: refine.Refined,
 ) -> list[BeadPath]:
     """The paths of all beads with the ties of their optima resolved. coarse, full: few and all of their points, with the

@@ -37,17 +37,27 @@ def plan(
     threshold = task.thresholds(points)
     counts = np.diff(np.append(points.first, len(points)))
     kept = task.kept
-    deposited = np.array([0 if kept is None else kept.moment(place) for place in places], dtype=np.int64)
+    deposited = np.array(
+        [0 if kept is None else kept.moment(place) for place in places], dtype=np.int64
+    )
     phi = np.zeros(len(points))
     joints = np.full((len(points), len(task.weights)), np.nan)
     for number in range(counts.max()):
         index = points.first[counts > number] + number
         at = points.each(index)
         if number == 0:
-            phi[index], joints[index] = _searched(task, at, threshold[index], deposited[points.bead[index]], None)
+            phi[index], joints[index] = _searched(
+                task, at, threshold[index], deposited[points.bead[index]], None
+            )
             continue
         phi[index], joints[index] = _step(
-            task, at, threshold[index], deposited[points.bead[index]], phi[index - 1], joints[index - 1])
+            task,
+            at,
+            threshold[index],
+            deposited[points.bead[index]],
+            phi[index - 1],
+            joints[index - 1],
+        )
         if number % 20 == 0:
             progress(0.1 + 0.8 * number / counts.max(), "going from point to point")
     joints = task.in_range(unwrapped(joints, points), points)
@@ -67,13 +77,17 @@ def _step(
         rates, _ = task.rotation_rates(part.frames, phi[good], joints[good])
         away = joints[good] - before[good]
         curvature = (rates * rates) @ task.weights
-        phi[good] -= np.clip(((away * rates) @ task.weights) / np.maximum(curvature, 1e-15), -0.2, 0.2)
+        phi[good] -= np.clip(
+            ((away * rates) @ task.weights) / np.maximum(curvature, 1e-15), -0.2, 0.2
+        )
     joints = _near(task, at, phi, before)
     bad = _margin(task, at, phi, joints, threshold) < 0.0
     if task.kept is not None:
         bad |= task.kept.contact.touches(joints, deposited).any
     if bad.any():
-        phi[bad], joints[bad] = _searched(task, at.each(np.flatnonzero(bad)), threshold[bad], deposited[bad], before[bad])
+        phi[bad], joints[bad] = _searched(
+            task, at.each(np.flatnonzero(bad)), threshold[bad], deposited[bad], before[bad]
+        )
     return phi, joints
 
 
@@ -106,7 +120,9 @@ def _searched(
     )
     if task.kept is not None:
         looked = np.where((margin >= 0.0)[..., None], joints, np.nan)
-        near = task.kept.contact.touches(looked.reshape(-1, looked.shape[2]), np.tile(deposited, CANDIDATES)).any
+        near = task.kept.contact.touches(
+            looked.reshape(-1, looked.shape[2]), np.tile(deposited, CANDIDATES)
+        ).any
         clear = (margin >= 0.0) & ~near.reshape(margin.shape)
         margin = np.where(clear.any(axis=0) & ~clear, UNREACHABLE, margin)
     best = first_most(margin, axis=0)

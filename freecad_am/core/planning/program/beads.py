@@ -21,7 +21,10 @@ STILL = 2e-5
 
 
 def deposited(
-    runs: Sequence[tuple[Moves, int | None]], name: str, process: ProcessParameters, parameters: ProgramParameters
+    runs: Sequence[tuple[Moves, int | None]],
+    name: str,
+    process: ProcessParameters,
+    parameters: ProgramParameters,
 ) -> list[Block]:
     """The blocks of a bead of the class `name` with runs of its moves and the schedule of each. InputError NO_SCHEDULE where
     it has none and others have, or the arc instruction needs one; SCHEDULE for another one within the bead that is not told
@@ -30,13 +33,23 @@ def deposited(
     moves, numbers = zip(*runs, strict=True)
     if None in numbers and (process.scheduled or by == ARC):
         raise InputError(
-            "NO_SCHEDULE", "process.schedule", "beads of the class {} have no schedule, {}; give process.schedule, or one "
-            "in process.classes.{}", name or "of an earlier version",
-            Word("which arc instructions name" if by == ARC else "and would be laid by that of the bead before"), name,
+            "NO_SCHEDULE",
+            "process.schedule",
+            "beads of the class {} have no schedule, {}; give process.schedule, or one "
+            "in process.classes.{}",
+            name or "of an earlier version",
+            Word(
+                "which arc instructions name"
+                if by == ARC
+                else "and would be laid by that of the bead before"
+            ),
+            name,
         )
     if len(set(numbers)) > 1 and by != OUTPUT and not parameters.dry_run:
         raise InputError(
-            "SCHEDULE", "program.schedule.by", "within a bead only an output can change the schedule: calls stop the "
+            "SCHEDULE",
+            "program.schedule.by",
+            "within a bead only an output can change the schedule: calls stop the "
             "machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and "
             "end out",
         )
@@ -44,14 +57,21 @@ def deposited(
     before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead
     # what waits, or is told where the machine stands before, is not ahead of anything
     on = DepositOn(
-        own.lead_on, None if moves[0].wire is None else float(moves[0].wire[0]), schedule,
+        own.lead_on,
+        None if moves[0].wire is None else float(moves[0].wire[0]),
+        schedule,
         None if own.lead_on or before else lead,
     )
     weave = [Weave(own.weave)] if own.weave else []  # a dry run has it too: it is motion
     blocks: list[Block] = [*before, on, *weave, moves[0]]
-    for run, number in runs[1:]:  # posts may stop between runs, so that there are no more of them than schedules
+    for run, number in runs[
+        1:
+    ]:  # posts may stop between runs, so that there are no more of them than schedules
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
-    off, still = DepositOff(own.lead_off, schedule, None if own.lead_off else lead), [Weave(0)] if weave else []
+    off, still = (
+        DepositOff(own.lead_off, schedule, None if own.lead_off else lead),
+        [Weave(0)] if weave else [],
+    )
     # one that is ahead comes while the last move is still woven
     return [*blocks, *still, off] if off.ahead is None else [*blocks, off, *still]
 
@@ -83,5 +103,9 @@ def standing(blocks: Sequence[Block]) -> tuple[Block, ...]:
         if isinstance(block, Moves) and len(block):
             places = [*places, *block.joints[-2:]][-2:]
         stands = len(places) < 2 or bool(np.abs(places[1] - places[0]).max() <= STILL)
-        found.append(dataclasses.replace(block, ahead=None) if isinstance(block, DepositOn) and stands else block)
+        found.append(
+            dataclasses.replace(block, ahead=None)
+            if isinstance(block, DepositOn) and stands
+            else block
+        )
     return tuple(found)

@@ -53,8 +53,14 @@ ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
 
 def build(
-    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, controller: Controller, name: str,
-    waits: Sequence[float] = (), returns: Collection[tuple[int, int]] = (),
+    motion: Motion,
+    cell: Cell,
+    process: ProcessParameters,
+    parameters: ProgramParameters,
+    controller: Controller,
+    name: str,
+    waits: Sequence[float] = (),
+    returns: Collection[tuple[int, int]] = (),
 ) -> Program:
     """The program of a motion, for a controller that takes it.
 
@@ -66,10 +72,14 @@ def build(
     """
     blocks = _Blocks(motion, cell, process, parameters, controller).of_all(waits, returns)
     remarks = remarks_of(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
-    return replace(without_moves(cell, parameters, controller, name), blocks=blocks, remarks=remarks)
+    return replace(
+        without_moves(cell, parameters, controller, name), blocks=blocks, remarks=remarks
+    )
 
 
-def without_moves(cell: Cell, parameters: ProgramParameters, controller: Controller, name: str) -> Program:
+def without_moves(
+    cell: Cell, parameters: ProgramParameters, controller: Controller, name: str
+) -> Program:
     """What a program tells of its cell before the first move."""
     return Program(
         name=name,
@@ -85,34 +95,52 @@ def without_moves(cell: Cell, parameters: ProgramParameters, controller: Control
         deposit_output=parameters.deposit_output,
         dry_run=parameters.dry_run,
         max_speed=tuple(cell.machine.max_speed.tolist()),
-        pulses_per_degree=cell.machine.pulses_per_degree, speed_unit=cell.machine.speed_unit,
+        pulses_per_degree=cell.machine.pulses_per_degree,
+        speed_unit=cell.machine.speed_unit,
         station=six_of(frames.inverse(cell.machine.base) @ frames_of(cell, parameters)[0]),
         carried=six_of(frames_of(cell, parameters)[1]),
-        axis_names=tuple(_letter(name) for name in cell.machine.axes) if cell.arrangement.named_axes else (),
+        axis_names=tuple(_letter(name) for name in cell.machine.axes)
+        if cell.arrangement.named_axes
+        else (),
         axis_kinds=tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding)
-        if cell.arrangement.named_axes else (),
+        if cell.arrangement.named_axes
+        else (),
         nc=NcOptions(
-            parameters.nc.feed == "path", parameters.nc.compress, parameters.nc.smooth, parameters.nc.tolerance,
-            parameters.nc.deposit_on or "", parameters.nc.deposit_off or "", parameters.nc.switch_kinematics,
-            parameters.nc.wire_output, parameters.nc.wire_gain,
+            parameters.nc.feed == "path",
+            parameters.nc.compress,
+            parameters.nc.smooth,
+            parameters.nc.tolerance,
+            parameters.nc.deposit_on or "",
+            parameters.nc.deposit_off or "",
+            parameters.nc.switch_kinematics,
+            parameters.nc.wire_output,
+            parameters.nc.wire_gain,
         ),
         external_kinds=external_kinds(cell),
         unit=_unit(cell, parameters, controller),
         first_external=parameters.axes.first,
         schedule_output=parameters.schedule.output,
-        axis_machines=tuple(owner.title for owner in _owners(cell)), of_urdf=tuple(owner.of_urdf for owner in _owners(cell)),
+        axis_machines=tuple(owner.title for owner in _owners(cell)),
+        of_urdf=tuple(owner.of_urdf for owner in _owners(cell)),
     )
 
 
 def _owners(cell: Cell) -> list[Machine]:
     """What each axis belongs to: the robot, or a mechanism beside it."""
-    owners = [cell.robot, *(one.machine for one in cell.external.mechanisms)] if cell.external else [cell.robot]
+    owners = (
+        [cell.robot, *(one.machine for one in cell.external.mechanisms)]
+        if cell.external
+        else [cell.robot]
+    )
     return [owner for owner in owners for _ in range(owner.chain.axes)]
 
 
 def external_kinds(cell: Cell) -> tuple[str, ...]:
     """'linear' or 'rotary' of each external axis."""
-    return tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding[cell.robot.chain.axes :])
+    return tuple(
+        LINEAR if slides else ROTARY
+        for slides in cell.machine.chain.sliding[cell.robot.chain.axes :]
+    )
 
 
 def _unit(cell: Cell, parameters: ProgramParameters, controller: Controller) -> str:
@@ -145,10 +173,17 @@ def carried(cell: Cell, parameters: ProgramParameters) -> Six | None:
 def rows_from(motion: Motion, start: StartParameters) -> Mask:
     """(n,) bool: the rows run when a job resumes at a bead; its retract from the bead before is left out."""
     run = (motion.layer > start.layer) | (motion.layer == start.layer) & (motion.bead >= start.bead)
-    if not (run & motion.deposit).any() or not ((motion.layer == start.layer) & (motion.bead == start.bead)).any():
+    if (
+        not (run & motion.deposit).any()
+        or not ((motion.layer == start.layer) & (motion.bead == start.bead)).any()
+    ):
         raise InputError(
-            "START_AT", "program.start_at",
-            "there is no bead {} in a layer {}; choose from layers 0 to {}", start.bead, start.layer, motion.layer.max(),
+            "START_AT",
+            "program.start_at",
+            "there is no bead {} in a layer {}; choose from layers 0 to {}",
+            start.bead,
+            start.layer,
+            motion.layer.max(),
         )
     first = int(np.flatnonzero(run)[0])
     ahead = np.arange(len(motion)) < first + int(motion.deposit[first:].argmax())
@@ -166,9 +201,13 @@ class _Blocks:
     parameters: ProgramParameters
     controller: Controller
 
-    def of_all(self, waits: Sequence[float], returns: Collection[tuple[int, int]]) -> tuple[Block, ...]:
+    def of_all(
+        self, waits: Sequence[float], returns: Collection[tuple[int, int]]
+    ) -> tuple[Block, ...]:
         """The blocks of the rows that are run; waits and returns as of `build`."""
-        groups = _groups(self.motion, np.flatnonzero(rows_from(self.motion, self.parameters.start_at)))
+        groups = _groups(
+            self.motion, np.flatnonzero(rows_from(self.motion, self.parameters.start_at))
+        )
         blocks: list[Block] = []
         layer: int | None = None
         for number, rows in enumerate(groups):
@@ -211,13 +250,19 @@ class _Blocks:
             onto[-1] = True
         above = [self._moves(rows[~onto], RAPID, arriving)] if not onto.all() else []
         down = self._onto(rows[onto], arriving and not above)
-        return [*above, WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *place), *down]
+        return [
+            *above,
+            WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *place),
+            *down,
+        ]
 
     def _onto(self, rows: Integers, arriving: bool) -> list[Block]:
         """Rapids onto a bead, the last one as a linear move where the controller needs one."""
         if not linear_approach.asked(self.parameters, self.controller):
             return [self._moves(rows, RAPID, arriving)]
-        linear_approach.check(self.motion, self.cell, rows, arriving, self.parameters.schedule.by == ARC)
+        linear_approach.check(
+            self.motion, self.cell, rows, arriving, self.parameters.schedule.by == ARC
+        )
         before = [self._moves(rows[:-1], RAPID, arriving)] if len(rows) > 1 else []
         return [*before, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
 
@@ -230,11 +275,17 @@ class _Blocks:
         position = rotation = direction = flange = None
         configuration = None
         if self.controller.flange and cell.arrangement.holds_part:
-            flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(motion.joints[rows])
+            flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(
+                motion.joints[rows]
+            )
         if parameters.motion == "cartesian":
             station, carried = frames_of(cell, parameters)
             tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
-            seen = frames.inverse(tip) @ station if cell.torch_stands else frames.inverse(station) @ tip
+            seen = (
+                frames.inverse(tip) @ station
+                if cell.torch_stands
+                else frames.inverse(station) @ tip
+            )
             position, arm = seen[:, :3, 3], cell.machine.arm
             if arm is None:
                 direction = seen[:, :3, 2]
@@ -244,12 +295,24 @@ class _Blocks:
         wire = motion.wire[rows]
         with_wire = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
         return Moves(
-            kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
-            joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
-            position=position, rotation=rotation, configuration=configuration, direction=direction,
-            wire=wire if with_wire else None, flange=flange,
-            interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
-            stops=motion.stops[rows], halt=motion.halt[rows], role=_roles(motion.role[rows]),
+            kind=kind,
+            layer=int(motion.layer[rows[0]]),
+            bead=int(motion.bead[rows[0]]),
+            joints=cell.machine.to_controller(motion.joints[rows]),
+            duration=duration,
+            speed=motion.speed[rows],
+            position=position,
+            rotation=rotation,
+            configuration=configuration,
+            direction=direction,
+            wire=wire if with_wire else None,
+            flange=flange,
+            interpolation=LINEAR_MOVE
+            if kind == DEPOSIT and parameters.motion == "cartesian"
+            else JOINT_MOVE,
+            stops=motion.stops[rows],
+            halt=motion.halt[rows],
+            role=_roles(motion.role[rows]),
         )
 
 

@@ -46,9 +46,13 @@ def with_short_approaches(motion: Motion, cell: Cell) -> Motion:
     if not len(ends):
         return motion
     rows = np.insert(np.arange(len(motion)), ends, ends)
-    columns = {field.name: getattr(motion, field.name)[rows] for field in dataclasses.fields(motion)}
+    columns = {
+        field.name: getattr(motion, field.name)[rows] for field in dataclasses.fields(motion)
+    }
     added = ends + np.arange(len(ends))
-    columns["joints"][added] = motion.joints[ends] + share[:, None] * (motion.joints[ends - 1] - motion.joints[ends])
+    columns["joints"][added] = motion.joints[ends] + share[:, None] * (
+        motion.joints[ends - 1] - motion.joints[ends]
+    )
     flange = cell.machine.chain.forward(columns["joints"][added])
     columns["position"][added], columns["tool"][added] = cell.tip_in_part(flange)
     columns["duration"][added] = (1.0 - share) * motion.duration[ends]
@@ -63,13 +67,21 @@ def with_short_approaches(motion: Motion, cell: Cell) -> Motion:
 def apart(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, Array]:
     """(k,) mm and rad by which a linear move to each of the rows `ends` (k,) leaves the way straight in the joints."""
     joints, position, tool = (
-        (column[ends - 1, None] + _BETWEEN[:, None] * (column[ends] - column[ends - 1])[:, None]).reshape(-1, width)
-        for column, width in ((motion.joints, motion.joints.shape[1]), (motion.position, 3), (motion.tool, 3))
+        (
+            column[ends - 1, None] + _BETWEEN[:, None] * (column[ends] - column[ends - 1])[:, None]
+        ).reshape(-1, width)
+        for column, width in (
+            (motion.joints, motion.joints.shape[1]),
+            (motion.position, 3),
+            (motion.tool, 3),
+        )
     )
     tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
     shape = len(ends), len(_BETWEEN)
-    off, tilt = (np.linalg.norm(one - other, axis=1).reshape(shape).max(axis=1, initial=0.0)
-                 for one, other in ((tip, position), (axis, tool)))
+    off, tilt = (
+        np.linalg.norm(one - other, axis=1).reshape(shape).max(axis=1, initial=0.0)
+        for one, other in ((tip, position), (axis, tool))
+    )
     return off, tilt
 
 
@@ -81,14 +93,21 @@ def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = T
     code, key = ("SCHEDULE", "program.schedule.by") if arc else ("TRIGGER", "program.trigger.lead")
     if arriving and len(rows) == 1:
         raise InputError(
-            code, place, "the deposit begins with a linear move onto the bead, and the program begins at the bead itself; "
-            "give a retract distance, or another {}", key,
+            code,
+            place,
+            "the deposit begins with a linear move onto the bead, and the program begins at the bead itself; "
+            "give a retract distance, or another {}",
+            key,
         )
     off, tilt = apart(motion, cell, last)
     if not (off[0] <= OFF_WAY_MM and tilt[0] <= OFF_WAY_RAD):
         raise InputError(
-            code, place, "the deposit begins with a linear move onto the bead, which would leave the checked way "
-            "by {:.2g} mm; give a shorter retract distance, or another {}", off[0], key,
+            code,
+            place,
+            "the deposit begins with a linear move onto the bead, which would leave the checked way "
+            "by {:.2g} mm; give a shorter retract distance, or another {}",
+            off[0],
+            key,
         )
 
 

@@ -30,11 +30,16 @@ def six_of(pose: Array) -> Six:
     return (x, y, z, rx, ry, rz)
 
 
-def remarks_of(cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]) -> tuple[str, ...]:
+def remarks_of(
+    cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]
+) -> tuple[str, ...]:
     moved = not isinstance(parameters.origin, str)
     station, carried = frames_of(cell, parameters)
     if not cell.machine.free:
-        where, frame = "Work offset" if parameters.motion == "cartesian" else "Platform on the table", carried
+        where, frame = (
+            "Work offset" if parameters.motion == "cartesian" else "Platform on the table",
+            carried,
+        )
     else:
         where = "Deposition point" if cell.torch_stands else "User frame" if moved else "Platform"
         where += " on the face" if cell.external is not None and cell.external.turning else ""
@@ -43,7 +48,11 @@ def remarks_of(cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]
         cell.machine.title,
         f"Limits: {cell.limits.name}",
         *_pose_remarks(where, six_of(frame)),
-        *(() if isinstance(parameters.origin, str) else _pose_remarks("Program origin on the part", parameters.origin)),
+        *(
+            ()
+            if isinstance(parameters.origin, str)
+            else _pose_remarks("Program origin on the part", parameters.origin)
+        ),
         *_ranges(moves),
         *((cell.machine.controller_remark,) if cell.machine.controller_remark else ()),
     )

@@ -34,13 +34,17 @@ class Attempt:
     tolerance: float = STRAY_MM
 
 
-def attempts(cell: Cell, retract: float, beads: Sequence[Bead], bodies: Sequence[Body]) -> list[Attempt]:
+def attempts(
+    cell: Cell, retract: float, beads: Sequence[Bead], bodies: Sequence[Body]
+) -> list[Attempt]:
     """What is tried in turn after the way asked for, up to where the nozzle is beyond the sphere about all that is there."""
     radius = 0.5 * cell.platform_diameter
     x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
     platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
     all_ = (*bodies, *cell.in_part())
-    points = np.vstack([*(bead.points for bead in beads), platform, *(body.vertices for body in all_)])
+    points = np.vstack(
+        [*(bead.points for bead in beads), platform, *(body.vertices for body in all_)]
+    )
     # from anywhere inside, a way of the diameter along any direction leads out of it
     furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
     base = retract or FIRST_RETRACT

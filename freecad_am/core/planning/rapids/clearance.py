@@ -70,7 +70,11 @@ class RapidObstacles:
 
     def __init__(self, cell: Cell, deposit: Beads, bodies: Sequence[Body]) -> None:
         self.cell = cell
-        platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
+        platform = (
+            [disc(cell.platform_diameter, cell.mount, "the platform")]
+            if cell.platform_diameter > 0.0
+            else []
+        )
         self.bodies = (*bodies, *platform, *cell.in_part())
         nozzle = cell.nozzle
         self._size = Size(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length)
@@ -96,9 +100,13 @@ class RapidObstacles:
             return []
         tip = _driven(self.cell, moves, COARSE).tip
         reach = self._reach + COARSE
-        touching: dict[str, Touching] = {"the deposit": functools.partial(self._deposit_touched, moves=moves)}
+        touching: dict[str, Touching] = {
+            "the deposit": functools.partial(self._deposit_touched, moves=moves)
+        }
         for body in self.bodies:
-            touching[body.name] = functools.partial(_body_touched, scene((body,), tip, reach).bodies)
+            touching[body.name] = functools.partial(
+                _body_touched, scene((body,), tip, reach).bodies
+            )
         return [name for name, touched in touching.items() if self._met(moves, touched).any()]
 
     def _met(self, moves: Moves, touching: Touching) -> Mask:
@@ -116,10 +124,15 @@ class RapidObstacles:
         near = np.zeros(len(looks.move), dtype=bool)
         near[left] = touching(_thicker(nozzle, 0.5 * COARSE).rows(left), looks.of(left))
         mark(np.flatnonzero(near))
-        before = np.flatnonzero((looks.move[1:] == looks.move[:-1]) & (near[1:] | near[:-1]) & ~met[looks.move[:-1]])
+        before = np.flatnonzero(
+            (looks.move[1:] == looks.move[:-1]) & (near[1:] | near[:-1]) & ~met[looks.move[:-1]]
+        )
         parts = int(np.ceil(COARSE / FINE))
         step = np.linspace(0.0, 1.0, parts + 1)
-        share = looks.share[before, None] + step * (looks.share[before + 1] - looks.share[before])[:, None]
+        share = (
+            looks.share[before, None]
+            + step * (looks.share[before + 1] - looks.share[before])[:, None]
+        )
         close = _looks(self.cell, moves, np.repeat(looks.move[before], parts + 1), share.ravel())
         touched = touching(self._nozzle(moves, close), close)
         return met | (np.bincount(close.move, touched, minlength=len(moves.start)) > 0)
@@ -133,7 +146,9 @@ class RapidObstacles:
         return found
 
     def _deposit_touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
-        found: Mask = self.deposited.touched(nozzle.deposit, looks.tip, looks.axis, moves.deposited[looks.move])
+        found: Mask = self.deposited.touched(
+            nozzle.deposit, looks.tip, looks.axis, moves.deposited[looks.move]
+        )
         return found
 
     @property
@@ -150,7 +165,9 @@ class RapidObstacles:
             known = np.isfinite(self._box).all()
             more = 0.5 * (high - low) if known else np.zeros(3)
             least, most = self._box
-            self._box = np.array([np.where(low < least, low - more, least), np.where(high > most, high + more, most)])
+            self._box = np.array(
+                [np.where(low < least, low - more, least), np.where(high > most, high + more, most)]
+            )
             self._bodies = scene(self.bodies, self._box, self._reach).bodies
         return self._bodies
 
@@ -168,7 +185,8 @@ def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
     # an arm's tip goes far while its axes hardly turn
     same = looks.move[1:] == looks.move[:-1]
     way = np.linalg.norm(np.diff(looks.tip, axis=0), axis=1) + cell.nozzle.length * np.linalg.norm(
-        np.diff(looks.axis, axis=0), axis=1)
+        np.diff(looks.axis, axis=0), axis=1
+    )
     longest = np.zeros(len(count))
     np.maximum.at(longest, looks.move[1:][same], way[same])
     more = count * np.maximum(np.ceil(longest / largest).astype(np.intp), 1)
@@ -199,8 +217,14 @@ def _body_touched(bodies: Bodies, nozzle: Nozzle, looks: Looks) -> Mask:
 
 def _thicker(nozzle: Nozzle, more: float) -> Nozzle:
     """A nozzle that holds all that is no farther than so many mm from the nozzle."""
-    return Nozzle(*(
-        replace(solid, radius=solid.radius + more * np.hypot(1.0, solid.slope), low=solid.low - more, high=solid.high + more)
-        for solid in (nozzle.bodies, nozzle.deposit)
-    ))
-
+    return Nozzle(
+        *(
+            replace(
+                solid,
+                radius=solid.radius + more * np.hypot(1.0, solid.slope),
+                low=solid.low - more,
+                high=solid.high + more,
+            )
+            for solid in (nozzle.bodies, nozzle.deposit)
+        )
+    )

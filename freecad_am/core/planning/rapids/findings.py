@@ -27,10 +27,15 @@ def findings(ways: RapidWays) -> tuple[Issue, ...]:
 def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
     """About a bead on the rapid way to which the nozzle would meet what the names tell."""
     return Issue(
-        ERROR, "RAPID_COLLISION",
-        Text("on its way from the bead before the nozzle would meet {} at every retract distance and direction tried, and "
-            "no way round was found; move the seam or the part, or take a more slender nozzle", Text.joined(", ", names)),
-        layer, bead,
+        ERROR,
+        "RAPID_COLLISION",
+        Text(
+            "on its way from the bead before the nozzle would meet {} at every retract distance and direction tried, and "
+            "no way round was found; move the seam or the part, or take a more slender nozzle",
+            Text.joined(", ", names),
+        ),
+        layer,
+        bead,
     )
 
 
@@ -40,7 +45,8 @@ def _failures(ways: RapidWays) -> list[Issue]:
     failed = [(ways.beads[end // 2], failure) for end, failure in sorted(ways.failures.items())]
     failed += [
         (ways.place(k), Failure(SINGULAR, 0, way.singular, ways.retracts.floor))
-        for k, way in enumerate(ways.ways) if way.singular is not None and ways.retracts.sound[ways.ends(k)].all()
+        for k, way in enumerate(ways.ways)
+        if way.singular is not None and ways.retracts.sound[ways.ends(k)].all()
     ]
     for path, failure in failed:
         found.setdefault((path.layer, path.index), _failed(failure, path, ways.cell))
@@ -52,22 +58,32 @@ def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
     if failure.kind == LIMIT:
         # what couples axes couples turning ones
         alone = failure.label < limits.axes
-        unit, per = (machine.units[failure.label], float(machine.unit_values[failure.label])) if alone else (
-            "deg", float(machine.unit_values[-1]))
+        unit, per = (
+            (machine.units[failure.label], float(machine.unit_values[failure.label]))
+            if alone
+            else ("deg", float(machine.unit_values[-1]))
+        )
         text: str = Text(
             "{} would be at {:.2f} {} on the retract before or after the bead, its limit is {:g} {}, and no other height, "
             "direction or rotation keeps within limits; lower process.between_layers.lift or move the part in the cell",
-            limits.labels[failure.label], failure.value / per, unit, failure.bound / per, unit
+            limits.labels[failure.label],
+            failure.value / per,
+            unit,
+            failure.bound / per,
+            unit,
         )
     elif failure.kind == SINGULAR:
         text = Text(
             "condition {:.4f} on a rapid move before or after the bead is below the {:g} allowed, and no other height, "
             "direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell",
-            failure.value, failure.bound
+            failure.value,
+            failure.bound,
         )
     else:
-        text = ("the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower "
-                "process.between_layers.lift or move the part in the cell")
+        text = (
+            "the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower "
+            "process.between_layers.lift or move the part in the cell"
+        )
     return Issue(ERROR, f"RAPID_{failure.kind}", text, path.layer, path.index)
 
 
@@ -84,17 +100,46 @@ def _raised(ways: RapidWays) -> list[Issue]:
             aside.append(ways.place(k).layer)
     notes = []
     if raised:
-        notes.append(Issue(
-            NOTE, "RAPID_LIFTED", Text("before {} beads the tool is withdrawn by up to {:.3g} mm instead of {:g} mm to pass "
-                "clear", len(raised), highest, ways.retract), raised[0]))
+        notes.append(
+            Issue(
+                NOTE,
+                "RAPID_LIFTED",
+                Text(
+                    "before {} beads the tool is withdrawn by up to {:.3g} mm instead of {:g} mm to pass "
+                    "clear",
+                    len(raised),
+                    highest,
+                    ways.retract,
+                ),
+                raised[0],
+            )
+        )
     if aside:
-        notes.append(Issue(
-            NOTE, "RAPID_ASIDE", Text("before {} beads the tool is retracted in another direction than along its axis, or "
-                "turned on the way, to pass clear", len(aside)), aside[0]))
+        notes.append(
+            Issue(
+                NOTE,
+                "RAPID_ASIDE",
+                Text(
+                    "before {} beads the tool is retracted in another direction than along its axis, or "
+                    "turned on the way, to pass clear",
+                    len(aside),
+                ),
+                aside[0],
+            )
+        )
     if ways.led.ways:
-        notes.append(Issue(
-            NOTE, "RAPID_ROUND", Text("before {} beads the rapid way is led round what is in the way of all retracts, by "
-                "places between", len(ways.led.ways)), ways.place(ways.led.ways[0]).layer))
+        notes.append(
+            Issue(
+                NOTE,
+                "RAPID_ROUND",
+                Text(
+                    "before {} beads the rapid way is led round what is in the way of all retracts, by "
+                    "places between",
+                    len(ways.led.ways),
+                ),
+                ways.place(ways.led.ways[0]).layer,
+            )
+        )
     return notes
 
 
@@ -102,16 +147,32 @@ def _others(ways: RapidWays) -> list[Issue]:
     """A note about other ways taken because the machine cannot go those asked for."""
     cleared = {end for k in (*ways.raised, *ways.led.ways) for end in ways.ends(k)}
     other: list[tuple[int, Leg]] = [
-        (end, leg) for end, leg in ways.legs.items() if leg is not None and leg.choice != ASKED and end not in cleared
+        (end, leg)
+        for end, leg in ways.legs.items()
+        if leg is not None and leg.choice != ASKED and end not in cleared
     ]
     if not other:
         return []
     heights = [leg.height for _, leg in other]
     leaning = sum(leg.choice.direction != ASKED.direction for _, leg in other)
-    turning = sum((leg.choice.turn, leg.choice.lean) != (ASKED.turn, ASKED.lean) for _, leg in other)
-    return [Issue(
-        NOTE, "RAPID_OTHER", Text("at {} ends of beads the retract of {:g} mm would leave limits, reach or condition; it is "
-            "{:.3g} to {:.3g} mm there, {} times in another direction than along the tool axis and {} times with the tool "
-            "turned", len(other), ways.retract, min(heights), max(heights), leaning, turning),
+    turning = sum(
+        (leg.choice.turn, leg.choice.lean) != (ASKED.turn, ASKED.lean) for _, leg in other
+    )
+    return [
+        Issue(
+            NOTE,
+            "RAPID_OTHER",
+            Text(
+                "at {} ends of beads the retract of {:g} mm would leave limits, reach or condition; it is "
+                "{:.3g} to {:.3g} mm there, {} times in another direction than along the tool axis and {} times with the tool "
+                "turned",
+                len(other),
+                ways.retract,
+                min(heights),
+                max(heights),
+                leaning,
+                turning,
+            ),
             ways.beads[other[0][0] // 2].layer,
-    )]
+        )
+    ]

@@ -31,10 +31,16 @@ class LedRound:
         self.cell, self.retracts, self.clear = cell, retracts, clear
         self.ways: list[int] = []
         self._lost = 0
-        self._known: list[Array] = []  # places of the last ways found, there and back: the next one often leads the same way
+        self._known: list[
+            Array
+        ] = []  # places of the last ways found, there and back: the next one often leads the same way
 
     def found(
-        self, ends: Mapping[int, Array], legs: Mapping[int, Leg | None], attempts: Sequence[Attempt], deposited: int
+        self,
+        ends: Mapping[int, Array],
+        legs: Mapping[int, Leg | None],
+        attempts: Sequence[Attempt],
+        deposited: int,
     ) -> tuple[Legs, Array] | None:
         """Legs off the ends of beads, with the joints (axes,) at the ends by their number, and the places (m, axes) by which
         a way leads from one to the other, so many points being laid; None where there is none. legs: those tried before."""
@@ -55,7 +61,12 @@ class LedRound:
         return own, places
 
     def _off(
-        self, end: int, joints: Array, before: Leg | None, attempts: Sequence[Attempt], deposited: int
+        self,
+        end: int,
+        joints: Array,
+        before: Leg | None,
+        attempts: Sequence[Attempt],
+        deposited: int,
     ) -> tuple[Leg | None, Array] | None:
         """A clear way off the end of a bead, none where it needs none, and where that leads to; None without any."""
         if before is None and self._clear(joints[None], joints[None], deposited)[0]:
@@ -72,7 +83,12 @@ class LedRound:
             yield before
         for attempt in attempts:
             found, _ = self.retracts.found(
-                np.array([end]), np.array([attempt.height]), attempt.direction, attempt.tolerance, thorough=False)
+                np.array([end]),
+                np.array([attempt.height]),
+                attempt.direction,
+                attempt.tolerance,
+                thorough=False,
+            )
             if found[0] is not None:
                 yield found[0]
 
@@ -82,14 +98,22 @@ class LedRound:
             whole = np.vstack([start, known, goal])
             if self._clear(whole[:-1], whole[1:], deposited).all():
                 return known
-        return way_round(start, goal, self._ranges(start, goal), lambda a, b: self._clear(a, b, deposited), self._fits)
+        return way_round(
+            start,
+            goal,
+            self._ranges(start, goal),
+            lambda a, b: self._clear(a, b, deposited),
+            self._fits,
+        )
 
     def _clear(self, start: Array, end: Array, deposited: int) -> Mask:
         """(k,) whether moves can be driven, and meet nothing."""
         continuous = self.cell.limits.continuous
         short: Mask = (np.abs(end - start)[:, continuous] <= LARGEST_TURN).all(axis=1)
         rows = np.flatnonzero(short)
-        short[rows] = self.clear(Moves(start[rows], end[rows], np.full(len(rows), deposited, dtype=np.intp)))
+        short[rows] = self.clear(
+            Moves(start[rows], end[rows], np.full(len(rows), deposited, dtype=np.intp))
+        )
         return short
 
     def _ranges(self, start: Array, goal: Array) -> Ranges:

@@ -17,7 +17,11 @@ LIMIT, UNREACHABLE, SINGULAR = "LIMIT", "UNREACHABLE", "SINGULAR"
 
 _HEIGHTS = (0.75, 0.5, 0.25, 0.1, 1.5, 2.0, 3.0)
 DIRECTIONS = tuple(range(1, 10))
-_TURNS = tuple(math.radians(sign * turn) for turn in (5, 15, 30, 60, 90, 120, 180, 240, 360) for sign in (1, -1))
+_TURNS = tuple(
+    math.radians(sign * turn)
+    for turn in (5, 15, 30, 60, 90, 120, 180, 240, 360)
+    for sign in (1, -1)
+)
 # by how much the tool axis leans at the far end, rad, and towards how many sides
 LEANS_RAD = (0.0, math.radians(5.0), math.radians(15.0))
 SIDES = 8
@@ -41,7 +45,8 @@ def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
     """The ways in their order of preference; those of a group are looked at together."""
     if not thorough:
         return (
-            (Choice(1.0, direction),), tuple(Choice(1.0, direction, turn) for turn in _TURNS),
+            (Choice(1.0, direction),),
+            tuple(Choice(1.0, direction, turn) for turn in _TURNS),
             tuple(Choice(1.0, direction, 0.0, lean) for lean in _LEANS),
         )
     others = tuple(k for k in DIRECTIONS if k != direction)
@@ -50,9 +55,21 @@ def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
         tuple(Choice(share, direction) for share in _HEIGHTS),
         tuple(Choice(share, other) for other in others for share in (1.0, *_HEIGHTS)),
         tuple(Choice(share, direction, turn) for share in (1.0, 0.5, 0.1, 2.0) for turn in _TURNS),
-        tuple(Choice(share, direction, 0.0, lean) for share in (1.0, 0.5, 0.1, 2.0) for lean in _LEANS),
-        tuple(Choice(share, other, turn) for other in others for share in (1.0, 0.25) for turn in _TURNS),
-        tuple(Choice(share, direction, turn, lean) for share in (1.0, 0.25) for turn in _TURNS for lean in _LEANS),
+        tuple(
+            Choice(share, direction, 0.0, lean) for share in (1.0, 0.5, 0.1, 2.0) for lean in _LEANS
+        ),
+        tuple(
+            Choice(share, other, turn)
+            for other in others
+            for share in (1.0, 0.25)
+            for turn in _TURNS
+        ),
+        tuple(
+            Choice(share, direction, turn, lean)
+            for share in (1.0, 0.25)
+            for turn in _TURNS
+            for lean in _LEANS
+        ),
     )
 
 

@@ -71,9 +71,13 @@ class Retracts:
         tool, build = self.ends.tool, self.ends.build
         normal = np.broadcast_to(self.cell.mount[:3, 2], tool.shape)
         sides = (tool + self._sides(2.0 * np.pi * k / 4) for k in range(4))
-        ways: Array = np.stack([tool, tool + build, build, tool + normal, normal, build + normal, *sides])
+        ways: Array = np.stack(
+            [tool, tool + build, build, tool + normal, normal, build + normal, *sides]
+        )
         size = np.linalg.norm(ways, axis=2, keepdims=True)
-        ways[1:] = np.where(size > SAME_DIRECTION, ways / np.maximum(size, SAME_DIRECTION), np.nan)[1:]
+        ways[1:] = np.where(size > SAME_DIRECTION, ways / np.maximum(size, SAME_DIRECTION), np.nan)[
+            1:
+        ]
         for k in range(1, len(ways)):
             apart = np.linalg.norm(ways[:k] - ways[k], axis=2)
             useless = np.nanmin(apart, axis=0) < SAME_DIRECTION
@@ -100,14 +104,18 @@ class Retracts:
     def leaning(self) -> Array:
         """(1 + leans, n, 3) what is added to the tool axes at the far end."""
         sides = [self._sides(2.0 * np.pi * k / SIDES) for k in range(SIDES)]
-        return np.stack([0.0 * sides[0], *(math.tan(angle) * side for angle in LEANS_RAD[1:] for side in sides)])
+        return np.stack(
+            [0.0 * sides[0], *(math.tan(angle) * side for angle in LEANS_RAD[1:] for side in sides)]
+        )
 
     @cached_property
     def sound(self) -> Mask:
         """(n,) whether the end itself is reached within limits; where it is not, the bead has an issue of its own."""
         known = np.flatnonzero(np.isfinite(self.ends.joints).all(axis=1))
         sound = np.zeros(len(self.ends.phi), dtype=bool)
-        sound[known] = (self.cell.limits.margin(self.ends.joints[known]) >= -ROUNDING_RAD).all(axis=1)
+        sound[known] = (self.cell.limits.margin(self.ends.joints[known]) >= -ROUNDING_RAD).all(
+            axis=1
+        )
         return sound
 
     @cached_property
@@ -117,7 +125,12 @@ class Retracts:
         return CONDITION_FLOOR if isinstance(wanted, str) else float(wanted)
 
     def found(
-        self, some: Index, height: Array, direction: int = 0, tolerance: float = STRAY_MM, thorough: bool = True
+        self,
+        some: Index,
+        height: Array,
+        direction: int = 0,
+        tolerance: float = STRAY_MM,
+        thorough: bool = True,
     ) -> tuple[list[Leg | None], list[Failure | None]]:
         """The ways off the ends `some` (k,) by the heights (k,) mm along a direction, or what comes nearest to that; and
         where there is none at all, None and why the one asked for is none. Not `thorough`: by other rotations alone."""
@@ -131,7 +144,9 @@ class Retracts:
                 if not len(rows):
                     return legs, failures
                 kept = self.kept(LAST_DIGIT_RAD if asked else reserve)
-                for k, leg in zip(rows.tolist(), self._first(some[rows], height[rows], group, tolerance, kept)):
+                for k, leg in zip(
+                    rows.tolist(), self._first(some[rows], height[rows], group, tolerance, kept)
+                ):
                     legs[k] = leg
                 if asked:
                     lost = [k for k in rows.tolist() if legs[k] is None]
@@ -168,7 +183,9 @@ class Retracts:
                 number, choice = divmod(int(ready[k]), count)
                 if choice < best[number]:
                     best[number] = choice
-                    legs[number] = Leg(joints[k], position[k], float(ways.height[ready[k]]), group[choice])
+                    legs[number] = Leg(
+                        joints[k], position[k], float(ways.height[ready[k]]), group[choice]
+                    )
             left = left[left % count < best[left // count]]
             moves *= 2
         return legs
@@ -177,9 +194,15 @@ class Retracts:
         """All ways of a group of all ends, those of an end together."""
         count = len(group)
         end = np.repeat(some, count)
-        column = {name: np.tile([getattr(choice, name) for choice in group], len(some)) for name in Choice._fields}
+        column = {
+            name: np.tile([getattr(choice, name) for choice in group], len(some))
+            for name in Choice._fields
+        }
         return Ways(
-            end, np.repeat(height, count) * column["share"], self.directions[column["direction"], end], column["turn"],
+            end,
+            np.repeat(height, count) * column["share"],
+            self.directions[column["direction"], end],
+            column["turn"],
             self.leaning[column["lean"], end],
         )
 
@@ -199,8 +222,12 @@ class Retracts:
         """Joints (k, moves, axes) at the ends of so many equal moves, each in the turns of the one before, and the tip there
         (k, moves, 3); joints NaN where the machine does not reach."""
         share = np.arange(1, moves + 1) / moves
-        point, tool, joints = (column[ways.end] for column in (self.ends.point, self.ends.tool, self.ends.joints))
-        tip = point[:, None] + (share[:, None] * ways.height[:, None, None]) * ways.direction[:, None]
+        point, tool, joints = (
+            column[ways.end] for column in (self.ends.point, self.ends.tool, self.ends.joints)
+        )
+        tip = (
+            point[:, None] + (share[:, None] * ways.height[:, None, None]) * ways.direction[:, None]
+        )
         tools = np.repeat(tool, moves, axis=0)
         lean = (share[:, None] * ways.lean[:, None]).reshape(-1, 3)
         leans = (lean != 0.0).any(axis=1)
@@ -210,16 +237,21 @@ class Retracts:
         if self.branch is None:
             five = FiveAxis(self.cell.machine.chain)
             above, _ = self.cell.on_flange(tip.reshape(-1, 3), tools)
-            return five.placed(np.repeat(joints[:, list(five.turning)], moves, axis=0), above, self.cell.station).reshape(
-                shape), tip
+            return five.placed(
+                np.repeat(joints[:, list(five.turning)], moves, axis=0), above, self.cell.station
+            ).reshape(shape), tip
         arm, own = self.cell.robot.arm, self.cell.robot.chain.axes
         assert arm is not None
         phi = self.ends.phi[ways.end, None] + share * ways.turn[:, None]
         # external axes stand still on these ways
         held = np.repeat(joints[:, None], moves, axis=1)
-        flange = self.cell.flange_poses(tip.reshape(-1, 3), tools, phi.ravel(), held.reshape(-1, shape[2]))
+        flange = self.cell.flange_poses(
+            tip.reshape(-1, 3), tools, phi.ravel(), held.reshape(-1, shape[2])
+        )
         if arm.followed:
-            raw = following.step_by_step(arm, flange.reshape(*shape[:2], 4, 4), self.branch, joints[:, :own])
+            raw = following.step_by_step(
+                arm, flange.reshape(*shape[:2], 4, 4), self.branch, joints[:, :own]
+            )
         else:
             raw = arm.inverse_branch(flange, self.branch).reshape(*shape[:2], own)
         raw = np.concatenate([raw, held[..., own:]], axis=2)
@@ -232,9 +264,14 @@ class Retracts:
         between = whole[:, :-1, None] + BETWEEN[:, None] * np.diff(whole, axis=1)[:, :, None]
         chain = self.cell.machine.chain
         tip, _ = self.cell.tip_in_part(chain.forward(between.reshape(-1, chain.axes)))
-        offset = tip.reshape(len(whole), joints.shape[1] * len(BETWEEN), 3) - self.ends.point[ways.end, None]
+        offset = (
+            tip.reshape(len(whole), joints.shape[1] * len(BETWEEN), 3)
+            - self.ends.point[ways.end, None]
+        )
         along = np.clip((offset * ways.direction[:, None]).sum(axis=2), 0.0, ways.height[:, None])
-        away: Array = np.linalg.norm(offset - along[..., None] * ways.direction[:, None], axis=2).max(axis=1, initial=0.0)
+        away: Array = np.linalg.norm(
+            offset - along[..., None] * ways.direction[:, None], axis=2
+        ).max(axis=1, initial=0.0)
         return away
 
     def fits(self, joints: Array, kept: Array) -> Mask:
@@ -244,8 +281,11 @@ class Retracts:
             fits: Mask = (self.cell.limits.margin(joints) >= kept - ROUNDING_RAD).all(axis=(1, 2))
         some = np.flatnonzero(fits)
         if len(some):
-            fits[some] = (self.condition(joints[some].reshape(-1, joints.shape[2])) >= self.floor).reshape(
-                len(some), joints.shape[1]).all(axis=1)
+            fits[some] = (
+                (self.condition(joints[some].reshape(-1, joints.shape[2])) >= self.floor)
+                .reshape(len(some), joints.shape[1])
+                .all(axis=1)
+            )
         return fits
 
     def condition(self, joints: Array) -> Array:
@@ -255,14 +295,18 @@ class Retracts:
         chain = self.cell.robot.chain
         joints = joints[:, : chain.axes]
         point = self.cell.deposition_point(chain.forward(joints))
-        value = jac.condition(jac.jacobian(chain, joints, point), self.parameters.characteristic_length)
+        value = jac.condition(
+            jac.jacobian(chain, joints, point), self.parameters.characteristic_length
+        )
         return np.round(value, 12)
 
     @cached_property
     def _least(self) -> Array:
         """(axes + m,) RESERVE, which no way of a sliding axis goes below: text has as many digits of a mm as of a degree."""
         limits = self.cell.limits
-        sliding = np.concatenate([self.cell.machine.chain.sliding, np.zeros(len(limits.coupled_lower), dtype=bool)])
+        sliding = np.concatenate(
+            [self.cell.machine.chain.sliding, np.zeros(len(limits.coupled_lower), dtype=bool)]
+        )
         return np.where(sliding, RESERVE, 0.0)
 
     def kept(self, reserve: float) -> Array:
@@ -282,13 +326,24 @@ class Retracts:
             if margin[worst] >= 0.0:
                 value = float(self.condition(row[None])[0])
                 # the way there may be what is wrong, not its end
-                found.append(Failure(SINGULAR, 0, value, self.floor) if value < self.floor else Failure(UNREACHABLE))
+                found.append(
+                    Failure(SINGULAR, 0, value, self.floor)
+                    if value < self.floor
+                    else Failure(UNREACHABLE)
+                )
                 continue
             values = np.concatenate([row, limits.coefficients @ row])
-            lower, upper = (np.concatenate(both) for both in (
-                (limits.lower, limits.coupled_lower), (limits.upper, limits.coupled_upper)))
+            lower, upper = (
+                np.concatenate(both)
+                for both in (
+                    (limits.lower, limits.coupled_lower),
+                    (limits.upper, limits.coupled_upper),
+                )
+            )
             low = values[worst] - lower[worst] < upper[worst] - values[worst]
-            found.append(Failure(LIMIT, worst, float(values[worst]), float((lower if low else upper)[worst])))
+            found.append(
+                Failure(LIMIT, worst, float(values[worst]), float((lower if low else upper)[worst]))
+            )
         return found
 
 

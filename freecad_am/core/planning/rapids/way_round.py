@@ -18,11 +18,15 @@ from ...geometry.spread import spread
 from ...program import SHORTEST_RAPID
 from ...types import Array, Index, Mask
 
-Free = Callable[[Array, Array], Mask]  # (k,) whether moves straight in the joints from (k, axes) to (k, axes) are clear
+Free = Callable[
+    [Array, Array], Mask
+]  # (k,) whether moves straight in the joints from (k, axes) to (k, axes) are clear
 Fits = Callable[[Array], Mask]  # (k,) whether the machine may stand with joints (k, axes)
 
 BATCH, ROUNDS = 32, 30  # samples that trees grow by at once, and how often
-WIDER = 10  # rounds until samples are of the whole ranges; the first are of a part next to both ends
+WIDER = (
+    10  # rounds until samples are of the whole ranges; the first are of a part next to both ends
+)
 STEP = 0.2  # longest move that a tree grows by, as a share of the ranges
 SHORTENED = 4  # times that a way is made shorter
 PULLS = np.array([0.0, 0.03, 0.1, 0.3])  # of the way from a place to halfway between its neighbours
@@ -113,7 +117,9 @@ def _grow(tree: _Tree, samples: Array, ranges: Ranges, free: Free, fits: Fits) -
     return np.arange(before, len(tree.place))
 
 
-def _met(own: _Tree, other: _Tree, added: Index, ranges: Ranges, free: Free) -> tuple[int, int] | None:
+def _met(
+    own: _Tree, other: _Tree, added: Index, ranges: Ranges, free: Free
+) -> tuple[int, int] | None:
     """The numbers of a place added to one tree and of one of the other that a clear move joins, by which it is soonest."""
     if not len(added):
         return None
@@ -121,7 +127,9 @@ def _met(own: _Tree, other: _Tree, added: Index, ranges: Ranges, free: Free) -> 
     rows = np.flatnonzero(free(own.place[added], other.place[there]))
     if not len(rows):
         return None
-    lasts = own.lasts[added] + other.lasts[there] + ranges.lasts(own.place[added], other.place[there])
+    lasts = (
+        own.lasts[added] + other.lasts[there] + ranges.lasts(own.place[added], other.place[there])
+    )
     best = int(rows[lasts[rows].argmin()])
     return int(added[best]), int(there[best])
 
@@ -135,7 +143,9 @@ def _shortest(way: Array, ranges: Ranges, free: Free) -> Array:
     others = np.flatnonzero(~clear)
     clear[others] = free(way[first[others]], way[last[others]])
     lasts = np.full((count, count), np.inf)
-    lasts[first, last] = np.where(clear, np.maximum(ranges.lasts(way[first], way[last]), SHORTEST_RAPID), np.inf)
+    lasts[first, last] = np.where(
+        clear, np.maximum(ranges.lasts(way[first], way[last]), SHORTEST_RAPID), np.inf
+    )
     soonest, before = np.zeros(count), np.zeros(count, dtype=np.intp)
     for place in range(1, count):
         total = soonest[:place] + lasts[:place, place]
@@ -161,7 +171,9 @@ def _pulled(way: Array, ranges: Ranges, free: Free, fits: Fits) -> Array:
     lasts = np.where(free(a, b), np.maximum(ranges.lasts(a, b), SHORTEST_RAPID), np.inf)
     soonest, before, done = np.zeros(1), [], 0
     for some, then in zip(layers[:-1], layers[1:]):
-        total = soonest[:, None] + lasts[done : done + len(some) * len(then)].reshape(len(some), len(then))
+        total = soonest[:, None] + lasts[done : done + len(some) * len(then)].reshape(
+            len(some), len(then)
+        )
         before.append(total.argmin(axis=0))
         soonest, done = total.min(axis=0), done + len(some) * len(then)
     place, found = 0, []

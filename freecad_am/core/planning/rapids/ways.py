@@ -44,12 +44,21 @@ class RapidWays:
     """Ways for all beads of a joint path; way k leads to bead k, the last one away from the last bead."""
 
     def __init__(
-        self, joint_path: JointPath, cell: Cell, retract: float, bodies: Sequence[Body], parameters: JointParameters,
-        width: float = 0.0, height: float = 0.0, cylinders: Cylinders = (),
+        self,
+        joint_path: JointPath,
+        cell: Cell,
+        retract: float,
+        bodies: Sequence[Body],
+        parameters: JointParameters,
+        width: float = 0.0,
+        height: float = 0.0,
+        cylinders: Cylinders = (),
     ) -> None:
         """width, height: mm, of beads that do not tell theirs."""
         self.beads, self.cell, self.retract = joint_path.beads, cell, retract
-        self.retracts = Retracts(cell, Ends.of(self.beads), branch_of(joint_path.branch), parameters)
+        self.retracts = Retracts(
+            cell, Ends.of(self.beads), branch_of(joint_path.branch), parameters
+        )
         # by number of the end of a bead, as `Ends` counts them
         self.legs: dict[int, Leg | None] = dict.fromkeys(range(2 * len(self.beads)))
         self.failures: dict[int, Failure] = {}
@@ -75,7 +84,9 @@ class RapidWays:
             if leg is None and failure is not None:
                 self.failures[end] = failure
         lost = np.array([end for end, leg in self.legs.items() if leg is None], dtype=np.intp)
-        for end, leg in zip(lost.tolist(), self.retracts.asked(lost, np.full(len(lost), self.retract))):
+        for end, leg in zip(
+            lost.tolist(), self.retracts.asked(lost, np.full(len(lost), self.retract))
+        ):
             self.legs[end] = leg
 
     def ends(self, k: int) -> list[int]:
@@ -108,7 +119,9 @@ class RapidWays:
         assert way.start is not None
         whole = np.vstack([way.start, way.joints])
         continuous = self.cell.limits.continuous
-        turn = np.fmax.reduce(np.abs(whole[1:, continuous] - whole[:-1, continuous]), axis=1, initial=0.0)  # none of NaN
+        turn = np.fmax.reduce(
+            np.abs(whole[1:, continuous] - whole[:-1, continuous]), axis=1, initial=0.0
+        )  # none of NaN
         if turn.max() <= LARGEST_TURN:
             return way
         rows: list[Array] = []
@@ -125,7 +138,8 @@ class RapidWays:
         """Rows that cut a move into so many, or a few more where one of them is near a singularity; and how near, where that
         does not help."""
         ways = [
-            [start + (end - start) * (k / count) for k in range(1, count)] for count in range(moves, moves + MORE_MOVES + 1)
+            [start + (end - start) * (k / count) for k in range(1, count)]
+            for count in range(moves, moves + MORE_MOVES + 1)
         ]
         if moves == 1 or not np.isfinite(ways[0]).all():
             return ways[0], None
@@ -138,7 +152,9 @@ class RapidWays:
     def _moves(self, k: int, way: Way) -> Moves:
         """The moves of way k as they are looked at."""
         joints = way.joints if way.start is None else np.vstack([way.start, way.joints])
-        return Moves(joints[:-1], joints[1:], np.full(max(len(joints) - 1, 0), self.rows[k], dtype=np.intp))
+        return Moves(
+            joints[:-1], joints[1:], np.full(max(len(joints) - 1, 0), self.rows[k], dtype=np.intp)
+        )
 
     def _met(self, some: Sequence[int], ways: Sequence[Way]) -> list[int]:
         """The ways, of those numbered, on which anything is met."""
@@ -179,8 +195,11 @@ class RapidWays:
         """Leads ways round what is met on them; those where none was found."""
         left = []
         for k in met:
-            ends = {} if k in (0, len(self.beads)) else {
-                2 * k - 1: self.beads[k - 1].joints[-1], 2 * k: self.beads[k].joints[0]}
+            ends = (
+                {}
+                if k in (0, len(self.beads))
+                else {2 * k - 1: self.beads[k - 1].joints[-1], 2 * k: self.beads[k].joints[0]}
+            )
             found = self.led.found(ends, self.legs, self.attempts, self.rows[k])
             if found is None:
                 left.append(k)
@@ -199,7 +218,9 @@ class RapidWays:
             return set()
         ends = [(k, self.beads[k - 1].joints[-1]) for k in some if k > 0]
         ends += [(k, self.beads[k].joints[0]) for k in some if k < len(self.beads)]
-        touches = self.arm.touches(np.array([joints for _, joints in ends]), np.array([self.rows[k] for k, _ in ends]))
+        touches = self.arm.touches(
+            np.array([joints for _, joints in ends]), np.array([self.rows[k] for k, _ in ends])
+        )
         return {k for (k, _), near in zip(ends, touches.any) if near}
 
     def _without_cleared(self, met: Sequence[int], attempt: Attempt) -> list[int]:
@@ -208,8 +229,15 @@ class RapidWays:
         some = [k for k in met if self.retract > 0.0 or k < len(self.beads)]
         ends = np.array(sorted({end for k in some for end in self.ends(k)}), dtype=np.intp)
         found, _ = self.retracts.found(
-            ends, np.full(len(ends), attempt.height), attempt.direction, attempt.tolerance, thorough=False)
-        legs: dict[int, Leg | None] = {end: leg for end, leg in zip(ends.tolist(), found) if leg is not None}
+            ends,
+            np.full(len(ends), attempt.height),
+            attempt.direction,
+            attempt.tolerance,
+            thorough=False,
+        )
+        legs: dict[int, Leg | None] = {
+            end: leg for end, leg in zip(ends.tolist(), found) if leg is not None
+        }
         able = [k for k in some if all(end in legs for end in self.ends(k))]
         tried = {k: self._way(k, legs) for k in able}
         still = set(self._met(able, list(tried.values())))
@@ -232,7 +260,11 @@ class RapidWays:
         found = self.obstacles.names(moves)
         if self.cell.part_moves or self.cell.external_links:
             met = nozzle_obstacles.met(self.cell, moves.start, moves.end)
-            adjacent = [name for name, here in zip(nozzle_obstacles.in_the_way(self.cell), met) if here.any()]
+            adjacent = [
+                name
+                for name, here in zip(nozzle_obstacles.in_the_way(self.cell), met)
+                if here.any()
+            ]
             found += [name for name in adjacent if name not in found]
         return found
 

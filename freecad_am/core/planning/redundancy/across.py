@@ -16,14 +16,20 @@ from ..task import Task
 from .map import Columns, Picture, alone, planned_external
 
 
-def across(beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axis: int, values: Array) -> Columns:
+def across(
+    beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axis: int, values: Array
+) -> Columns:
     """One point of the beads, at (bead, point), with values (C,) rad or mm of one of the external axes, the others as they
     are planned there: a column of each."""
     return _with(beads, cell, at, (axis,), (values,))
 
 
 def of_two(
-    beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axes: tuple[int, int], values: tuple[Array, Array]
+    beads: Sequence[Bead],
+    cell: Cell,
+    at: tuple[int, int],
+    axes: tuple[int, int],
+    values: tuple[Array, Array],
 ) -> Columns:
     """One point of the beads, at (bead, point), with all pairs of values (C,) and (R,), rad or mm, of two external axes, the
     others as they are planned there: R rows of C columns, one row after the other."""
@@ -34,14 +40,22 @@ def of_two(
 def in_rows(of: Picture, rows: int) -> Picture:
     """A picture (1, R C) of pairs as one (R, C)."""
     return dataclasses.replace(
-        of, margin=of.margin.reshape(rows, -1), condition=of.condition.reshape(rows, -1),
-        threshold=of.threshold.reshape(rows, -1), outside=of.outside.reshape(rows, -1),
-        forbidden=of.forbidden.reshape(rows, -1), arm=None if of.arm is None else of.arm.reshape(rows, -1),
+        of,
+        margin=of.margin.reshape(rows, -1),
+        condition=of.condition.reshape(rows, -1),
+        threshold=of.threshold.reshape(rows, -1),
+        outside=of.outside.reshape(rows, -1),
+        forbidden=of.forbidden.reshape(rows, -1),
+        arm=None if of.arm is None else of.arm.reshape(rows, -1),
     )
 
 
 def _with(
-    beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axes: tuple[int, ...], values: tuple[Array, ...]
+    beads: Sequence[Bead],
+    cell: Cell,
+    at: tuple[int, int],
+    axes: tuple[int, ...],
+    values: tuple[Array, ...],
 ) -> Columns:
     """One point with external axes elsewhere: each at values (n,)."""
     bead, point = at
@@ -50,9 +64,14 @@ def _with(
     for axis, value in zip(axes, values, strict=True):
         external[:, axis] = value
     position, tool, parameter = (
-        np.repeat(getattr(beads[bead], name)[point : point + 1], count, axis=0) for name in ("points", "tool", "parameter")
+        np.repeat(getattr(beads[bead], name)[point : point + 1], count, axis=0)
+        for name in ("points", "tool", "parameter")
     )
-    return Columns(np.full(count, bead), np.full(count, point), alone(cell, position, tool, parameter, external))
+    return Columns(
+        np.full(count, bead),
+        np.full(count, point),
+        alone(cell, position, tool, parameter, external),
+    )
 
 
 def span(task: Task, bead: Bead, point: int, axis: int, count: int) -> Array:

@@ -83,15 +83,28 @@ def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Arr
     wound = margin < -ROUNDING
     turns = np.where(task.continuous, 0.0, np.round((task.middle - joints[wound]) / TURN))
     wound[wound] = task.given_rows.margin(joints[wound] + TURN * turns) >= -ROUNDING
-    return Followed(phi, joints, margin, condition, criteria.displacement(task, points, joints), ratio, good, wound)
+    return Followed(
+        phi,
+        joints,
+        margin,
+        condition,
+        criteria.displacement(task, points, joints),
+        ratio,
+        good,
+        wound,
+    )
 
 
 def sums(of: Followed) -> Sums:
     """The figures of a curve."""
     ratio = of.ratio[np.isfinite(of.ratio)]
     return Sums(
-        int((~of.good).sum()), int(of.wound.sum()), float(of.margin.min()), float(of.condition.min()),
-        float(ratio.max()) if len(ratio) else float("nan"), float(of.displacement.sum()),
+        int((~of.good).sum()),
+        int(of.wound.sum()),
+        float(of.margin.min()),
+        float(of.condition.min()),
+        float(ratio.max()) if len(ratio) else float("nan"),
+        float(of.displacement.sum()),
     )
 
 
@@ -106,7 +119,9 @@ def fitted(points: Points, values: Array, degree: int) -> Array:
         part, chosen = points.only(bead)
         # about the middle of the bead, so that powers of large angles do not drown the rest
         middle, half = 0.5 * (low[bead] + high[bead]), 0.5 * (high[bead] - low[bead])
-        share = np.vander((part.parameter - middle) / half, min(degree, len(part) - 1) + 1, increasing=True)
+        share = np.vander(
+            (part.parameter - middle) / half, min(degree, len(part) - 1) + 1, increasing=True
+        )
         found = np.linalg.lstsq(share, values[chosen], rcond=None)[0]
         # in the parameter itself, by Horner: the polynomials are few and short, and their class is slow
         for order in range(len(found) - 1, -1, -1):
@@ -137,7 +152,9 @@ def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Arr
     free = basis.changes(task, part, degree)[0]
     free = free[:, np.abs(free).any(axis=0)]
     wanted = np.where(np.arange(len(at)) == handle, 1.0, 0.0)
-    return np.asarray(free @ np.linalg.solve(np.vander(at, degree + 1, increasing=True) @ free, wanted))
+    return np.asarray(
+        free @ np.linalg.solve(np.vander(at, degree + 1, increasing=True) @ free, wanted)
+    )
 
 
 # ---- side by side
@@ -175,12 +192,22 @@ def compared(
         part(0.0, "planning")
         paths, issues = plan(own, beads, places, part)
         issues = issues + [issue for path in paths for issue in findings(own, path)]
-        found.append(Compared(method, tuple(paths), sums_of(own, paths), tuple(issues), time.perf_counter() - started))
+        found.append(
+            Compared(
+                method,
+                tuple(paths),
+                sums_of(own, paths),
+                tuple(issues),
+                time.perf_counter() - started,
+            )
+        )
     return tuple(found)
 
 
 def sums_of(task: Task, paths: Sequence[BeadPath]) -> Sums:
     """The figures of planned paths."""
     beads = [path.bead for path in paths]
-    phi, threshold = (np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "threshold"))
+    phi, threshold = (
+        np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "threshold")
+    )
     return sums(follow(task, gather(beads, task.cell), threshold, durations(beads), phi))

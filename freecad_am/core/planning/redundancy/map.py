@@ -112,12 +112,18 @@ def columns(beads: Sequence[Bead], cell: Cell, most: int = MAX_COLUMNS) -> Colum
     counts = np.array([len(bead) for bead in beads])
     shown = list(range(len(beads)))
     if counts.sum() > most and LEAST * len(beads) > most:
-        shown = np.unique(np.round(np.linspace(0, len(beads) - 1, max(1, most // LEAST))).astype(int)).tolist()
+        shown = np.unique(
+            np.round(np.linspace(0, len(beads) - 1, max(1, most // LEAST))).astype(int)
+        ).tolist()
         share = np.full(len(shown), most // len(shown))
     else:
         share = np.maximum(2, counts * most // max(int(counts.sum()), most))
     kept = [
-        np.unique(np.round(np.linspace(0, counts[k] - 1, min(int(number), int(counts[k])))).astype(np.int64))
+        np.unique(
+            np.round(np.linspace(0, counts[k] - 1, min(int(number), int(counts[k])))).astype(
+                np.int64
+            )
+        )
         for k, number in zip(shown, share)
     ]
     position, tool, parameter = (
@@ -125,7 +131,8 @@ def columns(beads: Sequence[Bead], cell: Cell, most: int = MAX_COLUMNS) -> Colum
         for name in ("points", "tool", "parameter")
     )
     return Columns(
-        np.repeat(np.array(shown), [len(index) for index in kept]), np.concatenate(kept),
+        np.repeat(np.array(shown), [len(index) for index in kept]),
+        np.concatenate(kept),
         alone(cell, position, tool, parameter, external_of(cell, [beads[k] for k in shown], kept)),
     )
 
@@ -134,7 +141,9 @@ def external_of(cell: Cell, beads: Sequence[Bead], kept: Sequence[Index]) -> Arr
     """(T, k) values of the external axes at so many points of beads, None of a cell without."""
     if cell.external is None:
         return None
-    found: Array = np.concatenate([planned_external(bead)[index] for bead, index in zip(beads, kept, strict=True)])
+    found: Array = np.concatenate(
+        [planned_external(bead)[index] for bead, index in zip(beads, kept, strict=True)]
+    )
     return found
 
 
@@ -144,17 +153,30 @@ def planned_external(bead: Bead) -> Array:
     return bead.external
 
 
-def alone(cell: Cell, position: Array, tool: Array, parameter: Array, external: Array | None) -> Points:
+def alone(
+    cell: Cell, position: Array, tool: Array, parameter: Array, external: Array | None
+) -> Points:
     """Points each standing for itself."""
     number, slides = np.arange(len(position)), cell.machine.chain.sliding
     return Points(
-        position, tool, parameter, number, number, np.zeros(len(number), dtype=bool),
-        cell.pose_frames(position, tool, external), external, slides if slides.any() else None,
+        position,
+        tool,
+        parameter,
+        number,
+        number,
+        np.zeros(len(number), dtype=bool),
+        cell.pose_frames(position, tool, external),
+        external,
+        slides if slides.any() else None,
     )
 
 
 def redundancy_map(
-    task: Task, at: Columns, axis: str = RZ, bodies: Sequence[Body] = (), values: Array | None = None
+    task: Task,
+    at: Columns,
+    axis: str = RZ,
+    bodies: Sequence[Body] = (),
+    values: Array | None = None,
 ) -> RedundancyMap:
     """The map of all branches for the columns, of a job's cell, limits and rotation range; bodies in part coordinates.
 
@@ -168,7 +190,9 @@ def redundancy_map(
     outside = np.zeros(phi.shape, dtype=bool)
     if high - low < TURN - 1e-9:
         outside = (phi - low) % TURN > high - low + ROUNDING
-    return RedundancyMap(at, axis, values, phi, margin, _touching(task.cell, at.points, bodies), outside)
+    return RedundancyMap(
+        at, axis, values, phi, margin, _touching(task.cell, at.points, bodies), outside
+    )
 
 
 def picture(task: Task, of: RedundancyMap, branch: int) -> Picture:
@@ -176,9 +200,16 @@ def picture(task: Task, of: RedundancyMap, branch: int) -> Picture:
     own = dataclasses.replace(task, branch=branch)
     points = of.columns.points
     flange = points.frames.at(of.phi).reshape(-1, 4, 4)
-    condition = own.condition_at(flange, own.arm.inverse_branch(flange, branch)).reshape(of.phi.shape)
+    condition = own.condition_at(flange, own.arm.inverse_branch(flange, branch)).reshape(
+        of.phi.shape
+    )
     return Picture(
-        branch, of.margin[branch], condition, own.thresholds(points), of.outside, of.outside | of.touching,
+        branch,
+        of.margin[branch],
+        condition,
+        own.thresholds(points),
+        of.outside,
+        of.outside | of.touching,
     )
 
 
@@ -210,9 +241,12 @@ def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
     # eq. 9 and 10 solved for phi, as Cell.rz_of_phi has them for RZ
     upright = frames.smallest_rotation(tool @ cell.mount[:3, :3], (0.0, 0.0, 1.0))
     sin, cos = np.sin(value), np.cos(value)
-    return np.asarray(np.arctan2(
-        upright[:, 0, 0] * sin + upright[:, 0, 1] * cos, upright[:, 1, 0] * sin + upright[:, 1, 1] * cos,
-    ))
+    return np.asarray(
+        np.arctan2(
+            upright[:, 0, 0] * sin + upright[:, 0, 1] * cos,
+            upright[:, 1, 0] * sin + upright[:, 1, 1] * cos,
+        )
+    )
 
 
 def value_of(cell: Cell, tool: Array, phi: Array, axis: str) -> Array:
@@ -275,4 +309,6 @@ def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
         return np.zeros(len(points), dtype=bool)
     slope = float(np.tan(cell.nozzle.half_angle))
     nozzle = nozzles.depositing(0.5 * cell.nozzle.diameter, slope, cell.nozzle.length, 0.0)
-    return scene(around, points.position, nozzle.reach).touched(nozzle, points.position, points.tool)
+    return scene(around, points.position, nozzle.reach).touched(
+        nozzle, points.position, points.tool
+    )

@@ -29,15 +29,21 @@ TOGETHER = 64  # beads; bounds the memory
 def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
     """Which of the beads do not keep all limits with their rotation, at their points or between them."""
     found = [k for k, path in enumerate(paths) if path.margin < FITS]
-    low = [k for k, path in enumerate(paths) if path.margin >= FITS and (path.condition < LOW * path.threshold).any()]
+    low = [
+        k
+        for k, path in enumerate(paths)
+        if path.margin >= FITS and (path.condition < LOW * path.threshold).any()
+    ]
     if low:
         finer = [_finer(beads[k]) for k in low]
         points = gather(finer, task.cell)
         share = 0.5**HALVINGS
-        phi = np.concatenate([
-            np.interp(np.arange(len(bead)) * share, np.arange(len(paths[k].phi)), paths[k].phi)
-            for k, bead in zip(low, finer)
-        ])
+        phi = np.concatenate(
+            [
+                np.interp(np.arange(len(bead)) * share, np.arange(len(paths[k].phi)), paths[k].phi)
+                for k, bead in zip(low, finer)
+            ]
+        )
         joints = task.joints(points, phi)
         condition = condition_margin(task.condition(points, phi, joints), task.thresholds(points))
         margin = points.worst(np.minimum(task.rows.margin(joints), condition))
@@ -46,7 +52,11 @@ def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[i
 
 
 def where_lost(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], paths: Sequence[BeadPath], found: search.Found,
+    task: Task,
+    beads: Sequence[Bead],
+    places: Sequence[Place],
+    paths: Sequence[BeadPath],
+    found: search.Found,
     report: Callable[[float], None],
 ) -> dict[int, BeadPath | None]:
     """What `of_beads` finds for the beads that do not keep all limits though a candidate did at few of their points. report:
@@ -56,9 +66,11 @@ def where_lost(
     others: dict[int, BeadPath | None] = {}
     for start in range(0, len(rows), TOGETHER):
         report(start / len(rows))
-        some = rows[start:start + TOGETHER]
+        some = rows[start : start + TOGETHER]
         candidates = found.of_beads(np.array(some, dtype=np.intp))
-        others |= zip(some, of_beads(task, [beads[k] for k in some], [places[k] for k in some], candidates))
+        others |= zip(
+            some, of_beads(task, [beads[k] for k in some], [places[k] for k in some], candidates)
+        )
     return others
 
 
@@ -86,7 +98,9 @@ def of_beads(
     return paths
 
 
-def _judged_at(task: Task, points: Points, thresholds: Array, found: search.Found, most: int) -> search.Found:
+def _judged_at(
+    task: Task, points: Points, thresholds: Array, found: search.Found, most: int
+) -> search.Found:
     """Of the candidates of each bead that serve, the best, as many as `most` at most, judged at these points."""
     worth = np.where(found.margin >= 0.0, found.objective, np.inf)
     count = max(1, min(most, int((found.margin >= 0.0).sum(axis=0).max())))
@@ -94,7 +108,9 @@ def _judged_at(task: Task, points: Points, thresholds: Array, found: search.Foun
     each = np.arange(points.beads)
     judged_there = search.judge(task, points, thresholds, found.coefficients[chosen, each])
     serves = found.margin[chosen, each] >= 0.0
-    return dataclasses.replace(judged_there, margin=np.where(serves, judged_there.margin, UNREACHABLE))
+    return dataclasses.replace(
+        judged_there, margin=np.where(serves, judged_there.margin, UNREACHABLE)
+    )
 
 
 def _finer(bead: Bead) -> Bead:

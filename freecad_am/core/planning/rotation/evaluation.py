@@ -19,7 +19,12 @@ Place = tuple[int, int]
 
 
 def judged(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], points: Points, threshold: Array, coefficients: Array,
+    task: Task,
+    beads: Sequence[Bead],
+    places: Sequence[Place],
+    points: Points,
+    threshold: Array,
+    coefficients: Array,
     refined: refine.Refined,
 ) -> list[BeadPath]:
     """The paths of all beads for given coefficients (B, degree + 1), evaluated at all their points."""
@@ -34,14 +39,26 @@ def judged(
         if matrix is not None or task.parameters.objective in criteria.JOINT_ONLY
         else np.full(points.beads, np.nan)
     )
-    margin = points.worst(np.minimum(task.rows.margin(joints), condition_margin(condition, threshold)))
+    margin = points.worst(
+        np.minimum(task.rows.margin(joints), condition_margin(condition, threshold))
+    )
     ends = np.append(points.first, len(points))
     # as joints go: of a bead of few points a steep polynomial makes whole turns between two of them, the same at both
     turned = phi - whole_turns(np.diff(phi), points)
     return [
         BeadPath(
-            layer, index, bead, turned[a:b], joints[a:b], condition[a:b], threshold[a:b], float(objective[k]),
-            float(margin[k]), coefficients[k], refined.reason[k], refined.iterations[k],
+            layer,
+            index,
+            bead,
+            turned[a:b],
+            joints[a:b],
+            condition[a:b],
+            threshold[a:b],
+            float(objective[k]),
+            float(margin[k]),
+            coefficients[k],
+            refined.reason[k],
+            refined.iterations[k],
         )
         for k, (bead, (layer, index), a, b) in enumerate(zip(beads, places, ends[:-1], ends[1:]))
     ]

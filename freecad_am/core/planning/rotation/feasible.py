@@ -27,7 +27,9 @@ MOST_ROWS = 600
 
 def approached(constraints: Constraints, start: Array) -> Array:
     """x (k,) at which the worst constraint is as good as steps from the start (k,) make it, or good enough."""
-    from scipy.optimize import linprog  # slow to import, and most jobs on parts of revolution never need it
+    from scipy.optimize import (
+        linprog,  # slow to import, and most jobs on parts of revolution never need it
+    )
 
     x, reach, here = start, REACH, constraints(start)
     for _ in range(STEPS):
@@ -44,13 +46,19 @@ def approached(constraints: Constraints, start: Array) -> Array:
         k = len(x)
         # the largest t <= ENOUGH with value + rate step >= t
         solved = linprog(
-            np.r_[np.zeros(k), -1.0], A_ub=np.c_[-rate[rows], np.ones(len(rows))], b_ub=value[rows],
-            bounds=[(-reach, reach)] * k + [(None, ENOUGH)], method="highs",
+            np.r_[np.zeros(k), -1.0],
+            A_ub=np.c_[-rate[rows], np.ones(len(rows))],
+            b_ub=value[rows],
+            bounds=[(-reach, reach)] * k + [(None, ENOUGH)],
+            method="highs",
         )
         if solved.x is None or solved.x[-1] < worst + GAIN:
             return x
         tried = constraints(x + solved.x[:k])
-        hoped, got = solved.x[-1] - worst, -np.inf if tried is None else float(tried[0].min()) - worst
+        hoped, got = (
+            solved.x[-1] - worst,
+            -np.inf if tried is None else float(tried[0].min()) - worst,
+        )
         if got > 0.1 * hoped:
             x, here = x + solved.x[:k], tried
             reach *= 2.0 if got > 0.7 * hoped else 1.0

@@ -21,7 +21,9 @@ Place = tuple[int, int]
 METHOD, GIVEN = "layer-by-layer", "given"
 
 
-def coefficients(parameters: JointParameters, places: Sequence[Place]) -> dict[int, tuple[float, ...]]:
+def coefficients(
+    parameters: JointParameters, places: Sequence[Place]
+) -> dict[int, tuple[float, ...]]:
     """The coefficients given, by number of the bead among the places (layer, index)."""
     found = given_polynomials(parameters.given)
     every = found.get(None)
@@ -30,7 +32,10 @@ def coefficients(parameters: JointParameters, places: Sequence[Place]) -> dict[i
 
 
 def paths(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], fixed: Mapping[int, tuple[float, ...]]
+    task: Task,
+    beads: Sequence[Bead],
+    places: Sequence[Place],
+    fixed: Mapping[int, tuple[float, ...]],
 ) -> dict[int, BeadPath]:
     """The paths that the given coefficients make, by number of the bead."""
     if not fixed:
@@ -42,17 +47,40 @@ def paths(
     some, points = [beads[k] for k in chosen], gather([beads[k] for k in chosen], task.cell)
     count = len(chosen)
     none = refine.Refined(rows, np.zeros(count), (GIVEN,) * count, (0,) * count)
-    made = judged(task, some, [places[k] for k in chosen], points, task.thresholds(points), rows, none)
+    made = judged(
+        task, some, [places[k] for k in chosen], points, task.thresholds(points), rows, none
+    )
     return dict(zip(chosen, made))
 
 
 def not_used(parameters: JointParameters, places: Sequence[Place]) -> list[Issue]:
     """A warning of polynomials given for beads that are not there, or to a method that takes none."""
     if parameters.given and parameters.method != METHOD:
-        return [Issue(WARNING, "GIVEN_NOT_USED", Text("joints.given is of no effect on the method {}; use {}, or take it "
-                                                      "out", parameters.method, METHOD))]
-    lost = sorted(place for place in given_polynomials(parameters.given) if place is not None and place not in set(places))
+        return [
+            Issue(
+                WARNING,
+                "GIVEN_NOT_USED",
+                Text(
+                    "joints.given is of no effect on the method {}; use {}, or take it out",
+                    parameters.method,
+                    METHOD,
+                ),
+            )
+        ]
+    lost = sorted(
+        place
+        for place in given_polynomials(parameters.given)
+        if place is not None and place not in set(places)
+    )
     if not lost:
         return []
-    named = ", ".join(f"{layer}/{bead}" for layer, bead in lost[:5]) + (" ..." if len(lost) > 5 else "")
-    return [Issue(WARNING, "GIVEN_NOT_USED", Text("joints.given names beads that are not there: {}; take them out", named))]
+    named = ", ".join(f"{layer}/{bead}" for layer, bead in lost[:5]) + (
+        " ..." if len(lost) > 5 else ""
+    )
+    return [
+        Issue(
+            WARNING,
+            "GIVEN_NOT_USED",
+            Text("joints.given names beads that are not there: {}; take them out", named),
+        )
+    ]

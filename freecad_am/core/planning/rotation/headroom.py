@@ -47,7 +47,11 @@ def judged(paths: Sequence[BeadPath], limits: Limits, max_speed: Array) -> Judge
     condition = np.where(reached, np.concatenate([path.condition for path in paths]), np.nan)
     margin, ratio = shares.min(axis=1), speeds.max(axis=1)
     return Judgement(
-        margin, condition, ratio, _worst(shares, layer, limits.labels), _worst(condition[:, None], layer, ("",)),
+        margin,
+        condition,
+        ratio,
+        _worst(shares, layer, limits.labels),
+        _worst(condition[:, None], layer, ("",)),
         _worst(speeds, layer, limits.labels, largest=True),
     )
 
@@ -59,9 +63,13 @@ def _speeds(path: BeadPath) -> Array:
     return np.concatenate([speed[:1], speed])
 
 
-def _worst(values: Array, layer: Integers, labels: Sequence[str], largest: bool = False) -> Worst | None:
+def _worst(
+    values: Array, layer: Integers, labels: Sequence[str], largest: bool = False
+) -> Worst | None:
     """Of (T, k) values of k things."""
     if not np.isfinite(values).any():
         return None
-    at, what = np.unravel_index(np.nanargmax(values) if largest else np.nanargmin(values), values.shape)
+    at, what = np.unravel_index(
+        np.nanargmax(values) if largest else np.nanargmin(values), values.shape
+    )
     return Worst(float(values[at, what]), int(layer[at]), labels[int(what)])

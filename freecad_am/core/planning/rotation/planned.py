@@ -18,7 +18,10 @@ END_MM = 1e-6  # mm, of a piece's ends to points of the bead it was cut from
 
 
 def rotation_along(
-    paths: Sequence[BeadPath], beads: Sequence[Bead], places: Sequence[tuple[int, int]], parameters: Mapping[int, Array]
+    paths: Sequence[BeadPath],
+    beads: Sequence[Bead],
+    places: Sequence[tuple[int, int]],
+    parameters: Mapping[int, Array],
 ) -> dict[int, Array]:
     """The rotation phi (rad, counted on) at parameters of beads, by their numbers among the beads of a toolpath with their
     places (layer, index): interpolated between the points of the path, 0 where the path has nothing of a bead."""
@@ -39,7 +42,9 @@ def rotation_along(
 
 
 def _cut_from(bead: Bead, piece: Bead) -> bool:
-    return all(np.linalg.norm(bead.points - piece.points[end], axis=1).min() < END_MM for end in (0, -1))
+    return all(
+        np.linalg.norm(bead.points - piece.points[end], axis=1).min() < END_MM for end in (0, -1)
+    )
 
 
 def _along(pieces: Sequence[BeadPath], bead: Bead, parameter: Array) -> Array:

@@ -43,7 +43,11 @@ class Refined:
 
 
 def refine(
-    task: Task, points: Points, thresholds: Array, starts: Array, wanted: Mask | None = None,
+    task: Task,
+    points: Points,
+    thresholds: Array,
+    starts: Array,
+    wanted: Mask | None = None,
     report: Callable[[float], None] = lambda share: None,
 ) -> Refined:
     """Improve the coefficients of every bead, or of the wanted (B,); points are all points of the beads.
@@ -53,8 +57,17 @@ def refine(
     """
     first = state_of(task, points, thresholds, starts[0], slopes=False)
     tolerance = task.parameters.tolerance
-    alone = np.isnan(starts[1:]).any(axis=(0, 2)) if len(starts) > 1 else np.ones(points.beads, dtype=bool)
-    done = np.isfinite(first.objective) & (first.predicted <= tolerance) & (first.constraints >= 0.0).all(axis=1) & alone
+    alone = (
+        np.isnan(starts[1:]).any(axis=(0, 2))
+        if len(starts) > 1
+        else np.ones(points.beads, dtype=bool)
+    )
+    done = (
+        np.isfinite(first.objective)
+        & (first.predicted <= tolerance)
+        & (first.constraints >= 0.0).all(axis=1)
+        & alone
+    )
     if wanted is not None:
         done |= ~wanted
     coefficients, objective = starts[0].copy(), first.objective.copy()
@@ -67,7 +80,8 @@ def refine(
         part, chosen = points.only(int(bead))
         tried = [
             _climbed(_Bead(task, part, thresholds[chosen]), start, directions[bead])
-            for start in starts[:, bead] if np.isfinite(start).all()
+            for start in starts[:, bead]
+            if np.isfinite(start).all()
         ]
         best = 0
         for k in range(1, len(tried)):
@@ -157,9 +171,13 @@ def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float
     return (*worth, here, reason, iterations)
 
 
-def _brought_in(bead: _Bead, here: Array, free: Array, worth: tuple[float, float]) -> tuple[Array, tuple[float, float]]:
+def _brought_in(
+    bead: _Bead, here: Array, free: Array, worth: tuple[float, float]
+) -> tuple[Array, tuple[float, float]]:
     """Coefficients that violate the limits less than those here, where there are any, and their worth."""
-    nearer = here + free @ feasible.approached(lambda x: bead.constraints(here + free @ x, free), np.zeros(free.shape[1]))
+    nearer = here + free @ feasible.approached(
+        lambda x: bead.constraints(here + free @ x, free), np.zeros(free.shape[1])
+    )
     other = bead.worth(nearer)
     return (nearer, other) if _better(other, worth) else (here, worth)
 
@@ -182,7 +200,9 @@ def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, in
 
 
 def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers) -> Any:
-    from scipy.optimize import minimize  # slow to import, and most jobs on parts of revolution never need it
+    from scipy.optimize import (
+        minimize,  # slow to import, and most jobs on parts of revolution never need it
+    )
 
     states: dict[bytes, State] = {}
     everywhere: dict[bytes, tuple[Array, Array]] = {}
@@ -210,16 +230,26 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
         value = float(state(x).objective[0]) / scale
         return value if np.isfinite(value) else 1e6
 
-    kept = [{"type": "ineq", "fun": lambda x: constraints(x)[0], "jac": lambda x: constraints(x)[1]}]
-    if bead.more is not None:  # changes are of the size of a rotation, so that together they stay within reach
+    kept = [
+        {"type": "ineq", "fun": lambda x: constraints(x)[0], "jac": lambda x: constraints(x)[1]}
+    ]
+    if (
+        bead.more is not None
+    ):  # changes are of the size of a rotation, so that together they stay within reach
         most, each = bead.more.reach / len(x), np.eye(len(x))
         both = np.concatenate([each, -each])
         kept.append({"type": "ineq", "fun": lambda x: most - both @ x, "jac": lambda x: -both})
     # scipy's stubs do not know a list of constraint dictionaries with their own types
     return minimize(  # type: ignore[call-overload]
-        objective, x, jac=lambda x: np.nan_to_num(state(x).gradient[0]) @ directions / scale,
-        constraints=kept, method="SLSQP",
-        options={"ftol": bead.task.parameters.tolerance, "maxiter": bead.task.parameters.max_iterations},
+        objective,
+        x,
+        jac=lambda x: np.nan_to_num(state(x).gradient[0]) @ directions / scale,
+        constraints=kept,
+        method="SLSQP",
+        options={
+            "ftol": bead.task.parameters.tolerance,
+            "maxiter": bead.task.parameters.max_iterations,
+        },
     )
 
 
@@ -244,7 +274,9 @@ def _at_all_points(
         return None
     rates, matrix = task.rotation_rates(points.frames, phi, joints)
     rates = rates * phi_rate[:, None]
-    value = values_of(task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length))
+    value = values_of(
+        task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length)
+    )
     slope = slopes_of(task, phi, phi_rate, joints, rates, matrix)
     shape = points.powers(coefficients.shape[1] - 1) @ free
     rate = (np.nan_to_num(slope)[:, :, None] * shape).reshape(-1, free.shape[1])

@@ -29,7 +29,9 @@ class State:
     constraint_rates: Array
 
 
-def state_of(task: Task, points: Points, thresholds: Array, coefficients: Array, slopes: bool = True) -> State:
+def state_of(
+    task: Task, points: Points, thresholds: Array, coefficients: Array, slopes: bool = True
+) -> State:
     """The state at coefficients (B, degree + 1): with the derivatives of the constraints, or else `predicted`."""
     phi, phi_rate = task.rotation(points, points.polynomial(coefficients))
     joints = task.joints(points, phi)
@@ -42,11 +44,19 @@ def state_of(task: Task, points: Points, thresholds: Array, coefficients: Array,
     rates = rates * phi_rate[:, None]
     objective = criteria.value(task, points, joints, matrix)
     gradient = _gradient(points, criteria.rate(task, points, joints, rates, matrix), powers)
-    value = values_of(task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length))
+    value = values_of(
+        task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length)
+    )
     worst = points.worst(value)
     if not slopes:
         predicted = _predicted(task, points, joints, rates, powers, gradient)
-        return State(objective, gradient, predicted, worst.T, np.zeros((points.beads, len(value), powers.shape[1])))
+        return State(
+            objective,
+            gradient,
+            predicted,
+            worst.T,
+            np.zeros((points.beads, len(value), powers.shape[1])),
+        )
     slope = slopes_of(task, phi, phi_rate, joints, rates, matrix)
     at = np.stack([_where_worst(points, row, least) for row, least in zip(value, worst)])
     rows = np.arange(len(value))[:, None]
@@ -55,7 +65,13 @@ def state_of(task: Task, points: Points, thresholds: Array, coefficients: Array,
 
 
 def _state_in_pieces(
-    task: Task, points: Points, thresholds: Array, phi: Array, phi_rate: Array, joints: Array, powers: Array
+    task: Task,
+    points: Points,
+    thresholds: Array,
+    phi: Array,
+    phi_rate: Array,
+    joints: Array,
+    powers: Array,
 ) -> State:
     """The state without the derivatives of the constraints, of many beads at once. The condition is taken from below
     where that tells that it is kept, which is at all but a few points."""
@@ -71,8 +87,11 @@ def _state_in_pieces(
     gradient = _gradient(points, criteria.joint_rate(task, points, joints, rates), powers)
     worst = points.worst(values_of(task, thresholds, phi, joints, ratio))
     return State(
-        criteria.value(task, points, joints, None), gradient, _predicted(task, points, joints, rates, powers, gradient),
-        worst.T, np.zeros((points.beads, len(worst), powers.shape[1])),
+        criteria.value(task, points, joints, None),
+        gradient,
+        _predicted(task, points, joints, rates, powers, gradient),
+        worst.T,
+        np.zeros((points.beads, len(worst), powers.shape[1])),
     )
 
 
@@ -87,7 +106,11 @@ def _partly_unreachable(
     b, k = coefficients.shape
     rows = len(task.rows.labels) + 1 + _narrow(task)
     state = State(
-        np.full(b, np.inf), np.zeros((b, k)), np.full(b, np.inf), np.full((b, rows), -1.0), np.zeros((b, rows, k))
+        np.full(b, np.inf),
+        np.zeros((b, k)),
+        np.full(b, np.inf),
+        np.full((b, rows), -1.0),
+        np.zeros((b, rows, k)),
     )
     if b == 1:
         return state
@@ -108,14 +131,17 @@ def _narrow(task: Task) -> int:
 def values_of(task: Task, thresholds: Array, phi: Array, joints: Array, ratio: Array) -> Array:
     """Eqs. 18 and 19 as corrected, one row per limit and one for the condition `ratio` (T,): (m + 1, T)."""
     values = [
-        0.25 * (1.0 - task.rows.offset(joints).T ** 2), (ratio - thresholds * (1.0 + CONDITION_RESERVE))[None],
+        0.25 * (1.0 - task.rows.offset(joints).T ** 2),
+        (ratio - thresholds * (1.0 + CONDITION_RESERVE))[None],
     ]
     if _narrow(task):
         values.append(0.25 * (1.0 - _share(task, phi) ** 2)[None])
     return np.concatenate(values)
 
 
-def slopes_of(task: Task, phi: Array, phi_rate: Array, joints: Array, rates: Array, matrix: Array) -> Array:
+def slopes_of(
+    task: Task, phi: Array, phi_rate: Array, joints: Array, rates: Array, matrix: Array
+) -> Array:
     """(m + 1, T) their derivatives by the value of the polynomial at each point."""
     slopes = [
         -0.5 * task.rows.offset(joints).T * (rates @ task.rows.matrix.T / task.rows.half).T,
@@ -139,7 +165,9 @@ def _where_worst(points: Points, values: Array, worst: Array) -> Integers:
     return hits[position]
 
 
-def _predicted(task: Task, points: Points, joints: Array, rates: Array, powers: Array, gradient: Array) -> Array:
+def _predicted(
+    task: Task, points: Points, joints: Array, rates: Array, powers: Array, gradient: Array
+) -> Array:
     """(B,) how much the objective would still fall by its second-order model, joined beads staying joined.
 
     Eq. 17 is a sum of squares, so its curvature is known (Gauss-Newton); of other objectives the
@@ -154,7 +182,9 @@ def _predicted(task: Task, points: Points, joints: Array, rates: Array, powers: 
     for j, one in enumerate(change):
         weighed = one * task.weights
         for k, other in enumerate(change[: j + 1]):
-            curvature[:, j, k] = curvature[:, k, j] = 2.0 * points.total(np.einsum("ia,ia->i", weighed, other))
+            curvature[:, j, k] = curvature[:, k, j] = 2.0 * points.total(
+                np.einsum("ia,ia->i", weighed, other)
+            )
     curvature = np.swapaxes(free, 1, 2) @ curvature @ free
     inverse = np.linalg.pinv(curvature, rcond=1e-10, hermitian=True)
     fall: Array = 0.5 * np.einsum("bj,bjk,bk->b", gradient, inverse, gradient)

@@ -69,11 +69,17 @@ class Found:
     def _best(self, margin: Array) -> Integers:
         feasible = margin >= 0.0
         ranked = first_least(np.where(feasible, self.objective, np.inf), axis=0)
-        return np.asarray(np.where(feasible.any(axis=0), ranked, first_most(margin, axis=0)), dtype=np.int64)
+        return np.asarray(
+            np.where(feasible.any(axis=0), ranked, first_most(margin, axis=0)), dtype=np.int64
+        )
 
 
 def everywhere(
-    task: Task, points: Points, thresholds: Array, slopes: Array | None = None, offsets: int = OFFSETS,
+    task: Task,
+    points: Points,
+    thresholds: Array,
+    slopes: Array | None = None,
+    offsets: int = OFFSETS,
     best_alone: bool = False,
 ) -> Found:
     """Candidates over the whole range of offset (one turn) and slope, for every bead of the points.
@@ -96,7 +102,9 @@ def everywhere(
     apart = np.abs(slope_grid - np.round(slope_grid)) > 1e-9
     found.margin[np.ix_(apart, joined)] = UNREACHABLE
     if best_alone:
-        found = replace(found, margin=with_conditions(task, points, thresholds, found, found.is_best))
+        found = replace(
+            found, margin=with_conditions(task, points, thresholds, found, found.is_best)
+        )
     return found
 
 
@@ -119,7 +127,9 @@ def with_conditions(
     return margin
 
 
-def judge(task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool = True) -> Found:
+def judge(
+    task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool = True
+) -> Found:
     """Objective and margin of given candidates (C, B, degree + 1), that of limits alone without `conditions`."""
     size = max(1, CHUNK // len(points))
     parts = [
@@ -139,7 +149,11 @@ def _judge(
     value = np.zeros((len(coefficients), len(points)))
     for power in range(coefficients.shape[2] - 1, -1, -1):
         value = value * points.parameter + coefficients[:, points.bead, power]
-    phi = np.stack([task.rotation(points, row)[0] for row in value]) if task.parameters.parameter == "rz" else value
+    phi = (
+        np.stack([task.rotation(points, row)[0] for row in value])
+        if task.parameters.parameter == "rz"
+        else value
+    )
     joints = task.joints(points, phi)
     limit = points.worst(task.rows.margin(joints))
     margin = np.minimum(limit, _range_margin(task, points, phi))
@@ -152,7 +166,12 @@ def _judge(
     chosen = np.flatnonzero(open_beads.ravel())
     if len(chosen):
         condition[chosen] = _screened_condition_margin(
-            task, points, phi.ravel()[chosen], joints.reshape(-1, joints.shape[-1])[chosen], chosen % len(points), thresholds
+            task,
+            points,
+            phi.ravel()[chosen],
+            joints.reshape(-1, joints.shape[-1])[chosen],
+            chosen % len(points),
+            thresholds,
         )
     worst = points.worst(condition.reshape(phi.shape))
     margin = np.where(margin >= 0.0, np.minimum(margin, worst), margin)
@@ -199,7 +218,9 @@ def _screened_condition_margin(
     for some in in_pieces(len(index)):
         matrix = task.jacobian_at(points.frames.of(index[some]), phi[some], joints[some])
         bound = condition[some] = jac.condition_bound(matrix, length)
-        near = undecided[some] = (bound < threshold[some]) & (BOUND_SPREAD * bound >= threshold[some])
+        near = undecided[some] = (bound < threshold[some]) & (
+            BOUND_SPREAD * bound >= threshold[some]
+        )
         matrices.append(matrix[near])
     condition[undecided] = jac.condition(np.concatenate(matrices), length)
     return condition_margin(condition, threshold)

@@ -33,20 +33,29 @@ def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) 
     points may be thinned; coefficients (B, degree + 1) are the optimum found.
     """
     here = search.judge(task, points, thresholds, coefficients[None])
-    coarse = _moved(coefficients, np.broadcast_to(np.arange(COARSE)[:, None] * (TURN / COARSE), (COARSE, points.beads)))
+    coarse = _moved(
+        coefficients,
+        np.broadcast_to(np.arange(COARSE)[:, None] * (TURN / COARSE), (COARSE, points.beads)),
+    )
     rough = search.judge(task, points, thresholds, coarse, conditions=False)
     flat = as_good(task, rough.objective, here.objective)
     if not flat[1:].any():
         return coefficients
     rough = replace(rough, margin=np.where(flat, rough.margin, -np.inf))
-    around = _peaks(search.with_conditions(task, points, thresholds, rough, _are_peaks)) * (TURN / COARSE)
-    offsets = (around[:, None] + np.linspace(-1.0, 1.0, FINE)[:, None] * (TURN / COARSE)).reshape(-1, points.beads)
+    around = _peaks(search.with_conditions(task, points, thresholds, rough, _are_peaks)) * (
+        TURN / COARSE
+    )
+    offsets = (around[:, None] + np.linspace(-1.0, 1.0, FINE)[:, None] * (TURN / COARSE)).reshape(
+        -1, points.beads
+    )
     near = search.judge(task, points, thresholds, _moved(coefficients, offsets))
     flat = as_good(task, near.objective, here.objective)
     margin = np.where(flat, near.margin, -np.inf)
     chosen = _least_motion(task, points, near.coefficients, margin)
     improved = ~alike(-here.margin[0], -margin[chosen, np.arange(points.beads)])
-    return np.where(improved[:, None], near.coefficients[chosen, np.arange(points.beads)], coefficients)
+    return np.where(
+        improved[:, None], near.coefficients[chosen, np.arange(points.beads)], coefficients
+    )
 
 
 def as_good(task: Task, objective: ArrayLike, best: Array) -> Mask:

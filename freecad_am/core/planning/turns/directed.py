@@ -27,7 +27,9 @@ class Lock:
     angle: float
 
 
-def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = rotary_courses.AT_POLE) -> list[Array]:
+def courses(
+    cell: Cell, lock: Lock | None, bead: Bead, pole: float = rotary_courses.AT_POLE
+) -> list[Array]:
     """All ways (n, 5) to run a bead, up to whole turns. Directions within `pole` rad of the turning axis count as along it;
     where that is more than usual, the axis turns there as it has to be afterwards."""
     arm, torch = FiveAxis(cell.machine.chain), cell.station[:3, 2]
@@ -49,7 +51,9 @@ def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = rotary_cour
 def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
     """Of all courses (n, 5) and whole turns the one within the limits that starts nearest to where the axes are."""
     lower, upper = cell.limits.lower + RESERVE, cell.limits.upper - RESERVE
-    return rotary_courses.chosen(ways, before, lower, upper, cell.machine.max_speed, ~cell.machine.chain.sliding)
+    return rotary_courses.chosen(
+        ways, before, lower, upper, cell.machine.max_speed, ~cell.machine.chain.sliding
+    )
 
 
 def _locked(arm: FiveAxis, lock: Lock, tools: Array, torch: Array) -> Array:

@@ -26,7 +26,9 @@ MORE_PIECES = 3
 MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
 
 
-def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> list[list[BeadPath] | None]:
+def for_beads(
+    task: Task, beads: Sequence[Bead], places: Sequence[Place]
+) -> list[list[BeadPath] | None]:
     """For each bead the path from another seam, or of its pieces; None where neither keeps all limits.
 
     The rotations are looked for as if the robot's last axis, and those beside it, had no end; then a start, or cuts, are
@@ -37,13 +39,18 @@ def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> lis
     if task.continuous.all():
         return result
     free = dataclasses.replace(task, cell=_last_continuous(task.cell))
-    for most in (search.POINTS_PER_BEAD, None):  # what suits few points may not suit those between them
+    for most in (
+        search.POINTS_PER_BEAD,
+        None,
+    ):  # what suits few points may not suit those between them
         if not left:
             break
         points = gather([beads[k] for k in left], task.cell, most)
         threshold = task.thresholds(points)
         # only with slopes of whole turns can a seam be moved after the planning
-        found = search.everywhere(free, points, threshold, search.CLOSING_SLOPES, OFFSETS, best_alone=True)
+        found = search.everywhere(
+            free, points, threshold, search.CLOSING_SLOPES, OFFSETS, best_alone=True
+        )
         best, each = found.best(), np.arange(len(left))
         resolved = ties.resolve(free, points, threshold, found.coefficients[best, each])
         serving = np.flatnonzero(found.margin[best, each] >= 0.0).tolist()
@@ -64,11 +71,15 @@ def put_in(
         result += helped.get(k, [path])
         lost = k not in helped and path.margin < FITS and turns.is_spiral(path.bead)
         if lost and _would_fit_continuous(task, path):
-            issues.append(Issue(
-                ERROR, "SPIRAL_LIMITED",
-                "a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with "
-                "an endless axis", layer=path.layer,
-            ))
+            issues.append(
+                Issue(
+                    ERROR,
+                    "SPIRAL_LIMITED",
+                    "a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with "
+                    "an endless axis",
+                    layer=path.layer,
+                )
+            )
     moved = sorted({found[0].layer for found in helped.values() if len(found) == 1})
     split = sorted({found[0].layer for found in helped.values() if len(found) > 1})
     return numbered(result), [*issues, *turns.seam_notes(moved, split)]
@@ -82,10 +93,16 @@ def _would_fit_continuous(task: Task, path: BeadPath) -> bool:
         return True
     free = dataclasses.replace(task, cell=_last_continuous(task.cell))
     coarse = gather([path.bead], task.cell, search.POINTS_PER_BEAD)
-    return bool((search.everywhere(free, coarse, task.thresholds(coarse), best_alone=True).margin >= 0.0).any())
+    return bool(
+        (
+            search.everywhere(free, coarse, task.thresholds(coarse), best_alone=True).margin >= 0.0
+        ).any()
+    )
 
 
-def _fitted(task: Task, free: Task, bead: Bead, place: Place, coefficients: Array) -> list[BeadPath] | None:
+def _fitted(
+    task: Task, free: Task, bead: Bead, place: Place, coefficients: Array
+) -> list[BeadPath] | None:
     whole = _one(free, bead, place, coefficients, MOVED)
     started, index = turns.moved_seam(task, bead, whole.joints)
     if index:
@@ -124,6 +141,8 @@ def _last_continuous(cell: Cell) -> Cell:
     limits = cell.limits
     last = np.arange(limits.axes) >= cell.robot.chain.axes - 1
     free = dataclasses.replace(
-        limits, lower=np.where(last, -np.inf, limits.lower), upper=np.where(last, np.inf, limits.upper)
+        limits,
+        lower=np.where(last, -np.inf, limits.lower),
+        upper=np.where(last, np.inf, limits.upper),
     )
     return dataclasses.replace(cell, limits=free)

@@ -28,12 +28,18 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
     if parameters.lock == "none":
         return None
     if cell.machine.free:
-        raise InputError("NOT_FOR_SETUP", "joints.lock", "robots need all their axes; only machines with rotary axes can do "
-                         "with four; use none")
+        raise InputError(
+            "NOT_FOR_SETUP",
+            "joints.lock",
+            "robots need all their axes; only machines with rotary axes can do with four; use none",
+        )
     axis = 0 if parameters.lock == "first" else 1
     if not isinstance(parameters.lock_at, str):
         return Lock(axis, parameters.lock_at)
-    arm, tools = FiveAxis(cell.machine.chain), [cell.on_flange(bead.points, bead.tool)[1] for _, _, bead in toolpath]
+    arm, tools = (
+        FiveAxis(cell.machine.chain),
+        [cell.on_flange(bead.points, bead.tool)[1] for _, _, bead in toolpath],
+    )
     directions: Array = np.unique(np.round(np.concatenate(tools), 5), axis=0)
     turning = arm.turning[axis]
     low = max(float(cell.limits.lower[turning]) + RESERVE, -math.pi)
@@ -52,7 +58,10 @@ def as_held(
     for k, path in enumerate(paths):
         if path.reachable:
             tool = cell.tip_in_part(cell.machine.chain.forward(path.joints))[1]
-            missed = np.arctan2(np.linalg.norm(np.cross(tool, path.bead.tool), axis=1), (tool * path.bead.tool).sum(axis=1))
+            missed = np.arctan2(
+                np.linalg.norm(np.cross(tool, path.bead.tool), axis=1),
+                (tool * path.bead.tool).sum(axis=1),
+            )
             strays.append((float(missed.max()), path.layer, path.index, int(missed.argmax())))
             held = dataclasses.replace(path.bead, tool=tool / np.linalg.norm(tool, axis=1)[:, None])
             done[k] = dataclasses.replace(path, bead=held)
@@ -60,12 +69,27 @@ def as_held(
 
 
 def _missed(cell: Cell, lock: Lock, worst: tuple[float, int, int, int], allowed: float) -> Issue:
-    name, (missed, *place) = cell.machine.axes[FiveAxis(cell.machine.chain).turning[lock.axis]], worst
+    name, (missed, *place) = (
+        cell.machine.axes[FiveAxis(cell.machine.chain).turning[lock.axis]],
+        worst,
+    )
     stands, off, most = (math.degrees(angle) for angle in (lock.angle, missed, allowed))
-    text = Text("axis {} stands at {:.4g} deg; the tool is up to {:.3g} deg off the direction asked for", name, stands, off)
+    text = Text(
+        "axis {} stands at {:.4g} deg; the tool is up to {:.3g} deg off the direction asked for",
+        name,
+        stands,
+        off,
+    )
     if missed <= allowed:
         return Issue(NOTE, "FOUR_AXES", text, *place)
     return Issue(
-        ERROR, "FOUR_AXES", Text("{}, more than joints.max_residual allows ({:.3g} deg); lock the other axis, elsewhere or "
-            "none", Word(text), most), *place,
+        ERROR,
+        "FOUR_AXES",
+        Text(
+            "{}, more than joints.max_residual allows ({:.3g} deg); lock the other axis, elsewhere or "
+            "none",
+            Word(text),
+            most,
+        ),
+        *place,
     )

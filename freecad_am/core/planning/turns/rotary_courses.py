@@ -46,7 +46,9 @@ def continuous(turned: Array) -> list[Array]:
     """Two courses (n, 2) through the branches (2, n, 2), one begun on each, that go straight on through a pole."""
     step = np.diff(turned, axis=1)
     across = turned[::-1, 1:] - turned[:, :-1]
-    stay, change = (np.abs(np.remainder(way + np.pi, TURN) - np.pi).sum(axis=(0, 2)) for way in (step, across))
+    stay, change = (
+        np.abs(np.remainder(way + np.pi, TURN) - np.pi).sum(axis=(0, 2)) for way in (step, across)
+    )
     swaps = np.r_[0, np.cumsum(change < stay - 1e-6)] % 2
     rows = np.arange(turned.shape[1])
     return [np.unwrap(turned[(start + swaps) % 2, rows], axis=0) for start in range(2)]
@@ -65,15 +67,25 @@ def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
     """A course (n, a) moved by the whole turns that bring its start nearest to the axes before (a,) and leave it between
     lower and upper (a,); an axis without room is brought to the middle between them."""
     low, high = course.min(axis=0), course.max(axis=0)
-    fewest, greatest = np.ceil((lower - low) / TURN - 1e-12), np.floor((upper - high) / TURN + 1e-12)
+    fewest, greatest = (
+        np.ceil((lower - low) / TURN - 1e-12),
+        np.floor((upper - high) / TURN + 1e-12),
+    )
     wanted = np.round((before - course[0]) / TURN)
     with np.errstate(invalid="ignore"):
         centred = np.round(np.nan_to_num(0.5 * (lower + upper) - 0.5 * (low + high)) / TURN)
-    return np.asarray(course + TURN * np.where(fewest <= greatest, np.clip(wanted, fewest, greatest), centred))
+    return np.asarray(
+        course + TURN * np.where(fewest <= greatest, np.clip(wanted, fewest, greatest), centred)
+    )
 
 
 def chosen(
-    ways: Sequence[Array], before: Array, lower: Array, upper: Array, speed: Array, turning: Mask,
+    ways: Sequence[Array],
+    before: Array,
+    lower: Array,
+    upper: Array,
+    speed: Array,
+    turning: Mask,
     least_motion: bool = False,
 ) -> Array:
     """Of all courses (n, a) and whole turns of the axes that turn (a,) the one within the limits (a,) that starts nearest to
@@ -83,9 +95,15 @@ def chosen(
     for course in ways:
         moved = course.copy()
         if np.isfinite(course).all():
-            moved[:, turning] = in_turns(course[:, turning], before[turning], lower[turning], upper[turning])
+            moved[:, turning] = in_turns(
+                course[:, turning], before[turning], lower[turning], upper[turning]
+            )
         over = float(np.maximum(lower - moved, moved - upper).max())
         motion = round(float(np.abs(np.diff(moved, axis=0)).sum()), 6) if least_motion else 0.0
         start = float((np.abs(moved[0] - before) / speed).max())
-        ranked.append((math.inf, math.inf, math.inf, moved) if math.isnan(over) else (max(over, 0.0), motion, start, moved))
+        ranked.append(
+            (math.inf, math.inf, math.inf, moved)
+            if math.isnan(over)
+            else (max(over, 0.0), motion, start, moved)
+        )
     return min(ranked, key=lambda one: one[:3])[3]

@@ -38,7 +38,9 @@ def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[I
     for path, following in zip(paths, [*paths[1:], None]):
         if before is not None and path.reachable:
             path = replace(path, joints=path.joints + _turns(task, path, before) * TURN)
-            for axis in np.flatnonzero((np.abs(path.joints[0] - before) > TURNS_BACK) & ~task.cell.machine.chain.sliding):
+            for axis in np.flatnonzero(
+                (np.abs(path.joints[0] - before) > TURNS_BACK) & ~task.cell.machine.chain.sliding
+            ):
                 back.setdefault(int(axis), []).append(path.layer)
         elif path.reachable and following is not None and following.reachable:
             # nothing comes before the first bead: it is turned towards the second
@@ -49,8 +51,17 @@ def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[I
         result.append(path)
     names = task.cell.machine.axes
     notes = [
-        Issue(NOTE, "UNWIND", Text("axis {} turns back {} times between beads, first before layer {}", names[axis],
-            len(layers), layers[0]), layer=layers[0])
+        Issue(
+            NOTE,
+            "UNWIND",
+            Text(
+                "axis {} turns back {} times between beads, first before layer {}",
+                names[axis],
+                len(layers),
+                layers[0],
+            ),
+            layer=layers[0],
+        )
         for axis, layers in back.items()
     ]
     return result, notes
@@ -65,7 +76,11 @@ def _turns(task: Task, path: BeadPath, before: Array) -> Array:
     fewest = np.ceil((limits.lower + kept - by_axis.min(axis=1)) / TURN - 1e-12)
     greatest = np.floor((limits.upper - kept - by_axis.max(axis=1)) / TURN + 1e-12)
     wanted = np.round((before - path.joints[0]) / TURN)
-    return np.where((fewest <= greatest) & ~task.cell.machine.chain.sliding, np.clip(wanted, fewest, greatest), 0.0)
+    return np.where(
+        (fewest <= greatest) & ~task.cell.machine.chain.sliding,
+        np.clip(wanted, fewest, greatest),
+        0.0,
+    )
 
 
 def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
@@ -88,7 +103,9 @@ def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
 
 def _come_round(bead: Bead) -> bool:
     """Whether the external axes of a closed bead end where they began, but for whole turns."""
-    return bead.external is None or bool((np.abs(shortest(bead.external[-1] - bead.external[0])) < ROUNDING).all())
+    return bead.external is None or bool(
+        (np.abs(shortest(bead.external[-1] - bead.external[0])) < ROUNDING).all()
+    )
 
 
 def turning_axis(task: Task, joints: Array) -> int | None:
@@ -127,7 +144,11 @@ def _cut(along: Array, rising: bool, low: float, high: float) -> list[slice]:
     """The pieces of an axis (n,) that runs up, or down, each as far as the axis has room; one where that does not help."""
     cuts = [0]
     while True:
-        turns = np.ceil((low - along[cuts[-1]]) / TURN) if rising else np.floor((high - along[cuts[-1]]) / TURN)
+        turns = (
+            np.ceil((low - along[cuts[-1]]) / TURN)
+            if rising
+            else np.floor((high - along[cuts[-1]]) / TURN)
+        )
         turned = along[cuts[-1] :] + turns * TURN
         out = np.flatnonzero(turned > high if rising else turned < low)
         if not len(out):
@@ -154,11 +175,21 @@ def seam_notes(moved: list[int], split: list[int]) -> list[Issue]:
 
 def seam_note(layers: list[int]) -> Issue:
     """Says that seams were moved to find room for a limited axis."""
-    return Issue(NOTE, "SEAM_MOVED", Text("the seams of {} beads were moved to keep an axis within its limits", len(layers)),
-                 layer=layers[0])
+    return Issue(
+        NOTE,
+        "SEAM_MOVED",
+        Text("the seams of {} beads were moved to keep an axis within its limits", len(layers)),
+        layer=layers[0],
+    )
 
 
 def split_note(layers: list[int]) -> Issue:
     """Says that beads were split because an axis lacks the stroke."""
-    return Issue(WARNING, "BEAD_SPLIT", Text("{} beads were split because an axis has not the stroke for a whole bead",
-                                             len(layers)), layer=layers[0])
+    return Issue(
+        WARNING,
+        "BEAD_SPLIT",
+        Text(
+            "{} beads were split because an axis has not the stroke for a whole bead", len(layers)
+        ),
+        layer=layers[0],
+    )

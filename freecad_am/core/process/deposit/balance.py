@@ -64,8 +64,16 @@ def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
         left += max(own.volume - hub - part, 0.0)
         part = max(own.volume - hub, part)
     return Balance(
-        value.label, part + hub, left + hub, part - left + outside, outside, solids=own.apart if own else (),
-        width=toolpath.bead_width or 0.0, filled=True, twice=toolpath.twice, hub=hub,
+        value.label,
+        part + hub,
+        left + hub,
+        part - left + outside,
+        outside,
+        solids=own.apart if own else (),
+        width=toolpath.bead_width or 0.0,
+        filled=True,
+        twice=toolpath.twice,
+        hub=hub,
     )
 
 
@@ -77,7 +85,9 @@ def _of_beads(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     length = math.fsum(bead.length for _, _, bead in toolpath)
     beads = length * (toolpath.bead_width or width) * toolpath.layer_height
     if known is None:
-        return Balance(value.label, None, None, beads, width=width, twice=toolpath.twice, lines=True)
+        return Balance(
+            value.label, None, None, beads, width=width, twice=toolpath.twice, lines=True
+        )
     return replace(known, beads=beads if known.beads is None else known.beads, twice=toolpath.twice)
 
 
@@ -92,10 +102,18 @@ def together(balances: Sequence[Balance | None]) -> Balance | None:
         return sum(values) if values else None
 
     return Balance(
-        ", ".join(one.label for one in known), total("part"), total("left_out"), total("beads"), total("outside"),
+        ", ".join(one.label for one in known),
+        total("part"),
+        total("left_out"),
+        total("beads"),
+        total("outside"),
         tuple(f"{one.label} {face}" for one in known for face in one.faces),
-        tuple(solid for one in known for solid in one.solids), width=known[0].width, thick=known[0].thick,
-        filled=all(one.filled for one in known), twice=total("twice"), hub=total("hub") or 0.0,
+        tuple(solid for one in known for solid in one.solids),
+        width=known[0].width,
+        thick=known[0].thick,
+        filled=all(one.filled for one in known),
+        twice=total("twice"),
+        hub=total("hub") or 0.0,
         lines=all(one.lines for one in known),
     )
 
@@ -104,7 +122,10 @@ def of_wall(depths: PartDepths, width: float) -> Balance:
     """Of a wall of one bead of a width, mm."""
     total = sum(depths.face_areas)
     faces = tuple(
-        name for name, deep, area in zip(depths.faces, depths.face_depths, depths.face_areas, strict=True)
+        name
+        for name, deep, area in zip(
+            depths.faces, depths.face_depths, depths.face_areas, strict=True
+        )
         if deep > SINGLE_BEAD_WIDTHS * width and area > SMALL_SHARE * total
     )
     if not depths.volume:
@@ -117,7 +138,9 @@ def of_wall(depths: PartDepths, width: float) -> Balance:
         left = 0.0
     if outside < (SINGLE_BEAD_WIDTHS - 1.0) / SINGLE_BEAD_WIDTHS * beads:
         outside = 0.0
-    return Balance(depths.label, depths.volume, left, beads, outside, faces, depths.aside, width, thick)
+    return Balance(
+        depths.label, depths.volume, left, beads, outside, faces, depths.aside, width, thick
+    )
 
 
 def _of_solids(solids: SolidsOnHub) -> Balance | None:
@@ -138,24 +161,45 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
     left = balance.left_out or 0.0
     share = left > NEGLIGIBLE * (balance.part or 0.0) and left > 0.0
     if balance.solids or balance.faces or share:
-        why = Text("a wall of one bead, {:.4g} mm wide, is planned", balance.width) if balance.width else (
-            "solids are built up on the hub, which is there before"
+        why = (
+            Text("a wall of one bead, {:.4g} mm wide, is planned", balance.width)
+            if balance.width
+            else ("solids are built up on the hub, which is there before")
         )
         found.append(Issue(WARNING, LEFT_OUT, Text("{}: {}", _left_out(balance, share), Word(why))))
     if balance.outside:
         assert balance.beads is not None
-        found.append(Issue(
-            WARNING, OUTSIDE, Text("about {:.3g} of {:.3g} cm3 of beads lie outside {}, which is {:.2g} mm thick there, and "
-                "beads are {:.4g} mm wide; give process.bead_width, or machine it off", balance.outside / MM3,
-                balance.beads / MM3, balance.label, balance.thick, balance.width),
-        ))
+        found.append(
+            Issue(
+                WARNING,
+                OUTSIDE,
+                Text(
+                    "about {:.3g} of {:.3g} cm3 of beads lie outside {}, which is {:.2g} mm thick there, and "
+                    "beads are {:.4g} mm wide; give process.bead_width, or machine it off",
+                    balance.outside / MM3,
+                    balance.beads / MM3,
+                    balance.label,
+                    balance.thick,
+                    balance.width,
+                ),
+            )
+        )
     twice, beads = balance.twice or 0.0, balance.beads or 0.0
     if twice > UNFILLED * beads:
-        found.append(Issue(
-            _much(twice, beads), TWICE, Text("about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of "
-                "those of {}: they come nearer to each other than they are wide, or cross; layers get higher there. Use "
-                "narrower beads, or leave out what is there twice", twice / MM3, 100.0 * twice / beads, balance.label),
-        ))
+        found.append(
+            Issue(
+                _much(twice, beads),
+                TWICE,
+                Text(
+                    "about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of "
+                    "those of {}: they come nearer to each other than they are wide, or cross; layers get higher there. Use "
+                    "narrower beads, or leave out what is there twice",
+                    twice / MM3,
+                    100.0 * twice / beads,
+                    balance.label,
+                ),
+            )
+        )
     return tuple(found)
 
 
@@ -167,27 +211,54 @@ def _of_filling(of: Balance) -> tuple[Issue, ...]:
     found: list[Issue] = []
     part = (of.part or 0.0) - of.hub
     if of.hub > NEGLIGIBLE * (of.part or 0.0):
-        found += issues(replace(of, left_out=of.hub, outside=None, twice=None, width=0.0, filled=False))
+        found += issues(
+            replace(of, left_out=of.hub, outside=None, twice=None, width=0.0, filled=False)
+        )
     of = replace(of, part=part, left_out=(of.left_out or 0.0) - of.hub)
     if (of.left_out or 0.0) > UNFILLED * part:
-        found.append(Issue(
-            WARNING, LEFT_OUT, Text("{}: beads of {:.4g} mm do not reach into what is narrower, layers not above the last "
-                "cut, and nothing is laid within a hub; use narrower beads, or lower layers", _left_out(of, True), of.width),
-        ))
+        found.append(
+            Issue(
+                WARNING,
+                LEFT_OUT,
+                Text(
+                    "{}: beads of {:.4g} mm do not reach into what is narrower, layers not above the last "
+                    "cut, and nothing is laid within a hub; use narrower beads, or lower layers",
+                    _left_out(of, True),
+                    of.width,
+                ),
+            )
+        )
     if (of.outside or 0.0) > UNFILLED * part:
-        found.append(Issue(
-            WARNING, OUTSIDE, Text("about {:.3g} cm3 of beads lie outside the {:.3g} cm3 of {}: beads of {:.4g} mm stand "
-                "out where it is narrower; use narrower beads, or machine it off", (of.outside or 0.0) / MM3, part / MM3,
-                of.label, of.width),
-        ))
+        found.append(
+            Issue(
+                WARNING,
+                OUTSIDE,
+                Text(
+                    "about {:.3g} cm3 of beads lie outside the {:.3g} cm3 of {}: beads of {:.4g} mm stand "
+                    "out where it is narrower; use narrower beads, or machine it off",
+                    (of.outside or 0.0) / MM3,
+                    part / MM3,
+                    of.label,
+                    of.width,
+                ),
+            )
+        )
     twice = of.twice or 0.0
     if twice > UNFILLED * part:
-        found.append(Issue(
-            _much(twice, part), TWICE, Text("about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of {}: "
-                "where lines and their links meet contours, and where room is left for less than a bead; layers get higher "
-                "there. Use fill: contours, narrower beads, or a wider strategy.gap", twice / MM3, 100.0 * twice / part,
-                of.label),
-        ))
+        found.append(
+            Issue(
+                _much(twice, part),
+                TWICE,
+                Text(
+                    "about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of {}: "
+                    "where lines and their links meet contours, and where room is left for less than a bead; layers get higher "
+                    "there. Use fill: contours, narrower beads, or a wider strategy.gap",
+                    twice / MM3,
+                    100.0 * twice / part,
+                    of.label,
+                ),
+            )
+        )
     return tuple(found)
 
 
@@ -195,14 +266,22 @@ def as_dict(balance: Balance | None) -> dict[str, Any] | None:
     """The key `deposit` of report.json: volumes in cm3, None where the part has none."""
     if balance is None:
         return None
-    left = None if balance.part is None or balance.left_out is None else balance.part - balance.left_out
+    left = (
+        None
+        if balance.part is None or balance.left_out is None
+        else balance.part - balance.left_out
+    )
     volumes = {
-        "part_cm3": balance.part, "deposited_cm3": left, "left_out_cm3": balance.left_out, "beside_cm3": balance.outside,
+        "part_cm3": balance.part,
+        "deposited_cm3": left,
+        "left_out_cm3": balance.left_out,
+        "beside_cm3": balance.outside,
         "twice_cm3": balance.twice,
     }
     return {
         **{key: None if volume is None else volume / MM3 for key, volume in volumes.items()},
-        "faces_left_out": list(balance.faces), "solids_left_out": [name for name, _ in balance.solids],
+        "faces_left_out": list(balance.faces),
+        "solids_left_out": [name for name, _ in balance.solids],
         "estimate": balance.width > 0.0,
     }
 
@@ -213,11 +292,20 @@ def _left_out(of: Balance, share: bool) -> str:
     if of.filled:
         return Text("about {:.3g} of the {:.3g} cm3 of {} are not deposited", left, part, of.label)
     if not of.width and not of.solids:
-        return Text("about {:.3g} of the {:.3g} cm3 of {}, all that lies within its hub, are not deposited", left, part,
-                    of.label)
+        return Text(
+            "about {:.3g} of the {:.3g} cm3 of {}, all that lies within its hub, are not deposited",
+            left,
+            part,
+            of.label,
+        )
     if not of.width:
-        return Text("{}, {:.4g} of {:.4g} cm3 of {}, are not deposited", _names([name for name, _ in of.solids]), left, part,
-                    of.label)
+        return Text(
+            "{}, {:.4g} of {:.4g} cm3 of {}, are not deposited",
+            _names([name for name, _ in of.solids]),
+            left,
+            part,
+            of.label,
+        )
     if of.solids:
         what = Text("{} solid(s) ({})", len(of.solids), _names([name for name, _ in of.solids]))
     else:
@@ -225,7 +313,13 @@ def _left_out(of: Balance, share: bool) -> str:
     if not share:
         return Text("{} of {} are not deposited", Word(what), of.label)
     if of.solids or of.faces:
-        return Text("{}, about {:.3g} cm3 of the {:.3g} cm3 of {}, are not deposited", Word(what), left, part, of.label)
+        return Text(
+            "{}, about {:.3g} cm3 of the {:.3g} cm3 of {}, are not deposited",
+            Word(what),
+            left,
+            part,
+            of.label,
+        )
     return Text("about {:.3g} cm3 of the {:.3g} cm3 of {} are not deposited", left, part, of.label)
 
 

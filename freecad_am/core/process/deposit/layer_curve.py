@@ -20,8 +20,12 @@ from ...geometry.columns import columns, crosses, lengths, unit_rows
 from ...geometry.curves.outline import derivatives
 from ...types import Array, Index, Mask, NDArray
 
-CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
-SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
+CORNER = np.radians(
+    50.0
+)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
+SLIGHT = np.radians(
+    10.0
+)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
 SUDDEN = 3.0
 SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a point at which they differ by more
 _ALL = 15_000  # pairs of points and segments that are looked at one by one: of more a tree finds the near ones sooner
@@ -71,12 +75,18 @@ def distances(asked: Iterable[tuple[Array, Curve]]) -> Iterator[Array]:
 
 def _together(asked: Sequence[tuple[Array, Curve]]) -> list[Array]:
     points = np.concatenate([points for points, _ in asked])
-    curve = Curve(*(np.concatenate([getattr(curve, field.name) for _, curve in asked]) for field in fields(Curve)))
+    curve = Curve(
+        *(
+            np.concatenate([getattr(curve, field.name) for _, curve in asked])
+            for field in fields(Curve)
+        )
+    )
     first = np.cumsum([0, *(len(points) for points, _ in asked)])
     before = np.cumsum([0, *(len(curve.start) for _, curve in asked)])
     pairs = [
         (which + first[k], segment + before[k], own)
-        for k, one in enumerate(asked) for which, segment, own in _near(*one)
+        for k, one in enumerate(asked)
+        for which, segment, own in _near(*one)
     ]
     which, segment, own = (np.concatenate(column) for column in zip(*pairs, strict=True))
     return np.split(_to_cubic(points, which, segment, own, curve), first[1:-1])
@@ -101,7 +111,9 @@ def _near(points: Array, curve: Curve) -> Iterator[tuple[Index, Index, Mask]]:
     if few.any():
         yield _nearest_chords(points, which, near[which, column], curve, bow)
     rest = np.flatnonzero(~few)
-    for some in np.array_split(rest, _parts(middles, points[rest], radius[rest])) if len(rest) else ():
+    for some in (
+        np.array_split(rest, _parts(middles, points[rest], radius[rest])) if len(rest) else ()
+    ):
         which, segment = _within(middles, points[some], radius[some])
         yield _nearest_chords(points, some[which], segment, curve, bow)
 
@@ -133,7 +145,9 @@ def _nearest_of_all(points: Array, curve: Curve, bow: Array) -> tuple[Index, Ind
 
 def _parts(middles: Any, points: Array, radius: Array) -> int:
     sample = slice(None, None, max(1, len(points) // 16))
-    per_point = float(np.mean(middles.query_ball_point(points[sample], radius[sample], return_length=True)))
+    per_point = float(
+        np.mean(middles.query_ball_point(points[sample], radius[sample], return_length=True))
+    )
     return min(len(points), 1 + int(per_point * len(points) / _CHUNK))
 
 
@@ -194,7 +208,10 @@ def _to_cubic(points: Array, which: Index, segment: Index, own: Mask, curve: Cur
     steps from the foot on the chord. Only a point's own segment, its chord the nearest, serves past its ends."""
     # axis by axis: rows of three take several times as long
     at = columns(points)[:, which]
-    p, q, a, b = (columns(of)[:, segment] for of in (curve.start, curve.end, curve.start_slope, curve.end_slope))
+    p, q, a, b = (
+        columns(of)[:, segment]
+        for of in (curve.start, curve.end, curve.start_slope, curve.end_slope)
+    )
     low, high = np.where(own, curve.low[segment], 0.0), np.where(own, curve.high[segment], 1.0)
     d = q - p
     square, cube = 3.0 * d - 2.0 * a - b, a + b - 2.0 * d
@@ -230,8 +247,12 @@ def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tu
     at_start, at_end = tangent, _after(tangent)
     smooth_end = _after(smooth)
     # where the curve ends or has a corner, the arc through both points that has the tangent of the other end
-    start = np.where(smooth[:, None], at_start, np.where(smooth_end[:, None], _mirrored(at_end, chord), chord))
-    end = np.where(smooth_end[:, None], at_end, np.where(smooth[:, None], _mirrored(at_start, chord), chord))
+    start = np.where(
+        smooth[:, None], at_start, np.where(smooth_end[:, None], _mirrored(at_end, chord), chord)
+    )
+    end = np.where(
+        smooth_end[:, None], at_end, np.where(smooth[:, None], _mirrored(at_start, chord), chord)
+    )
     return _arcs(points, start, end, smooth, smooth_end)
 
 
@@ -240,8 +261,11 @@ def _arcs(
 ) -> tuple[Array, ...]:
     """The columns for segments with the unit tangents (n - 1, 3) at their ends, which go on smoothly or do not."""
     return (
-        points[:-1], points[1:], *derivatives(points, start, end),
-        np.where(smooth, -_BEYOND, 0.0), np.where(smooth_end, 1.0 + _BEYOND, 1.0),
+        points[:-1],
+        points[1:],
+        *derivatives(points, start, end),
+        np.where(smooth, -_BEYOND, 0.0),
+        np.where(smooth_end, 1.0 + _BEYOND, 1.0),
     )
 
 

@@ -20,7 +20,9 @@ def over_layers(toolpath: Toolpath) -> tuple[Array, ...]:
     """Per layer but those that nothing of their feature lies below, (n,) mm: the height of each of its points over the
     nearest place of the beads of the layer before, along the build direction there. Beads that close gaps are left out."""
     if toolpath.features:
-        return tuple(chain.from_iterable(over_layers(part) for part, _ in toolpath.parts if part.layers))
+        return tuple(
+            chain.from_iterable(over_layers(part) for part, _ in toolpath.parts if part.layers)
+        )
     found = []
     for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
         points = [bead.points for bead in layer.beads if not bead.closing]
@@ -40,7 +42,9 @@ def _along(layer: Layer, step: float) -> tuple[Array, Array]:
     for bead in layer.beads:
         count = np.maximum(np.ceil(lengths(np.diff(bead.points, axis=0)) / step).astype(np.intp), 1)
         at = np.repeat(np.arange(len(count)), count)
-        share = ((np.arange(len(at)) - np.repeat(np.cumsum(count) - count, count)) / count[at])[:, None]
+        share = ((np.arange(len(at)) - np.repeat(np.cumsum(count) - count, count)) / count[at])[
+            :, None
+        ]
         for column, rows in ((places, bead.points), (directions, bead.build)):
             column += [rows[at] + share * (rows[at + 1] - rows[at]), rows[-1:]]
     build = np.concatenate(directions)

@@ -34,9 +34,14 @@ def places(toolpath: Toolpath) -> Places:
     size = np.array([len(bead) for _, _, bead in beads])
     start = np.cumsum(size) - size
     step = max(1, int(np.ceil(size.sum() / MAX_PLACES)))
-    chosen = np.unique(np.concatenate([start, start + size // 2, start + size - 1, np.arange(0, size.sum(), step)]))
+    chosen = np.unique(
+        np.concatenate([start, start + size // 2, start + size - 1, np.arange(0, size.sum(), step)])
+    )
     of = np.searchsorted(start, chosen, side="right") - 1
-    points, build = (np.concatenate(every)[chosen] for every in zip(*((bead.points, bead.build) for _, _, bead in beads)))
+    points, build = (
+        np.concatenate(every)[chosen]
+        for every in zip(*((bead.points, bead.build) for _, _, bead in beads))
+    )
     layer, bead = (np.array([entry[k] for entry in beads])[of] for k in (0, 1))
     return Places(points, build, layer, bead, chosen - start[of])
 
@@ -60,8 +65,23 @@ def judged(toolpath: Toolpath, looked: Places, off: Array, limit: float) -> Tool
     if off[worst] <= limit:
         return made
     where = tuple(int(column[worst]) for column in (looked.layer, looked.bead, looked.point))
-    return replace(made, issues=(*made.issues, Issue(
-        ERROR, CODE, Text("{} of {} places checked are off the part, this one at {} by {:.4g} mm, and {:.3g} mm are "
-            "allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part",
-            int((off[known] > limit).sum()), len(known), place(looked.points[worst]), off[worst], limit), *where,
-    )))
+    return replace(
+        made,
+        issues=(
+            *made.issues,
+            Issue(
+                ERROR,
+                CODE,
+                Text(
+                    "{} of {} places checked are off the part, this one at {} by {:.4g} mm, and {:.3g} mm are "
+                    "allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part",
+                    int((off[known] > limit).sum()),
+                    len(known),
+                    place(looked.points[worst]),
+                    off[worst],
+                    limit,
+                ),
+                *where,
+            ),
+        ),
+    )

@@ -41,9 +41,13 @@ def cut(toolpath: Toolpath, share: float) -> Pieces:
     size = np.array([len(bead) for _, _, bead in beads])
     points = np.concatenate([bead.points for _, _, bead in beads])
     build = np.concatenate([bead.build for _, _, bead in beads])
-    wide = np.concatenate([np.full(len(bead), width) if bead.width is None else bead.width for _, _, bead in beads])
+    wide = np.concatenate(
+        [np.full(len(bead), width) if bead.width is None else bead.width for _, _, bead in beads]
+    )
     of = np.repeat(np.arange(len(beads)), size)
-    start = np.delete(np.arange(len(points)), np.cumsum(size) - 1)  # of segments; beads end in points without one
+    start = np.delete(
+        np.arange(len(points)), np.cumsum(size) - 1
+    )  # of segments; beads end in points without one
     way = points[start + 1] - points[start]
     length = lengths(way)
     kept = length > 0.0
@@ -60,9 +64,15 @@ def cut(toolpath: Toolpath, share: float) -> Pieces:
     begins = np.flatnonzero(np.diff(bead, prepend=-1))
     along -= np.repeat(along[begins], np.diff(np.r_[begins, len(bead)]))
     return Pieces(
-        points[first] + middle[:, None] * way[row], mixed / lengths(mixed)[:, None],
-        way[row] / length[row, None], part, wide[first] + middle * (wide[first + 1] - wide[first]), along,
-        np.array([layer for layer, _, _ in beads])[bead], bead, first - (np.cumsum(size) - size)[bead],
+        points[first] + middle[:, None] * way[row],
+        mixed / lengths(mixed)[:, None],
+        way[row] / length[row, None],
+        part,
+        wide[first] + middle * (wide[first + 1] - wide[first]),
+        along,
+        np.array([layer for layer, _, _ in beads])[bead],
+        bead,
+        first - (np.cumsum(size) - size)[bead],
         np.array([one.closing for _, _, one in beads])[bead],
     )
 
@@ -81,12 +91,24 @@ def joined(pieces: Pieces, share: float) -> Pieces:
 
     def mean(column: Array) -> Array:
         weighted = column * (pieces.length if column.ndim == 1 else pieces.length[:, None])
-        found: Array = np.add.reduceat(weighted, first, axis=0) / (length if column.ndim == 1 else length[:, None])
+        found: Array = np.add.reduceat(weighted, first, axis=0) / (
+            length if column.ndim == 1 else length[:, None]
+        )
         return found
 
     build, travel = mean(pieces.build), mean(pieces.travel)
-    known = np.maximum(lengths(travel), 1e-12)  # a piece that turns round within itself leads nowhere
+    known = np.maximum(
+        lengths(travel), 1e-12
+    )  # a piece that turns round within itself leads nowhere
     return Pieces(
-        mean(pieces.middle), build / lengths(build)[:, None], travel / known[:, None], length, mean(pieces.width),
-        mean(pieces.along), pieces.layer[first], pieces.bead[first], pieces.point[first], pieces.closing[first],
+        mean(pieces.middle),
+        build / lengths(build)[:, None],
+        travel / known[:, None],
+        length,
+        mean(pieces.width),
+        mean(pieces.along),
+        pieces.layer[first],
+        pieces.bead[first],
+        pieces.point[first],
+        pieces.closing[first],
     )

@@ -24,7 +24,9 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
     those of the other.
     """
     if toolpath.features:
-        return tuple(chain.from_iterable(between_layers(part) for part, _ in toolpath.parts if part.layers))
+        return tuple(
+            chain.from_iterable(between_layers(part) for part, _ in toolpath.parts if part.layers)
+        )
     if _is_spiral(toolpath):
         return between_turns(toolpath.layers[0].beads[0])
     heights = _planes(toolpath)
@@ -32,15 +34,20 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
         return tuple(
             np.full(count, above - below)
             for below, above, layer in zip(heights, heights[1:], toolpath.layers[1:])
-            if not layer.first and (count := sum(len(bead) for bead in layer.beads if not bead.closing))
+            if not layer.first
+            and (count := sum(len(bead) for bead in layer.beads if not bead.closing))
         )
     above = [
-        [] if layer.first else [bead.points for bead in layer.beads if not bead.closing] for layer in toolpath.layers[1:]
+        [] if layer.first else [bead.points for bead in layer.beads if not bead.closing]
+        for layer in toolpath.layers[1:]
     ]
-    return tuple(distances(
-        (np.concatenate(points), curve_of(below))
-        for below, points in zip(toolpath.layers, above, strict=False) if points
-    ))
+    return tuple(
+        distances(
+            (np.concatenate(points), curve_of(below))
+            for below, points in zip(toolpath.layers, above, strict=False)
+            if points
+        )
+    )
 
 
 def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
@@ -51,8 +58,14 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
     if toolpath.features:
         each: list[list[Array]] = [[] for _ in toolpath.layers]
         for part, numbers in toolpath.parts:
-            places = (number for number, layer in zip(numbers.tolist(), part.layers, strict=True) for _ in layer.beads)
-            for number, values in zip(places, local_distances(part) if part.layers else (), strict=True):
+            places = (
+                number
+                for number, layer in zip(numbers.tolist(), part.layers, strict=True)
+                for _ in layer.beads
+            )
+            for number, values in zip(
+                places, local_distances(part) if part.layers else (), strict=True
+            ):
                 each[number].append(values)
         return tuple(chain.from_iterable(each))
     if _is_spiral(toolpath):
@@ -63,7 +76,9 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
         return (found,)
     heights = _planes(toolpath)
     if heights is not None:
-        apart = np.where([layer.first for layer in toolpath.layers], np.nan, np.diff(heights, prepend=np.nan))
+        apart = np.where(
+            [layer.first for layer in toolpath.layers], np.nan, np.diff(heights, prepend=np.nan)
+        )
         return tuple(np.full(len(bead), apart[layer]) for layer, _, bead in toolpath)
     done = [np.full(len(bead), np.nan) for bead in toolpath.layers[0].beads]
     for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
@@ -85,7 +100,12 @@ def between_turns(bead: Bead) -> tuple[Array, ...]:
 
 def _is_spiral(toolpath: Toolpath) -> bool:
     beads = toolpath.layers[0].beads
-    return len(toolpath.layers) == 1 and len(beads) == 1 and not beads[0].closed and toolpath.family == "revolution"
+    return (
+        len(toolpath.layers) == 1
+        and len(beads) == 1
+        and not beads[0].closed
+        and toolpath.family == "revolution"
+    )
 
 
 def is_plane(toolpath: Toolpath) -> bool:
@@ -98,9 +118,12 @@ def _planes(toolpath: Toolpath) -> Array | None:
     if toolpath.family != "solid":
         return None
     up = toolpath.frame[:3, 2]
-    ends = np.array([
-        [(near := np.concatenate([bead.points for bead in layer.beads]) @ up).min(), near.max()] for layer in toolpath.layers
-    ])
+    ends = np.array(
+        [
+            [(near := np.concatenate([bead.points for bead in layer.beads]) @ up).min(), near.max()]
+            for layer in toolpath.layers
+        ]
+    )
     return ends.mean(axis=1) if (np.ptp(ends, axis=1) <= LEVEL).all() else None
 
 

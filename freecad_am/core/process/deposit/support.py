@@ -106,10 +106,17 @@ def _alone(
     if not len(left):
         return np.zeros(0, dtype=np.intp)
     tree = cKDTree(pieces.middle)
-    near = np.asarray(tree.query(at[left] - height * pieces.build[some[left]], k=min(FIRST_ASKED, len(pieces)))[1])
+    near = np.asarray(
+        tree.query(at[left] - height * pieces.build[some[left]], k=min(FIRST_ASKED, len(pieces)))[1]
+    )
     for column in near.reshape(len(left), -1).T:  # a spiral lies on itself
         mine = some[left]
-        done[left[_earlier(pieces, mine, column, toolpath) & _below(pieces, mine, at[left], column, toolpath)]] = True
+        done[
+            left[
+                _earlier(pieces, mine, column, toolpath)
+                & _below(pieces, mine, at[left], column, toolpath)
+            ]
+        ] = True
     left = left[~done[left]]
     if not len(left):
         return np.zeros(0, dtype=np.intp)
@@ -122,10 +129,14 @@ def _alone(
     for rows in _chunks(tree, centre, radius):
         found = tree.query_ball_point(centre[rows], radius, return_sorted=False)
         count = np.fromiter(map(len, found), dtype=np.intp, count=len(found))
-        other = np.fromiter((i for one in found for i in one), dtype=np.intp, count=int(count.sum()))
+        other = np.fromiter(
+            (i for one in found for i in one), dtype=np.intp, count=int(count.sum())
+        )
         which = np.repeat(rows, count)
         mine = some[left[which]]
-        hit = _earlier(pieces, mine, other, toolpath) & _below(pieces, mine, at[left[which]], other, toolpath)
+        hit = _earlier(pieces, mine, other, toolpath) & _below(
+            pieces, mine, at[left[which]], other, toolpath
+        )
         carried[which[hit]] = True
     free: Index = some[left[~carried]]
     return free
@@ -143,7 +154,11 @@ def _earlier(pieces: Pieces, mine: Index, other: Index, toolpath: Toolpath) -> M
     """Whether others were there before, and not as neighbours in the same layer; a bead may lie on itself, as spirals do."""
     back = BACK * np.hypot(0.5 * pieces.width[mine], REACH * toolpath.layer_height)
     same = pieces.bead[mine] == pieces.bead[other]
-    before = np.where(same, pieces.along[mine] - pieces.along[other] > back, pieces.bead[other] < pieces.bead[mine])
+    before = np.where(
+        same,
+        pieces.along[mine] - pieces.along[other] > back,
+        pieces.bead[other] < pieces.bead[mine],
+    )
     apart = same | (pieces.layer[mine] != pieces.layer[other]) | pieces.closing[mine]
     found: Mask = before & apart
     return found
@@ -177,7 +192,10 @@ class _Run:
 def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
     """What of beads lies over nothing in a row, without gaps that are bridged and ends that stand out by half a width."""
     marked = np.unique(pieces.bead[free])
-    low, high = np.searchsorted(pieces.bead, marked), np.searchsorted(pieces.bead, marked, side="right")
+    low, high = (
+        np.searchsorted(pieces.bead, marked),
+        np.searchsorted(pieces.bead, marked, side="right"),
+    )
     beads = [(number, bead) for _, number, bead in toolpath]
     for k, a, b in zip(marked.tolist(), low.tolist(), high.tolist()):
         number, bead = beads[k]
@@ -186,7 +204,9 @@ def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
         turn = int(np.flatnonzero(~own)[0]) if bead.closed and not own.all() else 0
         order = np.r_[turn:count, :turn]
         change = np.diff(np.r_[False, own[order], False].astype(np.int8))
-        for start, end in zip(np.flatnonzero(change > 0).tolist(), np.flatnonzero(change < 0).tolist()):
+        for start, end in zip(
+            np.flatnonzero(change > 0).tolist(), np.flatnonzero(change < 0).tolist()
+        ):
             total = float(length[order[start:end]].sum())
             at_end = not bead.closed and (start == 0 or end == count)
             if own.all() or total > (0.5 if at_end else 1.0) * wide:
@@ -204,15 +224,34 @@ def _issues(runs: list[_Run], toolpath: Toolpath, lowest: Mask) -> list[Issue]:
     for layer in worst:
         longest = max(layers[layer], key=lambda run: run.length)
         reach = (REACH if lowest[layer] else DOWN) * toolpath.layer_height
-        found.append(Issue(
-            WARNING, CODE, Text("{:.4g} mm of beads lie over nothing, {:.4g} mm of them in a row from here: what is below "
-                "is more than {:.4g} mm away, or they overhang it by more than half of their width; deposit what carries "
-                "them first, let the part grow from another side, or leave them out", total[layer], longest.length, reach),
-            layer, longest.bead, longest.point,
-        ))
+        found.append(
+            Issue(
+                WARNING,
+                CODE,
+                Text(
+                    "{:.4g} mm of beads lie over nothing, {:.4g} mm of them in a row from here: what is below "
+                    "is more than {:.4g} mm away, or they overhang it by more than half of their width; deposit what carries "
+                    "them first, let the part grow from another side, or leave them out",
+                    total[layer],
+                    longest.length,
+                    reach,
+                ),
+                layer,
+                longest.bead,
+                longest.point,
+            )
+        )
     if len(total) > len(worst):
         rest = math.fsum(length for layer, length in total.items() if layer not in worst)
-        found.append(Issue(
-            WARNING, CODE, Text("{} layers more have beads over nothing, {:.5g} mm of them", len(total) - len(worst), rest),
-        ))
+        found.append(
+            Issue(
+                WARNING,
+                CODE,
+                Text(
+                    "{} layers more have beads over nothing, {:.5g} mm of them",
+                    len(total) - len(worst),
+                    rest,
+                ),
+            )
+        )
     return found

@@ -20,7 +20,9 @@ PIECE = 0.125  # of a bead's width
 LEVEL = 0.5  # layer heights above or below; what is farther is of another turn of a spiral
 ROUND = 1.6  # arc over chord; a bead comes beside itself where it returns farther round than half a circle
 ACROSS = 0.3  # cosine of the angle between beads that cross rather than run beside each other
-BEYOND = 0.75  # of a piece's length from its middle along it; what is farther is past the end of a bead
+BEYOND = (
+    0.75  # of a piece's length from its middle along it; what is farther is past the end of a bead
+)
 
 
 def deposited_twice(toolpath: Toolpath) -> float:
@@ -28,7 +30,9 @@ def deposited_twice(toolpath: Toolpath) -> float:
     pieces = joined(cut(toolpath, PIECE), PIECE)
     ends = np.searchsorted(pieces.layer, np.arange(len(toolpath.layers) + 1))
     closed = np.array([bead.closed for _, _, bead in toolpath])
-    around = np.where(closed, np.bincount(pieces.bead, pieces.length, minlength=len(closed)), np.inf)
+    around = np.where(
+        closed, np.bincount(pieces.bead, pieces.length, minlength=len(closed)), np.inf
+    )
     shared = 0.0
     for start, end in zip(ends.tolist(), ends[1:].tolist()):
         if end - start > 1:
@@ -39,7 +43,9 @@ def deposited_twice(toolpath: Toolpath) -> float:
 def _shared(pieces: Pieces, layer: slice, around: Array, level: float) -> float:
     """mm2 that the beads of a layer share, counted once."""
     middle, width = pieces.middle[layer], pieces.width[layer]
-    pairs: Index = cKDTree(middle).query_pairs(float(width.max()), output_type="ndarray").astype(np.intp)
+    pairs: Index = (
+        cKDTree(middle).query_pairs(float(width.max()), output_type="ndarray").astype(np.intp)
+    )
     one, other = np.vstack([pairs, pairs[:, ::-1]]).T
     kept = _side_by_side(pieces, layer.start + one, layer.start + other, around)
     if not kept.any():  # of most layers with one bead
@@ -68,5 +74,7 @@ def _side_by_side(pieces: Pieces, one: Index, other: Index, around: Array) -> Ma
     arc = np.abs(pieces.along[one] - pieces.along[other])
     arc = np.minimum(arc, around[pieces.bead[one]] - arc)
     chord = lengths(pieces.middle[one] - pieces.middle[other])
-    found: Mask = (pieces.bead[one] != pieces.bead[other]) | (arc > ROUND * np.maximum(chord, pieces.width[one] / 2.0))
+    found: Mask = (pieces.bead[one] != pieces.bead[other]) | (
+        arc > ROUND * np.maximum(chord, pieces.width[one] / 2.0)
+    )
     return found

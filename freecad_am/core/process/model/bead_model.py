@@ -66,13 +66,20 @@ class BeadModel:
 
     def at_feed(self, feed: float) -> BeadModel:
         """The model of beads at another wire feed, mm/s; the same where nothing like it was measured."""
-        if self.feeds is None or self.speed_ratios is None or not self.feeds[0] <= feed <= self.feeds[1]:
+        if (
+            self.feeds is None
+            or self.speed_ratios is None
+            or not self.feeds[0] <= feed <= self.feeds[1]
+        ):
             return self
         more = float(np.cbrt(feed / self.wire_feed))
         low, high = (feed * ratio for ratio in self.speed_ratios)
         return replace(
-            self, width=replace(self.width, m=more * self.width.m), height=replace(self.height, m=more * self.height.m),
-            speeds=(max(low, self.speeds[0]), min(high, self.speeds[1])), wire_feed=feed,
+            self,
+            width=replace(self.width, m=more * self.width.m),
+            height=replace(self.height, m=more * self.height.m),
+            speeds=(max(low, self.speeds[0]), min(high, self.speeds[1])),
+            wire_feed=feed,
         )
 
     def widths(self, speed: Array, radius: Array) -> Array:
@@ -104,17 +111,29 @@ class BeadModel:
         tight = radius < self.radii[0] * (1.0 - 1e-9)
         rest = width - self.width.p / np.maximum(radius, self.radii[0]) - self.width.t
         with np.errstate(divide="ignore", over="ignore"):
-            speed = np.where(rest > 0.0, (self.width.m / np.where(rest > 0.0, rest, 1.0)) ** 3, np.inf) / MINUTE
+            speed = (
+                np.where(rest > 0.0, (self.width.m / np.where(rest > 0.0, rest, 1.0)) ** 3, np.inf)
+                / MINUTE
+            )
         slowest, fastest = self.speeds
         slack = 1e-9 * fastest
         return Asked(
-            np.clip(speed, slowest, fastest), speed < slowest - slack, speed > fastest + slack, np.asarray(tight)
+            np.clip(speed, slowest, fastest),
+            speed < slowest - slack,
+            speed > fastest + slack,
+            np.asarray(tight),
         )
 
 
 def fit(
-    radius: Array, speed: Array, width: Array, height: Array, wire_feed: float, label: str = "table",
-    lines: Sequence[int] = (), feeds: Array | None = None,
+    radius: Array,
+    speed: Array,
+    width: Array,
+    height: Array,
+    wire_feed: float,
+    label: str = "table",
+    lines: Sequence[int] = (),
+    feeds: Array | None = None,
 ) -> BeadModel:
     """The model of a calibration table: columns (n,) in mm and mm/s, and where each row stands in its file, for messages.
     Least squares, linear in the three coefficients; two where all beads are straight, radii infinite. feeds: (n,) mm/s of
@@ -124,16 +143,25 @@ def fit(
     or speeds do not vary, or only together) or 'NO_MODEL' (width does not fall with speed).
     """
     columns = {
-        "radius": (radius, "mm"), "travel speed": (MINUTE * speed, "mm/min"), "width": (width, "mm"),
+        "radius": (radius, "mm"),
+        "travel speed": (MINUTE * speed, "mm/min"),
+        "width": (width, "mm"),
         "height": (height, "mm"),
     }
     if len(radius) < FEWEST:
         rows = "1 row" if len(radius) == 1 else Text("{} rows", len(radius))
-        raise InputError("TOO_FEW_ROWS", label, "it has {}; measure at least {} beads", Word(rows), FEWEST)
+        raise InputError(
+            "TOO_FEW_ROWS", label, "it has {}; measure at least {} beads", Word(rows), FEWEST
+        )
     for name, (column, unit) in columns.items():
         wrong = np.flatnonzero(~((np.isfinite(column) | (column is radius)) & (column > 0.0)))
         if len(wrong):
-            text = Text("{} {:.9g} {} is not a positive number; mend the row, or leave it out", name, column[wrong[0]], unit)
+            text = Text(
+                "{} {:.9g} {} is not a positive number; mend the row, or leave it out",
+                name,
+                column[wrong[0]],
+                unit,
+            )
             raise InputError("BAD_TABLE", row_name(label, int(wrong[0]), lines), text)
     equivalent = speed if feeds is None else speed * (wire_feed / feeds)
     terms = np.stack([np.cbrt(1.0 / (MINUTE * equivalent)), np.ones(len(radius))], axis=1)
@@ -145,11 +173,24 @@ def fit(
         raise InputError("COLLINEAR_TABLE", label, _alike(radius, speed, equivalent))
     fits = [_fit(terms, column) for column in (width, height)]
     if fits[0].m <= 0.0:
-        raise InputError("NO_MODEL", label, "beads get wider with speed (m = {:.4g}); check the table's columns", fits[0].m)
+        raise InputError(
+            "NO_MODEL",
+            label,
+            "beads get wider with speed (m = {:.4g}); check the table's columns",
+            fits[0].m,
+        )
     made = BeadModel(
-        fits[0], fits[1], (float(speed.min()), float(speed.max())), (float(radius.min()), float(radius.max())), wire_feed
+        fits[0],
+        fits[1],
+        (float(speed.min()), float(speed.max())),
+        (float(radius.min()), float(radius.max())),
+        wire_feed,
     )
-    return made if feeds is None else replace(made, feeds=_ends(feeds), speed_ratios=_ends(speed / feeds))
+    return (
+        made
+        if feeds is None
+        else replace(made, feeds=_ends(feeds), speed_ratios=_ends(speed / feeds))
+    )
 
 
 def _ends(values: Array) -> tuple[float, float]:
@@ -158,7 +199,9 @@ def _ends(values: Array) -> tuple[float, float]:
 
 def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
     """How messages name a row, from 0, of a table: counted from 1, and by its line in the file where that is known."""
-    return Text("{} row {}{}", label, row + 1, Word(Text(" (line {})", lines[row]) if len(lines) else ""))
+    return Text(
+        "{} row {}{}", label, row + 1, Word(Text(" (line {})", lines[row]) if len(lines) else "")
+    )
 
 
 def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
@@ -166,13 +209,18 @@ def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
     straight = np.isinf(radius).all()
     same = [
         Text("all beads have the {} {:.9g} {}", name, column[0], unit)
-        for name, column, unit in (("radius", radius, "mm"), ("travel speed", MINUTE * speed, "mm/min"))
+        for name, column, unit in (
+            ("radius", radius, "mm"),
+            ("travel speed", MINUTE * speed, "mm/min"),
+        )
         if not np.isinf(column).any() and np.ptp(column) <= FLATTEST * column.max()
     ]
     if not same and np.ptp(equivalent) <= FLATTEST * equivalent.max():
         return "all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed"
     text = Text.joined(", and ", same) or "speeds and radii vary only together"
-    return Text("{}; measure at least two speeds{}", text, Word("" if straight else " and two radii"))
+    return Text(
+        "{}; measure at least two speeds{}", text, Word("" if straight else " and two radii")
+    )
 
 
 def _fit(terms: Array, values: Array) -> Fit:
@@ -181,6 +229,9 @@ def _fit(terms: Array, values: Array) -> Fit:
     spread = float(((values - values.mean()) ** 2).sum())
     bend = float(found[1]) if len(found) == 3 else 0.0
     return Fit(
-        float(found[0]), bend, float(found[-1]), 1.0 - rest / spread if spread > 0.0 else 1.0,
+        float(found[0]),
+        bend,
+        float(found[-1]),
+        1.0 - rest / spread if spread > 0.0 else 1.0,
         float(np.sqrt(rest / (len(values) - len(found)))),
     )

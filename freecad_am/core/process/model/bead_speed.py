@@ -21,7 +21,9 @@ def radii(flat: Array, closed: bool, window: float) -> Array:
     step = np.diff(flat, axis=0)
     x, y = columns(step)
     heading = np.unwrap(np.arctan2(y, x))
-    last = float(np.unwrap([heading[-1], heading[0]])[1] - heading[0]) if closed else None  # turn of a whole round
+    last = (
+        float(np.unwrap([heading[-1], heading[0]])[1] - heading[0]) if closed else None
+    )  # turn of a whole round
     return _radii(np.linalg.norm(step, axis=1), heading, last, window)
 
 
@@ -30,8 +32,10 @@ def side_radii(points: Array, build: Array, closed: bool, window: float) -> Arra
     step = np.diff(points, axis=0)
     before, after, up = step[:-1], step[1:], build[1:-1]
     if closed:
-        before, after, up = (np.vstack([rows, last[None]]) for rows, last in
-                             ((before, step[-1]), (after, step[0]), (up, build[0])))
+        before, after, up = (
+            np.vstack([rows, last[None]])
+            for rows, last in ((before, step[-1]), (after, step[0]), (up, build[0]))
+        )
     level = dots(before, after) - dots(before, up) * dots(after, up)
     turn = np.arctan2(dots(np.cross(before, after), up), level)
     heading = np.r_[0.0, np.cumsum(turn[: len(step) - 1])]

@@ -65,24 +65,41 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     except (OSError, ValueError) as error:
         if isinstance(error, UnicodeError):
             raise InputError(
-                "BAD_TABLE", name, "it is not a table: it holds bytes that are not text in UTF-8; save it as CSV in UTF-8",
+                "BAD_TABLE",
+                name,
+                "it is not a table: it holds bytes that are not text in UTF-8; save it as CSV in UTF-8",
             ) from None
         why = (getattr(error, "strerror", None) or str(error) or "no access").lower()
         raise InputError(
-            "NO_FILE", name, "the calibration table cannot be read ({}); give none, csw or the path of one", why,
+            "NO_FILE",
+            name,
+            "the calibration table cannot be read ({}); give none, csw or the path of one",
+            why,
         ) from None
     numbered = enumerate(text.splitlines(), 1)
-    filled = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
+    filled = [
+        (number, line)
+        for number, line in numbered
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
     lines, numbers = [line for _, line in filled], tuple(number for number, _ in filled[1:])
     rows = list(csv.DictReader(lines))
     header = [] if not lines else next(csv.reader(lines[:1]))
     missing = [column for column in COLUMNS if column not in header]
     if missing:
-        raise InputError("BAD_TABLE", path.name, "it has no column {}; name in its first line {}", missing[0],
-                         ", ".join(COLUMNS))
-    table = np.array([
-        [_number(row, column, row_name(path.name, number, numbers)) for column in COLUMNS] for number, row in enumerate(rows)
-    ])
+        raise InputError(
+            "BAD_TABLE",
+            path.name,
+            "it has no column {}; name in its first line {}",
+            missing[0],
+            ", ".join(COLUMNS),
+        )
+    table = np.array(
+        [
+            [_number(row, column, row_name(path.name, number, numbers)) for column in COLUMNS]
+            for number, row in enumerate(rows)
+        ]
+    )
     if not len(rows):
         table = np.empty((0, len(COLUMNS)))
     radius, speed, width, height, feed = table.T
@@ -90,21 +107,48 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     if len(wrong):
         where = row_name(path.name, int(wrong[0]), numbers)
         raise InputError(
-            "BAD_TABLE", where, "wire feed {:g} m/min is not a positive number; mend the row, or leave it out",
-            feed[wrong[0]]
+            "BAD_TABLE",
+            where,
+            "wire feed {:g} m/min is not a positive number; mend the row, or leave it out",
+            feed[wrong[0]],
         )
     several = len(feed) > 0 and np.ptp(feed) > 1e-9 * feed.max()
     feeds = feed * 1000.0 / MINUTE
-    nominal = 0.0 if not len(feed) else float(feeds.mean()) if several else float(feed[0]) * 1000.0 / MINUTE
-    return Measured(radius, speed / MINUTE, width, height, nominal, path.name, numbers, feeds if several else None)
+    nominal = (
+        0.0
+        if not len(feed)
+        else float(feeds.mean())
+        if several
+        else float(feed[0]) * 1000.0 / MINUTE
+    )
+    return Measured(
+        radius,
+        speed / MINUTE,
+        width,
+        height,
+        nominal,
+        path.name,
+        numbers,
+        feeds if several else None,
+    )
 
 
 def _number(row: dict[str, str | None], column: str, where: str) -> float:
     if None in row:
-        raise InputError("BAD_TABLE", where, "it has more values than there are columns; write decimals with a point")
+        raise InputError(
+            "BAD_TABLE",
+            where,
+            "it has more values than there are columns; write decimals with a point",
+        )
     text = (row[column] or "").strip()
     try:
         return float(text)
     except ValueError:
-        what = Text("{} {!r} is not a number", column, text) if text else Text("there is no {}", column)
-        raise InputError("BAD_TABLE", where, "{}; mend the row, or leave it out", Word(what)) from None
+        what = (
+            Text("{} {!r} is not a number", column, text)
+            if text
+            else Text("there is no {}", column)
+        )
+        raise InputError(
+            "BAD_TABLE", where, "{}; mend the row, or leave it out", Word(what)
+        ) from None

@@ -27,7 +27,12 @@ class AtSpeed(NamedTuple):
 
 
 def at_speed(
-    bead: Bead, radius: Array, course: Array, closed: bool, process: ProcessParameters, model: BeadModel,
+    bead: Bead,
+    radius: Array,
+    course: Array,
+    closed: bool,
+    process: ProcessParameters,
+    model: BeadModel,
     share: Array | float = 1.0,
 ) -> AtSpeed:
     """The bead at the speeds that keep its width, or a share (n,) of it, with its radii of curvature (n,) mm; speeds change
@@ -38,7 +43,9 @@ def at_speed(
     if process.wire.feed_mode == "proportional":
         heights = model.heights_of_section(widths, process.bead_width)
         wire_share = with_model(process, model) / model.straight_speed(process.bead_width)
-    made = replace(bead, speed=of_segments(speed), width=widths, height=heights, wire_share=wire_share)
+    made = replace(
+        bead, speed=of_segments(speed), width=widths, height=heights, wire_share=wire_share
+    )
     return AtSpeed(made, asked.too_slow | asked.too_fast, asked.too_tight)
 
 
@@ -58,7 +65,10 @@ def held(toolpath: Toolpath, process: ProcessParameters, model: BeadModel) -> To
         layers.append(replace(layer, beads=tuple(one.bead for one in some)))
     widened = of_model(made, toolpath.layer_height, process, model)
     return replace(
-        toolpath, layers=tuple(layers), law=model.law(process.acceleration), issues=(*toolpath.issues, *widened),
+        toolpath,
+        layers=tuple(layers),
+        law=model.law(process.acceleration),
+        issues=(*toolpath.issues, *widened),
     )
 
 

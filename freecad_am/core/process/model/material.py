@@ -21,26 +21,48 @@ def with_speed_issues(toolpath: Toolpath, process: ProcessParameters) -> Toolpat
     slowest, fastest = process.material.slowest or 0.0, process.material.fastest
     if fastest is not None and slowest > fastest:
         raise InputError(
-            "BAD_VALUE", "process.material.slowest", "{:g} mm/s is more than the fastest, {:g} mm/s; give the slower speed "
-            "here", slowest, fastest
+            "BAD_VALUE",
+            "process.material.slowest",
+            "{:g} mm/s is more than the fastest, {:g} mm/s; give the slower speed here",
+            slowest,
+            fastest,
         )
     if not slowest and fastest is None:
         return toolpath
     worst, where, some = 1.0 + ROUNDING, (0, 0), [float("inf"), 0.0]
     for layer, number, bead in toolpath:
         at_ends = [speed for speed in bead.ends[1:4:2] if speed]
-        low, high = float(min(bead.speed[1:].min(), *at_ends, np.inf)), float(max(bead.speed[1:].max(), *at_ends, 0.0))
+        low, high = (
+            float(min(bead.speed[1:].min(), *at_ends, np.inf)),
+            float(max(bead.speed[1:].max(), *at_ends, 0.0)),
+        )
         some = [min(some[0], low), max(some[1], high)]
         off = max(slowest / low, 0.0 if fastest is None else high / fastest)
         if off > worst:
             worst, where = off, (layer, number)
     if worst <= 1.0 + ROUNDING:
         return toolpath
-    bounds = Text("at {:.4g} mm/s or more",
-                  slowest) if fastest is None else Text("at {:.4g} to {:.4g} mm/s", slowest, fastest)
-    return replace(toolpath, issues=(*toolpath.issues, Issue(
-        WARNING, CODE, Text("beads are laid at {:.4g} to {:.4g} mm/s, and {} {}; change process.travel_speed, "
-            "process.bead_width or process.classes, or measure beads at these speeds", some[0], some[1],
-            process.material.name or "the material", Word(bounds)),
-        *where,
-    )))
+    bounds = (
+        Text("at {:.4g} mm/s or more", slowest)
+        if fastest is None
+        else Text("at {:.4g} to {:.4g} mm/s", slowest, fastest)
+    )
+    return replace(
+        toolpath,
+        issues=(
+            *toolpath.issues,
+            Issue(
+                WARNING,
+                CODE,
+                Text(
+                    "beads are laid at {:.4g} to {:.4g} mm/s, and {} {}; change process.travel_speed, "
+                    "process.bead_width or process.classes, or measure beads at these speeds",
+                    some[0],
+                    some[1],
+                    process.material.name or "the material",
+                    Word(bounds),
+                ),
+                *where,
+            ),
+        ),
+    )

@@ -42,12 +42,29 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
     given = process.wire.feed * process.wire.section
     if given == 0.0 or abs(given - taken) <= TOLERANCE * taken:
         return _of_classes(made, process)
-    return replace(made, issues=(*made.issues, Issue(
-        WARNING, CODE, Text("the wire feeds {:.4g} mm3/s, {:.4g} mm/s of {:g} mm wire, but beads of {:.4g} x {:.4g} mm at "
-            "{:.4g} mm/s take {:.4g} mm3/s; set process.wire.feed to {:.4g} mm/s, or to auto, or make width, layer height "
-            "and travel speed what they are", given, process.wire.feed, process.wire.diameter, width, height, speed, taken,
-            balanced),
-    )))
+    return replace(
+        made,
+        issues=(
+            *made.issues,
+            Issue(
+                WARNING,
+                CODE,
+                Text(
+                    "the wire feeds {:.4g} mm3/s, {:.4g} mm/s of {:g} mm wire, but beads of {:.4g} x {:.4g} mm at "
+                    "{:.4g} mm/s take {:.4g} mm3/s; set process.wire.feed to {:.4g} mm/s, or to auto, or make width, layer height "
+                    "and travel speed what they are",
+                    given,
+                    process.wire.feed,
+                    process.wire.diameter,
+                    width,
+                    height,
+                    speed,
+                    taken,
+                    balanced,
+                ),
+            ),
+        ),
+    )
 
 
 def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
@@ -57,8 +74,13 @@ def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     if process.wire.feed_mode != "proportional" or not toolpath.wire_feed or not ramped:
         return toolpath
     share = toolpath.wire_feed / process.travel_speed
-    return replace(toolpath, layers=tuple(
-        replace(layer, beads=tuple(replace(bead, wire_share=share) for bead in layer.beads)) for layer in toolpath.layers))
+    return replace(
+        toolpath,
+        layers=tuple(
+            replace(layer, beads=tuple(replace(bead, wire_share=share) for bead in layer.beads))
+            for layer in toolpath.layers
+        ),
+    )
 
 
 def _of_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
@@ -67,18 +89,39 @@ def _of_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     given = (toolpath.wire_feed or 0.0) * process.wire.section
     if given == 0.0 or not _at_other_speeds(process) or follows_speed(toolpath):
         return toolpath
-    off = [one for one in taken_of(toolpath) if by_wire(one, process) and abs(given - one.rate) > TOLERANCE * one.rate]
+    off = [
+        one
+        for one in taken_of(toolpath)
+        if by_wire(one, process) and abs(given - one.rate) > TOLERANCE * one.rate
+    ]
     if not off:
         return toolpath
     text = ", ".join(f"{one.name} {one.rate:.4g}" for one in off)
-    return replace(toolpath, issues=(*toolpath.issues, Issue(
-        WARNING, CODE, Text("the wire feeds {:.4g} mm3/s, but beads of these classes, at their own travel speeds, take {} "
-            "mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the "
-            "travel speed of the others", given, text), off[0].layer, off[0].bead,
-    )))
+    return replace(
+        toolpath,
+        issues=(
+            *toolpath.issues,
+            Issue(
+                WARNING,
+                CODE,
+                Text(
+                    "the wire feeds {:.4g} mm3/s, but beads of these classes, at their own travel speeds, take {} "
+                    "mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the "
+                    "travel speed of the others",
+                    given,
+                    text,
+                ),
+                off[0].layer,
+                off[0].bead,
+            ),
+        ),
+    )
 
 
 def _at_other_speeds(process: ProcessParameters) -> bool:
     """Whether any class or phase has a travel speed of its own."""
     named = [process, *(process.for_class(name) for name in CLASSES)]
-    return any(one.travel_speed != process.travel_speed or one.start.there or one.end.there for one in named)
+    return any(
+        one.travel_speed != process.travel_speed or one.start.there or one.end.there
+        for one in named
+    )

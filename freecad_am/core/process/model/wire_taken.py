@@ -54,10 +54,20 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
     if not known or given == 0.0:
         return None
     follows = follows_speed(toolpath)  # so many mm3 to a mm
-    return max((
-        (abs((given / process.travel_speed / one.section if follows else given / one.rate) - 1.0), one.layer, one.bead)
-        for one in known
-    ), key=lambda found: found[0])
+    return max(
+        (
+            (
+                abs(
+                    (given / process.travel_speed / one.section if follows else given / one.rate)
+                    - 1.0
+                ),
+                one.layer,
+                one.bead,
+            )
+            for one in known
+        ),
+        key=lambda found: found[0],
+    )
 
 
 def follows_speed(toolpath: Toolpath) -> bool:
@@ -73,13 +83,16 @@ def taken_of(toolpath: Toolpath) -> list[Taken]:
     sums: dict[tuple[str, int], Array] = {}
     first: dict[tuple[str, int], tuple[int, int]] = {}
     for layer, number, bead in toolpath:
-        for phase, sum_ in _sums(bead, toolpath.bead_width * toolpath.layer_height, toolpath).items():
+        for phase, sum_ in _sums(
+            bead, toolpath.bead_width * toolpath.layer_height, toolpath
+        ).items():
             key = bead.bead_class, phase
             sums[key] = sums.get(key, np.zeros(3)) + sum_
             first.setdefault(key, (layer, number))
     return [
         Taken(*key, float(volume / time), *first[key], float(volume / length))
-        for key, (volume, time, length) in sums.items() if time > 0.0
+        for key, (volume, time, length) in sums.items()
+        if time > 0.0
     ]
 
 
@@ -93,17 +106,28 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
         section = 0.5 * (at[1:] + at[:-1])
     both = np.stack([section * length, length / bead.speed[1:], length])
     if bead.phase is not None:
-        return {phase: both[:, bead.phase[1:] == phase].sum(axis=1) for phase in sorted(set(bead.phase[1:].astype(int)))}
+        return {
+            phase: both[:, bead.phase[1:] == phase].sum(axis=1)
+            for phase in sorted(set(bead.phase[1:].astype(int)))
+        }
     whole = both.sum(axis=1)
     if not bead.ends:
         return {MIDDLE: whole}
     first, slow, last, late = bead.ends[:4]
     found, size = {MIDDLE: whole * (1.0 - (first + last) / length.sum())}, length.sum()
-    for long, (one, other) in zip(bead.ends[4:], ((slow, float(bead.speed[1])), (float(bead.speed[-1]), late))):
+    for long, (one, other) in zip(
+        bead.ends[4:], ((slow, float(bead.speed[1])), (float(bead.speed[-1]), late))
+    ):
         steps = ramp(long, one, other)
         if len(steps):
-            found[MIDDLE] = found[MIDDLE] + [0.0, float((long / len(steps) / steps).sum()) - whole[1] * long / size, 0.0]
+            found[MIDDLE] = found[MIDDLE] + [
+                0.0,
+                float((long / len(steps) / steps).sum()) - whole[1] * long / size,
+                0.0,
+            ]
     for phase, long, speed in ((AT_START, first, slow), (AT_END, last, late)):
         if long:
-            found[phase] = np.array([whole[0] * long / size, long / speed if speed else whole[1] * long / size, long])
+            found[phase] = np.array(
+                [whole[0] * long / size, long / speed if speed else whole[1] * long / size, long]
+            )
     return found

@@ -25,7 +25,9 @@ STEP = 0.5  # of a cube's edge, between places that are asked along a normal
 REACH = 2.0  # widths and layer heights that the deposit is looked for, outwards and inwards
 STANDS = 0.25  # layer heights above where a first layer begins, up to which a face that looks down stands there
 DOWN = 0.5  # cosine against the build direction of such a face
-KNOWN_WIDTHS = 1.5  # widths from a first layer's bead, beyond which nothing is known of what it stands on
+KNOWN_WIDTHS = (
+    1.5  # widths from a first layer's bead, beyond which nothing is known of what it stands on
+)
 AT_ONCE = 4_000
 
 
@@ -60,7 +62,11 @@ def compared(of: PredictedDeposit, faces: Faces) -> Compared:
         turned = np.where(less[:, None], -kept.normals, kept.normals)
         kept = Faces(kept.points, turned, kept.areas, kept.open)
         out, bare = np.where(less, other, out), np.where(less, other_bare, bare)
-    piece = np.asarray(cKDTree(pieces.middle).query(kept.points)[1]) if len(kept) else np.zeros(0, dtype=np.intp)
+    piece = (
+        np.asarray(cKDTree(pieces.middle).query(kept.points)[1])
+        if len(kept)
+        else np.zeros(0, dtype=np.intp)
+    )
     return Compared(kept, out, bare, reach, piece)
 
 
@@ -90,8 +96,13 @@ def _reached(grid: Grid, points: Array, normals: Array, reach: float) -> tuple[A
         inside = grid.at(points[rows]) >= HALF
         way = np.where(inside, 1.0, -1.0)
         length = _first_change(grid, points[rows], way[:, None] * normals[rows], steps, inside)
-        away = np.minimum(np.asarray(full.query(points[rows], distance_upper_bound=reach + grid.edge)[0]), reach + grid.edge)
-        length = np.where(inside, length, np.minimum(length, np.maximum(away - 0.5 * grid.edge, 0.0)))
+        away = np.minimum(
+            np.asarray(full.query(points[rows], distance_upper_bound=reach + grid.edge)[0]),
+            reach + grid.edge,
+        )
+        length = np.where(
+            inside, length, np.minimum(length, np.maximum(away - 0.5 * grid.edge, 0.0))
+        )
         found[rows], bare[rows] = way * length, ~inside & (length >= reach)
     return found, bare
 
@@ -125,14 +136,29 @@ def figures(of: PredictedDeposit, found: Compared, allowance: float) -> Predicte
         return float(area[some].sum()) / whole
 
     return PredictedShape(
-        of.fed, of.deposited, of.grid.edge, of.drift, allowance, len(area), float(found.deviation[worst]),
-        float(found.deviation @ area) / whole, float(found.deviation.max()), share(found.deviation < allowance - known),
-        share(found.deviation < -known), share(found.bare), found.reach, found.faces.points[worst],
-        int(pieces.layer[piece]), int(of.bead_in_layer[piece]), int(pieces.point[piece]),
+        of.fed,
+        of.deposited,
+        of.grid.edge,
+        of.drift,
+        allowance,
+        len(area),
+        float(found.deviation[worst]),
+        float(found.deviation @ area) / whole,
+        float(found.deviation.max()),
+        share(found.deviation < allowance - known),
+        share(found.deviation < -known),
+        share(found.bare),
+        found.reach,
+        found.faces.points[worst],
+        int(pieces.layer[piece]),
+        int(of.bead_in_layer[piece]),
+        int(pieces.point[piece]),
     )
 
 
-def issues(found: PredictedShape, layer_heights: Array, first: Mask, remedy: str) -> tuple[Issue, ...]:
+def issues(
+    found: PredictedShape, layer_heights: Array, first: Mask, remedy: str
+) -> tuple[Issue, ...]:
     """That layers come out higher or lower than they are planned, and that the part is not inside the predicted deposit by
     the allowance. layer_heights: (layers,) mm; first: (layers,) of those that nothing of their feature lies below. remedy:
     what to do where the deposit is too small, with {} for by how much."""
@@ -148,11 +174,26 @@ def issues(found: PredictedShape, layer_heights: Array, first: Mask, remedy: str
         text = Text("{:.3g} mm are left to machine", found.least)
     # where layers come out low more would be needed everywhere
     remedy = "Lay layers as high as they come out first" if low else Text(remedy, f"{lacks:.3g}")
-    return (*drifts, Issue(
-        WARNING, CODE, Text("on {:.3g} % of the faces the predicted deposit does not reach {:g} mm beyond the part, on "
-            "{:.3g} % it ends within the part: at {} {}. {}", 100.0 * found.short, found.allowance, 100.0 * found.outside,
-            place(found.worst), Word(text), remedy), found.layer, found.bead, found.point,
-    ))
+    return (
+        *drifts,
+        Issue(
+            WARNING,
+            CODE,
+            Text(
+                "on {:.3g} % of the faces the predicted deposit does not reach {:g} mm beyond the part, on "
+                "{:.3g} % it ends within the part: at {} {}. {}",
+                100.0 * found.short,
+                found.allowance,
+                100.0 * found.outside,
+                place(found.worst),
+                Word(text),
+                remedy,
+            ),
+            found.layer,
+            found.bead,
+            found.point,
+        ),
+    )
 
 
 def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[tuple[Issue, ...], bool]:
@@ -165,8 +206,20 @@ def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[tuple[Issue
     lowest = int(np.flatnonzero(first[: worst + 1])[-1]) if first[: worst + 1].any() else 0
     made = layer_heights[worst] + drift[worst] / (worst - lowest + 1)
     way = "below" if drift[worst] < 0.0 else "above"
-    return (Issue(
-        WARNING, DRIFT, Text("this layer is predicted to end {:.3g} mm {} where the next one should begin: up to here "
-            "layers come out {:.3g} mm high in the mean, and {:g} mm are planned; set strategy.layer_height to {:.3g} mm, "
-            "or change what the wire feeds", abs(drift[worst]), Word(way), made, layer_heights[worst], made), worst,
-    ),), bool(drift[worst] < 0.0)
+    return (
+        Issue(
+            WARNING,
+            DRIFT,
+            Text(
+                "this layer is predicted to end {:.3g} mm {} where the next one should begin: up to here "
+                "layers come out {:.3g} mm high in the mean, and {:g} mm are planned; set strategy.layer_height to {:.3g} mm, "
+                "or change what the wire feeds",
+                abs(drift[worst]),
+                Word(way),
+                made,
+                layer_heights[worst],
+                made,
+            ),
+            worst,
+        ),
+    ), bool(drift[worst] < 0.0)

@@ -28,9 +28,20 @@ def deviation_map(of: PredictedDeposit, found: Compared, layers: int) -> Deviati
     pieces, piece = of.pieces, found.piece[named]
     edges, shares = _spread(found.deviation, found.faces.areas)
     return DeviationMap(
-        found.faces.points[kept], found.faces.normals[kept], found.deviation[kept],
-        np.column_stack([pieces.layer[piece], of.bead_in_layer[piece], pieces.point[piece]]).astype(np.int64), edges, shares,
-        _by_layer(found.deviation, found.faces.areas, np.asarray(pieces.layer[found.piece], dtype=np.intp), layers),
+        found.faces.points[kept],
+        found.faces.normals[kept],
+        found.deviation[kept],
+        np.column_stack([pieces.layer[piece], of.bead_in_layer[piece], pieces.point[piece]]).astype(
+            np.int64
+        ),
+        edges,
+        shares,
+        _by_layer(
+            found.deviation,
+            found.faces.areas,
+            np.asarray(pieces.layer[found.piece], dtype=np.intp),
+            layers,
+        ),
     )
 
 
@@ -64,4 +75,6 @@ def _by_layer(deviation: Array, areas: Array, layer: Index, layers: int) -> Arra
     np.minimum.at(least, layer, deviation)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.bincount(layer, areas * deviation, layers) / area
-    return np.column_stack([np.where(area > 0.0, least, np.nan), np.where(area > 0.0, mean, np.nan)])
+    return np.column_stack(
+        [np.where(area > 0.0, least, np.nan), np.where(area > 0.0, mean, np.nan)]
+    )

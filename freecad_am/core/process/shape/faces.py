@@ -76,11 +76,21 @@ def uncovered(some: Sequence[Faces]) -> Faces:
             away, near = cKDTree(other.points).query(one.points)
             out = np.abs(dots(one.points - other.points[near], one.normals))
             facing = dots(one.normals, other.normals[near]) < -FACING
-            free &= ~((away < SPACINGS * np.sqrt(other.areas[near])) & (out < CONTACT) & facing & ~other.open[near])
+            free &= ~(
+                (away < SPACINGS * np.sqrt(other.areas[near]))
+                & (out < CONTACT)
+                & facing
+                & ~other.open[near]
+            )
         kept.append(one.rows(free | one.open))
     return together(kept)
 
 
 def together(some: Sequence[Faces]) -> Faces:
     """Faces of several parts as one."""
-    return Faces(*(np.concatenate([getattr(one, name) for one in some]) for name in ("points", "normals", "areas", "open")))
+    return Faces(
+        *(
+            np.concatenate([getattr(one, name) for one in some])
+            for name in ("points", "normals", "areas", "open")
+        )
+    )

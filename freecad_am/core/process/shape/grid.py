@@ -22,19 +22,27 @@ class Grid:
         self.filled = np.zeros(0)
         self._keys = np.zeros(0, dtype=np.int64)  # of blocks, sorted
         self._slots = np.zeros(0, dtype=np.int64)  # where each block is
-        self._corners = np.zeros((0, 3), dtype=np.int64)  # the first cube of each block, by its slot
+        self._corners = np.zeros(
+            (0, 3), dtype=np.int64
+        )  # the first cube of each block, by its slot
 
     def places(self, cubes: Index, make: bool = True) -> Index:
         """Places (n,) of cubes (n, 3), whole numbers along the axes; blocks that are not there are made, or are -1."""
         block = cubes >> 3
         within = cubes - (block << 3)
-        key = ((block[:, 0] + _MIDDLE) << 42) | ((block[:, 1] + _MIDDLE) << 21) | (block[:, 2] + _MIDDLE)
+        key = (
+            ((block[:, 0] + _MIDDLE) << 42)
+            | ((block[:, 1] + _MIDDLE) << 21)
+            | (block[:, 2] + _MIDDLE)
+        )
         if make:
             self._make(key, block)
         if not len(self._keys):
             return np.full(len(cubes), -1, dtype=np.intp)
         found = np.minimum(np.searchsorted(self._keys, key), len(self._keys) - 1)
-        place = self._slots[found] * CUBES + (within[:, 0] * SIDE + within[:, 1]) * SIDE + within[:, 2]
+        place = (
+            self._slots[found] * CUBES + (within[:, 0] * SIDE + within[:, 1]) * SIDE + within[:, 2]
+        )
         there: Index = place if make else np.where(self._keys[found] == key, place, -1)
         return there
 

@@ -71,7 +71,10 @@ class PredictedDeposit:
 
 def parts_of(toolpath: Toolpath, processes: Sequence[ProcessParameters]) -> tuple[Part, ...]:
     """The features of a toolpath with the process of each."""
-    return tuple(Part(part, numbers, own) for (part, numbers), own in zip(toolpath.parts, processes, strict=True))
+    return tuple(
+        Part(part, numbers, own)
+        for (part, numbers), own in zip(toolpath.parts, processes, strict=True)
+    )
 
 
 def edge_of(pieces: Strands) -> float:
@@ -80,7 +83,9 @@ def edge_of(pieces: Strands) -> float:
     return max(fine, float(np.cbrt(pieces.volume.sum() / MAX_CUBES)))
 
 
-def predicted_deposit(parts: Sequence[Part], report: Report, edge: float | None = None) -> PredictedDeposit:
+def predicted_deposit(
+    parts: Sequence[Part], report: Report, edge: float | None = None
+) -> PredictedDeposit:
     """The deposit of features, one after the other. edge: mm of the cubes it is told in, as `edge_of` where it is left out.
     ValueError where it is not known how wide beads count."""
     each = [strands(part.toolpath, part.process) for part in parts]
@@ -92,7 +97,9 @@ def predicted_deposit(parts: Sequence[Part], report: Report, edge: float | None 
     for part, own in zip(parts, each, strict=True):
         below: tuple[Strands, Array] | None = None
         bounds = np.searchsorted(own.layer, np.arange(len(part.toolpath.layers) + 1))
-        for number, (start, end) in enumerate(zip(bounds.tolist(), bounds[1:].tolist(), strict=False)):
+        for number, (start, end) in enumerate(
+            zip(bounds.tolist(), bounds[1:].tolist(), strict=False)
+        ):
             done += 1
             if start == end:
                 continue
@@ -105,10 +112,17 @@ def predicted_deposit(parts: Sequence[Part], report: Report, edge: float | None 
             levels.append(layer.level)
             beads.append(some.bead - some.bead[0])
             below = some, over
-    numbered = np.concatenate([part.numbers[own.layer] for part, own in zip(parts, each, strict=True)])
+    numbered = np.concatenate(
+        [part.numbers[own.layer] for part, own in zip(parts, each, strict=True)]
+    )
     return PredictedDeposit(
-        grid, replace(pieces, layer=numbered), np.concatenate(levels), np.concatenate(beads), float(pieces.volume.sum()),
-        total, drift,
+        grid,
+        replace(pieces, layer=numbered),
+        np.concatenate(levels),
+        np.concatenate(beads),
+        float(pieces.volume.sum()),
+        total,
+        drift,
     )
 
 
@@ -146,7 +160,9 @@ class _Layer:
         self.grid, self.pieces = grid, pieces
         area = pieces.volume / pieces.length
         free = _free_sides(pieces)
-        self.fall = PARABOLA * (area / pieces.width)[:, None] * free  # mm (n, 2) of a surface from its middle to each side
+        self.fall = (
+            PARABOLA * (area / pieces.width)[:, None] * free
+        )  # mm (n, 2) of a surface from its middle to each side
         self.rise = self.fall.sum(axis=1) / 6.0
         base = np.where(pieces.first | (base == 0.0), base, base - self.rise)
         self.base = base
@@ -176,7 +192,9 @@ class _Layer:
         # nothing below what beads lie on: the surface of the layer below, a little of what that lacks, never its underside
         lowest = np.where(pieces.first, 0.0, self.base - pieces.height)
         sagged = self.base - SAG * pieces.height + self.rise
-        bottom = np.where(pieces.first[near.piece], 0.0, np.maximum(sagged[near.piece] - fall, lowest[near.piece]))
+        bottom = np.where(
+            pieces.first[near.piece], 0.0, np.maximum(sagged[near.piece] - fall, lowest[near.piece])
+        )
         most = near.cover * np.clip((near.up - bottom) / grid.edge + 0.5, 0.0, 1.0)
         there = grid.filled[near.place]
 
@@ -215,7 +233,9 @@ class _Layer:
             here = margin(level)
             # what a surface a quarter of a cube higher and lower would hold more
             area = (margin(level + 0.25 * edge) - margin(level - 0.25 * edge)) / (0.5 * edge)
-            step = (pool @ (wanted - here)) / np.maximum(pool @ area, LEAST * (pool @ (pieces.width * pieces.length)))
+            step = (pool @ (wanted - here)) / np.maximum(
+                pool @ area, LEAST * (pool @ (pieces.width * pieces.length))
+            )
             level = np.minimum(level + np.clip(step, -pieces.height, pieces.height), high)
         found: Array = level
         return found
@@ -223,7 +243,9 @@ class _Layer:
     def _fall(self, near: Footprint) -> Array:
         """mm (k,) that the surface of beads is lower at cubes than in their middle."""
         part = 2.0 * near.aside / self.pieces.width[near.piece]
-        fall: Array = self.fall[near.piece, (near.aside < 0.0).astype(np.intp)] * np.minimum(part * part, 1.0)
+        fall: Array = self.fall[near.piece, (near.aside < 0.0).astype(np.intp)] * np.minimum(
+            part * part, 1.0
+        )
         return fall
 
 
@@ -242,7 +264,9 @@ def _free_sides(pieces: Strands) -> Array:
     aside, ahead = dots(way, pieces.side[one]), dots(way, pieces.along[one])
     mean = 0.5 * (pieces.width[one] + pieces.width[other])
     share = np.abs(aside) / mean
-    adjacent = (np.abs(ahead) <= 0.5 * (pieces.length[one] + pieces.length[other])) & (share <= NEIGHBOUR_WIDTHS)
+    adjacent = (np.abs(ahead) <= 0.5 * (pieces.length[one] + pieces.length[other])) & (
+        share <= NEIGHBOUR_WIDTHS
+    )
     valley = np.where(pieces.real[one], np.clip((share - FLAT) / (1.0 - FLAT), 0.0, 1.0), 0.0)
     np.minimum.at(free, (one[adjacent], (aside < 0.0).astype(np.intp)[adjacent]), valley[adjacent])
     return free
@@ -250,7 +274,11 @@ def _free_sides(pieces: Strands) -> Array:
 
 def _pools(pieces: Strands) -> csr_matrix:
     """(n, n) of how much each piece is in the pool of another: a melt levels itself."""
-    pairs = cKDTree(pieces.middle).query_pairs(POOL * float(pieces.width.max()), output_type="ndarray").astype(np.intp)
+    pairs = (
+        cKDTree(pieces.middle)
+        .query_pairs(POOL * float(pieces.width.max()), output_type="ndarray")
+        .astype(np.intp)
+    )
     own = np.arange(len(pieces))
     one, other = np.concatenate([pairs, pairs[:, ::-1], np.stack([own, own], axis=1)]).T
     away = np.sqrt(((pieces.middle[one] - pieces.middle[other]) ** 2).sum(axis=1))

@@ -60,7 +60,12 @@ class Strands:
 
 def together(some: Sequence[Strands]) -> Strands:
     """Those of several features as one; their beads and layers count from 0 in each."""
-    return Strands(*(np.concatenate(columns) for columns in zip(*(vars(one).values() for one in some), strict=True)))
+    return Strands(
+        *(
+            np.concatenate(columns)
+            for columns in zip(*(vars(one).values() for one in some), strict=True)
+        )
+    )
 
 
 def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Array:
@@ -86,25 +91,44 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
     bead, build = pieces.bead, pieces.build
     at = np.cumsum(pieces.length)
     starts = np.flatnonzero(np.diff(bead, prepend=-1))
-    at -= np.repeat((at - pieces.length)[starts], np.diff(np.append(starts, len(bead)))) + 0.5 * pieces.length
+    at -= (
+        np.repeat((at - pieces.length)[starts], np.diff(np.append(starts, len(bead))))
+        + 0.5 * pieces.length
+    )
     side = unit_rows(np.cross(build, pieces.travel))
     closed = np.array([one.closed for _, _, one in beads])
     whole = np.array([one.length for _, _, one in beads])
     layers = toolpath.layers
     first = np.array([number == 0 or layer.first for number, layer in enumerate(layers)])
     return Strands(
-        pieces.middle, np.cross(side, build), side, build, pieces.length, pieces.width,
-        _volumes(toolpath, process, bead, at, pieces.length), np.full(len(bead), toolpath.layer_height), at,
-        np.where(closed, whole, np.inf)[bead], _ends(pieces.travel, bead, closed), pieces.layer, bead, pieces.point,
-        first[pieces.layer], np.array([one.width is not None for _, _, one in beads])[bead],
+        pieces.middle,
+        np.cross(side, build),
+        side,
+        build,
+        pieces.length,
+        pieces.width,
+        _volumes(toolpath, process, bead, at, pieces.length),
+        np.full(len(bead), toolpath.layer_height),
+        at,
+        np.where(closed, whole, np.inf)[bead],
+        _ends(pieces.travel, bead, closed),
+        pieces.layer,
+        bead,
+        pieces.point,
+        first[pieces.layer],
+        np.array([one.width is not None for _, _, one in beads])[bead],
     )
 
 
-def _volumes(toolpath: Toolpath, process: ProcessParameters, of: Index, at: Array, length: Array) -> Array:
+def _volumes(
+    toolpath: Toolpath, process: ProcessParameters, of: Index, at: Array, length: Array
+) -> Array:
     """mm3 of pieces (n,) of the beads `of`: what is fed from where each of them starts to where it ends."""
     beads = [bead for _, _, bead in toolpath]
     steps = [lengths(np.diff(bead.points, axis=0)) for bead in beads]
-    fed = [step * sections(bead, toolpath, process) for step, bead in zip(steps, beads, strict=True)]
+    fed = [
+        step * sections(bead, toolpath, process) for step, bead in zip(steps, beads, strict=True)
+    ]
     # all beads one after the other, so that one look tells what was fed up to any place of any of them
     way = np.concatenate([[0.0], np.cumsum(np.concatenate(steps))])
     total = np.concatenate([[0.0], np.cumsum(np.concatenate(fed))])
@@ -116,11 +140,17 @@ def _volumes(toolpath: Toolpath, process: ProcessParameters, of: Index, at: Arra
 
 def _ends(travel: Array, bead: Index, closed: Mask) -> Mask:
     """Which pieces begin or end a bead, or meet their neighbour at a corner, outside of which nothing else fills it."""
-    turn = np.sqrt(np.maximum(2.0 - 2.0 * dots(travel[:-1], travel[1:]), 0.0)) if len(travel) > 1 else np.zeros(0)
+    turn = (
+        np.sqrt(np.maximum(2.0 - 2.0 * dots(travel[:-1], travel[1:]), 0.0))
+        if len(travel) > 1
+        else np.zeros(0)
+    )
     same = bead[:-1] == bead[1:]
     corner = same & (turn > BEND)
     starts, last = np.append(True, ~same), np.append(~same, True)
-    found: Mask = ((starts | last) & ~closed[bead]) | np.append(False, corner) | np.append(corner, False)
+    found: Mask = (
+        ((starts | last) & ~closed[bead]) | np.append(False, corner) | np.append(corner, False)
+    )
     seam = np.flatnonzero(starts)
     found[seam] |= closed[bead[seam]]  # whose beginning and end may meet at a corner
     return found

@@ -15,7 +15,10 @@ from ...geometry.columns import columns
 from ...types import Array, Index, Mask
 
 SCAN = 48  # tilts tried before the first good one is refined
-AT_ONCE, PARTS = 8, 4  # of these tried together, and parts that the place of the first good one is narrowed to at once
+AT_ONCE, PARTS = (
+    8,
+    4,
+)  # of these tried together, and parts that the place of the first good one is narrowed to at once
 
 
 def local(tangents: Array) -> Array:
@@ -41,7 +44,9 @@ def layer_mean(tangent: Array, azimuth: Array, start: float, end: float) -> Arra
         return fixed(len(azimuth))
     from_middle = azimuth - 0.5 * (start + end)
     r, z = mean / norm
-    return np.stack([r * np.cos(from_middle), -r * np.sin(from_middle), np.full(len(azimuth), z)], axis=1)
+    return np.stack(
+        [r * np.cos(from_middle), -r * np.sin(from_middle), np.full(len(azimuth), z)], axis=1
+    )
 
 
 def held(build: Array, lead: float, tilt: float, rising: bool) -> Array:
@@ -75,8 +80,12 @@ def tilted_back(build: Array, angle: Array) -> Array:
 
 
 def least_tilt_back(
-    build: Array, low: Array, good: Callable[[Index, Array], Mask], within: float = 1e-14,
-    about: Array | None = None, free: Mask | None = None,
+    build: Array,
+    low: Array,
+    good: Callable[[Index, Array], Mask],
+    within: float = 1e-14,
+    about: Array | None = None,
+    free: Mask | None = None,
 ) -> Array:
     """Smallest tilt-back (n,) rad, `low` (n,) or more, at which each row is good, to `within` rad; NaN where none is up to
     the axis.
@@ -90,7 +99,9 @@ def least_tilt_back(
     bad, fine = low[rows].copy(), np.full(len(rows), np.nan)
     tried = low[rows, None]
     if about is not None:
-        likely = np.where(np.isfinite(about[rows]), np.clip(about[rows], tried, top[:, None]), tried)
+        likely = np.where(
+            np.isfinite(about[rows]), np.clip(about[rows], tried, top[:, None]), tried
+        )
         tried = np.concatenate([tried, likely], axis=1)
     _narrow(rows, np.arange(len(rows)), tried, good, bad, fine)
     bad[np.isnan(fine)] = low[rows[np.isnan(fine)]]
@@ -106,14 +117,20 @@ def least_tilt_back(
         wide = np.flatnonzero(fine - bad > within)
         if not len(wide):
             break
-        _narrow(rows, wide, bad[wide, None] + (fine[wide] - bad[wide])[:, None] * share, good, bad, fine)
+        _narrow(
+            rows, wide, bad[wide, None] + (fine[wide] - bad[wide])[:, None] * share, good, bad, fine
+        )
     angle[rows] = fine
     return angle
 
 
 def _narrow(
-    rows: Index, some: Index, tried: Array,
-    good: Callable[[Index, Array], Mask], bad: Array, fine: Array,
+    rows: Index,
+    some: Index,
+    tried: Array,
+    good: Callable[[Index, Array], Mask],
+    bad: Array,
+    fine: Array,
 ) -> None:
     """Bring the bounds of some rows, in place, to the first of the rising angles tried (k, s) that is good and to the last
     one before it."""

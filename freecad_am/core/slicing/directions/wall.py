@@ -35,7 +35,9 @@ def local(normal: Array, into: Array, out: Array, up: Array) -> Array:
     normal: of the wall, either side. into, out: direction of the bead before and after each point, of any length, the
     same but at corners. up: vectors that point away from the layer below, not along the bead.
     """
-    sides = [np.cross(normal, side / np.linalg.norm(side, axis=1, keepdims=True)) for side in (into, out)]
+    sides = [
+        np.cross(normal, side / np.linalg.norm(side, axis=1, keepdims=True)) for side in (into, out)
+    ]
     upright = [side * np.where(dot(side, up) < 0.0, -1.0, 1.0)[:, None] for side in sides]
     return unit(unit(upright[0]) + unit(upright[1]))
 
@@ -49,8 +51,10 @@ def in_plane(directions: Array, plane: Array, label: str = "build_direction") ->
     flat = directions - (directions @ plane)[:, None] * plane
     if np.linalg.norm(flat, axis=1).min() < LEAST:
         raise InputError(
-            "NO_DIRECTION", "build_direction.mode",
-            "a build direction of {} is normal to its plane of symmetry; use local", label,
+            "NO_DIRECTION",
+            "build_direction.mode",
+            "a build direction of {} is normal to its plane of symmetry; use local",
+            label,
         )
     return unit(flat)
 
@@ -93,7 +97,12 @@ def turn_rates(points: Array, directions: Array) -> Array:
 
 
 def limited(
-    points: Array, directions: Array, closed: bool, rate: float, label: str = "build_direction", most: float = np.pi
+    points: Array,
+    directions: Array,
+    closed: bool,
+    rate: float,
+    label: str = "build_direction",
+    most: float = np.pi,
 ) -> Limited:
     """Directions that turn by no more than `rate` rad/mm from point to point (n, 3), and lean by no more than `most` rad.
 
@@ -111,7 +120,9 @@ def limited(
         found = _spread(s, directions, closed, np.maximum(half - distance, 0.0))
         if found is None:
             return None
-        found = capped(found, most)[0]  # a mean of directions beyond the level leans over more than they do
+        found = capped(found, most)[
+            0
+        ]  # a mean of directions beyond the level leans over more than they do
         return None if (turn_rates(points, found) > rate).any() else found
 
     low, high = 0.0, 1e-3 * s[-1]  # narrow ones first
@@ -119,8 +130,12 @@ def limited(
         low, high = high, 1.5 * high
         if low > 2.0 * s[-1]:  # beyond which each is the mean over the whole bead
             raise InputError(
-                "TURN_LIMIT", label, "build directions cannot be brought below {:.3g} deg/mm on a bead of {:.4g} mm: allow "
-                "a faster turn, or use the mode fixed", np.degrees(rate), s[-1],
+                "TURN_LIMIT",
+                label,
+                "build directions cannot be brought below {:.3g} deg/mm on a bead of {:.4g} mm: allow "
+                "a faster turn, or use the mode fixed",
+                np.degrees(rate),
+                s[-1],
             )
     for _ in range(HALVINGS):
         if high - low < 1e-4 * high:
@@ -146,7 +161,9 @@ def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | N
         places, rows = s, directions
         low, high = np.maximum(s - half, 0.0), np.minimum(s + half, s[-1])
     steps = np.diff(places)
-    total = np.vstack([np.zeros(3), np.cumsum(0.5 * (rows[1:] + rows[:-1]) * steps[:, None], axis=0)])
+    total = np.vstack(
+        [np.zeros(3), np.cumsum(0.5 * (rows[1:] + rows[:-1]) * steps[:, None], axis=0)]
+    )
 
     def integral(at: Array) -> Array:
         i = np.clip(np.searchsorted(places, at, side="right") - 1, 0, len(steps) - 1)
@@ -157,7 +174,11 @@ def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | N
 
     width = high - low
     wide = width > 1e-9 * s[-1]
-    mean = np.where(wide[:, None], (integral(high) - integral(low)) / np.where(wide, width, 1.0)[:, None], directions)
+    mean = np.where(
+        wide[:, None],
+        (integral(high) - integral(low)) / np.where(wide, width, 1.0)[:, None],
+        directions,
+    )
     if np.linalg.norm(mean, axis=1).min() < 1e-6:
         return None
     return unit(mean)

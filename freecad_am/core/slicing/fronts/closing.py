@@ -26,7 +26,11 @@ from .gap_middle import middle
 from .slicing import Slicing
 
 COVERED = 0.594  # of the height; no point is to be farther from a bead, and is found to less than the rest to 0.6
-LEVELS = (0.5, 0.42, 0.34)  # of the height; how deep the border of what is closed lies, for a bead that is long enough
+LEVELS = (
+    0.5,
+    0.42,
+    0.34,
+)  # of the height; how deep the border of what is closed lies, for a bead that is long enough
 SHORTEST = 0.5  # of the height
 COARSE, FINE = 0.2, 0.1  # of the height; edges of the mesh on which gaps are sought, and are seen
 LONGEST = 2.0  # of the height; of a bead in a gap whose border is not as deep as layers leave the wall anyway
@@ -36,7 +40,11 @@ SEEN = 0.02  # of the height; gaps deeper by this than half the spacing of layer
 LEFT = 0.005  # of the height, likewise; what is left open
 ON_EDGE_MM = 1e-5  # mm; what is nearer to an edge of the mesh lies on it
 UNSURE = 0.07  # of the height; how far off the depth of a gap may be that is told by the vertices of the fine mesh
-AROUND, CLIMB, SHORTER = 8, 14, 0.7  # directions in which deeper points are sought, how often, how much shorter each time
+AROUND, CLIMB, SHORTER = (
+    8,
+    14,
+    0.7,
+)  # directions in which deeper points are sought, how often, how much shorter each time
 
 
 def closing(
@@ -68,29 +76,41 @@ def closing(
     return [_on_left(slicing, bead, below) for bead in beads]
 
 
-def _near_gaps(slicing: Slicing, below: list[SpaceCurve], above: list[SpaceCurve], corners: Array) -> Mask:
+def _near_gaps(
+    slicing: Slicing, below: list[SpaceCurve], above: list[SpaceCurve], corners: Array
+) -> Mask:
     """Which of the triangles (m, 3, 3) between fronts are where gaps may be."""
     height = slicing.height
     points = cut_evenly(corners, COARSE * height)[0]
-    deep: Mask = _depth(points, [*below, *above], height, height) > (0.5 * slicing.widest + SEEN) * height
+    deep: Mask = (
+        _depth(points, [*below, *above], height, height) > (0.5 * slicing.widest + SEEN) * height
+    )
     if not deep.any() or (len(above) and not _between(below, above, points, corners, deep)):
         return np.zeros(len(corners), dtype=bool)
     # the gap ends within a layer height of where it is deep
     gap = corners[deep.any(axis=1)]
     extent = np.linalg.norm(np.ptp(gap, axis=1), axis=1).max()
-    return np.asarray(cKDTree(gap.mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * extent)
+    return np.asarray(
+        cKDTree(gap.mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * extent
+    )
 
 
-def _depth(points: Array, beads: list[SpaceCurve], height: float, farthest: float = np.inf) -> Array:
+def _depth(
+    points: Array, beads: list[SpaceCurve], height: float, farthest: float = np.inf
+) -> Array:
     """Distances of points (..., 3) to beads that are sampled, infinite beyond the farthest."""
     samples = []
     for bead in beads:
         count = max(2, int(np.ceil(bead.length / (SAMPLED * height))))
-        samples.append(bead.at(np.union1d(np.linspace(bead.w[0], bead.w[-1], count + 1), bead.w))[0])
+        samples.append(
+            bead.at(np.union1d(np.linspace(bead.w[0], bead.w[-1], count + 1), bead.w))[0]
+        )
     return np.asarray(cKDTree(np.vstack(samples)).query(points, distance_upper_bound=farthest)[0])
 
 
-def _between(below: list[SpaceCurve], above: list[SpaceCurve], points: Array, corners: Array, deep: Mask) -> bool:
+def _between(
+    below: list[SpaceCurve], above: list[SpaceCurve], points: Array, corners: Array, deep: Mask
+) -> bool:
     """Whether any of the deep ones (m, s) of points (m, s, 3) on triangles (m, 3, 3) lies between the fronts: not all of
     them above those above, which have the wall still to come on their left, or below those below."""
     face, row = np.nonzero(deep)
@@ -104,7 +124,9 @@ def _between(below: list[SpaceCurve], above: list[SpaceCurve], points: Array, co
         return dot(np.cross(normal, slope), foot.away) > 0.0
 
     at_below, at_above = feet(below, points), feet(above, points)
-    beyond = np.where(at_above.distance < at_below.distance, on_left(at_above, above), ~on_left(at_below, below))
+    beyond = np.where(
+        at_above.distance < at_below.distance, on_left(at_above, above), ~on_left(at_below, below)
+    )
     return not beyond.all()
 
 
@@ -140,7 +162,12 @@ class _Gaps(NamedTuple):
         np.maximum.at(deepest, high, depth[low])
         border = np.zeros(len(depth), dtype=bool)
         border[self.fine.border_edges] = True
-        near = self.asked & (depth >= deepest) & (np.abs(depth / height - self.covered) < UNSURE) & ~border
+        near = (
+            self.asked
+            & (depth >= deepest)
+            & (np.abs(depth / height - self.covered) < UNSURE)
+            & ~border
+        )
         peaks = depth.copy()
         if not near.any():
             return peaks
@@ -151,7 +178,9 @@ class _Gaps(NamedTuple):
         for _ in range(CLIMB):
             one = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)])
             one /= np.linalg.norm(one, axis=1, keepdims=True)
-            around = np.cos(angle)[:, None, None] * one + np.sin(angle)[:, None, None] * np.cross(normal, one)
+            around = np.cos(angle)[:, None, None] * one + np.sin(angle)[:, None, None] * np.cross(
+                normal, one
+            )
             tried, normals = wall.project((points + step * around).reshape(-1, 3))
             found = feet(beads, tried).distance
             found[border[np.asarray(tree.query(tried)[1])]] = 0.0
@@ -184,10 +213,14 @@ class _Gaps(NamedTuple):
             deepest = np.zeros(number.max() + 1)
             np.maximum.at(deepest, number[inside & self.asked], peaks[inside & self.asked])
             deepest[number[self.cut[inside[self.cut]]]] = 0.0
-            lines = fine.level_lines(level * height - depth, np.arange(len(fine.faces)))  # gaps on their left
+            lines = fine.level_lines(
+                level * height - depth, np.arange(len(fine.faces))
+            )  # gaps on their left
             own, tree = number[inside], cKDTree(fine.vertices[inside])
             # a single point of a line may lie nearer to the gap next door: most of them tell
-            owner = np.array([np.bincount(own[tree.query(line.points)[1]]).argmax() for line in lines])
+            owner = np.array(
+                [np.bincount(own[tree.query(line.points)[1]]).argmax() for line in lines]
+            )
             for gap in np.flatnonzero(deepest > covered):
                 members = number == gap
                 loops = _loops(fine, members, [line for line, of in zip(lines, owner) if of == gap])
@@ -213,7 +246,11 @@ def _on_rims(mesh: Mesh, vertices: Index, fine: Mesh) -> Index:
         return np.empty(0, dtype=np.intp)
     border = np.unique(fine.border_edges)
     start, end = mesh.vertices[edges].transpose(1, 0, 2)
-    near = cKDTree(0.5 * (start + end)).query(fine.vertices[border], k=min(4, len(edges)))[1].reshape(len(border), -1)
+    near = (
+        cKDTree(0.5 * (start + end))
+        .query(fine.vertices[border], k=min(4, len(edges)))[1]
+        .reshape(len(border), -1)
+    )
     chord, away = (end - start)[near], fine.vertices[border][:, None] - start[near]
     share = np.clip((chord * away).sum(-1) / (chord * chord).sum(-1), 0.0, 1.0)
     off = np.linalg.norm(away - share[..., None] * chord, axis=-1).min(axis=1)
@@ -226,7 +263,10 @@ def _loops(fine: Mesh, members: Mask, lines: list[LevelLine]) -> list[Array]:
     loops = [line.points for line in lines if line.closed]
     parts = [line.points for line in lines if not line.closed]
     start, end = fine.border_edges[members[fine.border_edges].all(axis=1)].T
-    own, row = np.unique(np.r_[start, end, fine.border_edges[:, 0][members[fine.border_edges[:, 0]]]], return_inverse=True)
+    own, row = np.unique(
+        np.r_[start, end, fine.border_edges[:, 0][members[fine.border_edges[:, 0]]]],
+        return_inverse=True,
+    )
     following = np.full(len(own), -1, dtype=np.intp)
     following[row[: len(start)]] = row[len(start) : 2 * len(start)]
     for chain, closed in chains(following) if len(own) else ():

@@ -55,7 +55,9 @@ def exact(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[SpaceCu
 def on_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
     """The curve with further nodes where its arcs are off the wall between the nodes."""
     for _ in range(ROUNDS):
-        bad = _bad_arcs(curve, lambda points: np.linalg.norm(wall.project(points)[0] - points, axis=1))
+        bad = _bad_arcs(
+            curve, lambda points: np.linalg.norm(wall.project(points)[0] - points, axis=1)
+        )
         if not len(bad):
             break
         w = curve.w[bad] + 0.5 * curve.span[bad]
@@ -63,8 +65,11 @@ def on_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
         points, normal = wall.project(points)
         slope = slope - dot(slope, normal)[:, None] * normal
         curve = SpaceCurve(
-            np.insert(curve.w, bad + 1, w), np.insert(curve.points, bad + 1, points, axis=0),
-            np.insert(curve.into, bad + 1, slope, axis=0), np.insert(curve.out, bad + 1, slope, axis=0), curve.closed,
+            np.insert(curve.w, bad + 1, w),
+            np.insert(curve.points, bad + 1, points, axis=0),
+            np.insert(curve.into, bad + 1, slope, axis=0),
+            np.insert(curve.out, bad + 1, slope, axis=0),
+            curve.closed,
         )
     return curve
 
@@ -82,7 +87,11 @@ def _without(curve: SpaceCurve, bad: Index) -> list[SpaceCurve]:
         curve = curve.started_at(int(bad[0]) + 1 if bad[0] + 1 < len(curve.span) else 0)
         bad = (bad - bad[0] - 1) % len(curve.span)
     ends = np.r_[-1, np.sort(bad), len(curve.span)]
-    return [curve.stretch(int(one) + 1, int(other)) for one, other in zip(ends[:-1], ends[1:]) if other - one > 2]
+    return [
+        curve.stretch(int(one) + 1, int(other))
+        for one, other in zip(ends[:-1], ends[1:])
+        if other - one > 2
+    ]
 
 
 class _Nodes(NamedTuple):
@@ -97,11 +106,16 @@ class _Nodes(NamedTuple):
 
     def of(self, which: Mask | Index | slice) -> _Nodes:
         """Some of them."""
-        return _Nodes(self.points[which], self.into[which], self.out[which], self.foot.of(which), self.closed)
+        return _Nodes(
+            self.points[which], self.into[which], self.out[which], self.foot.of(which), self.closed
+        )
 
     def inserted(self, more: list[tuple[Index, _Nodes]]) -> _Nodes:
         """The nodes with others behind those that begin the arcs named."""
-        order = np.argsort(np.concatenate([np.arange(len(self.points))] + [arcs + 0.5 for arcs, _ in more]), kind="stable")
+        order = np.argsort(
+            np.concatenate([np.arange(len(self.points))] + [arcs + 0.5 for arcs, _ in more]),
+            kind="stable",
+        )
         every = [self, *(nodes for _, nodes in more)]
         points, into, out = (np.concatenate([nodes[k] for nodes in every]) for k in range(3))
         foot = Feet(*(np.concatenate(columns) for columns in zip(*(nodes.foot for nodes in every))))
@@ -114,8 +128,12 @@ class _Nodes(NamedTuple):
             n = len(nodes.points)
             chord = np.roll(nodes.points, -1, axis=0) - nodes.points
             length = np.linalg.norm(chord, axis=1)
-            turned = (dot(chord, nodes.out) <= 0.0) | (dot(chord, np.roll(nodes.into, -1, axis=0)) <= 0.0)
-            alike = dot(nodes.out, np.roll(nodes.into, -1, axis=0)) > 0.5  # else a corner is still to be found between them
+            turned = (dot(chord, nodes.out) <= 0.0) | (
+                dot(chord, np.roll(nodes.into, -1, axis=0)) <= 0.0
+            )
+            alike = (
+                dot(nodes.out, np.roll(nodes.into, -1, axis=0)) > 0.5
+            )  # else a corner is still to be found between them
             bad = (turned & alike) | (length < SAME_PLACE)
             if not closed:
                 bad[-1] = False
@@ -138,7 +156,9 @@ class _Nodes(NamedTuple):
         points, into, out = self[:3]
         if self.closed:
             points, into, out = (np.vstack([column, column[:1]]) for column in (points, into, out))
-        w = np.r_[0.0, np.cumsum(np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1), 1e-12))]
+        w = np.r_[
+            0.0, np.cumsum(np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1), 1e-12))
+        ]
         return SpaceCurve(w, points, into, out, self.closed)
 
 
@@ -162,8 +182,14 @@ class _Offset(NamedTuple):
         if found.sum() < (4 if line.closed else 2):
             return None
         nodes = _smooth_nodes(points[found], normal[found], foot.of(found), line.closed)
-        chord = np.diff(np.vstack([nodes.points, nodes.points[:1]]), axis=0)[: len(nodes.points) if line.closed else -1]
-        return nodes.of(slice(None, None, -1)) if dot(nodes.out[: len(chord)], chord).sum() < 0.0 else nodes
+        chord = np.diff(np.vstack([nodes.points, nodes.points[:1]]), axis=0)[
+            : len(nodes.points) if line.closed else -1
+        ]
+        return (
+            nodes.of(slice(None, None, -1))
+            if dot(nodes.out[: len(chord)], chord).sum() < 0.0
+            else nodes
+        )
 
     def off(self, points: Array) -> Array:
         """How far points (n, 3) are off the wall, or off the height, whichever is more, mm."""
@@ -173,9 +199,13 @@ class _Offset(NamedTuple):
 
     def middles(self, curve: SpaceCurve, arcs: Index) -> tuple[Index, _Nodes]:
         """The middles of arcs (k,) of a curve: the arcs whose middle finds its distance, and these as nodes."""
-        points, normal, foot = self._converged(curve.at(curve.w[arcs] + 0.5 * curve.span[arcs])[0], None)
+        points, normal, foot = self._converged(
+            curve.at(curve.w[arcs] + 0.5 * curve.span[arcs])[0], None
+        )
         found = self._reached(foot)
-        return arcs[found], _smooth_nodes(points[found], normal[found], foot.of(found), curve.closed)
+        return arcs[found], _smooth_nodes(
+            points[found], normal[found], foot.of(found), curve.closed
+        )
 
     def corners(self, nodes: _Nodes, arcs: Index) -> tuple[Index, _Nodes]:
         """Corners on those of the arcs (k,) whose ends belong to two branches: the arcs that have one, and the corners."""
@@ -187,7 +217,11 @@ class _Offset(NamedTuple):
         for _ in range(STEPS * 2):
             both = [self._walked(points, foot) for foot in both]
             slopes = [foot.away - dot(foot.away, normal)[:, None] * normal for foot in both]
-            step = _step(slopes, [self.height - foot.distance for foot in both], np.maximum(chord, 0.3 * self.height))
+            step = _step(
+                slopes,
+                [self.height - foot.distance for foot in both],
+                np.maximum(chord, 0.3 * self.height),
+            )
             points, normal = self.wall.project(points + step)
             if np.abs(step).max(initial=0.0) < 1e-12:
                 break
@@ -195,7 +229,9 @@ class _Offset(NamedTuple):
         found = np.linalg.norm(both[0].point - both[1].point, axis=1) > SAME_FOOT * self.height
         for foot in both:
             found &= np.abs(foot.distance - self.height) < 1e-8
-        found &= np.linalg.norm(points - middle, axis=1) < np.maximum(1.5 * chord, 4.0 * self.height)
+        found &= np.linalg.norm(points - middle, axis=1) < np.maximum(
+            1.5 * chord, 4.0 * self.height
+        )
         for end in ends:  # one of the ends may be that corner already
             corner = dot(end.into, end.out) < SMOOTH
             found &= ~corner | (np.linalg.norm(points - end.points, axis=1) > SAME_PLACE)
@@ -221,7 +257,9 @@ class _Offset(NamedTuple):
             if rims is not None:
                 rate = dot(foot.away[[0, -1]], rims)
                 least = np.where(rate < 0.0, -0.1, 0.1)
-                step[[0, -1]] = (off[[0, -1]] / np.where(np.abs(rate) < 0.1, least, rate))[:, None] * rims
+                step[[0, -1]] = (off[[0, -1]] / np.where(np.abs(rate) < 0.1, least, rate))[
+                    :, None
+                ] * rims
             points, normal = self.wall.project(points + step)
         return points, normal, feet(self.below, points)
 
@@ -249,7 +287,11 @@ def _step(slopes: list[Array], off: list[Array], longest: Array) -> Array:
     determinant = a * c - b * b
     sharp = determinant > 1e-9
     safe = np.where(sharp, determinant, 1.0)
-    step: Array = ((c * p - b * q) / safe)[:, None] * slopes[0] + ((a * q - b * p) / safe)[:, None] * slopes[1]
+    step: Array = ((c * p - b * q) / safe)[:, None] * slopes[0] + ((a * q - b * p) / safe)[
+        :, None
+    ] * slopes[1]
     length = np.linalg.norm(step, axis=1)
-    step *= (np.where(sharp, 1.0, 0.0) * np.minimum(1.0, longest / np.maximum(length, 1e-300)))[:, None]
+    step *= (np.where(sharp, 1.0, 0.0) * np.minimum(1.0, longest / np.maximum(length, 1e-300)))[
+        :, None
+    ]
     return step

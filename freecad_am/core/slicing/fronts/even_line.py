@@ -28,7 +28,9 @@ def rounded(points: Array, closed: bool, wide: float) -> Array:
         padded = np.vstack([points[-reach:], points, points[:reach]]) if reach else points
     else:
         first, last = points[:1], points[-1:]
-        padded = np.vstack([2.0 * first - points[reach:0:-1], points, 2.0 * last - points[-2 : -reach - 2 : -1]])
+        padded = np.vstack(
+            [2.0 * first - points[reach:0:-1], points, 2.0 * last - points[-2 : -reach - 2 : -1]]
+        )
     return np.column_stack([np.convolve(column, share, mode="valid") for column in padded.T])
 
 

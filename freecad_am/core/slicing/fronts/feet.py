@@ -32,7 +32,13 @@ class Feet(NamedTuple):
 
     def of(self, which: Mask | Index | slice) -> Feet:
         """Those of some of the points."""
-        return Feet(self.distance[which], self.away[which], self.front[which], self.w[which], self.point[which])
+        return Feet(
+            self.distance[which],
+            self.away[which],
+            self.front[which],
+            self.w[which],
+            self.point[which],
+        )
 
 
 def feet(fronts: list[SpaceCurve], points: Array) -> Feet:
@@ -53,7 +59,9 @@ def feet(fronts: list[SpaceCurve], points: Array) -> Feet:
         some = np.flatnonzero(asked[piece] & (low[piece] <= distance))
         found = fronts[piece].nearest(points[some])
         # of places at the same distance that on the first front
-        nearer = (found[0] < distance[some]) | ((found[0] == distance[some]) & (piece < front[some]))
+        nearer = (found[0] < distance[some]) | (
+            (found[0] == distance[some]) & (piece < front[some])
+        )
         own = some[nearer]
         distance[own], foot[own], w[own] = (each[nearer] for each in found)
         front[own] = piece

@@ -38,7 +38,9 @@ def middle(slicing: Slicing, borders: list[Array]) -> SpaceCurve | None:
 def _opposite(points: Array, border: Array) -> Array:
     """The nearest points (n, 3) of a border, sampled."""
     share = np.linspace(0.0, 1.0, 8, endpoint=False)[None, :, None]
-    samples = np.vstack([((1.0 - share) * border[:-1, None] + share * border[1:, None]).reshape(-1, 3), border[-1:]])
+    samples = np.vstack(
+        [((1.0 - share) * border[:-1, None] + share * border[1:, None]).reshape(-1, 3), border[-1:]]
+    )
     nearest: Array = samples[cKDTree(samples).query(points)[1]]
     return nearest
 

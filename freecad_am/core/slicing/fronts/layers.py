@@ -35,7 +35,10 @@ from .slicing import Slicing, Smoothing
 from .smooth import SmoothFront, smoothed
 
 SHORTEST = 0.2  # of the layer height; shorter fronts are no bead
-SLIVER, OFF = 10.0, 5e-4  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes
+SLIVER, OFF = (
+    10.0,
+    5e-4,
+)  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes
 THIN = 0.3  # of the typical edge; nearer points of a level line are one
 BEHIND = 1e-3  # mm; vertices nearer to a first curve lie on it
 ON_FRONT_MM = 1e-4  # mm; vertices nearer to a front lie on it, so that the last layer may lie on the wall's edge
@@ -52,7 +55,9 @@ class Sliced(NamedTuple):
 
 
 def layers(
-    wall: PatchWall, height: float, smoothing: Smoothing | None = None,
+    wall: PatchWall,
+    height: float,
+    smoothing: Smoothing | None = None,
     progress: Callable[[float, str], None] = lambda fraction, text: None,
 ) -> Sliced:
     """All layers, from the first until the wall is covered or its edges are reached. progress(fraction, text) is told the
@@ -93,7 +98,9 @@ def start(slicing: Slicing) -> State:
         curve = first.curve()
         points, left = slicing.left_of(curve)
         near = np.asarray(mesh.tree.query(points, k=min(NEIGHBOURS, len(mesh.vertices)))[1])
-        ahead = np.where(wall.behind[near], 0.0, dot(mesh.vertices[near] - points[:, None], left[:, None]))
+        ahead = np.where(
+            wall.behind[near], 0.0, dot(mesh.vertices[near] - points[:, None], left[:, None])
+        )
         fronts.append(curve if ahead.sum() >= 0.0 else curve.reversed())
     behind, near = wall.behind.copy(), within(mesh.tree, fronts, mesh.longest_edge)
     behind[near] |= feet(fronts, mesh.vertices[near]).distance < BEHIND
@@ -114,11 +121,15 @@ def step(slicing: Slicing, state: State) -> State:
         return State([], state.behind, near, state.weight)
     behind, distance = state.behind[near], feet(below, part.vertices).distance
     value = np.where(behind, -distance, distance) - height
-    low = part.joined(value < -ON_FRONT_MM, behind)  # near in space is not enough: the wall must lead there
+    low = part.joined(
+        value < -ON_FRONT_MM, behind
+    )  # near in space is not enough: the wall must lead there
     value = np.where(low, np.minimum(value, -1e-9 * height), np.maximum(value, 1e-9 * height))
     ends = slicing.rims.reached(below, height, reach, ON_FRONT_MM)
     fronts: list[SpaceCurve] = []
-    for line in cut_at_rims(part.level_lines(value, np.arange(len(part.faces))), ends, mesh.longest_edge):
+    for line in cut_at_rims(
+        part.level_lines(value, np.arange(len(part.faces))), ends, mesh.longest_edge
+    ):
         points = thinned(line.points, line.closed, THIN * mesh.typical_edge)
         if len(points) >= (4 if line.closed else 2):
             found = exact(slicing, below, line._replace(points=points))
@@ -126,10 +137,18 @@ def step(slicing: Slicing, state: State) -> State:
     weight = state.weight
     if slicing.smoothing is not None:
         band = slicing.smoothing.band * height
-        smooth = [smoothed(slicing, below, front, fronts[:k] + fronts[k + 1 :], weight) for k, front in enumerate(fronts)]
+        smooth = [
+            smoothed(slicing, below, front, fronts[:k] + fronts[k + 1 :], weight)
+            for k, front in enumerate(fronts)
+        ]
         doubtful = np.flatnonzero(~behind & (np.abs(distance - height) < 1.1 * band))
-        low[doubtful] = _passed(slicing.wall, fronts, smooth, part.vertices[doubtful], low[doubtful], band)
-        fronts, weight = [one.curve for one in smooth], max((one.weight for one in smooth), default=weight)
+        low[doubtful] = _passed(
+            slicing.wall, fronts, smooth, part.vertices[doubtful], low[doubtful], band
+        )
+        fronts, weight = (
+            [one.curve for one in smooth],
+            max((one.weight for one in smooth), default=weight),
+        )
     passed = near[low & ~behind]
     state.behind[passed] = True
     return State(fronts, state.behind, passed, weight)
@@ -140,11 +159,18 @@ def _is_bead(front: SpaceCurve, below: list[SpaceCurve], height: float) -> bool:
     may not; a bead that closes the gap takes their place."""
     if front.length <= SHORTEST * height:
         return False
-    return front.length > SLIVER * height or bool(np.abs(local_distances(front, below, 10) - height).max() < OFF)
+    return front.length > SLIVER * height or bool(
+        np.abs(local_distances(front, below, 10) - height).max() < OFF
+    )
 
 
 def _passed(
-    wall: PatchWall, unsmoothed: list[SpaceCurve], smooth: list[SmoothFront], points: Array, low: Mask, band: float
+    wall: PatchWall,
+    unsmoothed: list[SpaceCurve],
+    smooth: list[SmoothFront],
+    points: Array,
+    low: Mask,
+    band: float,
 ) -> Mask:
     """Whether points (n, 3) lie behind smooth fronts, where these are not the exact ones; low: of the latter. band: mm."""
     fronts = [one.curve for one in smooth]

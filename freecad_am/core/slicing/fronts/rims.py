@@ -64,11 +64,17 @@ class Rims:
     @cached_property
     def upper(self) -> Array:
         """Points (k, 3) along the edges at which layers finish."""
-        return np.vstack([np.empty((0, 3)), *(curve.points for curve, end in zip(self.curves, self.end) if end)])
+        return np.vstack(
+            [np.empty((0, 3)), *(curve.points for curve, end in zip(self.curves, self.end) if end)]
+        )
 
     def from_upper(self, points: Array) -> Array:
         """Distances (n,) mm of points (n, 3) from those along the edges at which layers finish; infinite without any."""
-        return np.asarray(self._upper_tree.query(points)[0]) if len(self.upper) else np.full(len(points), np.inf)
+        return (
+            np.asarray(self._upper_tree.query(points)[0])
+            if len(self.upper)
+            else np.full(len(points), np.inf)
+        )
 
     @cached_property
     def _upper_tree(self) -> cKDTree:
@@ -81,7 +87,9 @@ class Rims:
         rim = np.repeat(np.arange(len(refined)), [len(w) for w in refined])
         return _Samples(points, rim, np.concatenate(refined), cKDTree(points))
 
-    def reached(self, below: list[SpaceCurve], height: float, reach: float, tolerance: float) -> Array:
+    def reached(
+        self, below: list[SpaceCurve], height: float, reach: float, tolerance: float
+    ) -> Array:
         """Points (k, 3) on the rims at `height` mm from the fronts below.
 
         reach: mm from these fronts in which they are sought. Differences of the distance below `tolerance` mm count as
@@ -104,15 +112,20 @@ class Rims:
             crossed = (stretch.off_low > 0.0) != (stretch.off_high > 0.0)
             found.append(_Stretches(*(column[crossed] for column in stretch)))
             # a distance changes by no more than the way along the rim, whose parameter is about its length
-            reserve = np.minimum(np.abs(stretch.off_low), np.abs(stretch.off_high)) < SLACK * (stretch.high - stretch.low)
+            reserve = np.minimum(np.abs(stretch.off_low), np.abs(stretch.off_high)) < SLACK * (
+                stretch.high - stretch.low
+            )
             stretch = _Stretches(*(column[~crossed & reserve] for column in stretch))
             if not len(stretch.rim):
                 break
             middle = 0.5 * (stretch.low + stretch.high)
             off = feet(below, self._at(stretch.rim, middle)[0]).distance - height + tolerance
             stretch = _Stretches(
-                np.tile(stretch.rim, 2), np.r_[stretch.low, middle], np.r_[middle, stretch.high],
-                np.r_[stretch.off_low, off], np.r_[off, stretch.off_high],
+                np.tile(stretch.rim, 2),
+                np.r_[stretch.low, middle],
+                np.r_[middle, stretch.high],
+                np.r_[stretch.off_low, off],
+                np.r_[off, stretch.off_high],
             )
         every = _Stretches(*(np.concatenate(columns) for columns in zip(*found)))
         return self._crossings(below, height, every.rim, every.low, every.high, every.off_low > 0.0)
@@ -126,7 +139,13 @@ class Rims:
         return points, slope
 
     def _crossings(
-        self, below: list[SpaceCurve], height: float, rim: Index, low: Array, high: Array, falls: Mask
+        self,
+        below: list[SpaceCurve],
+        height: float,
+        rim: Index,
+        low: Array,
+        high: Array,
+        falls: Mask,
     ) -> Array:
         """Newton along the rims, kept between the last places known on either side of the height."""
         w = 0.5 * (low + high)
@@ -159,7 +178,10 @@ class Rims:
         if front.closed or not any(self.end):
             return False
         ends = front.points[[0, -1]]
-        distance, end = np.stack([curve.nearest(ends)[0] for curve in self.curves]), np.array(self.end)
+        distance, end = (
+            np.stack([curve.nearest(ends)[0] for curve in self.curves]),
+            np.array(self.end),
+        )
         elsewhere = distance[~end].min(axis=0, initial=np.inf) < ON_RIM
         return bool(((distance[end].min(axis=0) < ON_RIM) & ~elsewhere).any())
 
@@ -216,7 +238,10 @@ def _parts(line: Line, ends: Array, longest_edge: float) -> list[Line]:
         starts = [0, *(at[enter] + 1)]
         stops = [*at[leave], n]
         first_points, last_points = [line.ends[0], *ends[enter]], [*ends[leave], line.ends[1]]
-        parts = [(line.points[i:k], *both) for i, k, *both in zip(starts, stops, first_points, last_points)]
+        parts = [
+            (line.points[i:k], *both)
+            for i, k, *both in zip(starts, stops, first_points, last_points)
+        ]
     found = []
     for inside, first_point, last_point in parts:
         both = np.stack([first_point, last_point])

@@ -60,7 +60,11 @@ def turn(wall: PatchWall, curve: SpaceCurve) -> float:
 
 
 def smoothed(
-    slicing: Slicing, below: list[SpaceCurve], front: SpaceCurve, others: list[SpaceCurve], weight: int = HEAVY
+    slicing: Slicing,
+    below: list[SpaceCurve],
+    front: SpaceCurve,
+    others: list[SpaceCurve],
+    weight: int = HEAVY,
 ) -> SmoothFront:
     """The front near an exact one, as near to the layer height as a turn within the wall of smoothing.limit allows.
 
@@ -73,13 +77,19 @@ def smoothed(
     if smoothing is None or kept.turn <= AIM * smoothing.limit:
         return kept
     datum = _Datum.of(slicing, front)
-    shares = np.array([1.0, 1.0 - smoothing.band * (1.0 - MARGIN), 1.0 + smoothing.band * (1.0 - MARGIN)])
+    shares = np.array(
+        [1.0, 1.0 - smoothing.band * (1.0 - MARGIN), 1.0 + smoothing.band * (1.0 - MARGIN)]
+    )
     heights = datum.heights(below, height * shares)
     if heights is None:
         return kept
     wanted, low, high = heights
     if others:
-        high = np.minimum(high, wanted + MAX_AHEAD * feet(others, datum.points + wanted[:, None] * datum.across).distance)
+        high = np.minimum(
+            high,
+            wanted
+            + MAX_AHEAD * feet(others, datum.points + wanted[:, None] * datum.across).distance,
+        )
     least, most = (1.0 - smoothing.band) * height, (1.0 + smoothing.band) * height
 
     def trial(index: int) -> SmoothFront | None:
@@ -87,7 +97,9 @@ def smoothed(
         distance = local_distances(curve, below, FINER)
         if distance.min() < least or distance.max() > most:
             return None
-        return SmoothFront(curve, float(turns_in_wall(curve, wall.project(curve.points)[1]).max()), index)
+        return SmoothFront(
+            curve, float(turns_in_wall(curve, wall.project(curve.points)[1]).max()), index
+        )
 
     best = lightest(trial, min(weight, HEAVY), AIM * smoothing.limit)
     if best is None or best.turn >= kept.turn:
@@ -133,7 +145,9 @@ class _Datum:
             length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
             share = np.linspace(0.0, length, len(points)) / min(SPREAD * height, 0.5 * length)
             for end, s in ((0, share), (1, share[::-1])):
-                if sliding[end]:  # what the end slides along the front is spread over its neighbours
+                if sliding[
+                    end
+                ]:  # what the end slides along the front is spread over its neighbours
                     slide = along[end] / rate[end] - across[ENDS[end]]
                     across = across + np.maximum(1.0 - s, 0.0)[:, None] * slide
         return cls(slicing, points, across, bend, front.closed, sliding)
@@ -142,13 +156,17 @@ class _Datum:
         """Heights (k, n) mm over the datum of points at the distances (k,) from the fronts below; none where some point is
         not found."""
         wanted = np.repeat(distances, len(self.points))
-        start, across = (np.tile(column, (len(distances), 1)) for column in (self.points, self.across))
+        start, across = (
+            np.tile(column, (len(distances), 1)) for column in (self.points, self.across)
+        )
         x = np.zeros(len(wanted))
         farthest = REACH * distances.max()
         low, high = x - farthest, x + farthest
         todo = np.arange(len(wanted))
         for _ in range(STEPS):
-            foot = feet(below, self.slicing.wall.project(start[todo] + x[todo, None] * across[todo])[0])
+            foot = feet(
+                below, self.slicing.wall.project(start[todo] + x[todo, None] * across[todo])[0]
+            )
             off = foot.distance - wanted[todo]
             above = off > 0.0
             high[todo[above]], low[todo[~above]] = x[todo[above]], x[todo[~above]]
@@ -156,7 +174,9 @@ class _Datum:
             new = x[todo] - step
             inside = (new > low[todo]) & (new < high[todo])
             moving = np.abs(off) > FOUND * wanted[todo]
-            x[todo] = np.where(moving, np.where(inside, new, 0.5 * (low[todo] + high[todo])), x[todo])
+            x[todo] = np.where(
+                moving, np.where(inside, new, 0.5 * (low[todo] + high[todo])), x[todo]
+            )
             todo = todo[moving]
             if not len(todo):
                 return np.asarray(x.reshape(len(distances), -1))
@@ -177,7 +197,9 @@ class _Datum:
         if self.closed:
             points, normal = (np.vstack([column, column[:1]]) for column in (points, normal))
         else:
-            slid = self.slicing.rims.nearest(points[ENDS])[1] if self.sliding.any() else points[ENDS]
+            slid = (
+                self.slicing.rims.nearest(points[ENDS])[1] if self.sliding.any() else points[ENDS]
+            )
             points[ENDS] = np.where(self.sliding[:, None], slid, self.points[ENDS])
         w, slope = spline(points, self.closed)
         slope -= dot(slope, normal)[:, None] * normal

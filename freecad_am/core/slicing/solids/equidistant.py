@@ -47,7 +47,9 @@ class Facets:
     every edge between two of them. InputError 'OPEN_MESH' naming the place where an edge has one of them, or more than two.
     """
 
-    def __init__(self, surface: Developable, vertices: Array, triangles: Index, name: str = "part") -> None:
+    def __init__(
+        self, surface: Developable, vertices: Array, triangles: Index, name: str = "part"
+    ) -> None:
         self.surface, self.vertices, self.triangles, self.name = surface, vertices, triangles, name
         self.distances = surface.distance(vertices)
         self.edges = self._edges()
@@ -55,7 +57,9 @@ class Facets:
         self.lower, self.upper = np.minimum(*ends), np.maximum(*ends)
         self.dips, self.least = self._least_on_edges()
         self.pierced, self.piercing = self._pierced()
-        self.around = [np.flatnonzero((self.edges[:, 2:] // 6 == face).any(axis=1)) for face in self.pierced]
+        self.around = [
+            np.flatnonzero((self.edges[:, 2:] // 6 == face).any(axis=1)) for face in self.pierced
+        ]
 
     def _edges(self) -> Edges:
         """Per edge (k, 4) the vertices at its ends, and the sides of triangles that it is: 3 triangle + side, doubled, and 1
@@ -65,12 +69,22 @@ class Facets:
         sides = (low.astype(np.int64) * count + high).ravel()
         order = np.argsort(sides, kind="stable")
         sides = sides[order]
-        if len(sides) % 2 or (sides[::2] != sides[1::2]).any() or (sides[2::2] == sides[1:-1:2]).any():
+        if (
+            len(sides) % 2
+            or (sides[::2] != sides[1::2]).any()
+            or (sides[2::2] == sides[1:-1:2]).any()
+        ):
             each, counts = np.unique(sides, return_counts=True)
             place = self.vertices[list(divmod(int(each[counts != 2][0]), count))].mean(axis=0)
             raise InputError(
-                "OPEN_MESH", self.name, "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's "
-                "base; close the mesh", int((counts != 2).sum()), place[0], place[1], place[2],
+                "OPEN_MESH",
+                self.name,
+                "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's "
+                "base; close the mesh",
+                int((counts != 2).sum()),
+                place[0],
+                place[1],
+                place[2],
             )
         edges = np.empty((len(order) // 2, 4), dtype=np.int32)
         edges[:, 0], edges[:, 1] = np.divmod(sides[::2], count)
@@ -82,7 +96,9 @@ class Facets:
         inside = self.distances < distance
         once = np.flatnonzero((self.lower < distance) & (self.upper >= distance))
         twice = self.dips[(self.least < distance) & (self.lower[self.dips] >= distance)]
-        loops = [self._round(face, spot, distance, chord_error) for face, spot in self._islands(distance)]
+        loops = [
+            self._round(face, spot, distance, chord_error) for face, spot in self._islands(distance)
+        ]
         if not len(once) and not len(twice):
             return loops
         single, double = self.edges.take(once, axis=0), self.edges.take(twice, axis=0)
@@ -96,7 +112,10 @@ class Facets:
 
     def moved(self, loops: Sequence[Loop], distance: float) -> list[Loop]:
         """Loops moved along the normals of the surface."""
-        return [Loop(loop.points + distance * self.surface.normals(loop.points), loop.turns) for loop in loops]
+        return [
+            Loop(loop.points + distance * self.surface.normals(loop.points), loop.turns)
+            for loop in loops
+        ]
 
     def _least_on_edges(self) -> tuple[Index, Array]:
         """The edges (k,) that come nearest to the base between their ends, and how near (k,), mm."""
@@ -111,7 +130,11 @@ class Facets:
         # at the least d/dt (cos rho + sin z) = 0
         slope = -sin * way[:, 2] / np.maximum(cos * np.sqrt(level), 1e-300)
         turning = (np.abs(slope) < 1.0) & (level > 0.0)
-        reach = np.sqrt(closest) * np.where(turning, slope, 0.0) / np.sqrt(1.0 - np.where(turning, slope, 0.0) ** 2)
+        reach = (
+            np.sqrt(closest)
+            * np.where(turning, slope, 0.0)
+            / np.sqrt(1.0 - np.where(turning, slope, 0.0) ** 2)
+        )
         t = (-toward + reach * np.sqrt(level)) / np.maximum(level, 1e-300)
         some = np.flatnonzero(turning & (t > 0.0) & (t < 1.0))
         return maybe[some], self.surface.distance(p[some] + t[some, None] * way[some])
@@ -154,7 +177,9 @@ class Facets:
         start, end = single[:, 0], single[:, 1]
         starts_inside = inside.take(start)
         outer, inner = np.where(starts_inside, end, start), np.where(starts_inside, start, end)
-        once = self._met(self.vertices.take(outer, axis=0), self.vertices.take(inner, axis=0), distance)
+        once = self._met(
+            self.vertices.take(outer, axis=0), self.vertices.take(inner, axis=0), distance
+        )
         if not len(double):
             return once
         p, q = self.vertices.take(double[:, 0], axis=0), self.vertices.take(double[:, 1], axis=0)
@@ -176,7 +201,13 @@ class Facets:
         return np.asarray(outer + t[:, None] * way)
 
     def _followed(
-        self, nodes: Array, chain: Index, following: Index, face: Index, distance: float, chord_error: float
+        self,
+        nodes: Array,
+        chain: Index,
+        following: Index,
+        face: Index,
+        distance: float,
+        chord_error: float,
     ) -> Array:
         """The nodes of a loop in order, with places between them where a chord would leave the cut."""
         points, normal = nodes[chain], self._normals(face[chain])
@@ -217,7 +248,9 @@ class Facets:
         """The closed cut about the axis in a facet that it pierces; the solid is on the side the facet turns away from."""
         normal = self._normals(np.array([face]))[0]
         radius = self.surface.radius + distance
-        count = int(np.clip(np.ceil(np.pi / np.arccos(max(1.0 - chord_error / radius, -1.0))), 12, 8192))
+        count = int(
+            np.clip(np.ceil(np.pi / np.arccos(max(1.0 - chord_error / radius, -1.0))), 12, 8192)
+        )
         angle = TURN * np.arange(count) / count
         way = np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)
         way[:, 2] = -(way[:, :2] @ normal[:2]) / normal[2]
@@ -227,7 +260,9 @@ class Facets:
         return Loop(points if normal[2] < 0.0 else points[::-1], -1 if normal[2] > 0.0 else 1)
 
     def _normals(self, faces: Index) -> Array:
-        a, b, c = (self.vertices.take(corner, axis=0) for corner in self.triangles.take(faces, axis=0).T)
+        a, b, c = (
+            self.vertices.take(corner, axis=0) for corner in self.triangles.take(faces, axis=0).T
+        )
         normal = _cross(b - a, c - a)
         unit: Array = normal / np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
         return unit

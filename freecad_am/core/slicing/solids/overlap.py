@@ -37,17 +37,25 @@ def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
                 found = _deepest(one, two, box, (base, other_base), deep)
                 if found is not None:
                     raise InputError(
-                        "OVERLAP", body.name, "it and {} fill the same place, as at {}, which would be deposited twice; "
-                        "fuse them into one solid, or move one", other.name, place(found),
+                        "OVERLAP",
+                        body.name,
+                        "it and {} fill the same place, as at {}, which would be deposited twice; "
+                        "fuse them into one solid, or move one",
+                        other.name,
+                        place(found),
                     )
 
 
-def _deepest(one: Body, other: Body, box: tuple[Array, Array], bases: Sequence[Base], deep: float) -> Array | None:
+def _deepest(
+    one: Body, other: Body, box: tuple[Array, Array], bases: Sequence[Base], deep: float
+) -> Array | None:
     """The place (3,) deepest in another solid of the surface of one, and of what is a little below it; None where none is
     in it farther than `deep`."""
     corners = one.corners()
     # faces in a side of the box count: below them may be inside of the other
-    corners = corners[((corners.min(axis=1) <= box[1]) & (corners.max(axis=1) >= box[0])).all(axis=1)]
+    corners = corners[
+        ((corners.min(axis=1) <= box[1]) & (corners.max(axis=1) >= box[0])).all(axis=1)
+    ]
     points, of = spread(corners, STEP)
     normal = doubled_areas(corners)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)

@@ -25,7 +25,9 @@ def _paired(key: Index, forward: Mask) -> Index:
     edge, so that four triangles or more meet there, each number is of two, one of either way. Which two they are is all the
     same: loops that touch bound the same area however they go on."""
     order = np.lexsort((forward, key))
-    alike = np.r_[False, (np.diff(key[order]) == 0) & (np.diff(forward[order].astype(np.int8)) == 0)]
+    alike = np.r_[
+        False, (np.diff(key[order]) == 0) & (np.diff(forward[order].astype(np.int8)) == 0)
+    ]
     at = np.arange(len(key))
     begin = np.maximum.accumulate(np.where(alike, 0, at)) if len(key) else at
     rank = np.empty(len(key), dtype=np.int64)
@@ -46,7 +48,10 @@ class PlaneCuts:
         self.vertices, self.faces, self.triangles = vertices, faces, faces[~flat]
         following = self.triangles[:, [1, 2, 0]]
         low, high = np.minimum(self.triangles, following), np.maximum(self.triangles, following)
-        key = _paired(low.astype(np.int64).ravel() * len(vertices) + high.ravel(), (self.triangles < following).ravel())
+        key = _paired(
+            low.astype(np.int64).ravel() * len(vertices) + high.ravel(),
+            (self.triangles < following).ravel(),
+        )
         known, number = np.unique(key, return_inverse=True)
         self._edge_of: Index = np.ravel(number).reshape(-1, 3).astype(np.intp)
         start, end = np.divmod(known // MOST_SIDES, len(vertices))
@@ -67,7 +72,10 @@ class PlaneCuts:
         # of each edge: the planes above its lower end and not above its upper one
         begin = np.searchsorted(planes, z[self._lower], side="right")
         end = np.searchsorted(planes, z[self._upper], side="right")
-        per_plane = np.cumsum(np.bincount(begin, minlength=len(planes) + 1) - np.bincount(end, minlength=len(planes) + 1))
+        per_plane = np.cumsum(
+            np.bincount(begin, minlength=len(planes) + 1)
+            - np.bincount(end, minlength=len(planes) + 1)
+        )
         at = 0
         while at < len(planes):
             total = np.cumsum(per_plane[at : len(planes)])
@@ -75,7 +83,9 @@ class PlaneCuts:
             yield from self._block(planes, at, until, begin, end)
             at = until
 
-    def _block(self, planes: Array, first: int, last: int, begin: Index, end: Index) -> list[list[Array]]:
+    def _block(
+        self, planes: Array, first: int, last: int, begin: Index, end: Index
+    ) -> list[list[Array]]:
         """Loops of the planes first to last (not with it)."""
         low, high = np.clip(begin, first, last), np.clip(end, first, last)
         count = high - low
@@ -107,7 +117,9 @@ class PlaneCuts:
         count = np.clip(np.searchsorted(planes, z.max(axis=1), side="right"), first, last) - low
         some = np.flatnonzero(count)
         row = np.repeat(some, count[some])
-        plane = np.arange(len(row)) - np.repeat(np.cumsum(count[some]) - count[some] - low[some], count[some])
+        plane = np.arange(len(row)) - np.repeat(
+            np.cumsum(count[some]) - count[some] - low[some], count[some]
+        )
         below = z[row] < planes[plane][:, None]
         rises = below & ~below[:, [1, 2, 0]]
         falls = ~below & below[:, [1, 2, 0]]

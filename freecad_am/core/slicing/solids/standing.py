@@ -21,8 +21,13 @@ PAST_END_MM = 0.05  # mm past the ends of a face at which a solid still stands o
 
 
 def on_hub(
-    bodies: Sequence[Body], seats: Sequence[Seat], chord_error: float, label: str, issues: tuple[Issue, ...] = (),
-    hub: str = "", unitless: Sequence[Body] = (),
+    bodies: Sequence[Body],
+    seats: Sequence[Seat],
+    chord_error: float,
+    label: str,
+    issues: tuple[Issue, ...] = (),
+    hub: str = "",
+    unitless: Sequence[Body] = (),
 ) -> SolidsOnHub:
     """Bodies grouped by the base that each stands on with the longest contour; groups up the first base's axis.
 
@@ -31,16 +36,23 @@ def on_hub(
     """
     if not seats:
         raise InputError(
-            "NO_BASE", hub or label, "the hub has no cylinder and no cone on its outside; choose a face of it, or give "
+            "NO_BASE",
+            hub or label,
+            "the hub has no cylinder and no cone on its outside; choose a face of it, or give "
             "strategy.base",
         )
     standing: dict[int, list[Body]] = {}
     for body in bodies:
-        standing.setdefault(_seat_of(body, seats, chord_error, any(body is one for one in unitless)), []).append(body)
+        standing.setdefault(
+            _seat_of(body, seats, chord_error, any(body is one for one in unitless)), []
+        ).append(body)
     axis = seats[min(standing)].base.frame[:3, 2]
     axis = -axis if downwards(axis) else axis
     groups = [
-        Group(seats[k].base, tuple(sorted(some, key=lambda body: middle_azimuth(seats[k].base, body.vertices))))
+        Group(
+            seats[k].base,
+            tuple(sorted(some, key=lambda body: middle_azimuth(seats[k].base, body.vertices))),
+        )
         for k, some in standing.items()
     ]
     groups.sort(key=lambda group: min(float((body.vertices @ axis).min()) for body in group.bodies))
@@ -53,7 +65,9 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
     away = np.zeros((len(seats), 2))
     for k, seat in enumerate(seats):
         # seats are on cylinders and cones
-        facets = Facets(seat.base.surface, seat.base.inside(body.vertices), body.triangles, body.name)  # type: ignore[arg-type]
+        facets = Facets(
+            seat.base.surface, seat.base.inside(body.vertices), body.triangles, body.name
+        )  # type: ignore[arg-type]
         away[k] = facets.distances.min(), facets.distances.max()
         for loop in cut(facets, 0.0, chord_error):
             step = np.linalg.norm(np.roll(loop.points, -1, axis=0) - loop.points, axis=1)
@@ -65,16 +79,32 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
     if contact[best] > 0.0:
         return best
     nearest = int(np.argmin(np.where(away[:, 1] > 0.0, np.maximum(away[:, 0], 0.0), np.inf)))
-    where = place(body.vertices[np.argmin(seats[nearest].base.surface.distance(seats[nearest].base.inside(body.vertices)))])
+    where = place(
+        body.vertices[
+            np.argmin(
+                seats[nearest].base.surface.distance(seats[nearest].base.inside(body.vertices))
+            )
+        ]
+    )
     if (away[:, 1] <= 0.0).all():
         text = "it lies inside of the hub"
     elif away[nearest, 0] > 0.0:
-        text = Text("it begins {:.4g} mm outside of {}, at {}", away[nearest, 0], seats[nearest].base.name, where)
+        text = Text(
+            "it begins {:.4g} mm outside of {}, at {}",
+            away[nearest, 0],
+            seats[nearest].base.name,
+            where,
+        )
     else:
         text = Text("it passes {} beside the face, near {}", seats[nearest].base.name, where)
     hint = _of_units(body, seats) if unitless else ""
-    raise InputError("NOT_ON_HUB", body.name, "it does not stand on the hub: {}; move it, or choose its base{}", Word(text),
-                     hint)
+    raise InputError(
+        "NOT_ON_HUB",
+        body.name,
+        "it does not stand on the hub: {}; move it, or choose its base{}",
+        Word(text),
+        hint,
+    )
 
 
 def _of_units(body: Body, seats: Sequence[Seat]) -> str:
@@ -86,16 +116,27 @@ def _of_units(body: Body, seats: Sequence[Seat]) -> str:
             z = vertices[:, 2]
             adjacent = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
             if away.min() <= PAST_END_MM < away.max() and adjacent:
-                return Text(". Times {:g} it would reach {}: is its file in {}? Then export it in mm, or give scale: {:g} "
-                            "mm with it, as part.scale (in the window: Meshes, Scale)", factor, seat.base.name, unit, factor)
+                return Text(
+                    ". Times {:g} it would reach {}: is its file in {}? Then export it in mm, or give scale: {:g} "
+                    "mm with it, as part.scale (in the window: Meshes, Scale)",
+                    factor,
+                    seat.base.name,
+                    unit,
+                    factor,
+                )
     return ""
 
 
 def _near(seat: Seat, points: Array, all_round: bool = False) -> Mask:
-    return np.asarray(np.any([face.near(points, PAST_END_MM, all_round) for face in seat.faces], axis=0), dtype=np.bool_)
+    return np.asarray(
+        np.any([face.near(points, PAST_END_MM, all_round) for face in seat.faces], axis=0),
+        dtype=np.bool_,
+    )
 
 
-def hub_among(bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_error: float, label: str) -> int:
+def hub_among(
+    bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_error: float, label: str
+) -> int:
     """Which of the solids of a part is the hub: the one that most of the others stand on.
 
     seats: of each solid. InputError NO_HUB.
@@ -112,7 +153,9 @@ def hub_among(bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_err
             votes[k] += 1
     if not votes.any():
         raise InputError(
-            "NO_HUB", label, "none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose "
+            "NO_HUB",
+            label,
+            "none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose "
             "a face of it, or give strategy.base; what stands on a flat base is deposited by kind: solid",
         )
     return int(np.argmax(votes))

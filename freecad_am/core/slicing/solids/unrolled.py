@@ -59,7 +59,9 @@ def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
     return facets.moved(found, -aside)
 
 
-def opened(surface: Developable, layers: Sequence[Sequence[Loop]], centre: float, where: str) -> Flat:
+def opened(
+    surface: Developable, layers: Sequence[Sequence[Loop]], centre: float, where: str
+) -> Flat:
     """Loops of layers moved onto one surface, none of which goes round it, laid flat together; cut open opposite to the
     azimuth `centre`, or near that.
 
@@ -71,8 +73,12 @@ def opened(surface: Developable, layers: Sequence[Sequence[Loop]], centre: float
     for k in range(TRIES):
         middle = centre + k * STEP
         cutting = middle + 0.5 * TURN
-        if (np.floor((spans[:, 0] - cutting) / TURN) == np.floor((spans[:, 1] - cutting) / TURN)).all():
-            return Flat([[surface.flat(loop.points, middle) for loop in layer] for layer in layers], middle)
+        if (
+            np.floor((spans[:, 0] - cutting) / TURN) == np.floor((spans[:, 1] - cutting) / TURN)
+        ).all():
+            return Flat(
+                [[surface.flat(loop.points, middle) for loop in layer] for layer in layers], middle
+            )
     flat = iter(_in_one_piece(surface, loops, azimuths, centre, where))
     return Flat([list(islice(flat, len(layer))) for layer in layers], centre)
 
@@ -84,17 +90,29 @@ def _followed(points: Array, surface: Developable) -> Array:
 
 
 def _in_one_piece(
-    surface: Developable, loops: Sequence[Loop], azimuths: Sequence[Array], centre: float, where: str
+    surface: Developable,
+    loops: Sequence[Loop],
+    azimuths: Sequence[Array],
+    centre: float,
+    where: str,
 ) -> tuple[Array, ...]:
     """Loops laid flat by azimuths that go on past a turn; holes are moved by whole turns into what is about them."""
-    shifted = [azimuth - centre - TURN * np.round((azimuth.mean() - centre) / TURN) for azimuth in azimuths]
+    shifted = [
+        azimuth - centre - TURN * np.round((azimuth.mean() - centre) / TURN) for azimuth in azimuths
+    ]
     widest = max(float(np.ptp(azimuth)) for azimuth in shifted)
     if not surface.is_cylinder and widest * math.sin(surface.taper) > 0.98 * TURN:
         raise InputError(
-            "TOO_FAR_ROUND", where, "it winds {:.3g} times about the cone and would lie on itself when laid flat; divide it "
-            "into shorter solids", widest / TURN,
+            "TOO_FAR_ROUND",
+            where,
+            "it winds {:.3g} times about the cone and would lie on itself when laid flat; divide it "
+            "into shorter solids",
+            widest / TURN,
         )
-    flat = [surface.flat_at(azimuth, loop.points[:, 2]) for azimuth, loop in zip(shifted, loops, strict=True)]
+    flat = [
+        surface.flat_at(azimuth, loop.points[:, 2])
+        for azimuth, loop in zip(shifted, loops, strict=True)
+    ]
     outer = [points for points in flat if doubled_area(points) > 0.0]
     turns = math.ceil(widest / TURN) + 1
     for k, points in enumerate(flat):

@@ -21,11 +21,17 @@ from .offset import Offset, Places
 from .wall_layer import WallLayer
 
 AT_CORNER = 1e-9  # of the period; a grid point this near to a corner is the corner
-ABOVE = 1e-9  # of u: a third branch that overtops a crossing by more means that it is not the corner
-NARROWEST = 1e-9  # of the period; a change of branch in a narrower stretch is a corner in its middle
+ABOVE = (
+    1e-9  # of u: a third branch that overtops a crossing by more means that it is not the corner
+)
+NARROWEST = (
+    1e-9  # of the period; a change of branch in a narrower stretch is a corner in its middle
+)
 
 
-def next_layer(surface: Surface, below: WallLayer, height: float, grid: Array, label: str = "wall") -> WallLayer:
+def next_layer(
+    surface: Surface, below: WallLayer, height: float, grid: Array, label: str = "wall"
+) -> WallLayer:
     """The layer at the distance `height` (mm) from the curve of the layer below.
 
     grid: (n,) values of v from one seam to the next, rising; nodes are added at corners and where cubic arcs would not
@@ -53,7 +59,12 @@ def next_layer(surface: Surface, below: WallLayer, height: float, grid: Array, l
 
 
 def layers(
-    surface: Surface, first: WallLayer, height: float, u_end: float, points: int = 360, label: str = "wall"
+    surface: Surface,
+    first: WallLayer,
+    height: float,
+    u_end: float,
+    points: int = 360,
+    label: str = "wall",
 ) -> list[WallLayer]:
     """All layers from the first to the first one wholly past u_end, each with at least `points` points."""
     grid = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
@@ -69,8 +80,12 @@ def _asked(offset: Offset, v: Array, height: float, label: str) -> Places:
     if (places.run < 0).any():
         where = v[np.flatnonzero(places.run < 0)[0]]
         raise InputError(
-            "LAYER_HEIGHT", label, "no point of the wall at v = {:.4g} lies {:g} mm from the layer below; keep the layer "
-            "height below the wall's smallest radius of curvature", where, height,
+            "LAYER_HEIGHT",
+            label,
+            "no point of the wall at v = {:.4g} lies {:g} mm from the layer below; keep the layer "
+            "height below the wall's smallest radius of curvature",
+            where,
+            height,
         )
     return places
 
@@ -92,7 +107,9 @@ def _corners(offset: Offset, v: Array, places: Places, period: float) -> tuple[_
         return _Corners(*(np.empty(0),) * 4), np.empty(0)
     run = np.stack([places.run[at], places.run[at + 1]], axis=1)
     w = np.stack([places.w[at], places.w[at + 1]], axis=1)
-    where, u, w = offset.crossings(v[at], v[at + 1], 0.5 * (places.u[at] + places.u[at + 1]), w, run)
+    where, u, w = offset.crossings(
+        v[at], v[at + 1], 0.5 * (places.u[at] + places.u[at + 1]), w, run
+    )
     clear = np.isfinite(where)
     if clear.any():
         top = offset.at(where[clear]).u
@@ -127,7 +144,8 @@ def _assembled(
     if len(where):
         ordered = np.sort(where)
         gap = np.minimum(
-            np.abs(v - ordered[np.clip(near - 1, 0, len(where) - 1)]), np.abs(v - ordered[np.clip(near, 0, len(where) - 1)])
+            np.abs(v - ordered[np.clip(near - 1, 0, len(where) - 1)]),
+            np.abs(v - ordered[np.clip(near, 0, len(where) - 1)]),
         )
     keep = gap > AT_CORNER * period
     keep[[0, -1]] = True

@@ -58,12 +58,19 @@ def _stepped(
         new = new - step
         if np.abs(step * np.linalg.norm(rise, axis=1)).max() < 1e-12 * max(1.0, height):
             break
-    if not np.allclose(np.linalg.norm(surface.point(new, v) - base, axis=1), height, rtol=1e-9, atol=0.0):
-        raise InputError("LAYER_HEIGHT", label, "a layer height of {:g} mm is more than the wall's bend allows; lower it",
-                         height)
+    if not np.allclose(
+        np.linalg.norm(surface.point(new, v) - base, axis=1), height, rtol=1e-9, atol=0.0
+    ):
+        raise InputError(
+            "LAYER_HEIGHT",
+            label,
+            "a layer height of {:g} mm is more than the wall's bend allows; lower it",
+            height,
+        )
     point, rise, turn = surface.derivatives(new, v)
     chord = point - base
     into, out = (
-        (dot(chord, around + slope[:, None] * along) - dot(chord, turn)) / dot(chord, rise) for slope in slopes
+        (dot(chord, around + slope[:, None] * along) - dot(chord, turn)) / dot(chord, rise)
+        for slope in slopes
     )
     return new, (into, out)

@@ -19,7 +19,10 @@ from ...types import Array
 from ..backstop import refuse_too_many
 from .wall_layer import WallLayer
 
-SECTIONS, AROUND = 401, 256  # sections of the wall from whose middles the centreline is taken, and points of each
+SECTIONS, AROUND = (
+    401,
+    256,
+)  # sections of the wall from whose middles the centreline is taken, and points of each
 BEYOND = 0.5  # of the wall's length, how far past its end the centreline is followed
 STEPS = 50
 
@@ -39,7 +42,9 @@ def centreline(surface: Surface, low: float, high: float) -> Centreline:
     u = np.linspace(low, high, SECTIONS)
     v = surface.period * np.arange(AROUND) / AROUND
     points, _, around = surface.derivatives(*np.meshgrid(u, v, indexing="ij"))
-    share = np.linalg.norm(around, axis=-1, keepdims=True)  # each point counts by the length of curve it stands for
+    share = np.linalg.norm(
+        around, axis=-1, keepdims=True
+    )  # each point counts by the length of curve it stands for
     middle = CubicSpline(u, (points * share).sum(axis=1) / share.sum(axis=1))
     x, weight = np.polynomial.legendre.leggauss(5)
     step = np.diff(u)[:, None]
@@ -49,7 +54,12 @@ def centreline(surface: Surface, low: float, high: float) -> Centreline:
 
 
 def layers(
-    surface: Surface, first: WallLayer, height: float, u_end: float, points: int = 360, label: str = "wall"
+    surface: Surface,
+    first: WallLayer,
+    height: float,
+    u_end: float,
+    points: int = 360,
+    label: str = "wall",
 ) -> list[WallLayer]:
     """The curves in planes `height` mm apart along the centreline, from the lowest point of `first` to the first curve
     wholly past u_end.
@@ -73,7 +83,9 @@ def layers(
     return done
 
 
-def _in_plane(surface: Surface, v: Array, start: float, origin: Array, normal: Array, label: str) -> WallLayer:
+def _in_plane(
+    surface: Surface, v: Array, start: float, origin: Array, normal: Array, label: str
+) -> WallLayer:
     """The curve in which a plane cuts the wall, by Newton along each line v = const."""
     u = np.full(len(v), start)
     for _ in range(STEPS):
@@ -85,7 +97,9 @@ def _in_plane(surface: Surface, v: Array, start: float, origin: Array, normal: A
             break
     if not np.isfinite(u).all() or np.abs((surface.point(u, v) - origin) @ normal).max() > 1e-6:
         raise InputError(
-            "NOT_NORMAL", label, "the planes normal to its centreline do not cut it in one curve each; choose other "
+            "NOT_NORMAL",
+            label,
+            "the planes normal to its centreline do not cut it in one curve each; choose other "
             "layers for this wall",
         )
     u[-1] = u[0]

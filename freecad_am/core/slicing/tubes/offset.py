@@ -22,7 +22,9 @@ from ...types import Array, Index, Mask
 STEPS = 25
 CONVERGED = 1e-11  # of the layer height
 GATHERING = 0.6  # focusing numbers below this call for a closer look between the nodes
-TIE = 1e-9  # mm; branches whose heights differ less meet there: the one that comes first in v counts
+TIE = (
+    1e-9  # mm; branches whose heights differ less meet there: the one that comes first in v counts
+)
 
 
 class Run(NamedTuple):
@@ -59,7 +61,9 @@ class Offset:
             u = np.r_[u[corners[0] : -1], u[: corners[0] + 1]]
             curve = curve.started_at(int(corners[0]))
         self.surface, self.curve, self.height = surface, curve, height
-        self.breaks: Index = np.r_[curve.corners, len(curve.span)].astype(np.intp) if len(corners) else corners
+        self.breaks: Index = (
+            np.r_[curve.corners, len(curve.span)].astype(np.intp) if len(corners) else corners
+        )
         self.fan_ends: list[float] = []
         self.runs = self._runs(u)
 
@@ -67,7 +71,12 @@ class Offset:
         """The uppermost branch at each v (n,), rising or not."""
         target, run, u, w = self._candidates(v)
         u, w, sound = self._solved(v[target], u, w, run)
-        result = Places(np.full(len(v), -np.inf), np.zeros(len(v)), np.zeros(len(v)), np.full(len(v), -1, dtype=np.intp))
+        result = Places(
+            np.full(len(v), -np.inf),
+            np.zeros(len(v)),
+            np.zeros(len(v)),
+            np.full(len(v), -1, dtype=np.intp),
+        )
         target, run, u, w = target[sound], run[sound], u[sound], w[sound]
         scale = TIE / self.height
         order = np.lexsort((run, target))
@@ -78,7 +87,9 @@ class Offset:
                 if value is not None:
                     have[target[better]] = value[better]
         found = result.run >= 0
-        result.slope[found] = self.slopes(v[found], result.u[found], result.w[found], result.run[found])
+        result.slope[found] = self.slopes(
+            v[found], result.u[found], result.w[found], result.run[found]
+        )
         return result
 
     def slopes(self, v: Array, u: Array, w: Array, run: Index) -> Array:
@@ -88,7 +99,9 @@ class Offset:
         slope: Array = -dot(reach, around) / dot(reach, along)
         return slope
 
-    def crossings(self, low: Array, high: Array, u: Array, w: Array, run: Index) -> tuple[Array, Array, Array]:
+    def crossings(
+        self, low: Array, high: Array, u: Array, w: Array, run: Index
+    ) -> tuple[Array, Array, Array]:
         """Where two branches meet: v, u (k,) and w (k, 2), NaN where they do not between low and high (k,).
 
         u (k,), w, run (k, 2): starting heights and the places of the left and the right branch.
@@ -105,10 +118,18 @@ class Offset:
                 on = 1.0 - fan[:, k]
                 rest[:, 2 * k] = dot(reach, reach) - self.height**2
                 rest[:, 2 * k + 1] = dot(reach, slope) * on
-                matrix[:, 2 * k, 0], matrix[:, 2 * k, 1] = 2.0 * dot(reach, along), 2.0 * dot(reach, around)
+                matrix[:, 2 * k, 0], matrix[:, 2 * k, 1] = (
+                    2.0 * dot(reach, along),
+                    2.0 * dot(reach, around),
+                )
                 matrix[:, 2 * k, 2 + k] = -2.0 * dot(reach, slope) * on
-                matrix[:, 2 * k + 1, 0], matrix[:, 2 * k + 1, 1] = dot(along, slope) * on, dot(around, slope) * on
-                matrix[:, 2 * k + 1, 2 + k] = np.where(fan[:, k], 1.0, dot(reach, bend) - dot(slope, slope))
+                matrix[:, 2 * k + 1, 0], matrix[:, 2 * k + 1, 1] = (
+                    dot(along, slope) * on,
+                    dot(around, slope) * on,
+                )
+                matrix[:, 2 * k + 1, 2 + k] = np.where(
+                    fan[:, k], 1.0, dot(reach, bend) - dot(slope, slope)
+                )
             try:
                 step = np.linalg.solve(matrix, rest[..., None])[..., 0]
             except np.linalg.LinAlgError:
@@ -178,7 +199,10 @@ class Offset:
             du = (-focus * rest + skew * skew) / determinant
             dw = np.clip((rise * skew - lean * rest) / determinant, -0.2, 0.2)
             u, w = u - du, np.where(fan, w, np.clip(w - dw, low, high))
-            if np.abs(rest).max(initial=0.0) < CONVERGED * self.height**2 and np.abs(dw).max(initial=0.0) < 1e-11:
+            if (
+                np.abs(rest).max(initial=0.0) < CONVERGED * self.height**2
+                and np.abs(dw).max(initial=0.0) < 1e-11
+            ):
                 break
         sound = (np.abs(rest) < 1e-8 * self.height**2) & (focus > 0.0) & (rise > 0.0)
         return u, w, sound & (np.abs(skew) < 1e-7 * self.height * np.sqrt(dot(slope, slope)))
@@ -200,7 +224,12 @@ class Offset:
             point, along, around = self.surface.derivatives(u, v)
             reach = point - base
             rest, skew = 0.5 * (dot(reach, reach) - h * h), dot(reach, slope)
-            a, b, c, d = dot(reach, along), dot(reach, around), dot(along, slope), dot(around, slope)
+            a, b, c, d = (
+                dot(reach, along),
+                dot(reach, around),
+                dot(along, slope),
+                dot(around, slope),
+            )
             determinant = a * d - b * c
             du, dv = (d * rest - b * skew) / determinant, (a * skew - c * rest) / determinant
             u, v = u - du, v - dv
@@ -232,8 +261,14 @@ class Offset:
         self._rise = float(np.nanmax(new) - u.min()) if np.isfinite(new).any() else 0.0
         w = self.curve.w[arc] + t * self.curve.span[arc]
         period, pieces = self.curve.period, max(1, len(self.breaks) - 1)
-        piece = np.searchsorted(self.breaks, arc, side="right") - 1 if len(self.breaks) else np.zeros(len(arc), np.intp)
-        copies = np.array([-2, -1, 0, 1])  # started at a corner the curve begins up to a period late
+        piece = (
+            np.searchsorted(self.breaks, arc, side="right") - 1
+            if len(self.breaks)
+            else np.zeros(len(arc), np.intp)
+        )
+        copies = np.array(
+            [-2, -1, 0, 1]
+        )  # started at a corner the curve begins up to a period late
         turns = np.repeat(copies, len(arc))
         shift = turns * period
         piece = np.tile(piece, len(copies)) + (turns * pieces if len(self.breaks) else 0)
@@ -250,14 +285,44 @@ class Offset:
             low = w[max(a - 1, 0)] if a and piece[a - 1] == piece[a] else w[a]
             high = w[b + 1] if b + 1 < len(w) and piece[b + 1] == piece[b] else w[b]
             first, last = self._arcs_of(int(piece[a]) % pieces)
-            runs.append(Run(v[a : b + 1], new[a : b + 1], w[a : b + 1], False, float(low), float(high), first, last,
-                            float(shift[a]) if len(self.breaks) else 0.0))
-        for k in np.flatnonzero((piece[1:] != piece[:-1]) & (v[1:] > v[:-1] + 1e-9)):  # corners that stick out
+            runs.append(
+                Run(
+                    v[a : b + 1],
+                    new[a : b + 1],
+                    w[a : b + 1],
+                    False,
+                    float(low),
+                    float(high),
+                    first,
+                    last,
+                    float(shift[a]) if len(self.breaks) else 0.0,
+                )
+            )
+        for k in np.flatnonzero(
+            (piece[1:] != piece[:-1]) & (v[1:] > v[:-1] + 1e-9)
+        ):  # corners that stick out
             first, last = self._arcs_of(int(piece[k]) % pieces)
-            runs.append(Run(v[k : k + 2], new[k : k + 2], w[[k, k]], True, float(w[k]), float(w[k]), first, last,
-                            float(shift[k])))
+            runs.append(
+                Run(
+                    v[k : k + 2],
+                    new[k : k + 2],
+                    w[[k, k]],
+                    True,
+                    float(w[k]),
+                    float(w[k]),
+                    first,
+                    last,
+                    float(shift[k]),
+                )
+            )
             self.fan_ends += [float(v[k]), float(v[k + 1])]
-        return [runs[i] for i in np.lexsort(([run.v[-1] for run in runs], [run.v[0] for run in runs]))]
+        return [
+            runs[i] for i in np.lexsort(([run.v[-1] for run in runs], [run.v[0] for run in runs]))
+        ]
 
     def _arcs_of(self, piece: int) -> tuple[int, int]:
-        return (int(self.breaks[piece]), int(self.breaks[piece + 1]) - 1) if len(self.breaks) else (0, -1)
+        return (
+            (int(self.breaks[piece]), int(self.breaks[piece + 1]) - 1)
+            if len(self.breaks)
+            else (0, -1)
+        )

@@ -42,7 +42,13 @@ def turns_in_wall(surface: Surface, layer: WallLayer) -> Array:
 
 
 def next_layer(
-    surface: Surface, below: WallLayer, height: float, grid: Array, band: float, limit: float, label: str = "wall",
+    surface: Surface,
+    below: WallLayer,
+    height: float,
+    grid: Array,
+    band: float,
+    limit: float,
+    label: str = "wall",
     weight: int = HEAVY,
 ) -> Smoothed:
     """The layer above `below`, as near to `height` mm as a turn within the wall of `limit` rad/mm allows.
@@ -56,29 +62,43 @@ def next_layer(
         places = Offset(surface, below.curve, below.u, share * height).at(grid[:-1])
         if (places.run < 0).any():
             raise InputError(
-                "LAYER_HEIGHT", label, "the wall has no point at {:g} mm from the layer below: use a smaller layer height "
-                "or a narrower band", share * height,
+                "LAYER_HEIGHT",
+                label,
+                "the wall has no point at {:g} mm from the layer below: use a smaller layer height "
+                "or a narrower band",
+                share * height,
             )
         fronts.append(places.u)
     wanted, low, high = fronts
 
     def trial(index: int) -> Smoothed | None:
-        found = _measured(surface, below, grid, between(wanted, low, high, float(WEIGHTS[index])), index)
+        found = _measured(
+            surface, below, grid, between(wanted, low, high, float(WEIGHTS[index])), index
+        )
         inside = found.least >= (1.0 - band) * height and found.most <= (1.0 + band) * height
         return found if inside else None
 
     best = lightest(trial, weight, AIM * limit)
     if best is None:  # a front that can only follow the one below, corners and all
         raise InputError(
-            "BAND", label, "a band of {:g} % is too narrow for {} points around: use more of them", 100.0 * band,
+            "BAND",
+            label,
+            "a band of {:g} % is too narrow for {} points around: use more of them",
+            100.0 * band,
             len(grid) - 1,
         )
     return best
 
 
 def layers(
-    surface: Surface, first: WallLayer, height: float, u_end: float, band: float = 0.2, limit: float = 0.1,
-    points: int = 360, label: str = "wall",
+    surface: Surface,
+    first: WallLayer,
+    height: float,
+    u_end: float,
+    band: float = 0.2,
+    limit: float = 0.1,
+    points: int = 360,
+    label: str = "wall",
 ) -> list[Smoothed]:
     """All layers above the first up to the first one wholly past u_end."""
     grid = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)

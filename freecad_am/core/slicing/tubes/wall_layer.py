@@ -23,7 +23,12 @@ class WallLayer:
     def of(cls, surface: Surface, v: Array, u: Array, into: Array, out: Array) -> WallLayer:
         """The layer through (u, v), (m,), with the slopes du/dv (m,) on either side of each node."""
         points, along, around = surface.derivatives(u, v)
-        return cls(u, SpaceCurve(v, points, around + into[:, None] * along, around + out[:, None] * along, True))
+        return cls(
+            u,
+            SpaceCurve(
+                v, points, around + into[:, None] * along, around + out[:, None] * along, True
+            ),
+        )
 
     @property
     def v(self) -> Array:
@@ -34,7 +39,9 @@ class WallLayer:
         """du/dv (m,) on either side of each node."""
         _, along, around = surface.derivatives(self.u, self.v)
         rate = dot(along, along)
-        return dot(self.curve.into - around, along) / rate, dot(self.curve.out - around, along) / rate
+        return dot(self.curve.into - around, along) / rate, dot(
+            self.curve.out - around, along
+        ) / rate
 
     def heights(self, surface: Surface, v: Array) -> tuple[Array, Array, Array]:
         """u (n,) and its slopes du/dv on either side at v (n,) from the first node to the last."""

@@ -48,17 +48,33 @@ class Touching(NamedTuple):
     def clear_at(self, change: Change) -> bool:
         """Whether each of the points has a clear tilt, by up to LARGEST, after a change; of very many points, of so many
         evenly chosen."""
-        space = space_of(self.toolpath, change.bodies, change.nozzle, change.build.max_tilt, False, self.feature or 0)
-        chosen = self.rows[np.unique(np.linspace(0, len(self.rows) - 1, min(LOOKED_AT, len(self.rows))).astype(np.intp))]
+        space = space_of(
+            self.toolpath,
+            change.bodies,
+            change.nozzle,
+            change.build.max_tilt,
+            False,
+            self.feature or 0,
+        )
+        chosen = self.rows[
+            np.unique(
+                np.linspace(0, len(self.rows) - 1, min(LOOKED_AT, len(self.rows))).astype(np.intp)
+            )
+        ]
         asked = np.concatenate([bead.tool for _, _, bead in self.toolpath])
         return all(
-            self._clear_at(space, asked, chosen[first : first + TOGETHER]) for first in range(0, len(chosen), TOGETHER)
+            self._clear_at(space, asked, chosen[first : first + TOGETHER])
+            for first in range(0, len(chosen), TOGETHER)
         )
 
     def _clear_at(self, space: Space, asked: Array, rows: Index) -> bool:
         for number in range(round(LARGEST / RING) + 1):
             axes = self._cone(asked[rows], number * RING)
-            free = space.clear(np.repeat(rows, axes.shape[1]), axes.reshape(-1, 3)).reshape(len(rows), -1).any(axis=1)
+            free = (
+                space.clear(np.repeat(rows, axes.shape[1]), axes.reshape(-1, 3))
+                .reshape(len(rows), -1)
+                .any(axis=1)
+            )
             rows = rows[~free]
             if not len(rows):
                 return True
@@ -71,7 +87,9 @@ class Touching(NamedTuple):
         else:
             turn = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS
             level = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(AZIMUTHS)])
-            sides = np.einsum("sj,kij->ksi", level, frames.smallest_rotation(np.array([0.0, 0.0, 1.0]), asked))
+            sides = np.einsum(
+                "sj,kij->ksi", level, frames.smallest_rotation(np.array([0.0, 0.0, 1.0]), asked)
+            )
         axes: Array = np.cos(angle) * asked[:, None] + np.sin(angle) * sides
         return axes
 
@@ -84,13 +102,20 @@ def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]
     for changes in (_tilts(now), _half_angles(now), _cleared_away(now)):
         for change in _of_use(touching, changes):
             if touching.toolpath.point_count > LONGEST:
-                return Text("these points would have room with {}, which was not tried for the others", change.words)
+                return Text(
+                    "these points would have room with {}, which was not tried for the others",
+                    change.words,
+                )
             whole -= 1
             if whole >= 0 and clears(change):
                 return Text("with {} the nozzle is clear, which was tried", change.words)
         tried += [change.words for change in changes[-1:] if whole >= 0]
     other = Text("use other layers or another direction, or leave out what these points belong to")
-    return Text("it still does with {}, each of which was tried; {}", Text.joined(", ", tried), other) if tried else other
+    return (
+        Text("it still does with {}, each of which was tried; {}", Text.joined(", ", tried), other)
+        if tried
+        else other
+    )
 
 
 def _of_use(touching: Touching, changes: list[Change]) -> list[Change]:
@@ -104,10 +129,16 @@ def _of_use(touching: Touching, changes: list[Change]) -> list[Change]:
 def _tilts(now: Change) -> list[Change]:
     """Larger tilts, the largest last."""
     most = now.build.max_tilt
-    angles = [min(np.pi, most + FARTHER * (k + 1)) for k in range(int(np.ceil((np.pi - most) / FARTHER - CAP)))]
+    angles = [
+        min(np.pi, most + FARTHER * (k + 1))
+        for k in range(int(np.ceil((np.pi - most) / FARTHER - CAP)))
+    ]
     return [
-        now._replace(build=dataclasses.replace(now.build, max_tilt=angle),
-                     words=Text("`build_direction.max_tilt: {:.3g} deg`", np.degrees(angle))) for angle in angles
+        now._replace(
+            build=dataclasses.replace(now.build, max_tilt=angle),
+            words=Text("`build_direction.max_tilt: {:.3g} deg`", np.degrees(angle)),
+        )
+        for angle in angles
     ]
 
 
@@ -122,6 +153,10 @@ def _half_angles(now: Change) -> list[Change]:
     half = float(np.degrees(now.nozzle.half_angle))
     angles = sorted({round(share * half) for share in SHARES} - {0}, reverse=True)
     return [
-        now._replace(nozzle=dataclasses.replace(now.nozzle, half_angle=float(np.radians(angle))),
-                     words=Text("`cell.nozzle.half_angle: {:d} deg`", angle)) for angle in angles if angle < half
+        now._replace(
+            nozzle=dataclasses.replace(now.nozzle, half_angle=float(np.radians(angle))),
+            words=Text("`cell.nozzle.half_angle: {:d} deg`", angle),
+        )
+        for angle in angles
+        if angle < half
     ]

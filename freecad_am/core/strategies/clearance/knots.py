@@ -21,7 +21,9 @@ def of_bead(row: Index) -> Index:
     """The points of a bead, of its points `row` in order, at which tilts are searched: evenly many, both ends among them."""
     if len(row) <= MAX_POINTS:
         return row
-    knots: Index = row[np.unique(np.round(np.linspace(0, len(row) - 1, MAX_POINTS)).astype(np.intp))]
+    knots: Index = row[
+        np.unique(np.round(np.linspace(0, len(row) - 1, MAX_POINTS)).astype(np.intp))
+    ]
     return knots
 
 
@@ -33,7 +35,9 @@ def free_about(row: Index, knots: Index, free: Mask) -> Mask:
     return about
 
 
-def spread_out(space: Space, row: Index, knots: Index, asked: Array, axes: Array) -> tuple[Array, Index]:
+def spread_out(
+    space: Space, row: Index, knots: Index, asked: Array, axes: Array
+) -> tuple[Array, Index]:
     """Axes (m, 3) at all points of a bead, those (k, 3) at its knots and even between; and the points that touch there."""
     points = space.points[row]
     along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]

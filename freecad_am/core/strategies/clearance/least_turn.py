@@ -23,9 +23,17 @@ def least(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
     step = max(1, AT_ONCE // (s * s))
     if b > step:
         parts = (slice(k, k + step) for k in range(0, b, step))
-        return np.concatenate([
-            least(states if len(states) == 1 else states[some], allowed[some], weight[some], change[some]) for some in parts
-        ])
+        return np.concatenate(
+            [
+                least(
+                    states if len(states) == 1 else states[some],
+                    allowed[some],
+                    weight[some],
+                    change[some],
+                )
+                for some in parts
+            ]
+        )
     same = states.shape[1] == 1
     size = np.broadcast_to((states**2).sum(axis=3), (b, n, s))
     own = np.where(allowed, weight[:, :, None] * size, BARRED)
@@ -35,7 +43,9 @@ def least(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
         between = fixed if fixed is not None else _between(states[:, k - 1], states[:, k])
         ways = total[:, :, None] + change[:, k - 1, None, None] * between
         best = ways.min(axis=1)
-        came[:, k] = alike(ways, best[:, None]).argmax(axis=1)  # what first_least finds, of numbers that are all finite
+        came[:, k] = alike(ways, best[:, None]).argmax(
+            axis=1
+        )  # what first_least finds, of numbers that are all finite
         total = best + own[:, k]
     chosen = np.zeros((b, n), dtype=np.intp)
     chosen[:, -1] = first_least(total, axis=1)

@@ -28,7 +28,11 @@ class Looked:
 
 
 def looked_at(
-    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, most: int, feature: int | None = None
+    toolpath: Toolpath,
+    bodies: Sequence[Body],
+    nozzle: NozzleParameters,
+    most: int,
+    feature: int | None = None,
 ) -> Looked:
     """Whether the nozzle touches bodies, the platform one of them, or what is deposited by then, beads as wide and high as
     they are, at so many points at most, evenly spread. feature: of several features, the one whose points are looked at."""
@@ -36,7 +40,9 @@ def looked_at(
     beads = list(toolpath)
     starts = np.cumsum([0, *(len(bead) for _, _, bead in beads)])
     mine = np.flatnonzero(np.repeat(beads_of(toolpath, feature), np.diff(starts)))
-    rows = mine[np.unique(np.round(np.linspace(0, len(mine) - 1, min(most, len(mine)))).astype(np.intp))]
+    rows = mine[
+        np.unique(np.round(np.linspace(0, len(mine) - 1, min(most, len(mine)))).astype(np.intp))
+    ]
     tool = np.concatenate([bead.tool for _, _, bead in beads])
     hit = rows[~space.clear(rows, tool[rows])]
     if not len(hit):
@@ -58,7 +64,10 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
     if not bodies:
         return []
     beads = [bead for _, _, bead in toolpath]
-    points, tool = np.concatenate([bead.points for bead in beads]), np.concatenate([bead.tool for bead in beads])
+    points, tool = (
+        np.concatenate([bead.points for bead in beads]),
+        np.concatenate([bead.tool for bead in beads]),
+    )
     around = nozzle_of(nozzle).bodies
     near = of_bodies(bodies, points, around.reach)
     hit = near.touched(around, points, tool) | near.touched(around, *halfway(beads, tool))
@@ -68,7 +77,18 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
     places = [(i, j) for i, j, _ in toolpath]
     at, point = place(places, begin, int(np.argmax(hit)))
     names = Text.joined(" or ", (body.name for body in bodies))
-    return [Issue(
-        ERROR, CLEARANCE, Text("the nozzle touches {} at {} of {} points; on parts of revolution it is not tilted away "
-            "from fixtures: move them, or use a slimmer nozzle", names, int(hit.sum()), len(points)), *at, point,
-    )]
+    return [
+        Issue(
+            ERROR,
+            CLEARANCE,
+            Text(
+                "the nozzle touches {} at {} of {} points; on parts of revolution it is not tilted away "
+                "from fixtures: move them, or use a slimmer nozzle",
+                names,
+                int(hit.sum()),
+                len(points),
+            ),
+            *at,
+            point,
+        )
+    ]

@@ -44,23 +44,33 @@ class Space:
         clear: Mask = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
         rows = np.flatnonzero(clear)
         here = at[rows]
-        clear[rows] = ~self.scene.touched(self.nozzle, self.points[here], axis[rows], here + 1, self.own[here])
+        clear[rows] = ~self.scene.touched(
+            self.nozzle, self.points[here], axis[rows], here + 1, self.own[here]
+        )
         return clear
 
 
 def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 0.0) -> Nozzle:
     """The nozzle as it is looked at while it deposits beads of up to that height, mm, leaning by intention, rad."""
-    return depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean)
+    return depositing(
+        0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean
+    )
 
 
 def space_of(
-    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float, often: bool = True,
+    toolpath: Toolpath,
+    bodies: Sequence[Body],
+    nozzle: NozzleParameters,
+    max_tilt: float,
+    often: bool = True,
     feature: int = 0,
 ) -> Space:
     """The room of all points of a toolpath, in order, among bodies; max_tilt: rad. Where it is asked but once it takes less
     memory. feature: of several features, the one whose points are asked about."""
     beads = [bead for _, _, bead in toolpath]
-    points, build = (np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build"))
+    points, build = (
+        np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build")
+    )
     counts = np.array([len(bead) for bead in beads])
     starts = np.cumsum(counts) - counts
     layer = np.repeat([i for i, _, _ in toolpath], counts)
@@ -69,9 +79,16 @@ def space_of(
     if (toolpath.features[feature] if toolpath.features else toolpath).family == "revolution":
         # directions and tools are turned as one there; a spiral is of the layer being laid for its last turn
         mine = np.repeat(beads_of(toolpath, feature), counts)
-        turned = np.arccos(np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0))
+        turned = np.arccos(
+            np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0)
+        )
         lean = float(turned[mine].max())
-        own = np.concatenate([first + _turn_before(bead.parameter) for first, bead in zip(own[starts], beads, strict=True)])
+        own = np.concatenate(
+            [
+                first + _turn_before(bead.parameter)
+                for first, bead in zip(own[starts], beads, strict=True)
+            ]
+        )
     looked = nozzle_of(nozzle, float(heights.max()), lean)
     made = deposit.of_beads if often else deposit.in_parts
     obstacles = made(points, build, toolpath.widths, heights, starts, foot=looked.foot)
@@ -82,9 +99,12 @@ def space_of(
 
 def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
     """(beads,) which beads are of a feature, where a toolpath has several; all where None is asked about."""
-    chosen: Mask = np.array([
-        feature is None or not toolpath.features or toolpath.layers[i].feature == feature for i, _, _ in toolpath
-    ])
+    chosen: Mask = np.array(
+        [
+            feature is None or not toolpath.features or toolpath.layers[i].feature == feature
+            for i, _, _ in toolpath
+        ]
+    )
     return chosen
 
 
@@ -111,7 +131,9 @@ def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask
     points, axes = halfway(beads, tool)
     both = free & np.r_[free[1:], False]
     both[np.cumsum([len(bead) for bead in beads]) - 1] = False
-    midway = dataclasses.replace(space, points=points, nozzle=space.nozzle.halfway(), max_tilt=float(np.pi))
+    midway = dataclasses.replace(
+        space, points=points, nozzle=space.nozzle.halfway(), max_tilt=float(np.pi)
+    )
     touched = np.zeros(len(points), dtype=bool)
     rows = np.flatnonzero(both)
     touched[rows] = ~midway.clear(rows, axes[rows])
@@ -121,9 +143,16 @@ def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask
 def halved(toolpath: Toolpath, between: Mask) -> Toolpath:
     """The toolpath with a point halfway after each of those marked (n,)."""
     marks = iter(np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1]))
-    return dataclasses.replace(toolpath, layers=tuple(
-        dataclasses.replace(layer, beads=tuple(
-            bead.halved(np.flatnonzero(mark)) if mark.any() else bead for bead, mark in zip(layer.beads, marks)
-        ))
-        for layer in toolpath.layers
-    ))
+    return dataclasses.replace(
+        toolpath,
+        layers=tuple(
+            dataclasses.replace(
+                layer,
+                beads=tuple(
+                    bead.halved(np.flatnonzero(mark)) if mark.any() else bead
+                    for bead, mark in zip(layer.beads, marks)
+                ),
+            )
+            for layer in toolpath.layers
+        ),
+    )

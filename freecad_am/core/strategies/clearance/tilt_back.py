@@ -41,8 +41,14 @@ HALVINGS = 3  # of a segment halfway on which the nozzle touches
 
 
 def kept_clear(
-    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None = None, feature: int | None = None, watch: Watch | None = None, remedy: bool = True,
+    toolpath: Toolpath,
+    bodies: Sequence[Body],
+    nozzle: NozzleParameters,
+    build: BuildDirectionParameters,
+    plane: Array | None = None,
+    feature: int | None = None,
+    watch: Watch | None = None,
+    remedy: bool = True,
 ) -> Toolpath:
     """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
 
@@ -55,7 +61,9 @@ def kept_clear(
     known: list[_Way | None] = [None for _ in toolpath]
     for turn in range(HALVINGS + 1):
         part = (watch or Watch()).within(turn / (HALVINGS + 1), (turn + 1) / (HALVINGS + 1))
-        found, between, ways = _tilted(toolpath, bodies, nozzle, build, plane, feature, turn == HALVINGS, part, known)
+        found, between, ways = _tilted(
+            toolpath, bodies, nozzle, build, plane, feature, turn == HALVINGS, part, known
+        )
         if not between.any():
             break
         marks = np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1])
@@ -63,19 +71,29 @@ def kept_clear(
         toolpath = halved(toolpath, between)
     if not remedy or not _touches(found, toolpath):
         return found
-    lost = [np.zeros(len(bead), dtype=bool) if way is None else way.lost for (_, _, bead), way in zip(toolpath, ways)]
+    lost = [
+        np.zeros(len(bead), dtype=bool) if way is None else way.lost
+        for (_, _, bead), way in zip(toolpath, ways)
+    ]
     end = (watch or Watch()).at_end()
 
     def clears(change: Change) -> bool:
-        made = kept_clear(toolpath, change.bodies, change.nozzle, change.build, plane, feature, end, remedy=False)
+        made = kept_clear(
+            toolpath, change.bodies, change.nozzle, change.build, plane, feature, end, remedy=False
+        )
         return not _touches(made, toolpath)
 
     touching = Touching(toolpath, np.flatnonzero(np.concatenate(lost)), plane, feature)
     words = what_helps(touching, Change(bodies, nozzle, build, Text("")), clears)
-    return dataclasses.replace(found, issues=tuple(
-        dataclasses.replace(issue, message=Text("{}; {}", issue.message, words))
-        if issue.code == CLEARANCE and issue not in toolpath.issues else issue for issue in found.issues
-    ))
+    return dataclasses.replace(
+        found,
+        issues=tuple(
+            dataclasses.replace(issue, message=Text("{}; {}", issue.message, words))
+            if issue.code == CLEARANCE and issue not in toolpath.issues
+            else issue
+            for issue in found.issues
+        ),
+    )
 
 
 def _touches(made: Toolpath, before: Toolpath) -> bool:
@@ -92,8 +110,15 @@ class _Way(NamedTuple):
 
 
 def _tilted(
-    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None, feature: int | None, last: bool, watch: Watch, known: list[_Way | None],
+    toolpath: Toolpath,
+    bodies: Sequence[Body],
+    nozzle: NozzleParameters,
+    build: BuildDirectionParameters,
+    plane: Array | None,
+    feature: int | None,
+    last: bool,
+    watch: Watch,
+    known: list[_Way | None],
 ) -> tuple[Toolpath, Mask, list[_Way | None]]:
     """The toolpath tilted clear at its points, the points (n,) after which the nozzle touches halfway to the next, none at
     the `last` try, where an issue says so, and what was found bead by bead. Where it touches with the axes asked for,
@@ -111,7 +136,9 @@ def _tilted(
     blocked = [k for k in range(len(beads)) if not (free & ~between)[begin[k] : begin[k + 1]].all()]
     if not blocked:
         return toolpath, between, known
-    (tool, tilt, lost), turned = _ways(space, beads, begin, blocked, asked, plane, free, build.turn(), watch, known)
+    (tool, tilt, lost), turned = _ways(
+        space, beads, begin, blocked, asked, plane, free, build.turn(), watch, known
+    )
     ways: list[_Way | None] = [None for _ in beads]
     for k in blocked:
         row = slice(begin[k], begin[k + 1])
@@ -122,8 +149,15 @@ def _tilted(
     if between.any() and not last:
         return toolpath, between, ways
     lost |= between
-    issues = (*tilt_issues([(i, j) for i, j, _ in toolpath], begin, tilt, lost), *turn_issues(turned, build.turn()))
-    return _with_tools(toolpath, np.split(tool, begin[1:-1]), issues), np.zeros(len(asked), dtype=bool), ways
+    issues = (
+        *tilt_issues([(i, j) for i, j, _ in toolpath], begin, tilt, lost),
+        *turn_issues(turned, build.turn()),
+    )
+    return (
+        _with_tools(toolpath, np.split(tool, begin[1:-1]), issues),
+        np.zeros(len(asked), dtype=bool),
+        ways,
+    )
 
 
 def _with_tools(toolpath: Toolpath, tools: Sequence[Array], issues: tuple[Issue, ...]) -> Toolpath:
@@ -132,7 +166,10 @@ def _with_tools(toolpath: Toolpath, tools: Sequence[Array], issues: tuple[Issue,
     return dataclasses.replace(
         toolpath,
         layers=tuple(
-            dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, tool=next(each)) for bead in layer.beads))
+            dataclasses.replace(
+                layer,
+                beads=tuple(dataclasses.replace(bead, tool=next(each)) for bead in layer.beads),
+            )
             for layer in toolpath.layers
         ),
         issues=(*toolpath.issues, *issues),
@@ -140,8 +177,16 @@ def _with_tools(toolpath: Toolpath, tools: Sequence[Array], issues: tuple[Issue,
 
 
 def _ways(
-    space: Space, beads: Sequence[Bead], begin: Index, blocked: list[int], asked: Array, plane: Array | None, free: Mask,
-    most: float, watch: Watch, known: list[_Way | None],
+    space: Space,
+    beads: Sequence[Bead],
+    begin: Index,
+    blocked: list[int],
+    asked: Array,
+    plane: Array | None,
+    free: Mask,
+    most: float,
+    watch: Watch,
+    known: list[_Way | None],
 ) -> tuple[_Way, float]:
     """Axes, tilts and points that touch even so, of all points, and the fastest turn (rad/mm) that is left of beads that
     turn faster than `most` with their tilts though what was asked does not. What is known of a bead stays while clear."""
@@ -154,25 +199,38 @@ def _ways(
             continue
         tool[row], tilt[row], lost[row] = way
         kept.append(row)
-    turned = max((_fastest(space, kept[k], tool) for k in _too_fast(space, kept, asked, most, tool, lost)), default=0.0)
+    turned = max(
+        (_fastest(space, kept[k], tool) for k in _too_fast(space, kept, asked, most, tool, lost)),
+        default=0.0,
+    )
     if not anew:
         return _Way(tool, tilt, lost), turned
     rows = [row for row, _ in anew]
     flat = np.concatenate(rows)
     watch.points(len(flat), 1)
     loops = np.array([loop for _, loop in anew])
-    found, leant, stuck = _cleared(space, rows, loops, asked, plane, free, watch.within(0.0, SEARCHED))
+    found, leant, stuck = _cleared(
+        space, rows, loops, asked, plane, free, watch.within(0.0, SEARCHED)
+    )
     tool[flat], tilt[flat] = found[flat], leant[flat]
     lost[stuck] = True
     fast = _too_fast(space, rows, asked, most, tool, lost)
     if fast:
         watch.points(sum(len(rows[k]) for k in fast), SLOWER)
-    left = _slowed(space, [anew[k] for k in fast], asked, plane, most, tool, tilt, watch.within(SEARCHED, 1.0))
+    left = _slowed(
+        space, [anew[k] for k in fast], asked, plane, most, tool, tilt, watch.within(SEARCHED, 1.0)
+    )
     return _Way(tool, tilt, lost), max(turned, left)
 
 
 def _cleared(
-    space: Space, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask, watch: Watch,
+    space: Space,
+    rows: list[Index],
+    closed: Mask,
+    asked: Array,
+    plane: Array | None,
+    free: Mask,
+    watch: Watch,
     spread: float = SPREAD,
 ) -> tuple[Array, Array, Index]:
     """Axes (n, 3) of all points, those of the beads with the rows tilted clear; tilts (n,) rad; the points that touch even
@@ -191,7 +249,9 @@ def _cleared(
     for row, some in zip(rows, knots, strict=True):
         if len(some) < len(row):
             tool[row], more = clearance_knots.spread_out(space, row, some, asked, tool[some])
-            tilt[row] = np.arctan2(np.linalg.norm(np.cross(asked[row], tool[row]), axis=1), dot(asked[row], tool[row]))
+            tilt[row] = np.arctan2(
+                np.linalg.norm(np.cross(asked[row], tool[row]), axis=1), dot(asked[row], tool[row])
+            )
             touching.append(more)
     return tool, tilt, np.concatenate(touching)
 
@@ -201,19 +261,29 @@ def _fastest(space: Space, row: Index, axes: Array) -> float:
     return float(turn_rates(space.points[row], axes[row]).max(initial=0.0))
 
 
-def _too_fast(space: Space, rows: list[Index], asked: Array, most: float, tool: Array, lost: Mask) -> list[int]:
+def _too_fast(
+    space: Space, rows: list[Index], asked: Array, most: float, tool: Array, lost: Mask
+) -> list[int]:
     """The beads that turn faster than `most` rad/mm with their tilts though what was asked does not."""
     if most == np.inf:
         return []
     return [
-        k for k, row in enumerate(rows)
-        if _fastest(space, row, tool) > most and not lost[row].any()
+        k
+        for k, row in enumerate(rows)
+        if _fastest(space, row, tool) > most
+        and not lost[row].any()
         and _fastest(space, row, asked) <= most * (1.0 + ROUNDING)
     ]
 
 
 def _slowed(
-    space: Space, fast: list[tuple[Index, bool]], asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array,
+    space: Space,
+    fast: list[tuple[Index, bool]],
+    asked: Array,
+    plane: Array | None,
+    most: float,
+    tool: Array,
+    tilt: Array,
     watch: Watch,
 ) -> float:
     """Find axes anew, in place, for beads that turn faster than `most` rad/mm, given by their points and whether they are
@@ -230,14 +300,18 @@ def _slowed(
             rate, spread = 0.98 * rate * most / now, 1.5 * spread
             slower = asked.copy()
             try:
-                slower[row] = limited(space.points[row], asked[row], loop, rate, most=space.max_tilt).directions
+                slower[row] = limited(
+                    space.points[row], asked[row], loop, rate, most=space.max_tilt
+                ).directions
             except InputError:
                 break
             free = np.ones(len(asked), dtype=bool)
             free[row] = space.clear(row, slower[row])
             found, stuck = slower, row[:0]
             if not free[row].all():
-                found, _, stuck = _cleared(space, [row], np.array([loop]), slower, plane, free, part, spread)
+                found, _, stuck = _cleared(
+                    space, [row], np.array([loop]), slower, plane, free, part, spread
+                )
             now = _fastest(space, row, found)
             if not len(stuck) and now < _fastest(space, row, tool):
                 cross = np.linalg.norm(np.cross(asked[row], found[row]), axis=1)

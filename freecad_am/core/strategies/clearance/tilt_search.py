@@ -20,7 +20,10 @@ from .places import CAP, Space
 
 RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
 LARGEST = np.radians(90.0)  # tilt that is tried
-PROBED, PROBES = 7, 16  # before which cone, and at how many points of a bead, all larger ones are tried
+PROBED, PROBES = (
+    7,
+    16,
+)  # before which cone, and at how many points of a bead, all larger ones are tried
 LEVELS = 4  # of finer candidates, each of half the distance
 COARSE = 0.6  # of the time, before these
 SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
@@ -34,8 +37,16 @@ class TiltSearch:
     without twist; one of them is 0 where the tool must stay in a plane.
     """
 
-    def __init__(self, space: Space, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask,
-                 spread: float) -> None:
+    def __init__(
+        self,
+        space: Space,
+        rows: list[Index],
+        closed: Mask,
+        asked: Array,
+        plane: Array | None,
+        free: Mask,
+        spread: float,
+    ) -> None:
         self.space, self.closed, self.plane, self.spread = space, closed, plane, spread
         self.flat = np.concatenate(rows)
         self.asked = asked
@@ -46,10 +57,12 @@ class TiltSearch:
         points = space.points[self.flat]
         self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
         self.step[self.begin + self.counts - 1] = 0.0
-        self.near = np.concatenate([
-            _near(points[b : b + n], ~free[row], loop, RELEASED * spread)
-            for b, n, row, loop in zip(self.begin, self.counts, rows, closed, strict=True)
-        ])
+        self.near = np.concatenate(
+            [
+                _near(points[b : b + n], ~free[row], loop, RELEASED * spread)
+                for b, n, row, loop in zip(self.begin, self.counts, rows, closed, strict=True)
+            ]
+        )
 
     def axes(self, at: Index, offset: Array) -> Array:
         """Tool axes (k, 3) of tilts (k, 2) at points numbered `at`, all of them among those of the blocked beads."""
@@ -68,7 +81,9 @@ class TiltSearch:
         offsets = np.broadcast_to(offsets, (len(place), *offsets.shape[-2:]))
         s = offsets.shape[1]
         spread = np.repeat(place, s)
-        return self.space.clear(self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))).reshape(-1, s)
+        return self.space.clear(
+            self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))
+        ).reshape(-1, s)
 
     def found(self, watch: Watch) -> tuple[Array, Mask]:
         """Tilts (m, 2) of all points, and the points (m,) that have none that is clear."""
@@ -119,17 +134,27 @@ class TiltSearch:
         barred = ~self._both_ends(allowed).any(axis=1) & self.near
         chosen = [np.zeros(0, dtype=np.intp)]
         for bead in np.flatnonzero(pending):
-            rows = self.begin[bead] + np.flatnonzero(barred[self.begin[bead] : self.begin[bead] + self.counts[bead]])
-            chosen.append(rows[np.unique(np.linspace(0, len(rows) - 1, PROBES).astype(int))] if len(rows) else rows)
+            rows = self.begin[bead] + np.flatnonzero(
+                barred[self.begin[bead] : self.begin[bead] + self.counts[bead]]
+            )
+            chosen.append(
+                rows[np.unique(np.linspace(0, len(rows) - 1, PROBES).astype(int))]
+                if len(rows)
+                else rows
+            )
         places = np.concatenate(chosen)
-        free = self._clear(places, np.concatenate([self._ring(number) for number in numbers])).any(axis=1)
+        free = self._clear(places, np.concatenate([self._ring(number) for number in numbers])).any(
+            axis=1
+        )
         beads: Index = np.unique(np.searchsorted(self.begin, places[~free], side="right") - 1)
         return beads
 
     def finer(self, offset: Array, step: float, turn: int) -> Array:
         """Tilts (m, 2) near those given that make a better way, at most two steps of `step` (rad) away in each component."""
         around = step * np.arange(-2.0, 3.0)
-        grid = np.stack(np.meshgrid(around, around if self.plane is None else [0.0], indexing="ij"), axis=-1).reshape(-1, 2)
+        grid = np.stack(
+            np.meshgrid(around, around if self.plane is None else [0.0], indexing="ij"), axis=-1
+        ).reshape(-1, 2)
         offsets = offset[:, None] + grid
         here = len(grid) // 2
         offsets[:, here] = offset
@@ -145,7 +170,11 @@ class TiltSearch:
         return better
 
     def _ring(self, number: int) -> Array:
-        azimuth = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS if self.plane is None else np.array([0.0, np.pi])
+        azimuth = (
+            2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS
+            if self.plane is None
+            else np.array([0.0, np.pi])
+        )
         ring: Array = number * RING * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
         if self.plane is not None:
             ring[:, 1] = 0.0
@@ -180,17 +209,23 @@ class TiltSearch:
             self._least_of(beads, states, allowed, anchor, fixed, chosen)
         return chosen
 
-    def _least_of(self, beads: Index, states: Array, allowed: Mask, anchor: Index, fixed: Index, chosen: Index) -> None:
+    def _least_of(
+        self, beads: Index, states: Array, allowed: Mask, anchor: Index, fixed: Index, chosen: Index
+    ) -> None:
         """Put the states of least cost of some beads where they belong among those chosen (m,)."""
         n, s = int(self.counts[beads].max()), allowed.shape[1]
-        place = np.zeros((len(beads), n), dtype=np.intp)  # of the chains' points in the list, the pads at any
+        place = np.zeros(
+            (len(beads), n), dtype=np.intp
+        )  # of the chains' points in the list, the pads at any
         weight, change = np.zeros(place.shape), np.zeros((len(place), n - 1))
         free = np.ones((*place.shape, s), dtype=bool)
         for k, bead in enumerate(beads):
             start, count = self.begin[bead], self.counts[bead]
             around = np.arange(count)
             if self.closed[bead]:
-                around = np.r_[np.arange(anchor[bead], count - 1), np.arange(anchor[bead]), anchor[bead]]
+                around = np.r_[
+                    np.arange(anchor[bead], count - 1), np.arange(anchor[bead]), anchor[bead]
+                ]
             place[k, :count] = start + around
             step = self.step[place[k, : count - 1]]
             weight[k, :count] = 0.5 * (np.r_[0.0, step] + np.r_[step, 0.0])
@@ -221,12 +256,15 @@ def nearest(known: Array, places: Array, length: float | None) -> Array:
         return np.full(len(places), np.inf)
     after = np.searchsorted(known, places)
     apart: Array = np.minimum(
-        np.abs(places - known[np.maximum(after - 1, 0)]), np.abs(known[np.minimum(after, len(known) - 1)] - places)
+        np.abs(places - known[np.maximum(after - 1, 0)]),
+        np.abs(known[np.minimum(after, len(known) - 1)] - places),
     )
     if length is None:
         return apart
     # the other way round the one that is farthest this way is nearest
-    around: Array = np.minimum(apart, length - np.maximum(np.abs(places - known[0]), np.abs(places - known[-1])))
+    around: Array = np.minimum(
+        apart, length - np.maximum(np.abs(places - known[0]), np.abs(places - known[-1]))
+    )
     return around
 
 

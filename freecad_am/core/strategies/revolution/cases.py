@@ -29,7 +29,9 @@ class Cases:
         """The largest tilt-back (k,) of each bead's cases, or of each and its neighbours, so that those between are never
         too small; NaN where one of them has none."""
         if self.chained:
-            larger: Array = np.maximum(angle, np.maximum(np.r_[angle[1:], 0.0], np.r_[0.0, angle[:-1]]))
+            larger: Array = np.maximum(
+                angle, np.maximum(np.r_[angle[1:], 0.0], np.r_[0.0, angle[:-1]])
+            )
             return larger
         first = np.diff(self.bead, prepend=-1) > 0
         worst: Array = np.maximum.reduceat(angle, np.flatnonzero(first))[np.cumsum(first) - 1]

@@ -29,7 +29,9 @@ from ...types import Array, Index, Mask
 from .platform import Platform
 
 CHORD = 0.01  # mm; beads are looked at to this chord error, or their own where that is larger
-CONVERGED = 0.01  # mm that the nozzle moves at most where directions are not settled to the last digit
+CONVERGED = (
+    0.01  # mm that the nozzle moves at most where directions are not settled to the last digit
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +84,9 @@ class Clearance:
     nozzle: Nozzle
     foot: float
     bodies: Bodies
-    between: Tips | None = None  # the points of the deposit, where the tips do not stand for all of it
+    between: Tips | None = (
+        None  # the points of the deposit, where the tips do not stand for all of it
+    )
 
     def standing(self, build: Array, like: Scene | None = None) -> Scene:
         """All that there is, with beads that stand along directions (k, 3), in components, at the points of the deposit;
@@ -91,7 +95,13 @@ class Clearance:
         width, tall = own.size
         directions = _in_space(build, own.azimuth)
         beads = deposit.of_beads(
-            own.points, directions, width, tall, own.starts, own.moment, foot=self.foot,
+            own.points,
+            directions,
+            width,
+            tall,
+            own.starts,
+            own.moment,
+            foot=self.foot,
             like=like.deposit if like is not None and isinstance(like.deposit, Obstacles) else None,
         )
         return Scene(self.bodies, beads)
@@ -108,21 +118,36 @@ class Clearance:
     def _clear(self, among: Scene, tips: Tips, rows: Index, tool: Array) -> Mask:
         azimuth = tips.azimuth[rows]
         tip = _place(tips.radius[rows], azimuth, tips.height[rows])
-        return ~among.touched(self.nozzle, tip, _in_space(tool, azimuth), tips.moment[rows], tips.own[rows])
+        return ~among.touched(
+            self.nozzle, tip, _in_space(tool, azimuth), tips.moment[rows], tips.own[rows]
+        )
 
 
 def of_nozzle(
-    nozzle: NozzleParameters, lean: float, platform: Platform, tips: Tips, deposit: Deposit, chord_error: float,
+    nozzle: NozzleParameters,
+    lean: float,
+    platform: Platform,
+    tips: Tips,
+    deposit: Deposit,
+    chord_error: float,
     between: Tips | None = None,
 ) -> Clearance:
     """The nozzle, leaning by `lean` rad off the build direction, over a platform and a deposit whose points leave their
     curves by `chord_error` mm at most."""
-    looked = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, deposit.size[1], lean)
+    looked = depositing(
+        0.5 * nozzle.diameter,
+        float(np.tan(nozzle.half_angle)),
+        nozzle.length,
+        deposit.size[1],
+        lean,
+    )
     frame = np.eye(4)
     frame[2, 3] = platform.height
     plates = [disc(2.0 * platform.radius, frame)] if platform.radius > 0.0 else []
     bodies = of_bodies(plates, deposit.points, looked.reach)
-    return Clearance(tips, deposit, looked.larger(chord_error + CONVERGED), looked.foot, bodies, between)
+    return Clearance(
+        tips, deposit, looked.larger(chord_error + CONVERGED), looked.foot, bodies, between
+    )
 
 
 def around(

@@ -39,8 +39,14 @@ class Slices:
 
 
 def plan(
-    wall: RevolvedWall, strategy: RevolutionParameters, build: BuildDirectionParameters, process: ProcessParameters,
-    nozzle: NozzleParameters, platform_diameter: float, platform_frame: Array | None = None, progress: Progress = silent,
+    wall: RevolvedWall,
+    strategy: RevolutionParameters,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
+    nozzle: NozzleParameters,
+    platform_diameter: float,
+    platform_frame: Array | None = None,
+    progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of a wall of revolution, in part coordinates.
 
@@ -51,7 +57,8 @@ def plan(
     """
     if build.mode == "symmetry-plane":
         raise InputError(
-            "NOT_FOR_FAMILY", "build_direction.mode",
+            "NOT_FOR_FAMILY",
+            "build_direction.mode",
             "symmetry-plane is not for parts of revolution; use local, layer or fixed",
         )
     size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
@@ -63,19 +70,29 @@ def plan(
     if strategy.path == "spiral":
         if strategy.min_layer_time > 0.0:
             raise InputError(
-                "BAD_VALUE", "strategy.min_layer_time", "a spiral has no layers to wait between; use path: layers, a slower "
+                "BAD_VALUE",
+                "strategy.min_layer_time",
+                "a spiral has no layers to wait between; use path: layers, a slower "
                 "process.travel_speed, or leave it out",
             )
         layers, found = spiral.layers(wall, strategy, process, tilting)
     else:
         slices, issues = sliced(wall, strategy)
-        progress(0.2, Text("build directions of {} layers, keeping the nozzle clear", slices.layer[-1] + 1))
+        progress(
+            0.2,
+            Text("build directions of {} layers, keeping the nozzle clear", slices.layer[-1] + 1),
+        )
         first = replace(tilting, parameters=classes.leaning(build, process, FIRST_LAYER))
         layers, found = _layers(wall, slices, strategy, process, tilting, first)
     progress(0.9, "checking")
     issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *found]
     return Toolpath(
-        layers, wall.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap,
+        layers,
+        wall.frame,
+        strategy.layer_height,
+        strategy.chord_error,
+        tuple(issues),
+        process.overlap,
         bead_width=process.bead_width,
     )
 
@@ -91,8 +108,13 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
     issues = []
     if left > 1e-6 * strategy.layer_height:
         measure = "of the wall" if rule is arc_length else "of the height"
-        issues.append(Issue(NOTE, "REMAINDER", Text("{:.3g} mm {} are left at the top, less than a layer", left,
-                                                    Word(measure))))
+        issues.append(
+            Issue(
+                NOTE,
+                "REMAINDER",
+                Text("{:.3g} mm {} are left at the top, less than a layer", left, Word(measure)),
+            )
+        )
     if rule is iso_height:
         issues += _spacing_issues(wall, layers, strategy.layer_height)
     flat = np.concatenate(layers)
@@ -100,11 +122,18 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
     radius, height, tangent = meridian.at(flat)
     kept = radius > strategy.chord_error
     if not kept.all():
-        issues.append(Issue(
-            NOTE, "POINT_BEADS",
-            Text("{} bead(s) of a radius of no more than the chord error ({:g} mm) are left out", int((~kept).sum()),
-                strategy.chord_error), int(number[~kept][0]),
-        ))
+        issues.append(
+            Issue(
+                NOTE,
+                "POINT_BEADS",
+                Text(
+                    "{} bead(s) of a radius of no more than the chord error ({:g} mm) are left out",
+                    int((~kept).sum()),
+                    strategy.chord_error,
+                ),
+                int(number[~kept][0]),
+            )
+        )
     renumbered = np.unique(number[kept], return_inverse=True)[1]
     return Slices(renumbered, radius[kept], height[kept], tangent[kept]), issues
 
@@ -113,39 +142,69 @@ def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float
     gaps = [iso_height.spacing(wall.meridian, a, b) for a, b in pairwise(layers)]
     widest = np.array([gap.max() for gap in gaps])
     narrowest = np.array([gap.min() for gap in gaps])
-    over, under = (1.0 + SPACING_BAND + 1e-9) * layer_height, (1.0 - SPACING_BAND - 1e-9) * layer_height
+    over, under = (
+        (1.0 + SPACING_BAND + 1e-9) * layer_height,
+        (1.0 - SPACING_BAND - 1e-9) * layer_height,
+    )
     uneven = np.flatnonzero((widest > over) | (narrowest < under))
     if len(uneven) == 0:
         return []
-    worst = int(uneven[np.argmax(np.maximum(widest[uneven] - layer_height, layer_height - narrowest[uneven]))])
-    return [Issue(
-        WARNING, "SPACING",
-        Text("{} of {} layers are more than 20 % off the layer height of {:g} mm, first layer {}; layer {} is {:.4g} mm "
-            "from the one below; layers along the wall (spacing: arc-length) are even", len(uneven), len(layers),
-            layer_height, int(uneven[0]) + 1, worst + 1, widest[worst]),
-        worst + 1,
-    )]
+    worst = int(
+        uneven[
+            np.argmax(np.maximum(widest[uneven] - layer_height, layer_height - narrowest[uneven]))
+        ]
+    )
+    return [
+        Issue(
+            WARNING,
+            "SPACING",
+            Text(
+                "{} of {} layers are more than 20 % off the layer height of {:g} mm, first layer {}; layer {} is {:.4g} mm "
+                "from the one below; layers along the wall (spacing: arc-length) are even",
+                len(uneven),
+                len(layers),
+                layer_height,
+                int(uneven[0]) + 1,
+                worst + 1,
+                widest[worst],
+            ),
+            worst + 1,
+        )
+    ]
 
 
 def _layers(
-    wall: RevolvedWall, slices: Slices, strategy: RevolutionParameters, process: ProcessParameters, tilting: Tilting,
+    wall: RevolvedWall,
+    slices: Slices,
+    strategy: RevolutionParameters,
+    process: ProcessParameters,
+    tilting: Tilting,
     first: Tilting,
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
     """One layer per index, its beads turned about the axis. first: how the tool leans on the first layer."""
     azimuths, rising = [], []
     for index, (layer, radius) in enumerate(zip(slices.layer, slices.radius, strict=True)):
-        segments = turn_segments(radius, strategy.chord_error, wall.end - wall.start, strategy.min_points)
+        segments = turn_segments(
+            radius, strategy.chord_error, wall.end - wall.start, strategy.min_points
+        )
         up = seam.rising(process, int(layer) if wall.full else index, wall.full)
         rising.append(up)
         azimuths.append(
-            seam.closed_azimuths(process, int(layer), segments, up) if wall.full
+            seam.closed_azimuths(process, int(layer), segments, up)
+            if wall.full
             else seam.open_azimuths(wall.start, wall.end, segments, up)
         )
-    builds, tools, issues = tilting.resolve(slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer)
+    builds, tools, issues = tilting.resolve(
+        slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer
+    )
     if first.parameters != tilting.parameters:  # below it is nothing that leans another way
         count = int((slices.layer == 0).sum())
         below, held, found = first.resolve(
-            slices.radius[:count], slices.height[:count], slices.tangent[:count], azimuths[:count], rising[:count],
+            slices.radius[:count],
+            slices.height[:count],
+            slices.tangent[:count],
+            azimuths[:count],
+            rising[:count],
             slices.layer[:count],
         )
         builds, tools = [*below, *builds[count:]], [*held, *tools[count:]]
@@ -160,7 +219,14 @@ def _layers(
 
 
 def _bead(
-    wall: RevolvedWall, slices: Slices, index: int, azimuth: Array, build: Array, tool: Array, speed: float, name: str
+    wall: RevolvedWall,
+    slices: Slices,
+    index: int,
+    azimuth: Array,
+    build: Array,
+    tool: Array,
+    speed: float,
+    name: str,
 ) -> Bead:
     at = azimuth.copy()
     if wall.full:
@@ -168,6 +234,11 @@ def _bead(
     n = len(azimuth)
     points = wall.points(np.full(n, slices.radius[index]), np.full(n, slices.height[index]), at)
     return Bead(
-        points, wall.directions(build, at), wall.directions(tool, at), azimuth,
-        np.full(n, speed), wall.full, bead_class=name,
+        points,
+        wall.directions(build, at),
+        wall.directions(tool, at),
+        azimuth,
+        np.full(n, speed),
+        wall.full,
+        bead_class=name,
     )

@@ -53,16 +53,24 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
     off, height, radius = float(np.hypot(centre[0], centre[1])), float(centre[2]), 0.5 * diameter
     if normal[2] < 0.0 or np.hypot(normal[0], normal[1]) > UPRIGHT:
         angle = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), normal[2]))
-        raise _off(Text("the axis of {} is {:.4g} deg off the normal of the platform", wall.label, angle), "use mount: "
-                   "feature")
+        raise _off(
+            Text("the axis of {} is {:.4g} deg off the normal of the platform", wall.label, angle),
+            "use mount: feature",
+        )
     if off > radius:
         raise _off(
-            Text("the axis of {} is {:.4g} mm off the middle of the platform and misses it", wall.label, off),
+            Text(
+                "the axis of {} is {:.4g} mm off the middle of the platform and misses it",
+                wall.label,
+                off,
+            ),
             "use mount: feature, or move the part",
         )
     if height > TOUCH:
-        raise _off(Text("the base of {} is {:.4g} mm below the platform", wall.label, height), "use mount: feature, or move "
-                   "the part")
+        raise _off(
+            Text("the base of {} is {:.4g} mm below the platform", wall.label, height),
+            "use mount: feature, or move the part",
+        )
     return Platform(radius + off, height, off)
 
 
@@ -71,15 +79,28 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
     base, edge = float(wall.meridian.points[0, 0]), platform.radius - 2.0 * platform.off
     if platform.radius == 0.0 or base <= edge + TOUCH:
         return []
-    mounted = platform.off > 0.0 and base <= platform.radius - platform.off + TOUCH  # its axis in the middle
-    return [Issue(
-        WARNING, "OVER_PLATFORM",
-        Text("the base of {} has a diameter of {:.4g} mm and reaches over the platform; {}check cell.platform_diameter (0 "
-            "for none)", wall.label, 2.0 * base, Word("use cell.mount: feature, move the part, or " if mounted else "")), 0,
-    )]
+    mounted = (
+        platform.off > 0.0 and base <= platform.radius - platform.off + TOUCH
+    )  # its axis in the middle
+    return [
+        Issue(
+            WARNING,
+            "OVER_PLATFORM",
+            Text(
+                "the base of {} has a diameter of {:.4g} mm and reaches over the platform; {}check cell.platform_diameter (0 "
+                "for none)",
+                wall.label,
+                2.0 * base,
+                Word("use cell.mount: feature, move the part, or " if mounted else ""),
+            ),
+            0,
+        )
+    ]
 
 
-def refuse_below(label: str, points: Array, frame: Array, diameter: float, remedy: str = MOVE) -> None:
+def refuse_below(
+    label: str, points: Array, frame: Array, diameter: float, remedy: str = MOVE
+) -> None:
     """InputError OFF_PLATFORM where points (n, 3) of what is deposited are below the platform, a disc about the origin of a
     frame (4, 4) in part coordinates; diameter: mm, 0 for none. Beside the disc there is room below its plane."""
     local = (points - frame[:3, 3]) @ frame[:3, :3]
@@ -87,12 +108,19 @@ def refuse_below(label: str, points: Array, frame: Array, diameter: float, remed
     if depth.max(initial=0.0) > DEEP:
         worst = int(depth.argmax())
         raise _off(
-            Text("{} reaches {:.4g} mm below the platform, at {}", label, depth[worst], place(points[worst])), remedy,
+            Text(
+                "{} reaches {:.4g} mm below the platform, at {}",
+                label,
+                depth[worst],
+                place(points[worst]),
+            ),
+            remedy,
         )
 
 
 def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> None:
     """The same of solids on a hub, of what is outside of the surfaces that they stand on."""
+
     def over(corners: Array) -> Mask:
         """Which triangles (n, 3, 3) may come over the disc, or below it."""
         flat = (corners - frame[:3, 3]) @ frame[:3, :2]
@@ -104,7 +132,9 @@ def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> N
         for body in group.bodies:
             corners = body.corners()
             low = ((corners - frame[:3, 3]) @ frame[:3, 2]).min(axis=1) < -DEEP
-            middles, _ = spread(corners[low], max(GRAIN * 0.5 * diameter, 1.0), over)  # of a large part most is beside it
+            middles, _ = spread(
+                corners[low], max(GRAIN * 0.5 * diameter, 1.0), over
+            )  # of a large part most is beside it
             points = np.vstack([corners[low].reshape(-1, 3), middles])
             outside = group.base.surface.distance(group.base.inside(points)) > DEEP
             refuse_below(body.name, points[outside], frame, diameter, MOUNT)
@@ -112,4 +142,6 @@ def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> N
 
 def _off(what: str, remedy: str) -> InputError:
     mended_by = {"mount": "feature"} if remedy == MOUNT else None
-    return InputError("OFF_PLATFORM", "cell.platform_diameter", "{}; {}", what, remedy, mended_by=mended_by)
+    return InputError(
+        "OFF_PLATFORM", "cell.platform_diameter", "{}; {}", what, remedy, mended_by=mended_by
+    )

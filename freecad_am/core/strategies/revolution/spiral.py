@@ -35,7 +35,9 @@ def layers(
     Raises InputError 'PARTIAL_TURN', and 'LAYER_HEIGHT' as layers do.
     """
     if not wall.full:
-        raise InputError("PARTIAL_TURN", "strategy.path", "{} is not a full turn; use path: layers", wall.label)
+        raise InputError(
+            "PARTIAL_TURN", "strategy.path", "{} is not a full turn; use path: layers", wall.label
+        )
     pitch = strategy.layer_height
     arc_length.layers(wall.meridian, pitch)
     end = _end(wall.meridian, pitch)
@@ -46,8 +48,13 @@ def layers(
     parameter = process.seam.angle + (turns if rising else -turns)
     build, tool, issues = _directions(wall.meridian, turns, s, rising, tilting)
     bead = Bead(
-        wall.points(radius, height, parameter), wall.directions(build, parameter), wall.directions(tool, parameter),
-        parameter, np.full(len(s), process.for_class(WALL).travel_speed), False, bead_class=WALL,
+        wall.points(radius, height, parameter),
+        wall.directions(build, parameter),
+        wall.directions(tool, parameter),
+        parameter,
+        np.full(len(s), process.for_class(WALL).travel_speed),
+        False,
+        bead_class=WALL,
     )
     return (Layer((bead,)),), issues
 
@@ -72,25 +79,34 @@ def _turned(meridian: Meridian, end: float, pitch: float, strategy: RevolutionPa
     flat_from = 2.0 * math.pi * (1.0 + end / pitch)
     total = flat_from + (0.0 if meridian.closed_top else 2.0 * math.pi)
     kinks = 2.0 * math.pi * (1.0 + meridian.kinks / pitch)
-    stops = np.unique(np.r_[np.arange(0.0, total, 2.0 * math.pi), total, flat_from, kinks[kinks < flat_from]])
+    stops = np.unique(
+        np.r_[np.arange(0.0, total, 2.0 * math.pi), total, flat_from, kinks[kinks < flat_from]]
+    )
     stops = stops[np.r_[True, np.diff(stops) > 1e-6]]
     stops[-1] = total
     parts = [
-        np.linspace(a, b, _segments(meridian, a, b, pitch, end, strategy) + 1)[:-1] for a, b in pairwise(stops)
+        np.linspace(a, b, _segments(meridian, a, b, pitch, end, strategy) + 1)[:-1]
+        for a, b in pairwise(stops)
     ]
     turns: Array = np.concatenate([*parts, [total]])
     return turns
 
 
-def _segments(meridian: Meridian, a: float, b: float, pitch: float, end: float, strategy: RevolutionParameters) -> int:
+def _segments(
+    meridian: Meridian, a: float, b: float, pitch: float, end: float, strategy: RevolutionParameters
+) -> int:
     """Segments between two angles turned: the second derivative of the curve in the angle bounds the chord error."""
     rate = pitch / (2.0 * math.pi)
     s = np.clip(rate * (np.linspace(a, b, 17) - 2.0 * math.pi), 0.0, end)
     radius, _, tangent = meridian.at(s)
-    bend = np.linalg.norm(np.diff(tangent, axis=0), axis=1)[1:-1] / np.maximum(np.diff(s)[1:-1], 1e-12)
+    bend = np.linalg.norm(np.diff(tangent, axis=0), axis=1)[1:-1] / np.maximum(
+        np.diff(s)[1:-1], 1e-12
+    )
     # 1.05: the meridian's bend is sampled, not bounded
     acceleration = math.hypot(radius.max() + 1.05 * bend.max() * rate**2, 2.0 * rate)
-    step = min(largest_step(acceleration, strategy.chord_error), 2.0 * math.pi / strategy.min_points)
+    step = min(
+        largest_step(acceleration, strategy.chord_error), 2.0 * math.pi / strategy.min_points
+    )
     return math.ceil((b - a) / step - 1e-9)
 
 
@@ -99,7 +115,9 @@ def _directions(
 ) -> tuple[Array, Array, list[Issue]]:
     """Build directions and tool axes (n, 3) at angles turned and arc lengths (n,). The tilt-back is settled at PER_TURN
     places to a turn; between them it is interpolated from the larger of neighbours, so that it is never too small."""
-    knots = np.linspace(0.0, turns[-1], max(2, math.ceil(turns[-1] / (2.0 * math.pi) * PER_TURN) + 1))
+    knots = np.linspace(
+        0.0, turns[-1], max(2, math.ceil(turns[-1] / (2.0 * math.pi) * PER_TURN) + 1)
+    )
     at = np.interp(knots, turns, s)
     radius, height, tangent = meridian.at(at)
     sense = 1.0 if rising else -1.0
@@ -112,10 +130,18 @@ def _directions(
         return Tips(where[0], where[1], sense * turned, moment, own)
 
     deposit = Deposit(
-        points[0], points[1], sense * turns, tilting.build(points[2]), number, number == 0,
-        np.interp(turns, knots, np.arange(len(knots))), tilting.size,
+        points[0],
+        points[1],
+        sense * turns,
+        tilting.build(points[2]),
+        number,
+        number == 0,
+        np.interp(turns, knots, np.arange(len(knots))),
+        tilting.size,
     )
     looked = tips((radius, height, tangent), knots, np.searchsorted(turns, knots, side="right"))
-    back, issues = tilting.tilt_back(tangent, rising, looked, deposit, tips(points, turns, number + 1))
+    back, issues = tilting.tilt_back(
+        tangent, rising, looked, deposit, tips(points, turns, number + 1)
+    )
     build, tool = tilting.axes(points[2], np.interp(turns, knots, back), rising)
     return build, tool, issues

@@ -29,7 +29,9 @@ LOOKS = 12  # places of an arc at which the nozzle is looked at, before it is at
 COARSE = 0.01  # rad, to which directions are found while they still change much
 SWEEPS = 40  # over all beads, at most
 FREE_SWEEPS = 6  # after which no direction goes back
-FURTHER = 8  # times that directions are tilted back further where others, or points between, need it
+FURTHER = (
+    8  # times that directions are tilted back further where others, or points between, need it
+)
 STEEP, SLIGHT = np.radians(10.0), np.radians(1.0)  # by how much
 
 
@@ -55,7 +57,13 @@ class Tilting:
         return max(CHORD, self.strategy.chord_error)
 
     def resolve(
-        self, radius: Array, height: Array, tangent: Array, azimuths: Sequence[Array], rising: Sequence[bool], layer: Index,
+        self,
+        radius: Array,
+        height: Array,
+        tangent: Array,
+        azimuths: Sequence[Array],
+        rising: Sequence[bool],
+        layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
         """Build directions and tool axes per bead, (n, 3) or (1, 3) for all points alike, and what was found.
 
@@ -64,15 +72,26 @@ class Tilting:
         """
         sense = np.asarray(rising, dtype=bool)
         if self.parameters.mode == "layer" and not self.wall.full:
-            return self._resolved_arcs(radius, height, self._means(tangent, azimuths), azimuths, sense, layer)
+            return self._resolved_arcs(
+                radius, height, self._means(tangent, azimuths), azimuths, sense, layer
+            )
         cases = self._circles(tangent, sense)
         # a tool in the plane of the axis meets the same on both sides
         turn = 2.0 * np.pi if self.wall.full else self.wall.end - self.wall.start
         bead, azimuth = around(radius, turn, self.chord, self.strategy.min_points, self._upright)
-        tips = Tips(radius, height, np.zeros(len(radius)), cases.bead + 1, np.searchsorted(layer, layer))
+        tips = Tips(
+            radius, height, np.zeros(len(radius)), cases.bead + 1, np.searchsorted(layer, layer)
+        )
         starts = np.diff(bead, prepend=-1) > 0
         deposit = Deposit(
-            radius[bead], height[bead], azimuth, cases.build[bead], bead, starts, bead.astype(float), self.size
+            radius[bead],
+            height[bead],
+            azimuth,
+            cases.build[bead],
+            bead,
+            starts,
+            bead.astype(float),
+            self.size,
         )
         clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, deposit, self.chord)
         angle, issues = self._resolved(cases, clearance, layer)
@@ -81,47 +100,81 @@ class Tilting:
         return np.split(build, every), np.split(self._tool(build, cases.rising), every), issues
 
     def _resolved_arcs(
-        self, radius: Array, height: Array, build: Array, azimuths: Sequence[Array], rising: Mask, layer: Index,
+        self,
+        radius: Array,
+        height: Array,
+        build: Array,
+        azimuths: Sequence[Array],
+        rising: Mask,
+        layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
         """The same where directions (k, 3) differ from point to point along the beads: the nozzle is looked at in LOOKS
         places of each, and then at all points."""
         counts = np.array([len(azimuth) for azimuth in azimuths])
         bead, azimuth = np.repeat(np.arange(len(counts)), counts), np.concatenate(azimuths)
         begin = np.cumsum(counts) - counts
-        looks = [np.unique(np.linspace(0, count - 1, min(count, LOOKS)).astype(np.intp)) for count in counts]
+        looks = [
+            np.unique(np.linspace(0, count - 1, min(count, LOOKS)).astype(np.intp))
+            for count in counts
+        ]
         rows = np.concatenate([first + some for first, some in zip(begin, looks, strict=True)])
-        number = np.searchsorted(rows, np.arange(len(bead)), side="right") - 1  # the last place before each point
+        number = (
+            np.searchsorted(rows, np.arange(len(bead)), side="right") - 1
+        )  # the last place before each point
         cases = Cases(bead[rows], build[rows], rising[bead[rows]])
-        tips = Tips(radius[bead], height[bead], azimuth, bead + 1, np.searchsorted(layer, layer)[bead])
+        tips = Tips(
+            radius[bead], height[bead], azimuth, bead + 1, np.searchsorted(layer, layer)[bead]
+        )
         deposit = Deposit(
-            radius[bead], height[bead], azimuth, build, bead, np.diff(bead, prepend=-1) > 0, number.astype(float), self.size
+            radius[bead],
+            height[bead],
+            azimuth,
+            build,
+            bead,
+            np.diff(bead, prepend=-1) > 0,
+            number.astype(float),
+            self.size,
         )
         clearance = of_nozzle(
             self.nozzle, self._lean, self.platform, tips.rows(rows), deposit, self.chord, tips
         )
         angle, issues = self._resolved(cases, clearance, layer)
         build = directions.tilted_back(build, angle[number])
-        return np.split(build, begin[1:]), np.split(self._tool(build, rising[bead]), begin[1:]), issues
+        return (
+            np.split(build, begin[1:]),
+            np.split(self._tool(build, rising[bead]), begin[1:]),
+            issues,
+        )
 
     def tilt_back(
         self, tangent: Array, rising: bool, tips: Tips, deposit: Deposit, between: Tips
     ) -> tuple[Array, list[Issue]]:
         """Tilt-back (c,) rad of tips along one bead with the meridian tangents (c, 2), never less than a neighbour's, and
         what was found. between: all of its points."""
-        cases = dataclasses.replace(self._circles(tangent, np.full(len(tangent), rising)), chained=True)
-        clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, deposit, self.chord, between)
+        cases = dataclasses.replace(
+            self._circles(tangent, np.full(len(tangent), rising)), chained=True
+        )
+        clearance = of_nozzle(
+            self.nozzle, self._lean, self.platform, tips, deposit, self.chord, between
+        )
         return self._resolved(cases, clearance, np.zeros(len(tangent), dtype=np.intp))
 
     def build(self, tangent: Array) -> Array:
         """Build directions (n, 3) that are asked for on full circles with the meridian tangents (n, 2)."""
-        return directions.local(tangent) if self.parameters.mode == "local" else directions.fixed(len(tangent))
+        return (
+            directions.local(tangent)
+            if self.parameters.mode == "local"
+            else directions.fixed(len(tangent))
+        )
 
     def axes(self, tangent: Array, angle: Array, rising: bool) -> tuple[Array, Array]:
         """Build directions and tool axes (n, 3) on full circles from meridian tangents (n, 2) and tilt-backs (n,)."""
         build = directions.tilted_back(self.build(tangent), angle)
         return build, self._tool(build, np.full(len(tangent), rising))
 
-    def _resolved(self, cases: Cases, clearance: Clearance, layer: Index) -> tuple[Array, list[Issue]]:
+    def _resolved(
+        self, cases: Cases, clearance: Clearance, layer: Index
+    ) -> tuple[Array, list[Issue]]:
         """Tilt-back (k,) rad of all cases, and what was found; layer: (m,) of the beads, that issues name."""
         capped = self._capped(cases)
         if self.parameters.clearance == "nozzle":
@@ -136,10 +189,12 @@ class Tilting:
         return Cases(np.arange(len(tangent)), self.build(tangent), rising)
 
     def _means(self, tangent: Array, azimuths: Sequence[Array]) -> Array:
-        return np.vstack([
-            directions.layer_mean(t, azimuth, self.wall.start, self.wall.end)
-            for t, azimuth in zip(tangent, azimuths, strict=True)
-        ])
+        return np.vstack(
+            [
+                directions.layer_mean(t, azimuth, self.wall.start, self.wall.end)
+                for t, azimuth in zip(tangent, azimuths, strict=True)
+            ]
+        )
 
     @property
     def _lean(self) -> float:
@@ -154,7 +209,9 @@ class Tilting:
         tool = np.empty_like(build)
         for sense in (True, False):
             rows = rising == sense
-            tool[rows] = directions.held(build[rows], self.parameters.lead, self.parameters.tilt, sense)
+            tool[rows] = directions.held(
+                build[rows], self.parameters.lead, self.parameters.tilt, sense
+            )
         return tool
 
     def _capped(self, cases: Cases) -> Array:
@@ -188,17 +245,27 @@ class Tilting:
     def _further(self, cases: Cases, angle: Array, clearance: Clearance) -> Array:
         """Tilt-back (k,) rad that cases are to have at least, 0 where what they have will do: those that stand up before
         one that finds none, and those next to points of the deposit on which the nozzle touches even so."""
-        most, tips, deposit = directions.from_vertical(cases.build), clearance.tips, clearance.deposit
+        most, tips, deposit = (
+            directions.from_vertical(cases.build),
+            clearance.tips,
+            clearance.deposit,
+        )
         stuck = np.flatnonzero(np.isnan(angle))
         known = np.where(np.isnan(angle), most, angle)
         if len(stuck):
-            apart = np.hypot(*(column[:, None] - column[stuck] for column in (tips.radius, tips.height)))
+            apart = np.hypot(
+                *(column[:, None] - column[stuck] for column in (tips.radius, tips.height))
+            )
             # the nearest most, so that directions turn from bead to bead
-            share = np.where(np.arange(len(angle))[:, None] < stuck, 1.0 - apart / deposit.size[0], 0.0).max(axis=1)
+            share = np.where(
+                np.arange(len(angle))[:, None] < stuck, 1.0 - apart / deposit.size[0], 0.0
+            ).max(axis=1)
             return np.where(share > 0.0, np.minimum(known + STEEP * share, most), 0.0)
         if clearance.between is None:
             return np.zeros(len(angle))
-        build = directions.tilted_back(deposit.build, np.interp(deposit.case, np.arange(len(angle), dtype=float), angle))
+        build = directions.tilted_back(
+            deposit.build, np.interp(deposit.case, np.arange(len(angle), dtype=float), angle)
+        )
         tool = self._tool(build, np.full(len(build), cases.rising[0]))
         hit = deposit.case[~clearance.clear_between(clearance.standing(build), tool)]
         further = np.zeros(len(angle))
@@ -225,7 +292,9 @@ class Tilting:
             among = clearance.standing(directions.tilted_back(deposit.build, back), among)
 
             def good(some: Index, tried: Array, among: Scene = among) -> Mask:
-                tool = self._tool(directions.tilted_back(cases.build[some], tried), cases.rising[some])
+                tool = self._tool(
+                    directions.tilted_back(cases.build[some], tried), cases.rising[some]
+                )
                 return clearance.clear(among, some, tool)
 
             within = float(np.clip(0.1 * change.max(), 0.1 * still, COARSE))
@@ -253,10 +322,18 @@ class Tilting:
         tool = self._tool(directions.tilted_back(cases.build, angle), cases.rising)
         over = directions.from_vertical(tool) > self.parameters.max_tilt + 1e-9
         if over.any():
-            issues.append(Issue(
-                ERROR, "MAX_TILT", Text("lead and tilt alone lean the tool by more than max_tilt ({}); make them smaller or "
-                    "the cap larger", Word(cap)), int(at[over][0]),
-            ))
+            issues.append(
+                Issue(
+                    ERROR,
+                    "MAX_TILT",
+                    Text(
+                        "lead and tilt alone lean the tool by more than max_tilt ({}); make them smaller or "
+                        "the cap larger",
+                        Word(cap),
+                    ),
+                    int(at[over][0]),
+                )
+            )
         elif (capped > 1e-9).any():
             first = int(at[np.argmax(capped > 1e-9)])
             text = Text("from layer {} on, max_tilt holds directions within {}", first, Word(cap))
@@ -264,18 +341,41 @@ class Tilting:
         back = angle - capped
         if stuck.any():
             hit = np.unique(at[stuck])
-            bead = 0 if cases.chained else int(cases.bead[np.argmax(stuck)] - np.searchsorted(layer, hit[0]))
-            issues.append(Issue(
-                ERROR, "CLEARANCE",
-                Text("however far it is tilted back, the nozzle touches platform or deposit, beads of {:g} mm, in {} "
-                    "layer(s), from layer {} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where "
-                    "beads are not that wide", self.bead_width, len(hit), hit[0]), int(hit[0]), bead,
-            ))
+            bead = (
+                0
+                if cases.chained
+                else int(cases.bead[np.argmax(stuck)] - np.searchsorted(layer, hit[0]))
+            )
+            issues.append(
+                Issue(
+                    ERROR,
+                    "CLEARANCE",
+                    Text(
+                        "however far it is tilted back, the nozzle touches platform or deposit, beads of {:g} mm, in {} "
+                        "layer(s), from layer {} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where "
+                        "beads are not that wide",
+                        self.bead_width,
+                        len(hit),
+                        hit[0],
+                    ),
+                    int(hit[0]),
+                    bead,
+                )
+            )
         elif (back > 1e-9).any():
             worst, first = int(at[np.argmax(back)]), int(at[np.argmax(back > 1e-9)])
-            issues.append(Issue(
-                NOTE, "TILT_BACK", Text("from layer {} on, directions are tilted back to keep the nozzle clear, by up to "
-                    "{:.2f} deg in layer {}", first, np.degrees(back.max()), worst), worst,
-            ))
+            issues.append(
+                Issue(
+                    NOTE,
+                    "TILT_BACK",
+                    Text(
+                        "from layer {} on, directions are tilted back to keep the nozzle clear, by up to "
+                        "{:.2f} deg in layer {}",
+                        first,
+                        np.degrees(back.max()),
+                        worst,
+                    ),
+                    worst,
+                )
+            )
         return issues
-

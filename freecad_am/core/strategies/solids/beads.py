@@ -48,7 +48,11 @@ class MadeBead(NamedTuple):
 
 
 def bead_of(
-    curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    curve: PlaneCurve,
+    layer: Slice,
+    strategy: FilledParameters,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
     model: BeadModel | None,
 ) -> MadeBead:
     """The bead of a curve of a layer, in part coordinates, laid as its class is, with the torch leaning as its class does;
@@ -60,20 +64,31 @@ def bead_of(
     flat = needed(line, error, None if share is None else telling(arcs(line), share, SHARES))
     flat = divided(flat, surface.pieces(flat, error))[0]
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
-    flat, points, normals, tool, turned = held(course, leaning(curve, layer, strategy, build), build, strategy.chord_error)
+    flat, points, normals, tool, turned = held(
+        course, leaning(curve, layer, strategy, build), build, strategy.chord_error
+    )
     points = base.placed(points)
     if curve.closed:
         points[-1] = points[0]
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     bead = Bead(
-        points, base.turned(normals), base.turned(tool), TURN * way / way[-1], np.full(len(way), process.travel_speed),
-        curve.closed, kind=curve.kind, ring=curve.ring, bead_class=name,
+        points,
+        base.turned(normals),
+        base.turned(tool),
+        TURN * way / way[-1],
+        np.full(len(way), process.travel_speed),
+        curve.closed,
+        kind=curve.kind,
+        ring=curve.ring,
+        bead_class=name,
     )
     if share is not None:
         share = np.interp(fractions(flat), fractions(line), share)
     heights = surface.heights(flat) if model is None else None
     closed = curve.closed and not curve.turns
-    return _thinned(_with_speed(bead, flat, closed, share, heights, strategy, process, model))._replace(turned=turned)
+    return _thinned(
+        _with_speed(bead, flat, closed, share, heights, strategy, process, model)
+    )._replace(turned=turned)
 
 
 def _thinned(made: MadeBead) -> MadeBead:
@@ -86,14 +101,22 @@ def _thinned(made: MadeBead) -> MadeBead:
 
 
 def _with_speed(
-    bead: Bead, flat: Array, closed: bool, share: Array | None, heights: Array | None, strategy: FilledParameters,
-    process: ProcessParameters, model: BeadModel | None,
+    bead: Bead,
+    flat: Array,
+    closed: bool,
+    share: Array | None,
+    heights: Array | None,
+    strategy: FilledParameters,
+    process: ProcessParameters,
+    model: BeadModel | None,
 ) -> MadeBead:
     """The bead, flat (n, 2) on the plane, at the speeds that hold its width. share: (n,) of the usual one; heights: (n,) mm
     of the layer there, which no bead model asks for; None where they are as ever."""
     if model is not None:
         radius = radii(flat, closed, process.bead_width)
-        return MadeBead(*at_speed(bead, radius, flat, closed, process, model, 1.0 if share is None else share))
+        return MadeBead(
+            *at_speed(bead, radius, flat, closed, process, model, 1.0 if share is None else share)
+        )
     if share is None and heights is None:
         return MadeBead(bead)
     high = np.ones(len(flat)) if heights is None else heights / strategy.layer_height
@@ -115,7 +138,9 @@ def _sparse(points: Array, speed: Array, least: float) -> Mask:
     kept &= (way < way[-1] - least) | (way == 0.0)
     kept[0] = kept[-1] = True
     rows = np.flatnonzero(kept)
-    near = np.r_[False, np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / speed[rows[1:] - 1] < least]
+    near = np.r_[
+        False, np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / speed[rows[1:] - 1] < least
+    ]
     near[-1] = False  # neighbours across a step of the count: the first of the two is enough
     kept[rows[near]] = False
     return kept
@@ -124,7 +149,9 @@ def _sparse(points: Array, speed: Array, least: float) -> Mask:
 def needed(line: Array, chord_error: float, besides: Mask | None = None) -> Array:
     """A polyline (n, 2) on the plane without points that the chord error needs not, but for those (n,) needed besides, and
     without those that all but coincide."""
-    grid = np.ascontiguousarray(np.round(line, GRID) + 0.0)  # of points alike the same wherever the hub stands
+    grid = np.ascontiguousarray(
+        np.round(line, GRID) + 0.0
+    )  # of points alike the same wherever the hub stands
     simple = np.ascontiguousarray(simplified(grid, NEEDLESS * chord_error))
     kept = np.isin(grid.view(np.complex128).ravel(), simple.view(np.complex128).ravel())
     kept[[0, -1]] = True

@@ -40,7 +40,9 @@ class Course:
         flat = np.stack([np.interp(s, way, column) for column in self.flat.T], axis=-1)
         points, normals, turn = self.surface.wrap(flat)
         if self.spread is not None:
-            normals = unit(np.stack([np.interp(s, way, column) for column in self.spread.T], axis=-1))
+            normals = unit(
+                np.stack([np.interp(s, way, column) for column in self.spread.T], axis=-1)
+            )
         if self.closed:
             points[-1], normals[-1] = points[0], normals[0]
         return flat, points, normals, turn

@@ -34,8 +34,13 @@ USUAL = ProcessParameters().bead_width  # mm; a width that is other than that wa
 MUCH = 0.03  # of a region, laid over other beads of it
 EVERY = (1.0, 1.0)  # widths that all beads have
 INSTEAD = {  # round a hub
-    "spiral": "contours", "connected": "contours",
-    "zigzag": "lines", "grid": "lines", "triangles": "lines", "honeycomb": "lines", "gyroid": "lines",
+    "spiral": "contours",
+    "connected": "contours",
+    "zigzag": "lines",
+    "grid": "lines",
+    "triangles": "lines",
+    "honeycomb": "lines",
+    "gyroid": "lines",
 }
 
 
@@ -71,7 +76,9 @@ class Pictures:
     """Fills layers. Solids alike but for a turn about the hub's axis have equal pictures, but for rounding: the beads of the
     first, within TOLERANCE_MM of its own, are those of all."""
 
-    def __init__(self, strategy: FilledParameters, process: ProcessParameters, width: float = 0.0) -> None:
+    def __init__(
+        self, strategy: FilledParameters, process: ProcessParameters, width: float = 0.0
+    ) -> None:
         """width: mm of a bead, 0: the spacing."""
         self._strategy = strategy
         self._process = process
@@ -91,22 +98,39 @@ class Pictures:
                 picture = self._picture(layer, region, filling)
             except InfeasibleError as error:
                 raise InfeasibleError(
-                    error.code, f"{name} layer {layer.number}", error.message,
-                    issues=(Issue("error", error.code, Text("{}: {}", name, error.message), layer.number),)
+                    error.code,
+                    f"{name} layer {layer.number}",
+                    error.message,
+                    issues=(
+                        Issue(
+                            "error", error.code, Text("{}: {}", name, error.message), layer.number
+                        ),
+                    ),
                 ) from None
             island = range(len(curves), len(curves) + len(picture.curves))
             for curve in picture.curves:
-                alternating = self._process.direction == "alternate" if curve.closed else strategy.starts == "spread"
-                if alternating and (layer.number + curve.ring if curve.closed else layer.number) % 2:
+                alternating = (
+                    self._process.direction == "alternate"
+                    if curve.closed
+                    else strategy.starts == "spread"
+                )
+                if (
+                    alternating
+                    and (layer.number + curve.ring if curve.closed else layer.number) % 2
+                ):
                     curve = curve.reversed()
-                curves.append(replace(curve, sheet=region.sheet) if isinstance(region, Region) else curve)
+                curves.append(
+                    replace(curve, sheet=region.sheet) if isinstance(region, Region) else curve
+                )
             if island:
                 islands.append(sorted(island, key=lambda number: -curves[number].ring))
             gaps += picture.gaps
             covers.append(picture.cover)
         return Filled(curves, self._issues(layer, curves, gaps, filling), islands, total(covers))
 
-    def _issues(self, layer: Slice, curves: Sequence[PlaneCurve], gaps: Gaps, filling: _Filling) -> tuple[Issue, ...]:
+    def _issues(
+        self, layer: Slice, curves: Sequence[PlaneCurve], gaps: Gaps, filling: _Filling
+    ) -> tuple[Issue, ...]:
         """What is told of a layer: what beads leave open, single ones that stand out, a pattern that is another there."""
         strategy, beads, issues = self._strategy, filling.beads, []
         regions = tuple(region for region in layer.regions if isinstance(region, Region))
@@ -117,16 +141,36 @@ class Pictures:
                 gaps = [gap for region in regions for gap in open_places(region, curves, beads)]
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
-            issues.append(Issue(
-                WARNING, "OPEN_GAP", Text("beads leave {} gap(s) open, the widest of {:.3g} mm at {}; strategy.gap allows "
-                    "{:.3g} mm", len(gaps), width, layer.where(point), beads.gap), layer.number,
-            ))
+            issues.append(
+                Issue(
+                    WARNING,
+                    "OPEN_GAP",
+                    Text(
+                        "beads leave {} gap(s) open, the widest of {:.3g} mm at {}; strategy.gap allows "
+                        "{:.3g} mm",
+                        len(gaps),
+                        width,
+                        layer.where(point),
+                        beads.gap,
+                    ),
+                    layer.number,
+                )
+            )
         issues += _standing_out(layer, curves, beads)
         if strategy.fill in INSTEAD and all_round:
-            issues.append(Issue(
-                NOTE, "PATTERN_ROUND_HUB", Text("a layer all the way round the hub is filled with {}; strategy.fill = {} is "
-                    "for regions with an end", INSTEAD[strategy.fill], strategy.fill), layer.number,
-            ))
+            issues.append(
+                Issue(
+                    NOTE,
+                    "PATTERN_ROUND_HUB",
+                    Text(
+                        "a layer all the way round the hub is filled with {}; strategy.fill = {} is "
+                        "for regions with an end",
+                        INSTEAD[strategy.fill],
+                        strategy.fill,
+                    ),
+                    layer.number,
+                )
+            )
         return tuple(issues)
 
     def _filling(self, layer: Slice) -> _Filling:
@@ -134,25 +178,39 @@ class Pictures:
         strategy, process = self._strategy, self._process
         turned = layer.surface.turned(layer.azimuth)  # the picture, by the cutting line
         beads = Beads(
-            strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.least_bead, strategy.thin,
-            process.direction == "clockwise", process.seam.angle + layer.number * process.seam.step - turned,
-            ARCS * strategy.chord_error, layer.where, self._width,
+            strategy.bead_spacing,
+            strategy.gap * strategy.bead_spacing,
+            strategy.least_bead,
+            strategy.thin,
+            process.direction == "clockwise",
+            process.seam.angle + layer.number * process.seam.step - turned,
+            ARCS * strategy.chord_error,
+            layer.where,
+            self._width,
             layer.number * OVER if strategy.starts == "spread" else None,
         )
         infill = Infill()
         if strategy.fill_density < 1.0:
             height = layer.number * strategy.layer_height if strategy.fill == "gyroid" else 0.0
-            infill = Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.buried)
-        return _Filling(beads, strategy.fill_angle + layer.number * strategy.fill_angle_step - turned, infill)
+            infill = Infill(
+                strategy.fill_density, height, strategy.fill_angle - turned, layer.buried
+            )
+        return _Filling(
+            beads, strategy.fill_angle + layer.number * strategy.fill_angle_step - turned, infill
+        )
 
     def _picture(self, layer: Slice, region: Region | Strip, filling: _Filling) -> _Picture:
         """A region filled, as one before it where that was the same."""
         flat = layer.surface.period is None
         if isinstance(region, Strip):
-            return self._made(region, filling._replace(infill=Infill()) if layer.buried == () else filling, flat)
+            return self._made(
+                region, filling._replace(infill=Infill()) if layer.buried == () else filling, flat
+            )
         for picture in self._pictures[layer.surface.period]:
             assert isinstance(picture.region, Region)
-            if _same(picture.filling, filling) and _equal(picture.region.borders(), region.borders()):
+            if _same(picture.filling, filling) and _equal(
+                picture.region.borders(), region.borders()
+            ):
                 return picture
         self._pictures[layer.surface.period].append(self._made(region, filling, flat))
         return self._pictures[layer.surface.period][-1]
@@ -166,15 +224,29 @@ class Pictures:
         if isinstance(region, Region) and not sparse and strategy.rounds_alone:
             beads, share = fitted(region, beads, least, most)
         curves: Sequence[PlaneCurve] = fill(
-            region, beads, strategy.fill, angle, strategy.rounds, strategy.longest_link * filling.beads.spacing, infill
+            region,
+            beads,
+            strategy.fill,
+            angle,
+            strategy.rounds,
+            strategy.longest_link * filling.beads.spacing,
+            infill,
         )
         gaps = [] if sparse else open_places(region, curves, beads)
         if isinstance(region, Region) and not sparse:
             curves = [*shared(region, curves, beads, share, least, most)]
         cover = covered(region, curves, filling.beads, infill.density)
-        narrowing = not sparse and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0
-        if narrowing and cover.over(filling.beads.spacing * math.fsum(map(_weighed, curves))) > MUCH * cover.area:
-            curves = narrowed(curves, filling.beads, angle, strategy.narrowest)  # no wider than their room
+        narrowing = (
+            not sparse and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0
+        )
+        if (
+            narrowing
+            and cover.over(filling.beads.spacing * math.fsum(map(_weighed, curves)))
+            > MUCH * cover.area
+        ):
+            curves = narrowed(
+                curves, filling.beads, angle, strategy.narrowest
+            )  # no wider than their room
         return _Picture(region, filling, curves, gaps, cover)
 
 
@@ -192,7 +264,9 @@ def spaced(strategy: Same, process: ProcessParameters) -> Same:
     return replace(strategy, bead_spacing=process.bead_width * (1.0 - strategy.bead_overlap))
 
 
-def bead_width(strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None) -> float:
+def bead_width(
+    strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None
+) -> float:
     """How wide (mm) beads count: as `process.fill_width` says.
 
     InputError BEAD_SPACING where the spacing is larger, so that stripes would stay open."""
@@ -202,8 +276,14 @@ def bead_width(strategy: FilledParameters, process: ProcessParameters, model: Be
         return spacing
     if spacing > width * (1.0 + 1e-9):
         raise InputError(
-            "BEAD_SPACING", "strategy.bead_spacing", "beads {:g} mm wide (process.bead_width), {:g} mm apart, leave stripes "
-            "of {:.3g} mm open between them; use {:g} mm or less, or wider beads", width, spacing, spacing - width, width,
+            "BEAD_SPACING",
+            "strategy.bead_spacing",
+            "beads {:g} mm wide (process.bead_width), {:g} mm apart, leave stripes "
+            "of {:.3g} mm open between them; use {:g} mm or less, or wider beads",
+            width,
+            spacing,
+            spacing - width,
+            width,
         )
     return width
 
@@ -214,29 +294,49 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
     if not curves:
         return []
     points = np.vstack([curve.points for curve in curves])
-    share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in curves])
+    share = np.concatenate(
+        [np.ones(len(curve.points)) if curve.share is None else curve.share for curve in curves]
+    )
     out = share * beads.inset - nearest_among(layer.borders, points)[1]
     worst = int(np.argmax(out))
     if out[worst] <= TOLERANCE_MM or ((share < 1.0).any() and out[worst] < 0.02 * beads.inset):
         return []
-    return [Issue(
-        NOTE, "THIN_SINGLE", Text("{} bead(s) alone in regions narrower than a bead of {:.3g} mm stand out of them, by up "
-            "to {:.3g} mm at {}", len(curves), 2.0 * beads.inset, out[worst], layer.where(points[worst])), layer.number,
-    )]
+    return [
+        Issue(
+            NOTE,
+            "THIN_SINGLE",
+            Text(
+                "{} bead(s) alone in regions narrower than a bead of {:.3g} mm stand out of them, by up "
+                "to {:.3g} mm at {}",
+                len(curves),
+                2.0 * beads.inset,
+                out[worst],
+                layer.where(points[worst]),
+            ),
+            layer.number,
+        )
+    ]
 
 
 def _same(one: _Filling, other: _Filling) -> bool:
     """Whether equal regions are filled in the same way."""
-    turned = max(abs(one.angle - other.angle), np.abs(np.subtract(one.beads.start, other.beads.start)).max())
+    turned = max(
+        abs(one.angle - other.angle), np.abs(np.subtract(one.beads.start, other.beads.start)).max()
+    )
     if turned >= 1e-9 or one.beads.spread != other.beads.spread:
         return False
     a, b = one.infill, other.infill
     if a.density == b.density == 1.0:
         return True
-    if a.height != b.height or abs(a.angle - b.angle) > 1e-9 or (a.buried is None) != (b.buried is None):
+    if (
+        a.height != b.height
+        or abs(a.angle - b.angle) > 1e-9
+        or (a.buried is None) != (b.buried is None)
+    ):
         return False
     borders, others = (
-        tuple(border for region in infill.buried or () for border in region.borders()) for infill in (a, b)
+        tuple(border for region in infill.buried or () for border in region.borders())
+        for infill in (a, b)
     )
     return _equal(borders, others)
 

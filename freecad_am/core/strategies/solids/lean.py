@@ -27,12 +27,21 @@ from .spread import Line, Zones, means, too_fast
 
 GROWTH, SHRINK = 1.1, 0.9
 ROUNDS = 100
-ASTRAY = math.radians(40.0)  # largest mean of how far the heading of the lean may be from the bead's
+ASTRAY = math.radians(
+    40.0
+)  # largest mean of how far the heading of the lean may be from the bead's
 LONGEST = 0.7  # of a bead; no stretch reaches farther
 FEWEST = 0.02  # share of the lean asked for below which it is none
-STEEPEST = math.radians(300.0)  # rad/mm; without a limit, so that lean and bead agree next to corners
-FINE, FLAT = math.radians(0.02), 1e4  # what of a direction may be lost between points; mm stretched so that only that counts
-LEAST_MM = 4e-3  # mm; no shorter are the pieces of a segment on which the torch goes round the normal
+STEEPEST = math.radians(
+    300.0
+)  # rad/mm; without a limit, so that lean and bead agree next to corners
+FINE, FLAT = (
+    math.radians(0.02),
+    1e4,
+)  # what of a direction may be lost between points; mm stretched so that only that counts
+LEAST_MM = (
+    4e-3  # mm; no shorter are the pieces of a segment on which the torch goes round the normal
+)
 EDGE = 1e-3  # mm over which a deflection ends before it is spread
 ROUGH = 0.05  # share of the chord error that the heading's course need not follow
 CORNER = 0.5  # points so much farther apart than those of a curve make a corner
@@ -51,7 +60,9 @@ class Lean:
     @property
     def most(self) -> float:
         """The largest angle (rad) between the torch and the normal."""
-        return math.acos(math.cos(self.lead) * math.cos(max(abs(self.side), abs(self.rest), key=abs)))
+        return math.acos(
+            math.cos(self.lead) * math.cos(max(abs(self.side), abs(self.rest), key=abs))
+        )
 
     def less(self, share: float) -> Lean:
         """The same to a share of it."""
@@ -97,12 +108,17 @@ def held(course: Course, lean: Lean, build: BuildDirectionParameters, chord_erro
     line, period = _line(course, way, float(phi[-1] - phi[0]), chord_error)
     share = 1.0
     if course.closed:  # it cannot go round the normal faster than that
-        share = min(1.0, WITHIN * most * way[-1] / max(math.sin(min(asked, 0.5 * math.pi)) * abs(period), 1e-12))
+        share = min(
+            1.0,
+            WITHIN * most * way[-1] / max(math.sin(min(asked, 0.5 * math.pi)) * abs(period), 1e-12),
+        )
     while share > FEWEST:
         found = _spread(course, way, line, lean.less(share), most, max(most - own, 0.1 * most))
         if found is not None:
             departure = max(found.turned.departure, off) if limited else off
-            return found._replace(turned=Turned(share, asked, departure, max(found.turned.length, over), lacking))
+            return found._replace(
+                turned=Turned(share, asked, departure, max(found.turned.length, over), lacking)
+            )
         share *= SHRINK
     return Held(flat, points, normal, normal, Turned(0.0, asked, off, over, lacking))
 
@@ -151,7 +167,9 @@ def _with_sides(line: Line, lean: Lean) -> Line:
     return Line(at, np.column_stack([line(at)[:, 0], side]))
 
 
-def _spread(course: Course, way: Array, heading: Line, lean: Lean, most: float, budget: float) -> Held | None:
+def _spread(
+    course: Course, way: Array, heading: Line, lean: Lean, most: float, budget: float
+) -> Held | None:
     """The bead with its lean spread so that the torch turns no faster than `most`; None where that takes it too far astray.
 
     budget: what the lean may turn by for sure."""
@@ -189,14 +207,25 @@ def _spread(course: Course, way: Array, heading: Line, lean: Lean, most: float, 
             flat, points, normal, tool, phi, _ = thin
     asked = line(s)
     share = np.diff(s) / length
-    leans = np.hypot(math.sin(lean.lead), np.sin(asked[:, 1]))  # where the torch stands straight its heading says nothing
-    off, weight = (0.5 * (row[1:] + row[:-1]) @ share for row in (np.abs(values[:, 0] - asked[:, 0]) * leans, leans))
+    leans = np.hypot(
+        math.sin(lean.lead), np.sin(asked[:, 1])
+    )  # where the torch stands straight its heading says nothing
+    off, weight = (
+        0.5 * (row[1:] + row[:-1]) @ share
+        for row in (np.abs(values[:, 0] - asked[:, 0]) * leans, leans)
+    )
     if off > ASTRAY * weight:
         return None
     wanted = directed(course.surface, normal, asked[:, 0] - phi, lean.lead, asked[:, 1])
     apart = np.arctan2(np.linalg.norm(np.cross(wanted, tool), axis=1), (wanted * tool).sum(axis=1))
     touched = float((share * length)[np.maximum(apart[1:], apart[:-1]) > LEAST_DEPARTURE].sum())
-    return Held(flat, points, normal, tool, Turned(1.0, 0.0, float(apart.max()) if touched else 0.0, touched))
+    return Held(
+        flat,
+        points,
+        normal,
+        tool,
+        Turned(1.0, 0.0, float(apart.max()) if touched else 0.0, touched),
+    )
 
 
 def _within_bends(line: Line, s: Array, zones: Zones, values: Array, lean: float) -> Array:
@@ -261,7 +290,9 @@ def _needed(s: Array, values: Array, lead: float) -> Mask:
     return found
 
 
-def directed(surface: LayerSurface, normal: Array, heading: Array, lead: float, side: Array) -> Array:
+def directed(
+    surface: LayerSurface, normal: Array, heading: Array, lead: float, side: Array
+) -> Array:
     """Tool axes (n, 3): the normals turned by `lead` towards the heading (n,), counted from the first axis of the surface,
     then by `side` (n,) to the right of it, rad."""
     around, up = surface.axes(normal)

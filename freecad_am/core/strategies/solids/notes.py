@@ -28,37 +28,69 @@ HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
 
 def notes(
-    made: Sequence[MadeBead], layers: Sequence[Layer], strategy: FilledParameters, build: BuildDirectionParameters,
-    process: ProcessParameters, model: BeadModel | None,
+    made: Sequence[MadeBead],
+    layers: Sequence[Layer],
+    strategy: FilledParameters,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
+    model: BeadModel | None,
 ) -> list[Issue]:
     """All of them."""
     height = strategy.layer_height
-    issues = _speeds(layers, strategy, process) if model is None else of_model(made, height, process, model)
+    issues = (
+        _speeds(layers, strategy, process)
+        if model is None
+        else of_model(made, height, process, model)
+    )
     issues += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     if waits and strategy.min_layer_time > 0.0:
-        issues.append(Issue(
-            NOTE, "WAITS", Text("the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
-                "layer takes less than {:g} s and no solid is returned to sooner than after {:g} s", len(waits), len(layers),
-                max(waits), sum(waits), strategy.min_layer_time, strategy.wait),
-        ))
+        issues.append(
+            Issue(
+                NOTE,
+                "WAITS",
+                Text(
+                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
+                    "layer takes less than {:g} s and no solid is returned to sooner than after {:g} s",
+                    len(waits),
+                    len(layers),
+                    max(waits),
+                    sum(waits),
+                    strategy.min_layer_time,
+                    strategy.wait,
+                ),
+            )
+        )
     elif waits:
-        issues.append(Issue(
-            NOTE, "WAITS", Text("the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
-                "solid is returned to sooner than after {:g} s", len(waits), len(layers), max(waits), sum(waits),
-                strategy.wait),
-        ))
+        issues.append(
+            Issue(
+                NOTE,
+                "WAITS",
+                Text(
+                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
+                    "solid is returned to sooner than after {:g} s",
+                    len(waits),
+                    len(layers),
+                    max(waits),
+                    sum(waits),
+                    strategy.wait,
+                ),
+            )
+        )
     return issues + _leans(made, layers, build)
 
 
-def _speeds(layers: Sequence[Layer], strategy: FilledParameters, process: ProcessParameters) -> list[Issue]:
+def _speeds(
+    layers: Sequence[Layer], strategy: FilledParameters, process: ProcessParameters
+) -> list[Issue]:
     """At which speeds one wire feed makes beads as wide as their room and as high as their layer, where these are others
     than usual; at the bead that departs most from its travel speed."""
     classes = {bead.bead_class for layer in layers for bead in layer.beads}
     usual = {name: process.for_class(name).travel_speed for name in classes}
     places = [
         (float(np.abs(bead.speed[1:] / usual[bead.bead_class] - 1.0).max()), i, j)
-        for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)
+        for i, layer in enumerate(layers)
+        for j, bead in enumerate(layer.beads)
     ]
     some = [place for place in places if place[0] > SLIGHTLY]
     if not some:
@@ -73,7 +105,13 @@ def _speeds(layers: Sequence[Layer], strategy: FilledParameters, process: Proces
     _, layer, number = max(some, key=lambda place: place[0])
     text = Text(
         "{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, for one wire feed to make them {}; the speed follows that "
-        "along them", len(some), len(places), speed.min(), speed.max(), Word(instead), Text.joined(" and ", sizes),
+        "along them",
+        len(some),
+        len(places),
+        speed.min(),
+        speed.max(),
+        Word(instead),
+        Text.joined(" and ", sizes),
     )
     remedy = _for_one_speed(strategy, bool(high))
     message = Text("{}; for one speed give {}", text, remedy) if remedy else text
@@ -86,7 +124,11 @@ def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
     settings = [
         *(["strategy.layers: planes"] if high else []),
         *(["strategy.fill: contours"] if strategy.fill == "connected" else []),
-        *([Text("a spacing range of {0} to {0}", "100 %")] if strategy.spacing_range != EVERY else []),
+        *(
+            [Text("a spacing range of {0} to {0}", "100 %")]
+            if strategy.spacing_range != EVERY
+            else []
+        ),
         *(["strategy.narrowest: 100 %"] if strategy.narrowest < 1.0 else []),
     ]
     return Text.joined(" and ", settings)
@@ -103,14 +145,25 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
     single = [start for start, end in zip(starts, starts[1:]) if end - start == 1]
     if not single:
         return []
-    return [Issue(
-        NOTE, "SINGLE_LAYER",
-        Text("{} of {} solids or groups of solids get a single layer, on the hub: they are no higher than "
-            "strategy.layer_height, {:g} mm", len(single), len(starts) - 1, strategy.layer_height), single[0],
-    )]
+    return [
+        Issue(
+            NOTE,
+            "SINGLE_LAYER",
+            Text(
+                "{} of {} solids or groups of solids get a single layer, on the hub: they are no higher than "
+                "strategy.layer_height, {:g} mm",
+                len(single),
+                len(starts) - 1,
+                strategy.layer_height,
+            ),
+            single[0],
+        )
+    ]
 
 
-def _leans(made: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
+def _leans(
+    made: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters
+) -> list[Issue]:
     """At most one issue of a kind, at the bead where it is worst."""
     turned = {id(one.bead): one.turned for one in made if one.turned is not None}
     places = [(bead, i, j) for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)]
@@ -126,11 +179,23 @@ def _spread(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]
         return []
     worst, layer, bead = max(some, key=lambda entry: entry[0].departure)
     length = sum(entry[0].length for entry in some)
-    return [Issue(
-        NOTE, "TURN_LIMITED", Text("on {} of {} beads, {:.4g} mm in all, the torch begins to turn ahead of corners, by up "
-            "to {:.3g} deg from what is asked, to turn no faster than {}", len(some), len(beads), length,
-            math.degrees(worst.departure), limit), layer, bead,
-    )]
+    return [
+        Issue(
+            NOTE,
+            "TURN_LIMITED",
+            Text(
+                "on {} of {} beads, {:.4g} mm in all, the torch begins to turn ahead of corners, by up "
+                "to {:.3g} deg from what is asked, to turn no faster than {}",
+                len(some),
+                len(beads),
+                length,
+                math.degrees(worst.departure),
+                limit,
+            ),
+            layer,
+            bead,
+        )
+    ]
 
 
 def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
@@ -139,14 +204,30 @@ def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
         return []
     worst, layer, bead = min(some, key=lambda entry: entry[0].share)
     layers = sorted({entry[1] for entry in some})
-    where = Text("layer {}",
-                 layers[0]) if len(layers) == 1 else Text("{} layers from {} to {}", len(layers), layers[0], layers[-1])
-    return [Issue(
-        WARNING, "LEAN_REDUCED", Text("on {} of {} beads in {} bends follow one another too closely to turn the torch round "
-            "them at {}: it leans by {:.3g} to {:.3g} deg there instead of {:.3g} deg; lean less, or allow a faster turn",
-            len(some), len(beads), Word(where), limit, math.degrees(worst.share * worst.asked),
-            math.degrees(max(entry[0].share * entry[0].asked for entry in some)), math.degrees(worst.asked)), layer, bead,
-    )]
+    where = (
+        Text("layer {}", layers[0])
+        if len(layers) == 1
+        else Text("{} layers from {} to {}", len(layers), layers[0], layers[-1])
+    )
+    return [
+        Issue(
+            WARNING,
+            "LEAN_REDUCED",
+            Text(
+                "on {} of {} beads in {} bends follow one another too closely to turn the torch round "
+                "them at {}: it leans by {:.3g} to {:.3g} deg there instead of {:.3g} deg; lean less, or allow a faster turn",
+                len(some),
+                len(beads),
+                Word(where),
+                limit,
+                math.degrees(worst.share * worst.asked),
+                math.degrees(max(entry[0].share * entry[0].asked for entry in some)),
+                math.degrees(worst.asked),
+            ),
+            layer,
+            bead,
+        )
+    ]
 
 
 def _normals(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
@@ -154,8 +235,19 @@ def _normals(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue
     if not some:
         return []
     worst, layer, bead = max(some, key=lambda entry: entry[0].normals)
-    return [Issue(
-        WARNING, "TURN_OF_NORMALS", Text("on {} of {} beads the hub's normals alone turn by up to {:.3g} deg/mm, faster "
-            "than {}; the torch follows them all the same", len(some), len(beads), math.degrees(worst.normals), limit),
-            layer, bead,
-    )]
+    return [
+        Issue(
+            WARNING,
+            "TURN_OF_NORMALS",
+            Text(
+                "on {} of {} beads the hub's normals alone turn by up to {:.3g} deg/mm, faster "
+                "than {}; the torch follows them all the same",
+                len(some),
+                len(beads),
+                math.degrees(worst.normals),
+                limit,
+            ),
+            layer,
+            bead,
+        )
+    ]

@@ -37,6 +37,8 @@ def leaning(
     edges = steps(curve.points[:count], curve.closed and not curve.turns)
     longest = np.argsort(-np.hypot(*edges.T), kind="stable")[:PROBES]
     middle = curve.points[longest] + 0.5 * edges[longest]
-    left = sines(edges[longest], nearest_among(layer.borders, middle)[0] - middle).sum() > 0.0  # the outline, of the curve
+    left = (
+        sines(edges[longest], nearest_among(layer.borders, middle)[0] - middle).sum() > 0.0
+    )  # the outline, of the curve
     side = -1.0 if left else 1.0
     return Lean(build.lead, build.tilt + side * strategy.deflection, build.tilt, until)

@@ -29,8 +29,12 @@ LEVEL = 1e-6  # mm, and of the cosine of an angle
 
 
 def plan(
-    solids: SolidsOnHub, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
-    model: BeadModel | None, progress: Progress = silent,
+    solids: SolidsOnHub,
+    strategy: FilledParameters,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
+    model: BeadModel | None,
+    progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of solids, in part coordinates; layer i lies i layer heights from what they stand on.
 
@@ -39,15 +43,20 @@ def plan(
     THIN_REGION."""
     _refuse_mode(solids.on_planes(), strategy, build)
     strategy = spaced(strategy, process)
-    size.refuse_absurd(size.of_solids(solids, strategy, strategy.bead_spacing), strategy,
-                       None if strategy.bead_overlap is None else process.bead_width)
+    size.refuse_absurd(
+        size.of_solids(solids, strategy, strategy.bead_spacing),
+        strategy,
+        None if strategy.bead_overlap is None else process.bead_width,
+    )
     width = bead_width(strategy, process, model)
     pictures = Pictures(strategy, process, width)
     ranked: list[RankedBead] = []
     made: list[MadeBead] = []
     issues: list[Issue] = []
     covers: list[Cover] = []
-    heights: dict[int, list[float]] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
+    heights: dict[
+        int, list[float]
+    ] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
     order = IslandOrder(as_below=strategy.min_layer_time > 0.0)
     stacks = list(field.stacks(solids, strategy))
     for done, stack in enumerate(stacks):
@@ -58,7 +67,11 @@ def plan(
             issues += [*layer.issues, *picture.issues]
             if layer.heights is not None:
                 heights.setdefault(layer.number, []).extend(layer.heights[::2])
-            covers.append(picture.cover.scaled(1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height))
+            covers.append(
+                picture.cover.scaled(
+                    1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
+                )
+            )
             beads: list[Bead] = []
             for curve in picture.curves:
                 made.append(bead_of(curve, layer, strategy, build, process, model))
@@ -69,40 +82,69 @@ def plan(
                     for rank, bead in enumerate(order.of(beads, picture.islands))
                 ]
             else:
-                ranked += [RankedBead(stack.group, stack.solid, layer.number, bead.ring, bead) for bead in beads]
+                ranked += [
+                    RankedBead(stack.group, stack.solid, layer.number, bead.ring, bead)
+                    for bead in beads
+                ]
     if not ranked:
         raise InputError(
-            "NOTHING_TO_DEPOSIT", solids.label, "no bead of {:g} mm or more finds room in any layer; use a smaller bead "
-            "spacing, or thin = single", strategy.least_bead,
+            "NOTHING_TO_DEPOSIT",
+            solids.label,
+            "no bead of {:g} mm or more finds room in any layer; use a smaller bead "
+            "spacing, or thin = single",
+            strategy.least_bead,
         )
-    layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
-    issues = [*solids.issues, *one_of_each(issues), *notes(made, layers, strategy, build, process, model)]
+    layers = waited(
+        ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time
+    )
+    issues = [
+        *solids.issues,
+        *one_of_each(issues),
+        *notes(made, layers, strategy, build, process, model),
+    ]
     return Toolpath(
-        layers, solids.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap,
+        layers,
+        solids.frame,
+        strategy.layer_height,
+        strategy.chord_error,
+        tuple(issues),
+        process.overlap,
         "solid" if solids.on_planes() else "developable",
-        solids.surroundings, None if model is None else model.law(process.acceleration), width,
+        solids.surroundings,
+        None if model is None else model.law(process.acceleration),
+        width,
         volumes=volumes(None if strategy.margin else solids_beyond(solids), strategy, covers),
         twice=twice(made, strategy, covers, width),
-        uneven=np.array([(number, min(both), max(both)) for number, both in sorted(heights.items())]) if heights else None,
+        uneven=np.array(
+            [(number, min(both), max(both)) for number, both in sorted(heights.items())]
+        )
+        if heights
+        else None,
     )
 
 
 def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
     if getattr(strategy, "layers", "planes") != "planes" and build.mode != "local":
         raise InputError(
-            "NOT_FOR_FAMILY", "build_direction.mode", "{} is not for curved layers, which grow along their normals; use "
-            "local", build.mode,
+            "NOT_FOR_FAMILY",
+            "build_direction.mode",
+            "{} is not for curved layers, which grow along their normals; use local",
+            build.mode,
         )
     if planes:
         if build.mode == "symmetry-plane":
             raise InputError(
-                "NOT_FOR_FAMILY", "build_direction.mode", "symmetry-plane is for walls; plane layers grow along their "
+                "NOT_FOR_FAMILY",
+                "build_direction.mode",
+                "symmetry-plane is for walls; plane layers grow along their "
                 "normal: use local or fixed",
             )
     elif build.mode != "local":
         raise InputError(
-            "NOT_FOR_FAMILY", "build_direction.mode", "{} is not for solids on a hub, which grow along its normals; use "
-            "local", build.mode,
+            "NOT_FOR_FAMILY",
+            "build_direction.mode",
+            "{} is not for solids on a hub, which grow along its normals; use local",
+            build.mode,
         )
 
 

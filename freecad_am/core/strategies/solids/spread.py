@@ -27,7 +27,9 @@ class Line(NamedTuple):
 
     def __call__(self, s: Array) -> Array:
         """The values (n, c) at places (n,)."""
-        found: Array = np.stack([np.interp(s, self.at, column) for column in self.values.T], axis=-1)
+        found: Array = np.stack(
+            [np.interp(s, self.at, column) for column in self.values.T], axis=-1
+        )
         return found
 
     def mirrored(self, length: float) -> Line:
@@ -49,7 +51,9 @@ def means(line: Line, s: Array, half: Array) -> Array:
 
 def _means(line: Line, s: Array, half: Array) -> Array:
     low, high = float((s - half).min()), float((s + half).max())
-    inner = line.at[np.searchsorted(line.at, low, side="right") : np.searchsorted(line.at, high, side="left")]
+    inner = line.at[
+        np.searchsorted(line.at, low, side="right") : np.searchsorted(line.at, high, side="left")
+    ]
     x = np.r_[low, inner, high]
     y = line(x)
     first = y[0].copy()
@@ -92,11 +96,19 @@ class Zones:
         half = np.zeros(len(s))
         moved = np.array(self._copies())[:, None]
         low, high = self.low + moved, self.high + moved
-        first, last = np.searchsorted(s, low - 2.0 * self.half), np.searchsorted(s, high + 2.0 * self.half)
+        first, last = (
+            np.searchsorted(s, low - 2.0 * self.half),
+            np.searchsorted(s, high + 2.0 * self.half),
+        )
         for copy, zone in np.argwhere(first < last).tolist():
             some, most = slice(first[copy, zone], last[copy, zone]), self.half[zone]
             here = s[some]
-            away = np.maximum(np.maximum(low[copy, zone] - here, here - self.high[zone] - moved[copy, 0]), 0.0) / most
+            away = (
+                np.maximum(
+                    np.maximum(low[copy, zone] - here, here - self.high[zone] - moved[copy, 0]), 0.0
+                )
+                / most
+            )
             share = 0.5 + 0.5 * np.cos(np.pi * np.minimum(np.maximum(away - 1.0, 0.0), 1.0))
             half[some] = np.maximum(half[some], most * share)
         return half
@@ -142,9 +154,15 @@ class Zones:
         best, away = np.zeros(len(places), dtype=np.intp), np.zeros(len(places))
         for at in range(0, len(places), BLOCK):
             here = places[at : at + BLOCK, None]
-            off = [np.maximum(np.maximum(self.low + m - here, here - self.high - m), 0.0) for m in self._copies()]
+            off = [
+                np.maximum(np.maximum(self.low + m - here, here - self.high - m), 0.0)
+                for m in self._copies()
+            ]
             nearest = np.min(off, axis=0)
-            best[at : at + BLOCK], away[at : at + BLOCK] = np.argmin(nearest, axis=1), nearest.min(axis=1)
+            best[at : at + BLOCK], away[at : at + BLOCK] = (
+                np.argmin(nearest, axis=1),
+                nearest.min(axis=1),
+            )
         return best, away
 
 
@@ -153,7 +171,11 @@ def too_fast(line: Line, weights: Array, most: float, length: float | None, end:
     step = np.diff(line.at)
     change = np.linalg.norm(np.diff(line.values, axis=0) * weights, axis=1)
     middle = 0.5 * (line.at[1:] + line.at[:-1])
-    fast = (change > most * step + 1e-9) & (middle > -1e-9) & (middle < end - (1e-9 if length is not None else -1e-9))
+    fast = (
+        (change > most * step + 1e-9)
+        & (middle > -1e-9)
+        & (middle < end - (1e-9 if length is not None else -1e-9))
+    )
     edge = np.diff(np.r_[False, fast, False].astype(int))
     first, last = np.flatnonzero(edge > 0), np.flatnonzero(edge < 0)
     total = np.r_[0.0, np.cumsum(change)]

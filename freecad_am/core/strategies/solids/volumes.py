@@ -18,7 +18,9 @@ def of_layers(strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[floa
     return whole, left, outside
 
 
-def volumes(part: float | None, strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:
+def volumes(
+    part: float | None, strategy: FilledParameters, covers: Sequence[Cover]
+) -> tuple[float, float, float]:
     """mm3 of the part, of what beads leave of it, and of what of them lies beside it; what is cut of it counts as high as
     its layers, so that what is above the last cut is left, and what layers reach beyond it lies beside. A part of which the
     volume (mm3) is None, as a margin is added to it or its solids may overlap, is as large as its layers are."""
@@ -28,7 +30,9 @@ def volumes(part: float | None, strategy: FilledParameters, covers: Sequence[Cov
     return part, left + max(part - whole, 0.0), outside + max(whole - part, 0.0)
 
 
-def twice(made: Sequence[MadeBead], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float:
+def twice(
+    made: Sequence[MadeBead], strategy: FilledParameters, covers: Sequence[Cover], width: float
+) -> float:
     """mm3 of beads that count as `width` mm wide, each as wide as they are apart, beyond what they cover."""
     area = 0.0
     for bead in (one.bead for one in made):

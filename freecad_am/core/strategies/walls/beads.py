@@ -45,7 +45,9 @@ def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
     into = out.copy()
     corners = curve.corners
     if len(corners):
-        nearest = np.clip(np.searchsorted(curve.w[corners], curve.wrapped(w) - 1e-12), 0, len(corners) - 1)
+        nearest = np.clip(
+            np.searchsorted(curve.w[corners], curve.wrapped(w) - 1e-12), 0, len(corners) - 1
+        )
         at = np.abs(curve.w[corners][nearest] - curve.wrapped(w)) < 1e-9 * curve.period
         into[at], out[at] = curve.into[corners[nearest[at]]], curve.out[corners[nearest[at]]]
     points, into, out = _apart(points, into, out)
@@ -89,7 +91,9 @@ class BeadSettings(NamedTuple):
     plane: Array | None
     label: str
 
-    def bead(self, trace: Traced, vectors: Along, layer: int, closing: bool = False) -> tuple[Bead, Directions]:
+    def bead(
+        self, trace: Traced, vectors: Along, layer: int, closing: bool = False
+    ) -> tuple[Bead, Directions]:
         """The bead of a layer and its directions; its polynomial's variable is the arc length, one turn (2 pi) from end to
         end."""
         bead_class = classes.of_wall(layer, closing)
@@ -98,8 +102,16 @@ class BeadSettings(NamedTuple):
         speed = np.full(len(trace.points), self.process.for_class(bead_class).travel_speed)
         length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(trace.points, axis=0), axis=1))]
         return Bead(
-            trace.points, found.build, found.tool, TURN * length / length[-1], speed, trace.closed, None, trace.tangents,
-            closing, bead_class=bead_class,
+            trace.points,
+            found.build,
+            found.tool,
+            TURN * length / length[-1],
+            speed,
+            trace.closed,
+            None,
+            trace.tangents,
+            closing,
+            bead_class=bead_class,
         ), found
 
 
@@ -116,8 +128,19 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
     if max(height - least, most - height) <= allowed:
         return [Issue(NOTE, "SPACING", text)]
     worst = int(np.argmax([np.abs(layer - height).max() for layer in distances])) + 1
-    advice = "a larger strategy.tolerance says that this will do" if exact else "spacing: constant-distance is even"
-    return [Issue(WARNING, "SPACING", Text("{}, the layer height {:g} mm; {}", Word(text), height, Word(advice)), worst)]
+    advice = (
+        "a larger strategy.tolerance says that this will do"
+        if exact
+        else "spacing: constant-distance is even"
+    )
+    return [
+        Issue(
+            WARNING,
+            "SPACING",
+            Text("{}, the layer height {:g} mm; {}", Word(text), height, Word(advice)),
+            worst,
+        )
+    ]
 
 
 def corner_notes(turns: list[Array]) -> list[Issue]:
@@ -128,11 +151,20 @@ def corner_notes(turns: list[Array]) -> list[Issue]:
     if not cornered:
         return []
     sharpest = [float(layer.max(initial=0.0)) for layer in turns]
-    return [Issue(
-        NOTE, "CORNERS",
-        Text("{} of {} fronts have corners, first layer {}; the sharpest turns by {:.3g} deg. The robot slows down there",
-            len(cornered), len(turns), cornered[0], np.degrees(max(sharpest))), int(np.argmax(sharpest)),
-    )]
+    return [
+        Issue(
+            NOTE,
+            "CORNERS",
+            Text(
+                "{} of {} fronts have corners, first layer {}; the sharpest turns by {:.3g} deg. The robot slows down there",
+                len(cornered),
+                len(turns),
+                cornered[0],
+                np.degrees(max(sharpest)),
+            ),
+            int(np.argmax(sharpest)),
+        )
+    ]
 
 
 def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
@@ -146,14 +178,29 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
     finite = np.where(np.isinf(rates), 0.0, rates)
     if strategy.spacing == "smooth" and over:
         some = Text(", {} of them in corners", corners) if corners else ""
-        return [Issue(
-            WARNING, "TURN",
-            Text("a band of {:g} % does not suffice: within the wall {} of {} layers turn by more than {:.3g} deg/mm{}, "
-                "first layer {}, by up to {:.3g} deg/mm{}. The robot slows down there; a wider strategy.band rounds them",
-                100.0 * strategy.band, len(over), len(rates), np.degrees(strategy.bead_turn), Word(some), over[0],
-                np.degrees(finite[1:].max()), Word(" elsewhere" if corners else "")), int(np.argmax(rates[1:])) + 1,
-        )]
-    text = Text("no layer has a corner; within the wall they turn by up to {:.3g} deg/mm", np.degrees(finite.max()))
+        return [
+            Issue(
+                WARNING,
+                "TURN",
+                Text(
+                    "a band of {:g} % does not suffice: within the wall {} of {} layers turn by more than {:.3g} deg/mm{}, "
+                    "first layer {}, by up to {:.3g} deg/mm{}. The robot slows down there; a wider strategy.band rounds them",
+                    100.0 * strategy.band,
+                    len(over),
+                    len(rates),
+                    np.degrees(strategy.bead_turn),
+                    Word(some),
+                    over[0],
+                    np.degrees(finite[1:].max()),
+                    Word(" elsewhere" if corners else ""),
+                ),
+                int(np.argmax(rates[1:])) + 1,
+            )
+        ]
+    text = Text(
+        "no layer has a corner; within the wall they turn by up to {:.3g} deg/mm",
+        np.degrees(finite.max()),
+    )
     return [Issue(NOTE, "TURN", text, int(np.argmax(finite)))] if not np.isinf(rates).any() else []
 
 
@@ -161,4 +208,10 @@ def short_note(dropped: int) -> list[Issue]:
     """Says that beads too short to be worth a start are left out."""
     if not dropped:
         return []
-    return [Issue(NOTE, "SHORT_BEADS", Text("{} bead(s) at the end shorter than half a layer height are left out", dropped))]
+    return [
+        Issue(
+            NOTE,
+            "SHORT_BEADS",
+            Text("{} bead(s) at the end shorter than half a layer height are left out", dropped),
+        )
+    ]

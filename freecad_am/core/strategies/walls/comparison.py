@@ -66,7 +66,9 @@ def compare(wall: SurfaceWall, strategy: SurfaceParameters) -> tuple[Compared | 
     for method in METHODS:
         try:
             if method == NORMAL:
-                fronts = normal_layers.layers(surface, first, strategy.layer_height, wall.end, label=wall.label)
+                fronts = normal_layers.layers(
+                    surface, first, strategy.layer_height, wall.end, label=wall.label
+                )
             else:
                 fronts = sliced(wall, surface, replace(strategy, spacing=method))
         except InputError as error:
@@ -76,7 +78,9 @@ def compare(wall: SurfaceWall, strategy: SurfaceParameters) -> tuple[Compared | 
     return tuple(found)
 
 
-def _measured(method: str, surface: Placed, fronts: Sequence[WallLayer], first: WallLayer, end: float) -> Compared:
+def _measured(
+    method: str, surface: Placed, fronts: Sequence[WallLayer], first: WallLayer, end: float
+) -> Compared:
     around, distance, step = [], [], []
     for below, above in zip(fronts, fronts[1:]):
         v, apart = local_distances(above, below, FINER)
@@ -104,10 +108,23 @@ def _measured(method: str, surface: Placed, fronts: Sequence[WallLayer], first: 
         turn = max(turn, float(turns_in_wall(surface, front)[smooth].max(initial=0.0)))
         cornered, corner = cornered + (sharpest > 0.0), max(corner, sharpest)
     curves = tuple(_deposited(surface, front, first, end) for front in fronts)
-    length = sum(float(np.nansum(np.linalg.norm(np.diff(curve, axis=0), axis=1))) for curve in curves)
+    length = sum(
+        float(np.nansum(np.linalg.norm(np.diff(curve, axis=0), axis=1))) for curve in curves
+    )
     return Compared(
-        method, len(fronts), float(values.min()), float(np.average(values, weights=weight)), float(values.max()),
-        turn, cornered, corner, length, tuple(around), tuple(distance), tuple(step), curves,
+        method,
+        len(fronts),
+        float(values.min()),
+        float(np.average(values, weights=weight)),
+        float(values.max()),
+        turn,
+        cornered,
+        corner,
+        length,
+        tuple(around),
+        tuple(distance),
+        tuple(step),
+        curves,
     )
 
 

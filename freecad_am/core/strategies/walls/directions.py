@@ -54,14 +54,22 @@ def symmetry_plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameter
     normal = wall.symmetry_normal
     if normal is None:
         raise InputError(
-            "NO_SYMMETRY_PLANE", "build_direction.mode", "{} is not a bend of a torus, so its plane of symmetry is not "
-            "known; give its normal as build_direction.plane, or use local, layer or fixed", wall.label,
+            "NO_SYMMETRY_PLANE",
+            "build_direction.mode",
+            "{} is not a bend of a torus, so its plane of symmetry is not "
+            "known; give its normal as build_direction.plane, or use local, layer or fixed",
+            wall.label,
         )
     return normal
 
 
 def directions(
-    points: Array, closed: bool, along: Along, build: BuildDirectionParameters, plane: Array | None, label: str
+    points: Array,
+    closed: bool,
+    along: Along,
+    build: BuildDirectionParameters,
+    plane: Array | None,
+    label: str,
 ) -> Directions:
     """The directions at the points (n, 3) of a bead. plane: unit normal (3,) of the one they are projected onto, if any.
 
@@ -82,7 +90,10 @@ def directions(
     both, back, spread = [axes for axes, _ in turned], turned[-1][1], 0.0
     if build.turn() < np.inf:  # last, for turned back beyond the level they turn faster
         slower = [limited(points, axes, closed, build.turn(), most=build.max_tilt) for axes in both]
-        both, spread = [axes for axes, _ in slower], float(max(departure.max() for _, departure in slower))
+        both, spread = (
+            [axes for axes, _ in slower],
+            float(max(departure.max() for _, departure in slower)),
+        )
     return Directions(both[0], both[-1], back, spread)
 
 
@@ -90,10 +101,17 @@ def notes(found: list[tuple[int, Directions]]) -> list[Issue]:
     """Says how far directions depart from what was asked for: by layer of each bead."""
     issues = []
     for code, values, text in (
-        ("TILT_CAPPED", [one.back for _, one in found], "tool axes are turned back by up to {:.3g} deg to stay "
-         "within build_direction.max_tilt"),
-        ("TURN_LIMITED", [one.spread for _, one in found], "tool axes are spread along the bead, by up to {:.3g} deg, to "
-         "turn no faster than build_direction.max_turn"),
+        (
+            "TILT_CAPPED",
+            [one.back for _, one in found],
+            "tool axes are turned back by up to {:.3g} deg to stay within build_direction.max_tilt",
+        ),
+        (
+            "TURN_LIMITED",
+            [one.spread for _, one in found],
+            "tool axes are spread along the bead, by up to {:.3g} deg, to "
+            "turn no faster than build_direction.max_turn",
+        ),
     ):
         worst = int(np.argmax(values))
         if values[worst] > TOLERANCE_RAD:

@@ -43,10 +43,13 @@ def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
         return []
     start = int(np.flatnonzero(~inside)[0])
     count = len(w) - 1
-    order = np.r_[start : count, 0 : start + 1]
+    order = np.r_[start:count, 0 : start + 1]
     w = w[order] + np.where(np.arange(count + 1) >= count - start, curve.period, 0.0)
     inside = inside[order]
-    enters, leaves = np.flatnonzero(~inside[:-1] & inside[1:]), np.flatnonzero(inside[:-1] & ~inside[1:])
+    enters, leaves = (
+        np.flatnonzero(~inside[:-1] & inside[1:]),
+        np.flatnonzero(inside[:-1] & ~inside[1:]),
+    )
     low = _crossing(surface, front, w[enters], w[enters + 1], end, True)
     high = _crossing(surface, front, w[leaves], w[leaves + 1], end, False)
     return [Stretch(front, float(a), float(b), False) for a, b in zip(low, high, strict=True)]
@@ -64,7 +67,9 @@ def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> Mask:
     return below
 
 
-def _crossing(surface: Placed, front: WallLayer, low: Array, high: Array, end: float, entering: bool) -> Array:
+def _crossing(
+    surface: Placed, front: WallLayer, low: Array, high: Array, end: float, entering: bool
+) -> Array:
     """Where the front passes the end between two parameters, on the side below it."""
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)

@@ -51,9 +51,13 @@ def seam(piece: Piece, angle: float, middles: dict[int, Middle]) -> float:
     out = (points - centre) @ x
     crossing = np.flatnonzero((sideways <= 0.0) & (after > 0.0) & (out > 0.0))
     if not len(crossing):
-        crossing = np.array([int(np.argmax(out / np.maximum(np.linalg.norm(points - centre, axis=1), 1e-300)))])
+        crossing = np.array(
+            [int(np.argmax(out / np.maximum(np.linalg.norm(points - centre, axis=1), 1e-300)))]
+        )
     if below is not None:
-        crossing = crossing[[int(np.argmin(np.linalg.norm(points[crossing] - below.start, axis=1)))]]
+        crossing = crossing[
+            [int(np.argmin(np.linalg.norm(points[crossing] - below.start, axis=1)))]
+        ]
     k = int(crossing[0])
     low, high = w[k], w[k + 1] if k + 1 < len(w) else curve.w[-1]
     for _ in range(HALVINGS):
@@ -80,6 +84,10 @@ def _carried(below: Middle, axis: Array) -> Array:
     if cosine < -1.0 + ACROSS:
         return _reference(axis)
     turn = np.cross(below.axis, axis)
-    carried = cosine * below.reference + np.cross(turn, below.reference) + turn * (turn @ below.reference) / (1.0 + cosine)
+    carried = (
+        cosine * below.reference
+        + np.cross(turn, below.reference)
+        + turn * (turn @ below.reference) / (1.0 + cosine)
+    )
     flat = carried - (carried @ axis) * axis
     return np.asarray(flat / np.sqrt(dot(flat, flat)))

@@ -45,7 +45,9 @@ def tree(fronts: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:
 def _parents(front: SpaceCurve, below: list[Piece]) -> list[Piece]:
     if len(below) < 2:
         return list(below)
-    points = front.at(np.linspace(front.w[0], front.w[-1], SAMPLES + 1)[:-1] + 0.5 * front.period / SAMPLES)[0]
+    points = front.at(
+        np.linspace(front.w[0], front.w[-1], SAMPLES + 1)[:-1] + 0.5 * front.period / SAMPLES
+    )[0]
     count = np.bincount(feet([piece.curve for piece in below], points).front, minlength=len(below))
     order = np.argsort(-count, kind="stable")
     return [below[k] for k in order if count[k] >= LEAST_COMMON]
@@ -55,11 +57,23 @@ def events(layers: list[list[Piece]]) -> list[Issue]:
     """Where fronts split and merge, a note for each layer in which they do."""
     issues = []
     for index, layer in enumerate(layers[1:], 1):
-        splits = Counter(len(piece.children) for piece in layers[index - 1] if len(piece.children) > 1)
+        splits = Counter(
+            len(piece.children) for piece in layers[index - 1] if len(piece.children) > 1
+        )
         merges = Counter(len(piece.parents) for piece in layer if len(piece.parents) > 1)
         for code, found, one, many in (
-            ("SPLIT", splits, "a front splits in {} at layer {}", "{2} fronts split in {0} each at layer {1}"),
-            ("MERGE", merges, "{} fronts merge at layer {}", "{0} fronts merge, in {2} places, at layer {1}"),
+            (
+                "SPLIT",
+                splits,
+                "a front splits in {} at layer {}",
+                "{2} fronts split in {0} each at layer {1}",
+            ),
+            (
+                "MERGE",
+                merges,
+                "{} fronts merge at layer {}",
+                "{0} fronts merge, in {2} places, at layer {1}",
+            ),
         ):
             issues += [
                 Issue(NOTE, code, Text(one if count == 1 else many, size, index, count), index)
@@ -84,7 +98,11 @@ def shorn(layers: list[list[Piece]], shortest: float) -> tuple[list[list[Piece]]
     """Without the pieces shorter than `shortest` mm that nothing lies on, and how many these are."""
     dropped: set[Piece] = set()
     for layer in reversed(layers):
-        dropped.update(piece for piece in layer if piece.curve.length < shortest and dropped.issuperset(piece.children))
+        dropped.update(
+            piece
+            for piece in layer
+            if piece.curve.length < shortest and dropped.issuperset(piece.children)
+        )
     kept = [[piece for piece in layer if piece not in dropped] for layer in layers]
     return _pruned([layer for layer in kept if layer]), len(dropped)
 

@@ -38,11 +38,16 @@ FINER = 4  # places per arc of a front at which its distance from the layer belo
 FINDING = 0.7  # of the time goes into finding the layers
 
 # of walls their layers as last asked for, which take most of the time, and which directions do not change
-_SLICED: WeakKeyDictionary[PatchWall, tuple[tuple[float, Smoothing | None], slicing.Sliced]] = WeakKeyDictionary()
+_SLICED: WeakKeyDictionary[PatchWall, tuple[tuple[float, Smoothing | None], slicing.Sliced]] = (
+    WeakKeyDictionary()
+)
 
 
 def plan(
-    wall: PatchWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    wall: PatchWall,
+    strategy: SurfaceParameters,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of a wall of any connected smooth pieces, in part coordinates.
@@ -56,12 +61,16 @@ def plan(
     size.refuse_absurd(size.of_fronts(wall, strategy), strategy)
     settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
     height = strategy.layer_height
-    smoothing = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
+    smoothing = (
+        Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
+    )
     sliced = _sliced(wall, height, smoothing, progress)
     pieces = tree(sliced.fronts, sliced.rims)
     full = [len(layer) for layer in pieces]
     pieces, omitted = _kept(pieces, sliced.rims, strategy, wall.label)
-    fronts = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
+    fronts = [
+        [piece.curve for piece in layer] for layer in pieces
+    ]  # what is not deposited is nobody's concern
     distances = [
         np.concatenate([local_distances(front, below, FINER) for front in layer])
         for below, layer in zip(sliced.fronts, fronts[1:])
@@ -71,15 +80,25 @@ def plan(
     progress(FINDING, "build directions")
     layers, departures = _layers(wall, pieces, strategy.chord_error, settings)
     return Toolpath(
-        layers, wall.frame, height, strategy.chord_error, (*issues, *departures), process.overlap, "surface",
+        layers,
+        wall.frame,
+        height,
+        strategy.chord_error,
+        (*issues, *departures),
+        process.overlap,
+        "surface",
         bead_width=process.bead_width,
     )
 
 
-def _sliced(wall: PatchWall, height: float, smoothing: Smoothing | None, progress: Progress) -> slicing.Sliced:
+def _sliced(
+    wall: PatchWall, height: float, smoothing: Smoothing | None, progress: Progress
+) -> slicing.Sliced:
     """The layers of a wall, as they were found before where they were."""
     if wall not in _SLICED or _SLICED[wall][0] != (height, smoothing):
-        layers = slicing.layers(wall, height, smoothing, lambda done, text: progress(FINDING * done, text))
+        layers = slicing.layers(
+            wall, height, smoothing, lambda done, text: progress(FINDING * done, text)
+        )
         _SLICED[wall] = (height, smoothing), layers
     return _SLICED[wall][1]
 
@@ -87,18 +106,26 @@ def _sliced(wall: PatchWall, height: float, smoothing: Smoothing | None, progres
 def _refuse(strategy: SurfaceParameters) -> None:
     if strategy.spacing == "iso-parameter":
         raise InputError(
-            "NO_PARAMETER", "strategy.spacing", "this wall has no closed parameter whose lines layers could follow (several "
+            "NO_PARAMETER",
+            "strategy.spacing",
+            "this wall has no closed parameter whose lines layers could follow (several "
             "faces, openings, a side or a slanted end); use constant-distance or smooth",
         )
 
 
-def _turns(wall: PatchWall, fronts: list[list[SpaceCurve]], strategy: SurfaceParameters) -> list[Issue]:
+def _turns(
+    wall: PatchWall, fronts: list[list[SpaceCurve]], strategy: SurfaceParameters
+) -> list[Issue]:
     """Corners that the fronts have formed, and how sharply smooth ones turn."""
-    issues = corner_notes([np.concatenate([front.turns[front.corners] for front in layer]) for layer in fronts])
+    issues = corner_notes(
+        [np.concatenate([front.turns[front.corners] for front in layer]) for layer in fronts]
+    )
     if issues and strategy.spacing != "smooth":
         return issues
     rates = [
-        np.inf if any(len(front.corners) for front in layer) else max(turn(wall, front) for front in layer)
+        np.inf
+        if any(len(front.corners) for front in layer)
+        else max(turn(wall, front) for front in layer)
         for layer in fronts
     ]
     return issues + turn_notes(rates, strategy)
@@ -121,7 +148,9 @@ def _kept(
     return kept, [note] if remainder > 1e-4 * strategy.layer_height else []
 
 
-def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: list[int]) -> list[Issue]:
+def _close(
+    pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: list[int]
+) -> list[Issue]:
     """Put the closing beads behind the pieces of their layers, where all of the layer below is there; and say so."""
     count, first = 0, 0
     for index, curves in enumerate(closing):
@@ -136,10 +165,19 @@ def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: lis
         count += len(curves)
     if not count:
         return []
-    return [Issue(
-        NOTE, "CLOSING", Text("{} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the "
-            "first in layer {}", count, first), first,
-    )]
+    return [
+        Issue(
+            NOTE,
+            "CLOSING",
+            Text(
+                "{} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the "
+                "first in layer {}",
+                count,
+                first,
+            ),
+            first,
+        )
+    ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,12 +203,20 @@ def _layers(
             way = _nearest(ways, last)
             ways = [some for some in ways if some[0].piece is not way.piece]
             curve = way.piece.curve
-            trace = traced(curve, within_chord(curve, way.start, way.start + curve.period, chord_error), curve.closed)
-            points, normal = wall.project(trace.points)  # arcs are off it between their nodes, if by next to nothing
+            trace = traced(
+                curve,
+                within_chord(curve, way.start, way.start + curve.period, chord_error),
+                curve.closed,
+            )
+            points, normal = wall.project(
+                trace.points
+            )  # arcs are off it between their nodes, if by next to nothing
             if curve.closed:
                 points[-1] = points[0]
             trace = trace._replace(points=points)
-            vectors = along(trace, normal, np.cross(normal, trace.tangents.sum(axis=1)))  # up is on the left
+            vectors = along(
+                trace, normal, np.cross(normal, trace.tangents.sum(axis=1))
+            )  # up is on the left
             if way.backwards:
                 trace, vectors = trace.reversed(), vectors.reversed()
             bead, directions = settings.bead(trace, vectors, index, way.piece.closing)
@@ -188,7 +234,9 @@ def _ways(
     curve = piece.curve
     if curve.closed:
         start = seam(piece, angle, middles)
-        clockwise = process.direction == "clockwise" or (process.direction == "alternate" and layer % 2 == 1)
+        clockwise = process.direction == "clockwise" or (
+            process.direction == "alternate" and layer % 2 == 1
+        )
         return [_Way(piece, start, clockwise, curve.at(np.array([start]))[0][0])]
     ways = [_Way(piece, float(curve.w[0]), False, curve.points[0])]
     if process.direction == "alternate":

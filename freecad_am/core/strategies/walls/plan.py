@@ -23,7 +23,16 @@ from ...toolpath import Layer, Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
-from .beads import BeadSettings, Traced, along, corner_notes, short_note, spacing_issues, traced, turn_notes
+from .beads import (
+    BeadSettings,
+    Traced,
+    along,
+    corner_notes,
+    short_note,
+    spacing_issues,
+    traced,
+    turn_notes,
+)
 from .directions import Along, notes, symmetry_plane
 from .end import Stretch, trimmed
 
@@ -31,7 +40,10 @@ FINER = 4  # places per arc of a layer at which its distance from the one below 
 
 
 def plan(
-    wall: SurfaceWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    wall: SurfaceWall,
+    strategy: SurfaceParameters,
+    build: BuildDirectionParameters,
+    process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of a wall around a closed direction, in part coordinates.
@@ -48,13 +60,24 @@ def plan(
     stretches, omitted = _stretches(wall, surface, curves, strategy)
     curves = curves[: len(stretches)]  # what is not deposited is nobody's concern
     progress(0.5, Text("measuring {} layers", len(curves)))
-    distances = [local_distances(above, below, FINER)[1] for below, above in zip(curves[:-1], curves[1:], strict=True)]
-    issues = spacing_issues(distances, strategy) + _corner_notes(surface, curves, stretches, strategy)
+    distances = [
+        local_distances(above, below, FINER)[1]
+        for below, above in zip(curves[:-1], curves[1:], strict=True)
+    ]
+    issues = spacing_issues(distances, strategy) + _corner_notes(
+        surface, curves, stretches, strategy
+    )
     progress(0.7, "build directions")
     layers, departures = _layers(surface, stretches, strategy, settings)
     return Toolpath(
-        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *omitted, *departures), process.overlap,
-        "surface", bead_width=process.bead_width,
+        layers,
+        np.eye(4),
+        strategy.layer_height,
+        strategy.chord_error,
+        (*issues, *omitted, *departures),
+        process.overlap,
+        "surface",
+        bead_width=process.bead_width,
     )
 
 
@@ -63,10 +86,20 @@ def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> l
     first = on_polyline(surface, wall.first, label=wall.label)
     if strategy.spacing == "smooth":
         found = smooth_spacing.layers(
-            surface, first, strategy.layer_height, wall.end, strategy.band, strategy.bead_turn, label=wall.label
+            surface,
+            first,
+            strategy.layer_height,
+            wall.end,
+            strategy.band,
+            strategy.bead_turn,
+            label=wall.label,
         )
         return [first, *(smoothed.layer for smoothed in found)]
-    rule = constant_distance.layers if strategy.spacing == "constant-distance" else iso_parameter.layers
+    rule = (
+        constant_distance.layers
+        if strategy.spacing == "constant-distance"
+        else iso_parameter.layers
+    )
     return rule(surface, first, strategy.layer_height, wall.end, label=wall.label)
 
 
@@ -78,14 +111,26 @@ def _stretches(
     whole = [len(some) == 1 and some[0].closed for some in stretches]
     count = whole.index(False) if False in whole else len(whole)
     if count == 0:
-        raise InputError("TOO_LOW", wall.label, "its end does not lie above the substrate all around; make it longer")
+        raise InputError(
+            "TOO_LOW",
+            wall.label,
+            "its end does not lie above the substrate all around; make it longer",
+        )
     if strategy.end == "whole":
-        remainder = float(((wall.end - fronts[count - 1].u) * _rate(surface, fronts[count - 1])).max())
-        note = Issue(NOTE, "REMAINDER", Text("up to {:.4g} mm of the wall are left above the last whole layer", remainder),
-                     count - 1)
+        remainder = float(
+            ((wall.end - fronts[count - 1].u) * _rate(surface, fronts[count - 1])).max()
+        )
+        note = Issue(
+            NOTE,
+            "REMAINDER",
+            Text("up to {:.4g} mm of the wall are left above the last whole layer", remainder),
+            count - 1,
+        )
         return stretches[:count], [note] if remainder > 1e-6 * strategy.layer_height else []
-    kept = [[stretch for stretch in some if stretch.length(front.curve) > 0.5 * strategy.layer_height]
-            for front, some in zip(fronts, stretches, strict=True)]
+    kept = [
+        [stretch for stretch in some if stretch.length(front.curve) > 0.5 * strategy.layer_height]
+        for front, some in zip(fronts, stretches, strict=True)
+    ]
     dropped = sum(map(len, stretches)) - sum(map(len, kept))
     while not kept[-1]:
         kept.pop()
@@ -98,7 +143,10 @@ def _rate(surface: Placed, front: WallLayer) -> Array:
 
 
 def _layers(
-    surface: Placed, stretches: list[list[Stretch]], strategy: SurfaceParameters, settings: BeadSettings
+    surface: Placed,
+    stretches: list[list[Stretch]],
+    strategy: SurfaceParameters,
+    settings: BeadSettings,
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
     side = _outside(surface, stretches[0][0])
     process, layers, number, found = settings.process, [], 0, []
@@ -106,7 +154,11 @@ def _layers(
         beads = []
         for stretch in layer:
             start = process.seam.angle + index * process.seam.step
-            trace = traced(stretch.front.curve, _parameters(stretch, start, strategy.chord_error), stretch.closed)
+            trace = traced(
+                stretch.front.curve,
+                _parameters(stretch, start, strategy.chord_error),
+                stretch.closed,
+            )
             vectors = _along(surface, trace, side)
             if _backwards(trace, vectors, process, index, number):
                 trace, vectors = trace.reversed(), vectors.reversed()
@@ -146,29 +198,41 @@ def _along(surface: Placed, trace: Traced, side: _Side) -> Along:
     return along(trace, unit(np.cross(rise, turn)) * side.sign, rise)
 
 
-def _backwards(trace: Traced, vectors: Along, process: ProcessParameters, layer: int, number: int) -> bool:
+def _backwards(
+    trace: Traced, vectors: Along, process: ProcessParameters, layer: int, number: int
+) -> bool:
     """Whether a bead runs against rising v. Counter-clockwise is meant against the build direction."""
     if not trace.closed:
         return process.direction == "alternate" and number % 2 == 1
     turning = np.cross(trace.points[:-1], trace.points[1:]).sum(axis=0) @ vectors.up.mean(axis=0)
-    wanted = process.direction != "clockwise" if process.direction != "alternate" else layer % 2 == 0
+    wanted = (
+        process.direction != "clockwise" if process.direction != "alternate" else layer % 2 == 0
+    )
     return bool((turning > 0.0) != wanted)
 
 
 def _corner_notes(
-    surface: Placed, fronts: list[WallLayer], stretches: list[list[Stretch]], strategy: SurfaceParameters
+    surface: Placed,
+    fronts: list[WallLayer],
+    stretches: list[list[Stretch]],
+    strategy: SurfaceParameters,
 ) -> list[Issue]:
     """Corners that fronts have formed where they are deposited, for a robot slows down there; where there are none, the
     sharpest turn."""
     turns = [_corners(front.curve, layer) for front, layer in zip(fronts, stretches, strict=True)]
     if not any(map(len, turns)):
-        return turn_notes([float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts], strategy)
+        return turn_notes(
+            [float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts],
+            strategy,
+        )
     return corner_notes(turns)
 
 
 def _corners(curve: SpaceCurve, stretches: list[Stretch]) -> Array:
     """Turns (k,) rad at the corners of a front on its stretches."""
     w = curve.w[curve.corners]
-    on = [np.mod(w - stretch.low, curve.period) <= stretch.high - stretch.low for stretch in stretches]
+    on = [
+        np.mod(w - stretch.low, curve.period) <= stretch.high - stretch.low for stretch in stretches
+    ]
     turns: Array = curve.turns[curve.corners][np.any(on, axis=0)] if stretches else np.empty(0)
     return turns

@@ -20,10 +20,16 @@ from ...views.preview import Draft
 from ..pick import PickPanel
 
 FACES = Link(
-    "Source", "", marked("The faces to cover; of an object that is not a solid all of them, where none is picked."),
+    "Source",
+    "",
+    marked(
+        "The faces to cover; of an object that is not a solid all of them, where none is picked."
+    ),
     type_name="App::PropertyLinkSub",
 )
-SUBSTRATE = Link("Substrate", "", marked("A further part that the nozzle is kept clear of."), required=False)
+SUBSTRATE = Link(
+    "Substrate", "", marked("A further part that the nozzle is kept clear of."), required=False
+)
 CM2 = 100.0  # mm2
 
 
@@ -33,12 +39,24 @@ class CladdingPanel(PickPanel):
     stage, icon, function, draft = CladdingFeature, "cladding", "make_cladding_feature", "Cladding"
 
     def __init__(self, obj: Any = None) -> None:
-        self.faces = PickField(FACES, tr("Faces"), None if obj is None else obj.Source, self._arm, picking.FACE,
-                               meshes=True)
-        self.substrate = PickField(SUBSTRATE, tr("Further part"), None if obj is None else obj.Substrate, self._arm)
-        self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
+        self.faces = PickField(
+            FACES,
+            tr("Faces"),
+            None if obj is None else obj.Source,
+            self._arm,
+            picking.FACE,
+            meshes=True,
+        )
+        self.substrate = PickField(
+            SUBSTRATE, tr("Further part"), None if obj is None else obj.Substrate, self._arm
+        )
+        self.fixtures = PickField(
+            FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm
+        )
         picks = [self.faces, self.substrate, self.fixtures]
-        super().__init__(tr("Cladding") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+        super().__init__(
+            tr("Cladding") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False)
+        )
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         """What is selected first, with its faces."""
@@ -58,14 +76,17 @@ class CladdingPanel(PickPanel):
 
     def _links(self) -> dict[str, Any]:
         return {
-            "Source": (self.faces.picks[0].obj, self._elements()), "Substrate": self.substrate.value(),
+            "Source": (self.faces.picks[0].obj, self._elements()),
+            "Substrate": self.substrate.value(),
             "Fixtures": self.fixtures.value(),
         }
 
     def _inputs(self) -> dict[str, str]:
         found = {
             "source": recorded.reference(self.faces.picks[0].obj) if self.faces.picks else "None",
-            "faces": repr(self._elements()), **self.substrate.arguments(), **self.fixtures.arguments(),
+            "faces": repr(self._elements()),
+            **self.substrate.arguments(),
+            **self.fixtures.arguments(),
         }
         return self._worth_telling(found)
 
@@ -79,10 +100,16 @@ class CladdingPanel(PickPanel):
             sheets = len(made.value.sheets)
             faces = len(made.value.faces) or sheets
             found = [
-                tr("1 face") if faces == 1 else tr("{} faces in 1 sheet").format(faces) if sheets == 1
+                tr("1 face")
+                if faces == 1
+                else tr("{} faces in 1 sheet").format(faces)
+                if sheets == 1
                 else tr("{} faces in {} sheets").format(faces, sheets),
-                tr("{:.4g} cm² in 1 layer").format(made.value.area / CM2) if strategy.layers == 1
-                else tr("{:.4g} cm² in each of {} layers").format(made.value.area / CM2, strategy.layers),
+                tr("{:.4g} cm² in 1 layer").format(made.value.area / CM2)
+                if strategy.layers == 1
+                else tr("{:.4g} cm² in each of {} layers").format(
+                    made.value.area / CM2, strategy.layers
+                ),
             ]
             return made, ", ".join(found)
 

@@ -20,14 +20,27 @@ from ...views.preview import Draft
 from ..pick import PickPanel
 
 CURVES = Link(
-    "Source", "", marked("The edges, wire, sketch or table of points to lay as beads."), type_name="App::PropertyLinkSub"
+    "Source",
+    "",
+    marked("The edges, wire, sketch or table of points to lay as beads."),
+    type_name="App::PropertyLinkSub",
 )
 NORMALS = Link(
-    "Normals", "", marked("Faces of the same object that the curves lie on, whose normals are the directions; none: the "
-                          "table's own, or the direction below."),
-    required=False, type_name="App::PropertyLinkSub",
+    "Normals",
+    "",
+    marked(
+        "Faces of the same object that the curves lie on, whose normals are the directions; none: the "
+        "table's own, or the direction below."
+    ),
+    required=False,
+    type_name="App::PropertyLinkSub",
 )
-SUBSTRATE = Link("Substrate", "", marked("The part that they are laid on; none is needed on a platform."), required=False)
+SUBSTRATE = Link(
+    "Substrate",
+    "",
+    marked("The part that they are laid on; none is needed on a platform."),
+    required=False,
+)
 
 
 class CurvesPanel(PickPanel):
@@ -36,16 +49,25 @@ class CurvesPanel(PickPanel):
     stage, icon, function, draft = CurvesFeature, "curves", "make_curves_feature", "Curves"
 
     def __init__(self, obj: Any = None) -> None:
-        curves, faces, substrate, fixtures = (None, None, None, ()) if obj is None else _present(obj)
+        curves, faces, substrate, fixtures = (
+            (None, None, None, ()) if obj is None else _present(obj)
+        )
         self.curves = PickField(CURVES, tr("Curves"), curves, self._arm, picking.EDGE, whole=True)
         self.normals = PickField(NORMALS, tr("Faces"), faces, self._arm, picking.FACE)
         self.substrate = PickField(SUBSTRATE, tr("Stands on"), substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
         picks = [self.curves, self.normals, self.substrate, self.fixtures]
-        super().__init__(tr("Curves as beads") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+        super().__init__(
+            tr("Curves as beads") if obj is None else obj.Label,
+            picks,
+            obj,
+            WallNodes(pickable=False),
+        )
 
     def _stored(self) -> dict[str, Any]:
-        return {pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)}
+        return {
+            pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)
+        }
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         """What is selected first, with its edges."""
@@ -67,14 +89,17 @@ class CurvesPanel(PickPanel):
 
     def _links(self) -> dict[str, Any]:
         return {
-            "Source": (self.curves.picks[0].obj, self._elements()), "Substrate": self.substrate.value(),
+            "Source": (self.curves.picks[0].obj, self._elements()),
+            "Substrate": self.substrate.value(),
             "Fixtures": self.fixtures.value(),
         }
 
     def _inputs(self) -> dict[str, str]:
         found = {
             "source": recorded.reference(self.curves.picks[0].obj) if self.curves.picks else "None",
-            "faces": repr(self._elements()), **self.substrate.arguments(), **self.fixtures.arguments(),
+            "faces": repr(self._elements()),
+            **self.substrate.arguments(),
+            **self.fixtures.arguments(),
         }
         return self._worth_telling(found)
 
@@ -88,12 +113,18 @@ class CurvesPanel(PickPanel):
         return both
 
     def _link_places(self) -> dict[str, str]:
-        return {"Source": self.curves.label, "Substrate": self.substrate.label, "Fixtures": self.fixtures.label}
+        return {
+            "Source": self.curves.label,
+            "Substrate": self.substrate.label,
+            "Fixtures": self.fixtures.label,
+        }
 
     def _draw(self, made: Outcome, drawing: Any) -> str:
         curves = [one.points for one in made.value.curves]
         self.nodes.set_first(curves)
-        length = sum(float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for points in curves)
+        length = sum(
+            float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for points in curves
+        )
         text = tr("{} curves, {:.4g} mm in all").format(len(curves), length)
         return "\n".join([text, *(sentence(issue.message) for issue in made.issues)])
 
@@ -104,6 +135,13 @@ class CurvesPanel(PickPanel):
 def _present(obj: Any) -> tuple[Any, ...]:
     """Curves, faces of their normals, substrate and fixtures as an object has them."""
     source, names = obj.Source or (None, [])
-    edges, faces = ([name for name in names if name.rsplit(".", maxsplit=1)[-1].startswith(kind)]
-                    for kind in (picking.EDGE, picking.FACE))
-    return None if source is None else (source, edges), (source, faces) if faces else None, obj.Substrate, obj.Fixtures
+    edges, faces = (
+        [name for name in names if name.rsplit(".", maxsplit=1)[-1].startswith(kind)]
+        for kind in (picking.EDGE, picking.FACE)
+    )
+    return (
+        None if source is None else (source, edges),
+        (source, faces) if faces else None,
+        obj.Substrate,
+        obj.Fixtures,
+    )

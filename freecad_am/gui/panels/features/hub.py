@@ -27,13 +27,21 @@ from ..pick import PickPanel
 from ..preview import coarsened
 
 SOLIDS = Link(
-    "Solids", "", marked("The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."),
+    "Solids",
+    "",
+    marked(
+        "The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."
+    ),
     type_name="App::PropertyLinkList",
 )
 HUB = Link(
-    "Hub", "",
-    marked("The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid."),
-    required=False, type_name="App::PropertyLinkSub",
+    "Hub",
+    "",
+    marked(
+        "The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid."
+    ),
+    required=False,
+    type_name="App::PropertyLinkSub",
 )
 _SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")  # what base and solids depend on
 _OF_WALLS = ("build_direction_mode", "build_direction_max_tilt", "build_direction_plane")
@@ -46,9 +54,16 @@ class HubPanel(PickPanel):
     Where a face of the only solid is picked as hub, both are one.
     """
 
-    stage, icon, function, draft = DevelopableFeature, "solids_on_hub", "make_developable_feature", "Solids"
+    stage, icon, function, draft = (
+        DevelopableFeature,
+        "solids_on_hub",
+        "make_developable_feature",
+        "Solids",
+    )
     nodes: HubNodes
-    kept: tuple[Any, Outcome, Drawing] | None = None  # what was computed last: what of, what, and what is drawn of it
+    kept: tuple[Any, Outcome, Drawing] | None = (
+        None  # what was computed last: what of, what, and what is drawn of it
+    )
 
     def __init__(self, obj: Any = None) -> None:
         solids, hub, fixtures = ((), None, ()) if obj is None else _present(obj)
@@ -60,18 +75,26 @@ class HubPanel(PickPanel):
         super().__init__(title, picks, obj, HubNodes(pickable=False))
         for place in _OF_WALLS:
             field, _, fold = self.places[place]
-            if field.value == field.row.outer(field.row.default):  # what is refused must be put right here
+            if field.value == field.row.outer(
+                field.row.default
+            ):  # what is refused must be put right here
                 fold.enable(field.widget, False)
-                field.widget.setToolTip(tr("For walls only: solids on a hub grow along the normals of its surface"))
+                field.widget.setToolTip(
+                    tr("For walls only: solids on a hub grow along the normals of its surface")
+                )
 
     def _stored(self) -> dict[str, Any]:
-        return {pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)}
+        return {
+            pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)
+        }
 
     # ---- what is picked
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         """The last one is the hub, or the only one with faces picked; one alone is to be deposited."""
-        faced = [pick for pick in picks if any(name.startswith(picking.FACE) for name in pick.names)]
+        faced = [
+            pick for pick in picks if any(name.startswith(picking.FACE) for name in pick.names)
+        ]
         hub = None if len(picks) < 2 else faced[0] if len(faced) == 1 else picks[-1]
         for pick in picks:
             (self.hub if pick is hub else self.solids).take(pick)
@@ -89,7 +112,9 @@ class HubPanel(PickPanel):
             self.solids.show()
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
-        text = tr("{} is another object; faces of a hub are of one object. Clear it first to start again.")
+        text = tr(
+            "{} is another object; faces of a hub are of one object. Clear it first to start again."
+        )
         return text.format(pick.obj.Label)
 
     def _roles(self) -> tuple[list[Any], tuple[str, ...], Any, tuple[str, ...]]:
@@ -103,17 +128,23 @@ class HubPanel(PickPanel):
     def _links(self) -> dict[str, Any]:
         solids, faces, hub, base_faces = self._roles()
         return {
-            "Source": (solids[0], list(faces)), "Further": solids[1:], "Substrate": hub,
-            "BaseFaces": (hub, list(base_faces)) if base_faces else None, "Fixtures": self.fixtures.value(),
+            "Source": (solids[0], list(faces)),
+            "Further": solids[1:],
+            "Substrate": hub,
+            "BaseFaces": (hub, list(base_faces)) if base_faces else None,
+            "Fixtures": self.fixtures.value(),
         }
 
     def _inputs(self) -> dict[str, str]:
         solids, faces, hub, base_faces = self._roles()
         further = ", ".join(recorded.reference(obj) for obj in solids[1:])
         found = {
-            "source": recorded.reference(solids[0]) if solids else "None", "faces": repr(list(faces)),
-            "further": f"[{further}]", "substrate": "None" if hub is None else recorded.reference(hub),
-            "base_faces": repr(list(base_faces)), **self.fixtures.arguments(),
+            "source": recorded.reference(solids[0]) if solids else "None",
+            "faces": repr(list(faces)),
+            "further": f"[{further}]",
+            "substrate": "None" if hub is None else recorded.reference(hub),
+            "base_faces": repr(list(base_faces)),
+            **self.fixtures.arguments(),
         }
         return self._worth_telling(found)
 
@@ -145,8 +176,11 @@ class HubPanel(PickPanel):
 
     def _link_places(self) -> dict[str, str]:
         return {
-            "Source": self.solids.label, "Further": self.solids.label, "Substrate": self.hub.label,
-            "BaseFaces": self.hub.label, "Fixtures": self.fixtures.label,
+            "Source": self.solids.label,
+            "Further": self.solids.label,
+            "Substrate": self.hub.label,
+            "BaseFaces": self.hub.label,
+            "Fixtures": self.fixtures.label,
         }
 
     def _placed(self, error: AmError) -> tuple[str, str]:
@@ -156,7 +190,9 @@ class HubPanel(PickPanel):
 
     def _draw(self, made: Outcome, drawing: Drawing) -> str:
         self.nodes.set(drawing)
-        return _summary(made, drawing.contours, (*deposit.expected(made.value, self.obj), *made.issues))
+        return _summary(
+            made, drawing.contours, (*deposit.expected(made.value, self.obj), *made.issues)
+        )
 
     def _draw_without(self) -> None:
         self.nodes.set(NOTHING)
@@ -166,20 +202,30 @@ def _present(obj: Any) -> tuple[list[Any], Any, list[Any]]:
     """Solids, hub and fixtures of a feature."""
     source, faces = obj.Source or (None, [])
     faces = [name for name in faces if name]
-    hub = (source, faces) if faces else obj.BaseFaces or (None if obj.Substrate is None else (obj.Substrate, []))
+    hub = (
+        (source, faces)
+        if faces
+        else obj.BaseFaces or (None if obj.Substrate is None else (obj.Substrate, []))
+    )
     return [*([] if source is None else [source]), *obj.Further], hub, obj.Fixtures
 
 
-def _summary(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings: Sequence[Issue]) -> str:
+def _summary(
+    made: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings: Sequence[Issue]
+) -> str:
     lines = []
     for group, solids in zip(made.value.groups, contours, strict=True):
         surface, count = group.base.surface, len(group.bodies)
         if surface.is_cylinder:
             shape = tr("cylinder, R {:.4g} mm").format(surface.radius)
         else:
-            shape = tr("cone, R {:.4g} mm, half angle {:.4g}°").format(surface.radius, np.degrees(surface.taper))
+            shape = tr("cone, R {:.4g} mm, half angle {:.4g}°").format(
+                surface.radius, np.degrees(surface.taper)
+            )
         length = sum(
-            float(np.linalg.norm(np.diff(one, axis=0), axis=1).sum()) for solid in solids for one in solid
+            float(np.linalg.norm(np.diff(one, axis=0), axis=1).sum())
+            for solid in solids
+            for one in solid
         )
         stands = tr("1 solid on {1} ({2})") if count == 1 else tr("{0} solids on {1} ({2})")
         first = tr("first layer: {} contours, {:.1f} mm").format(sum(map(len, solids)), length)

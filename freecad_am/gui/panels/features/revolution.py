@@ -46,11 +46,16 @@ class FeaturePanel(PreviewPanel):
         strategy, slices, issues = drawing
         self.nodes.set_wall(made.value)
         self.nodes.set_layers(made.value, slices)
-        text = tr("About {} turns along {:.4g} mm of wall") if strategy.path == "spiral" else tr(
-            "Layers: {}, along {:.4g} mm of wall"
+        text = (
+            tr("About {} turns along {:.4g} mm of wall")
+            if strategy.path == "spiral"
+            else tr("Layers: {}, along {:.4g} mm of wall")
         )
         count = int(slices.layer.max(initial=-1)) + 1
-        found = (sentence(issue.message) for issue in (*deposit.expected(made.value, self.obj), *made.issues, *issues))
+        found = (
+            sentence(issue.message)
+            for issue in (*deposit.expected(made.value, self.obj), *made.issues, *issues)
+        )
         return "\n".join([text.format(count, made.value.meridian.length), *found])
 
     def _draw_without(self) -> None:

@@ -38,18 +38,37 @@ MM2_PER_CM2 = 100.0
 OVERHUNG = (0.86, 0.1, 0.12)
 
 SOLIDS = Link(
-    "Solids", "", marked("The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."),
+    "Solids",
+    "",
+    marked(
+        "The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."
+    ),
     type_name="App::PropertyLinkList",
 )
-SUBSTRATE = Link("Substrate", "", marked("The part that they stand on; none is needed on a platform."), required=False)
+SUBSTRATE = Link(
+    "Substrate",
+    "",
+    marked("The part that they stand on; none is needed on a platform."),
+    required=False,
+)
 GUIDE = Link(
-    "Guide", "", marked("The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
-                        "solid."),
-    required=False, type_name="App::PropertyLinkSub",
+    "Guide",
+    "",
+    marked(
+        "The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
+        "solid."
+    ),
+    required=False,
+    type_name="App::PropertyLinkSub",
 )
 START = Link(
-    "StartFaces", "", marked("The faces on which the first of geodesic and offset layers lies; none: where they stand."),
-    required=False, type_name="App::PropertyLinkSub",
+    "StartFaces",
+    "",
+    marked(
+        "The faces on which the first of geodesic and offset layers lies; none: where they stand."
+    ),
+    required=False,
+    type_name="App::PropertyLinkSub",
 )
 
 
@@ -76,22 +95,31 @@ class SolidPanel(PickPanel):
     kept: tuple[Any, Outcome] | None = None  # the solids read last: what of, and what
 
     def __init__(self, obj: Any = None) -> None:
-        solids, substrate, guide, start, fixtures = ([], None, None, None, ()) if obj is None else _present(obj)
+        solids, substrate, guide, start, fixtures = (
+            ([], None, None, None, ()) if obj is None else _present(obj)
+        )
         self.solids = PickField(SOLIDS, tr("Solids"), solids, self._arm)
         self.substrate = PickField(SUBSTRATE, tr("Stands on"), substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
         self.guide = PickField(GUIDE, tr("Guide"), guide, self._arm, picking.EDGE, whole=True)
         self.start = PickField(START, tr("Starts on"), start, self._arm, picking.FACE)
         picks = [self.solids, self.substrate, self.guide, self.start, self.fixtures]
-        super().__init__(tr("Solids in plane layers") if obj is None else obj.Label, picks, obj, SolidNodes())
+        super().__init__(
+            tr("Solids in plane layers") if obj is None else obj.Label, picks, obj, SolidNodes()
+        )
         self._add_overhang()
 
     def _stored(self) -> dict[str, Any]:
-        return {pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)}
+        return {
+            pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)
+        }
 
     def _add_overhang(self) -> None:
         """The slider of the overhang view: a picture alone, it enters nothing."""
-        box, help = QtGui.QWidget(), tr("Faces that lean out over nothing by more than this angle are red in the 3D view")
+        box, help = (
+            QtGui.QWidget(),
+            tr("Faces that lean out over nothing by more than this angle are red in the 3D view"),
+        )
         column = QtGui.QVBoxLayout(box)
         column.setContentsMargins(4, 0, 4, 0)
         self.overhang, self.overhung = QtGui.QSlider(QtCore.Qt.Horizontal), QtGui.QLabel()
@@ -117,7 +145,9 @@ class SolidPanel(PickPanel):
         corners, area = self.leaning.beyond(math.radians(angle))
         self.nodes.set_overhang(corners)
         share = 100.0 * area / max(self.leaning.whole, 1e-300)
-        self.overhung.setText(tr("Overhang > {}°: {:.4g} cm² ({:.0f} %)").format(angle, area / MM2_PER_CM2, share))
+        self.overhung.setText(
+            tr("Overhang > {}°: {:.4g} cm² ({:.0f} %)").format(angle, area / MM2_PER_CM2, share)
+        )
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         """All that is selected is to be deposited."""
@@ -134,15 +164,22 @@ class SolidPanel(PickPanel):
     def _links(self) -> dict[str, Any]:
         solids = [pick.obj for pick in self.solids.picks]
         return {
-            "Source": (solids[0], []), "Further": solids[1:], "Substrate": self.substrate.value(),
-            "Guide": self.guide.value(), "StartFaces": self.start.value(), "Fixtures": self.fixtures.value(),
+            "Source": (solids[0], []),
+            "Further": solids[1:],
+            "Substrate": self.substrate.value(),
+            "Guide": self.guide.value(),
+            "StartFaces": self.start.value(),
+            "Fixtures": self.fixtures.value(),
         }
 
     def _inputs(self) -> dict[str, str]:
         solids = [recorded.reference(pick.obj) for pick in self.solids.picks]
         found = {
-            "source": solids[0] if solids else "None", "further": f"[{', '.join(solids[1:])}]",
-            **self.substrate.arguments(), "guide": _with_names(self.guide), "start_faces": _with_names(self.start),
+            "source": solids[0] if solids else "None",
+            "further": f"[{', '.join(solids[1:])}]",
+            **self.substrate.arguments(),
+            "guide": _with_names(self.guide),
+            "start_faces": _with_names(self.start),
             **self.fixtures.arguments(),
         }
         return self._worth_telling(found)
@@ -176,8 +213,12 @@ class SolidPanel(PickPanel):
 
     def _link_places(self) -> dict[str, str]:
         return {
-            "Source": self.solids.label, "Further": self.solids.label, "Substrate": self.substrate.label,
-            "Guide": self.guide.label, "StartFaces": self.start.label, "Fixtures": self.fixtures.label,
+            "Source": self.solids.label,
+            "Further": self.solids.label,
+            "Substrate": self.substrate.label,
+            "Guide": self.guide.label,
+            "StartFaces": self.start.label,
+            "Fixtures": self.fixtures.label,
         }
 
     def _placed(self, error: AmError) -> tuple[str, str]:
@@ -193,11 +234,21 @@ class SolidPanel(PickPanel):
             self.overhang.setValue(asked)
         self._show_overhang()
         group = made.value.groups[0]
-        height = max(float(group.base.surface.distance(group.base.inside(body.vertices)).max()) for body in group.bodies)
+        height = max(
+            float(group.base.surface.distance(group.base.inside(body.vertices)).max())
+            for body in group.bodies
+        )
         contours = sum(len(some) for solids in drawing.contours for some in solids)
-        found = tr("1 solid, {:.4g} mm high").format(height) if len(group.bodies) == 1 else (
-            tr("{} solids, {:.4g} mm high").format(len(group.bodies), height))
-        first = tr("first layer: 1 contour") if contours == 1 else tr("first layer: {} contours").format(contours)
+        found = (
+            tr("1 solid, {:.4g} mm high").format(height)
+            if len(group.bodies) == 1
+            else (tr("{} solids, {:.4g} mm high").format(len(group.bodies), height))
+        )
+        first = (
+            tr("first layer: 1 contour")
+            if contours == 1
+            else tr("first layer: {} contours").format(contours)
+        )
         text = f"{found}; {first}"
         return "\n".join([text, *(sentence(issue.message) for issue in made.issues)])
 
@@ -218,4 +269,10 @@ def _with_names(field: PickField) -> str:
 def _present(obj: Any) -> tuple[Any, ...]:
     """Solids, substrate, guide, start faces and fixtures as an object has them."""
     solids = [obj.Source[0], *obj.Further] if obj.Source else []
-    return solids, obj.Substrate, getattr(obj, "Guide", None), getattr(obj, "StartFaces", None), obj.Fixtures
+    return (
+        solids,
+        obj.Substrate,
+        getattr(obj, "Guide", None),
+        getattr(obj, "StartFaces", None),
+        obj.Fixtures,
+    )

@@ -33,19 +33,27 @@ class WallPanel(PickPanel):
     def __init__(self, obj: Any = None) -> None:
         picks = [
             PickField(
-                link, _label(link), None if obj is None else getattr(obj, link.name), self._arm,
-                _ELEMENTS.get(link.name, ""), meshes=link.name == "Source",
+                link,
+                _label(link),
+                None if obj is None else getattr(obj, link.name),
+                self._arm,
+                _ELEMENTS.get(link.name, ""),
+                meshes=link.name == "Source",
             )
             for link in SurfaceFeature.links
         ]
-        super().__init__(tr("Wall on part") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+        super().__init__(
+            tr("Wall on part") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False)
+        )
         self.tell(self._field("Source").label, self.note, wrong=False)
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         wall, substrate, unclear = picking.proposal(picks)
         whole = None if wall is None else picking.whole(wall)
         if wall is not None and whole is not None and wall.names and not whole.names:
-            self.note = tr("The whole of {} is taken; Pick takes single faces, click by click.").format(wall.obj.Label)
+            self.note = tr(
+                "The whole of {} is taken; Pick takes single faces, click by click."
+            ).format(wall.obj.Label)
             wall = whole
         for name, pick in (("Source", wall), ("Substrate", substrate)):
             if pick is not None:
@@ -61,19 +69,29 @@ class WallPanel(PickPanel):
         if not self._field("Source").picks:
             return self._field("Source")
         edges = any(field.picks for field in self.picks if field.element == picking.EDGE)
-        if edges or self._field("Substrate").picks or picking.stands(self._field("Source").picks[0]):
+        if (
+            edges
+            or self._field("Substrate").picks
+            or picking.stands(self._field("Source").picks[0])
+        ):
             return None
         return self._field("Substrate")
 
     def _following(self, field: PickField) -> PickField | None:
         """The substrate while a click on another object than the wall's can only mean it."""
         substrate = self._field("Substrate")
-        return substrate if field.link.name == "Source" and field.picks and not substrate.picks else None
+        return (
+            substrate
+            if field.link.name == "Source" and field.picks and not substrate.picks
+            else None
+        )
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
         if field.element == picking.EDGE:
             return tr("Click edges of one object.")
-        text = tr("{} is another object; faces of a wall are of one object. Clear it first to start again.")
+        text = tr(
+            "{} is another object; faces of a wall are of one object. Clear it first to start again."
+        )
         return text.format(pick.obj.Label)
 
     def _links(self) -> dict[str, Any]:
@@ -110,7 +128,11 @@ def _label(link: Any) -> str:
 def _summary(curves: list[Any], issues: tuple[Issue, ...]) -> str:
     lengths = [float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()) for curve in curves]
     parts = [
-        (tr("closed, {:.1f} mm") if np.allclose(curve[0], curve[-1], atol=1e-9) else tr("open, {:.1f} mm")).format(length)
+        (
+            tr("closed, {:.1f} mm")
+            if np.allclose(curve[0], curve[-1], atol=1e-9)
+            else tr("open, {:.1f} mm")
+        ).format(length)
         for curve, length in zip(curves, lengths, strict=True)
     ]
     findings = (sentence(issue.message) for issue in issues)

@@ -47,8 +47,13 @@ class Board:
     it, the middle of the bead where none is named, and what was computed for them; `up`: another external axis upwards."""
 
     def __init__(
-        self, source: Source, layer: int | None, axis: str, across: int | None = None,
-        at: tuple[int, int | None] | None = None, up: int | None = None,
+        self,
+        source: Source,
+        layer: int | None,
+        axis: str,
+        across: int | None = None,
+        at: tuple[int, int | None] | None = None,
+        up: int | None = None,
     ) -> None:
         self.source, self.layer, self.axis, self.across, self.up = source, layer, axis, across, up
         self.pair: Pair | None = None
@@ -56,12 +61,18 @@ class Board:
         self.offsets: Array | None = None
         if across is None or at is None:
             found = redundancy_map.columns([source.beads[k] for k in self.beads], source.cell)
-            self.columns: Columns = dataclasses.replace(found, bead=np.array(self.beads)[found.bead])
+            self.columns: Columns = dataclasses.replace(
+                found, bead=np.array(self.beads)[found.bead]
+            )
         else:
             bead = source.beads[at[0]]
             point = len(bead) // 2 if at[1] is None else at[1]
-            self.offsets = rotation_across.span(source.task(source.branch), bead, point, across, ACROSS)
-            self.columns = rotation_across.across(source.beads, source.cell, (at[0], point), across, self.offsets)
+            self.offsets = rotation_across.span(
+                source.task(source.branch), bead, point, across, ACROSS
+            )
+            self.columns = rotation_across.across(
+                source.beads, source.cell, (at[0], point), across, self.offsets
+            )
             if up is not None:
                 self.pair = pair_of(source, (at[0], point), (across, up), self.offsets)
         self.map: RedundancyMap | None = None
@@ -76,7 +87,9 @@ class Board:
         if self.pair is not None:
             return self.pair.compute(branch, self.map)
         task = self.source.task(branch)
-        cells = self.map or redundancy_map.redundancy_map(task, self.columns, self.axis, self.source.toolpath.surroundings)
+        cells = self.map or redundancy_map.redundancy_map(
+            task, self.columns, self.axis, self.source.toolpath.surroundings
+        )
         return cells, self.pictures.get(branch) or redundancy_map.picture(task, cells, branch)
 
     def take(self, made: tuple[RedundancyMap, Picture]) -> None:
@@ -94,7 +107,9 @@ class Board:
         assert self.map is not None
         if self.pair is not None:
             return self.pair.arm(branch, self.map)
-        return redundancy_map.arm_touched(self.source.task(branch), self.map, branch, self.source.arm, self.moment, every)
+        return redundancy_map.arm_touched(
+            self.source.task(branch), self.map, branch, self.source.arm, self.moment, every
+        )
 
     def take_arm(self, branch: int, touched: Mask, every: int) -> None:
         """Keep what was looked at."""
@@ -112,12 +127,19 @@ class Board:
             layer, bead, point = self.place(0)
             if self.pair is not None:
                 return tr("{} against {} at layer {} bead {} point {}").format(
-                    self._across_name, self.pair.name, layer, bead, point)
-            return tr("{} at layer {} bead {} point {}").format(self._across_name, layer, bead, point)
+                    self._across_name, self.pair.name, layer, bead, point
+                )
+            return tr("{} at layer {} bead {} point {}").format(
+                self._across_name, layer, bead, point
+            )
         if self.layer is not None:
             return tr("points of layer {}").format(self.layer)
         seen = len(np.unique(self.columns.bead))
-        return tr("layers") if seen == len(self.beads) else tr("layers ({} of {} beads)").format(seen, len(self.beads))
+        return (
+            tr("layers")
+            if seen == len(self.beads)
+            else tr("layers ({} of {} beads)").format(seen, len(self.beads))
+        )
 
     def served(self) -> Array:
         """(8,) the share of cells that each branch reaches within its limits."""
@@ -151,13 +173,19 @@ class Board:
         """Columns and what is written below them: numbers of layers, or of the points of a single layer."""
         count = len(self.columns)
         if self.offsets is not None:
-            unit = float(self.source.cell.machine.unit_values[self.source.cell.robot.chain.axes + (self.across or 0)])
+            unit = float(
+                self.source.cell.machine.unit_values[
+                    self.source.cell.robot.chain.axes + (self.across or 0)
+                ]
+            )
             shown = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS // 2)).astype(int))
             return [(float(k), f"{self.offsets[k] / unit:.0f}") for k in shown]
         if self.layer is None:
             layer = np.array([self.source.places[k][0] for k in self.columns.bead])
             first = np.flatnonzero(np.diff(layer, prepend=-1) != 0)
-            return [(float(k), str(layer[k])) for k in first[:: max(1, -(-len(first) // MOST_LABELS))]]
+            return [
+                (float(k), str(layer[k])) for k in first[:: max(1, -(-len(first) // MOST_LABELS))]
+            ]
         chosen = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS)).astype(int))
         return [(float(k), str(self.columns.point[k])) for k in chosen]
 
@@ -187,7 +215,9 @@ class Board:
         if self.axis == RZ:
             # RZ follows the rotation, the other way round where the tool points down, but for what changes slowly
             side = np.where((points.tool @ self.source.cell.mount[:3, 2]) < 0.0, -1.0, 1.0)
-            value = side * phi + redundancy_map.in_turns(value - side * phi, np.diff(self.columns.bead, prepend=-1) != 0)
+            value = side * phi + redundancy_map.in_turns(
+                value - side * phi, np.diff(self.columns.bead, prepend=-1) != 0
+            )
         return value
 
     def _turns(self, value: Array) -> Array:
@@ -202,7 +232,9 @@ class Board:
         """(C,) the curve that is worked on, in the turns of what was planned, so that it does not hop while it is moved."""
         value = self._unwrapped(draft.phi(self.columns.points, self.columns.bead))
         planned = self.source.planned.beads
-        like = value if draft.kind == CONSTANT else self._unwrapped(draft.along(planned, self.columns))
+        like = (
+            value if draft.kind == CONSTANT else self._unwrapped(draft.along(planned, self.columns))
+        )
         return value - self._turns(like)
 
     def path_values(self, draft: Draft, paths: tuple[BeadPath, ...]) -> Array:
@@ -228,7 +260,10 @@ class Board:
         if of_rz == (self.axis == RZ):
             return after - before
         tool, cell = self.columns.points.tool[[column]], self.source.cell
-        phi = [redundancy_map.rotation_of(cell, tool, np.array([value]), self.axis) for value in (before, after)]
+        phi = [
+            redundancy_map.rotation_of(cell, tool, np.array([value]), self.axis)
+            for value in (before, after)
+        ]
         one, other = (float((cell.rz_of_phi(tool, at) if of_rz else at)[0]) for at in phi)
         side = -1.0 if float(tool[0] @ cell.mount[:3, 2]) < 0.0 else 1.0
         by = other - one
@@ -241,7 +276,11 @@ class Board:
         phi = redundancy_map.rotation_of(task.cell, at.tool, np.array([value]), self.axis)
         number, columns = column, self.columns
         if self.pair is not None:
-            phi, number, columns = np.array([self.pair.phi]), self.pair.number(column, value), self.pair.cells
+            phi, number, columns = (
+                np.array([self.pair.phi]),
+                self.pair.number(column, value),
+                self.pair.cells,
+            )
             at = columns.points.each(np.array([number]))
         joints = redundancy_map.joints_at(task, columns, number, float(phi[0]))[branch]
         offset = np.abs(task.given_rows.offset(joints))
@@ -251,10 +290,16 @@ class Board:
         low, high = self.source.parameters.rotation_range
         outside = high - low < TURN - 1e-9 and float((phi[0] - low) % TURN) > high - low
         return Cell(
-            self.place(column), float(task.cell.rz_of_phi(at.tool, phi)[0]), float(phi[0]), joints,
+            self.place(column),
+            float(task.cell.rz_of_phi(at.tool, phi)[0]),
+            float(phi[0]),
+            joints,
             float(1.0 - offset.max()) if reached else -np.inf,
             task.given_rows.labels[int(offset.argmax())] if reached else "",
-            condition, float(task.thresholds(at)[0]), made is not None and bool(made.touching[number]), outside,
+            condition,
+            float(task.thresholds(at)[0]),
+            made is not None and bool(made.touching[number]),
+            outside,
             self._arm_at(branch, column, joints),
         )
 

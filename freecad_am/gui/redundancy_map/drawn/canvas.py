@@ -57,7 +57,9 @@ class Canvas(QtGui.QWidget):
 
     # ---- what is shown
 
-    def set_map(self, painted: Painted | None, seams: Array, layers: list[tuple[float, str]]) -> None:
+    def set_map(
+        self, painted: Painted | None, seams: Array, layers: list[tuple[float, str]]
+    ) -> None:
         """Other cells; None while they are computed."""
         self.painted, self.seams, self.layers = painted, seams, layers
         if painted is not None:
@@ -80,7 +82,9 @@ class Canvas(QtGui.QWidget):
 
     def area(self) -> Any:
         """Where the map is drawn."""
-        return QtCore.QRectF(LEFT, TOP, max(self.width() - LEFT - RIGHT, 1), max(self.height() - TOP - BOTTOM, 1))
+        return QtCore.QRectF(
+            LEFT, TOP, max(self.width() - LEFT - RIGHT, 1), max(self.height() - TOP - BOTTOM, 1)
+        )
 
     def x_of(self, column: Any) -> Any:
         """Pixels from the left of columns."""
@@ -148,7 +152,10 @@ class Canvas(QtGui.QWidget):
     def _handle_at(self, x: float, y: float) -> Handle | None:
         if not self.handles:
             return None
-        away = [float(np.hypot(self.x_of(one.column) - x, self.y_of(one.value) - y)) for one in self.handles]
+        away = [
+            float(np.hypot(self.x_of(one.column) - x, self.y_of(one.value) - y))
+            for one in self.handles
+        ]
         best = int(np.argmin(away))
         return self.handles[best] if away[best] <= NEAR_HANDLE else None
 
@@ -156,13 +163,17 @@ class Canvas(QtGui.QWidget):
         own = [curve for curve in self.curves if curve.bold]
         if not own:
             return False
-        near = np.abs(self.x_of(np.arange(self.count)) - x) < max(NEAR_CURVE, 1.0 * self.area().width() / self.count)
+        near = np.abs(self.x_of(np.arange(self.count)) - x) < max(
+            NEAR_CURVE, 1.0 * self.area().width() / self.count
+        )
         down = self.y_of(self.shown(own[0].values))[near]
         return bool(len(down)) and bool(down.min() - NEAR_CURVE <= y <= down.max() + NEAR_CURVE)
 
     def shown(self, values: Array) -> Array:
         """Values where they are drawn: as they are, or brought into the turn that is shown."""
-        if self.high - self.low > TURN + 1e-9 or (values.min() >= self.low and values.max() <= self.high):
+        if self.high - self.low > TURN + 1e-9 or (
+            values.min() >= self.low and values.max() <= self.high
+        ):
             return values
         return shortest(values)
 

@@ -17,7 +17,10 @@ from .board import Board
 
 OWN, PLANNED = "own", "planned"
 COLOURS = {
-    OWN: (255, 140, 0), PLANNED: (255, 255, 255), "constant": (0, 215, 255), "point-by-point": (255, 70, 220),
+    OWN: (255, 140, 0),
+    PLANNED: (255, 255, 255),
+    "constant": (0, 215, 255),
+    "point-by-point": (255, 70, 220),
     "layer-by-layer": (140, 255, 120),
 }
 
@@ -53,7 +56,12 @@ class Dragged:
 
 
 def drawn(
-    board: Board, draft: Draft, bead: int, planned: Sequence[Any], compared: Sequence[Compared], followed: Followed,
+    board: Board,
+    draft: Draft,
+    bead: int,
+    planned: Sequence[Any],
+    compared: Sequence[Compared],
+    followed: Followed,
     shows: Callable[[str], bool],
 ) -> tuple[list[Curve], list[Handle], Array]:
     """Curves, handles of the user's own at a bead, and places (n, 2) of it that are bad, column and value.
@@ -65,7 +73,8 @@ def drawn(
         return [], [], np.zeros((0, 2))  # the rotation is what is planned there
     curves = [
         Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED)
-        for name, paths in [(PLANNED, planned), *((one.name, one.paths) for one in compared)] if shows(name)
+        for name, paths in [(PLANNED, planned), *((one.name, one.paths) for one in compared)]
+        if shows(name)
     ]
     if not shows(OWN):
         return curves, [], np.zeros((0, 2))

@@ -46,7 +46,9 @@ class Painting:
         if self.canvas.mouse is not None:
             painter.setPen(QtGui.QPen(QtGui.QColor(255, 255, 255, 150), 1.0))
             across = float(self.canvas.x_of(self.canvas.mouse[0]))
-            painter.drawLine(QtCore.QPointF(across, area.top()), QtCore.QPointF(across, area.bottom()))
+            painter.drawLine(
+                QtCore.QPointF(across, area.top()), QtCore.QPointF(across, area.bottom())
+            )
         painter.setClipping(False)
         self._draw_axes(painter)
         self._draw_legend(painter)
@@ -57,7 +59,9 @@ class Painting:
         size = int(area.width()), int(area.height()), canvas.low, canvas.high
         if self._made_of is not canvas.painted or self._size != size:
             pixels = np.ascontiguousarray(enlarged(canvas.painted, *size, HATCH))
-            image = QtGui.QImage(pixels.tobytes(), size[0], size[1], 4 * size[0], QtGui.QImage.Format_RGB32)
+            image = QtGui.QImage(
+                pixels.tobytes(), size[0], size[1], 4 * size[0], QtGui.QImage.Format_RGB32
+            )
             self._pixmap = QtGui.QPixmap.fromImage(image.copy())
             self._made_of, self._size = canvas.painted, size
         return self._pixmap
@@ -68,7 +72,9 @@ class Painting:
             painter.setPen(QtGui.QPen(QtGui.QColor(255, 255, 255, 110), 1.0))
             for seam in self.canvas.seams[1:]:
                 across = float(self.canvas.x_of(seam - 0.5))
-                painter.drawLine(QtCore.QPointF(across, area.top()), QtCore.QPointF(across, area.bottom()))
+                painter.drawLine(
+                    QtCore.QPointF(across, area.top()), QtCore.QPointF(across, area.bottom())
+                )
         if self.canvas.heights is not None:
             down = float(self.canvas.y_of(self.canvas.heights[1]))
             painter.drawLine(QtCore.QPointF(area.left(), down), QtCore.QPointF(area.right(), down))
@@ -77,18 +83,27 @@ class Painting:
         for turn in range(first, int(np.floor((self.canvas.high - np.pi) / TURN)) + 1):
             down = float(self.canvas.y_of(np.pi + turn * TURN))
             if area.top() + 1.0 < down < area.bottom() - 1.0:
-                painter.drawLine(QtCore.QPointF(area.left(), down), QtCore.QPointF(area.right(), down))
+                painter.drawLine(
+                    QtCore.QPointF(area.left(), down), QtCore.QPointF(area.right(), down)
+                )
 
     def _draw_curve(self, painter: Any, curve: Curve) -> None:
-        across, values = self.canvas.x_of(np.arange(self.canvas.count)), self.canvas.shown(curve.values)
+        across, values = (
+            self.canvas.x_of(np.arange(self.canvas.count)),
+            self.canvas.shown(curve.values),
+        )
         down = self.canvas.y_of(values)
         cut = np.union1d(self.canvas.seams, np.flatnonzero(np.abs(np.diff(values)) > np.pi) + 1)
-        for width, colour in ((4.6, (0, 0, 0)), (2.6, curve.colour)) if curve.bold else ((1.8, curve.colour),):
+        for width, colour in (
+            ((4.6, (0, 0, 0)), (2.6, curve.colour)) if curve.bold else ((1.8, curve.colour),)
+        ):
             pen = QtGui.QPen(QtGui.QColor(*colour), width)
             if curve.dashed:
                 pen.setStyle(QtCore.Qt.DashLine)
             painter.setPen(pen)
-            for start, end in zip([*cut, self.canvas.count], [*cut[1:], self.canvas.count], strict=False):
+            for start, end in zip(
+                [*cut, self.canvas.count], [*cut[1:], self.canvas.count], strict=False
+            ):
                 line = [QtCore.QPointF(across[k], down[k]) for k in range(int(start), int(end))]
                 if len(line) > 1:
                     painter.drawPolyline(QtGui.QPolygonF(line))
@@ -100,7 +115,10 @@ class Painting:
             return
         painter.setPen(QtGui.QPen(QtGui.QColor(120, 0, 0), 1.0))
         painter.setBrush(QtGui.QColor(255, 40, 40))
-        across, down = self.canvas.x_of(self.canvas.bad[:, 0]), self.canvas.y_of(self.canvas.shown(self.canvas.bad[:, 1]))
+        across, down = (
+            self.canvas.x_of(self.canvas.bad[:, 0]),
+            self.canvas.y_of(self.canvas.shown(self.canvas.bad[:, 1])),
+        )
         _, kept = np.unique(np.round(across / 3.0), return_index=True)
         for k in kept:
             painter.drawEllipse(QtCore.QPointF(across[k], down[k]), 2.6, 2.6)
@@ -109,7 +127,11 @@ class Painting:
         painter.setPen(QtGui.QPen(QtGui.QColor(0, 0, 0), 1.6))
         painter.setBrush(QtGui.QColor(255, 255, 255))
         for one in self.canvas.handles:
-            painter.drawEllipse(QtCore.QPointF(self.canvas.x_of(one.column), self.canvas.y_of(one.value)), HANDLE, HANDLE)
+            painter.drawEllipse(
+                QtCore.QPointF(self.canvas.x_of(one.column), self.canvas.y_of(one.value)),
+                HANDLE,
+                HANDLE,
+            )
 
     def _draw_axes(self, painter: Any) -> None:
         area, ink = self.canvas.area(), self.canvas.palette().color(QtGui.QPalette.WindowText)
@@ -119,16 +141,23 @@ class Painting:
         line = painter.fontMetrics().height()
         for height, text in self._heights(area.height() / (1.6 * line)):
             down = float(self.canvas.y_of(height))
-            painter.drawLine(QtCore.QPointF(area.left() - 4.0, down), QtCore.QPointF(area.left(), down))
+            painter.drawLine(
+                QtCore.QPointF(area.left() - 4.0, down), QtCore.QPointF(area.left(), down)
+            )
             box = QtCore.QRectF(0.0, down - 0.5 * line, LEFT - 7.0, line)
             painter.drawText(box, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, text)
         last = -1e9
         for column, text in self.canvas.layers:
-            across, wide = float(self.canvas.x_of(column)), 8.0 + painter.fontMetrics().boundingRect(text).width()
+            across, wide = (
+                float(self.canvas.x_of(column)),
+                8.0 + painter.fontMetrics().boundingRect(text).width(),
+            )
             if across - 0.5 * wide < last:
                 continue
             last = across + 0.5 * wide
-            painter.drawLine(QtCore.QPointF(across, area.bottom()), QtCore.QPointF(across, area.bottom() + 3.0))
+            painter.drawLine(
+                QtCore.QPointF(across, area.bottom()), QtCore.QPointF(across, area.bottom() + 3.0)
+            )
             box = QtCore.QRectF(across - 0.5 * wide, area.bottom() + 3.0, wide, line)
             painter.drawText(box, QtCore.Qt.AlignCenter, text)
         box = QtCore.QRectF(area.left(), area.bottom() + 2.0 + line, area.width(), line)
@@ -148,7 +177,10 @@ class Painting:
     def _draw_legend(self, painter: Any) -> None:
         """The ramp with round numbers, then the classes, above the map."""
         assert self.canvas.painted is not None
-        scale, ink = self.canvas.painted.scale, self.canvas.palette().color(QtGui.QPalette.WindowText)
+        scale, ink = (
+            self.canvas.painted.scale,
+            self.canvas.palette().color(QtGui.QPalette.WindowText),
+        )
         line, across = painter.fontMetrics().height(), float(LEFT)
         painter.setPen(ink)
         title = f"{tr(scale.title)} {scale.unit}".strip()
@@ -156,25 +188,39 @@ class Painting:
         bar = QtCore.QRectF(across, 5.0, 90.0, 9.0)
         fill = QtGui.QLinearGradient(bar.left(), 0.0, bar.right(), 0.0)
         for share in np.linspace(0.0, 1.0, 9):
-            fill.setColorAt(float(share), QtGui.QColor.fromRgbF(*(float(part) for part in ramp(np.array([share]))[0])))
+            fill.setColorAt(
+                float(share),
+                QtGui.QColor.fromRgbF(*(float(part) for part in ramp(np.array([share]))[0])),
+            )
         painter.fillRect(bar, fill)
-        numbers = round_numbers(scale.low, scale.high, 0.0) if scale.high > scale.low else np.array([scale.low])
+        numbers = (
+            round_numbers(scale.low, scale.high, 0.0)
+            if scale.high > scale.low
+            else np.array([scale.low])
+        )
         for number in numbers[:: max(1, len(numbers) // TO_TICKS + 1)]:
             at = bar.left() + bar.width() * float(scale.share(np.array([number]))[0])
             box = QtCore.QRectF(at - 20.0, 14.0, 40.0, line)
             painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
         classes: list[tuple[str, Any]] = [
-            (tr(text), QtGui.QColor.fromRgbF(*colour)) for text, colour in self.canvas.painted.classes
+            (tr(text), QtGui.QColor.fromRgbF(*colour))
+            for text, colour in self.canvas.painted.classes
         ]
         if self.canvas.painted.hatched.any():
-            classes.append((tr("not allowed, or touching"), QtGui.QBrush(ink, QtCore.Qt.BDiagPattern)))
+            classes.append(
+                (tr("not allowed, or touching"), QtGui.QBrush(ink, QtCore.Qt.BDiagPattern))
+            )
         self._draw_classes(painter, classes, bar.right() + 14.0)
 
     def _draw_classes(self, painter: Any, classes: list[tuple[str, Any]], left: float) -> None:
         """Swatches with their words, in two rows beside the ramp and its numbers where one has no room for them."""
         across, down = left, 0.0
         for text, fill in classes:
-            if down == 0.0 and across > left and across + 15.0 + self._wide(painter, text) > self.canvas.width():
+            if (
+                down == 0.0
+                and across > left
+                and across + 15.0 + self._wide(painter, text) > self.canvas.width()
+            ):
                 across, down = left, ROW
             box = QtCore.QRectF(across, down + 5.0, 11.0, 11.0)
             painter.fillRect(box, fill)

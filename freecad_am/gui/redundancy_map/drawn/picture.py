@@ -40,7 +40,8 @@ def painted(of: Picture, kind: str) -> Painted:
     colours = ramp(scale.share(np.where(good, values, scale.low)).ravel()).reshape(*values.shape, 3)
     classes = []
     for text, cells, colour in (
-        (marked("unreachable"), ~reachable, NONE), (marked("beyond a limit"), beyond, TOO_NEAR),
+        (marked("unreachable"), ~reachable, NONE),
+        (marked("beyond a limit"), beyond, TOO_NEAR),
         (marked("near a singularity"), singular, TOO_FAR),
     ):
         if cells.any():

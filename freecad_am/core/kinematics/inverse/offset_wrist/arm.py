@@ -97,7 +97,10 @@ class OffsetWristArm:
         curves = self._curves(self.chain.forward(flat))
         each = np.arange(len(flat))
         side, elbow = np.where(back, -1.0, 1.0), np.where(left, 1.0, -1.0)
-        ahead, behind = (search.values(curves, each, flat[:, 5] + step, side, elbow) for step in (STEP_RAD, -STEP_RAD))
+        ahead, behind = (
+            search.values(curves, each, flat[:, 5] + step, side, elbow)
+            for step in (STEP_RAD, -STEP_RAD)
+        )
         found = self._words(back, left, ahead > behind)
         return found.reshape(angles.shape[:-1])
 
@@ -132,18 +135,30 @@ class OffsetWristArm:
         back = frames.inverse(at_rest.flange)
         moved = poses @ back
         parts = []
-        for vector, anchor in ((self.point - through, through), (at_rest.directions[4], np.zeros(3))):
+        for vector, anchor in (
+            (self.point - through, through),
+            (at_rest.directions[4], np.zeros(3)),
+        ):
             along = axis * float(axis @ vector)
             across = vector - along
             parts.append((along + anchor, across, np.cross(axis, across)))
         rotation = moved[:, :3, :3]
-        point = [rotation @ parts[0][0] + moved[:, :3, 3], rotation @ parts[0][1], -(rotation @ parts[0][2])]
+        point = [
+            rotation @ parts[0][0] + moved[:, :3, 3],
+            rotation @ parts[0][1],
+            -(rotation @ parts[0][2]),
+        ]
         five = [rotation @ parts[1][0], rotation @ parts[1][1], -(rotation @ parts[1][2])]
         point[0][:, 2] -= self.above
         square = float(at_rest.directions[3] @ at_rest.directions[4])
         return Curves(
-            np.stack(point).transpose(0, 2, 1).copy(), np.stack(five).transpose(0, 2, 1).copy(), self.upper, self.fore,
-            (math.cos(self.lean), math.sin(self.lean)), square, self.ahead,
+            np.stack(point).transpose(0, 2, 1).copy(),
+            np.stack(five).transpose(0, 2, 1).copy(),
+            self.upper,
+            self.fore,
+            (math.cos(self.lean), math.sin(self.lean)),
+            square,
+            self.ahead,
         )
 
     def _solve_piece(self, poses: Array, out: Array, named: Index) -> None:
@@ -187,7 +202,10 @@ class OffsetWristArm:
         plane = _less(plane, self.turns[0])
         turned = _less(fore / np.hypot(*fore), self.turns[2])
         normal = z[1] * self.signs[1]
-        five, six = (_turned_back(normal, turned, _turned_back(UP, plane, seen)) for seen in (np.stack(spot.five), six))
+        five, six = (
+            _turned_back(normal, turned, _turned_back(UP, plane, seen))
+            for seen in (np.stack(spot.five), six)
+        )
         fourth = _towards(z[3], z[4], five)
         six = _turned_back(z[3], fourth / np.hypot(*fourth), six)
         q[3], q[4], q[5] = np.arctan2(*fourth), np.arctan2(*_towards(z[4], z[5], six)), zeros.angle
@@ -205,7 +223,9 @@ def _less(one: Array, angle: float) -> Array:
 def _turned_back(axis: Array, by: Array, vectors: Array) -> Array:
     """Vectors (3, k) turned back about an axis (3,) by angles of which sine and cosine (2, k) are given."""
     across = np.cross(axis, np.eye(3)).T @ vectors
-    result: Array = by[1] * vectors - by[0] * across + axis[:, None] * ((1.0 - by[1]) * (axis @ vectors))
+    result: Array = (
+        by[1] * vectors - by[0] * across + axis[:, None] * ((1.0 - by[1]) * (axis @ vectors))
+    )
     return result
 
 

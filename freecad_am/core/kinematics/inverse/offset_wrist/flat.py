@@ -26,7 +26,9 @@ def zeros(curves: Curves, pose: Index, low: Array, high: Array) -> Zeros:
     """All that samples of spans (k,) tell of, on either side of axis 1 and with either elbow, in no order."""
     pose, low, high = _joined(pose, low, high)
     span = np.repeat(np.arange(len(pose)), 4)
-    side, elbow = (np.tile(signs, len(pose)) for signs in ([1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]))
+    side, elbow = (
+        np.tile(signs, len(pose)) for signs in ([1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0])
+    )
     loops, begin = whole_turns(curves, pose[span], side, elbow)
     # one sample more at both ends, for extremes beside them
     share = np.arange(-1, SAMPLES + 2) / SAMPLES

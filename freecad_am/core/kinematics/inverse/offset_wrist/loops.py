@@ -52,18 +52,26 @@ def loops_of(curves: Curves) -> Loops:
     reached = (near > -1.0 - EDGE) & (far < 1.0 + EDGE)
     near_at, far_at = np.arccos(np.clip(near, -1.0, 1.0)), np.arccos(np.clip(far, -1.0, 1.0))
     whole, both = reached & ~stretched & ~folded, reached & stretched & folded
-    none, middle_of, half_of = np.zeros(len(mean)), 0.5 * (near_at + far_at), 0.5 * (far_at - near_at)
+    none, middle_of, half_of = (
+        np.zeros(len(mean)),
+        0.5 * (near_at + far_at),
+        0.5 * (far_at - near_at),
+    )
     kinds = [
-        (whole, 1.0, out, none), (whole, -1.0, out, none),
+        (whole, 1.0, out, none),
+        (whole, -1.0, out, none),
         (reached & stretched & ~folded, 0.0, out + math.pi, math.pi - near_at),
         (reached & folded & ~stretched, 0.0, out, far_at),
-        (both, 0.0, out + middle_of, half_of), (both, 0.0, out - middle_of, -half_of),
+        (both, 0.0, out + middle_of, half_of),
+        (both, 0.0, out - middle_of, -half_of),
     ]
     loops = []
     for some, elbow, at, half in kinds:
         pose = np.flatnonzero(some)
         one = np.ones(len(pose))
-        of_pose = tuple[Any, ...](column[pose] for column in (at, half, near_at, far_at, stretched, folded, mean, swing))
+        of_pose = tuple[Any, ...](
+            column[pose] for column in (at, half, near_at, far_at, stretched, folded, mean, swing)
+        )
         loops += [Loops(pose, side * one, elbow * one, *of_pose) for side in (1.0, -1.0)]
     return Loops(*(np.concatenate(columns) for columns in zip(*loops)))
 
@@ -71,7 +79,9 @@ def loops_of(curves: Curves) -> Loops:
 def whole_turns(curves: Curves, pose: Index, side: Array, elbow: Array) -> tuple[Loops, Array]:
     """Loops (k,) as if the arm reached all of a turn, and the angles of axis 6 at which they begin."""
     none = np.zeros(len(pose))
-    mean, swing, out = (none,) * 3 if curves.ahead else (column[pose] for column in _distances(curves))
+    mean, swing, out = (
+        (none,) * 3 if curves.ahead else (column[pose] for column in _distances(curves))
+    )
     return Loops(pose, side, elbow, out, none, none, none, none > 0.0, none > 0.0, mean, swing), out
 
 
@@ -92,9 +102,25 @@ def _offset_loops(curves: Curves) -> Loops:
         one, zero = np.ones(len(pose)), np.zeros(len(whole))
         no = zero > 0.0
         none = 0.0 * one
-        found.append(Loops(pose, side * one, none, 0.5 * (begin + end), 0.5 * (end - begin), begin, end, stretched, folded,
-                           none, none))
-        found += [Loops(whole, zero + side, zero + elbow, *(zero,) * 4, no, no, zero, zero) for elbow in (1.0, -1.0)]
+        found.append(
+            Loops(
+                pose,
+                side * one,
+                none,
+                0.5 * (begin + end),
+                0.5 * (end - begin),
+                begin,
+                end,
+                stretched,
+                folded,
+                none,
+                none,
+            )
+        )
+        found += [
+            Loops(whole, zero + side, zero + elbow, *(zero,) * 4, no, no, zero, zero)
+            for elbow in (1.0, -1.0)
+        ]
     return Loops(*(np.concatenate(columns) for columns in zip(*found)))
 
 
@@ -121,16 +147,22 @@ def angle_along(curves: Curves, at: Loops, t: Array) -> tuple[Array, Array]:
     begin, end = np.sin(half * course), np.sin(half * left * left)
     # squared distances to where the arm is stretched, and to where it is folded: differences of cosines as products
     other = np.where(at.folded, np.sin(0.5 * (from_out + at.near)), end)
-    to_stretched = np.where(at.stretched, 2.0 * at.swing * other * begin, (curves.upper + curves.fore) ** 2 - squared)
+    to_stretched = np.where(
+        at.stretched, 2.0 * at.swing * other * begin, (curves.upper + curves.fore) ** 2 - squared
+    )
     other = np.where(at.stretched, np.sin(0.5 * (from_out + at.far)), begin)
-    to_folded = np.where(at.folded, 2.0 * at.swing * other * end, squared - (curves.upper - curves.fore) ** 2)
+    to_folded = np.where(
+        at.folded, 2.0 * at.swing * other * end, squared - (curves.upper - curves.fore) ** 2
+    )
     cosine = 1.0 - to_stretched * scale
     sine = scale * np.sqrt(np.maximum(to_stretched, 0.0) * np.maximum(to_folded, 0.0))
     sign = np.where(whole, at.elbow, np.where(begun * left >= 0.0, 1.0, -1.0))
     return angle, np.stack([sign * sine, cosine])
 
 
-def _bent_from_end(curves: Curves, at: Loops, angle: Array, elbow: Array, end: tuple[Array, Array, Array]) -> Array:
+def _bent_from_end(
+    curves: Curves, at: Loops, angle: Array, elbow: Array, end: tuple[Array, Array, Array]
+) -> Array:
     """Sine and cosine (2, k) of the elbow's bend, exact near the end of a span: its angle, half the way since, and whether
     the arm is stretched there."""
     ends, since, stretched = end
@@ -142,4 +174,9 @@ def _bent_from_end(curves: Curves, at: Loops, angle: Array, elbow: Array, end: t
     to_folded = np.where(free | stretched, squared - shortest, nearer)
     scale = 1.0 / (2.0 * curves.upper * curves.fore)
     sine = scale * np.sqrt(np.maximum(to_stretched, 0.0) * np.maximum(to_folded, 0.0))
-    return np.stack([elbow * sine, np.where(stretched | free, 1.0 - to_stretched * scale, to_folded * scale - 1.0)])
+    return np.stack(
+        [
+            elbow * sine,
+            np.where(stretched | free, 1.0 - to_stretched * scale, to_folded * scale - 1.0),
+        ]
+    )

@@ -33,14 +33,24 @@ def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
     row, angle = _passes(curves, length)
     if not len(row):
         return zeros, np.full((2, len(zeros.pose)), np.nan)
-    found, plane = _solved(curves, length, np.repeat(row, 4), np.repeat(angle, 4), np.tile([1.0, 1.0, -1.0, -1.0], len(row)),
-                           np.tile([1.0, -1.0], 2 * len(row)))
+    found, plane = _solved(
+        curves,
+        length,
+        np.repeat(row, 4),
+        np.repeat(angle, 4),
+        np.tile([1.0, 1.0, -1.0, -1.0], len(row)),
+        np.tile([1.0, -1.0], 2 * len(row)),
+    )
     kept = np.flatnonzero(~_replaced(curves, zeros, found, plane, row, NOISE_SHARE * length))
-    together = Zeros(*(np.concatenate([one[..., kept], other], axis=-1) for one, other in zip(zeros, found)))
+    together = Zeros(
+        *(np.concatenate([one[..., kept], other], axis=-1) for one, other in zip(zeros, found))
+    )
     return together, np.concatenate([np.full((2, len(kept)), np.nan), plane], axis=1)
 
 
-def _replaced(curves: Curves, zeros: Zeros, found: Zeros, plane: Array, passing: Index, noise: float) -> Mask:
+def _replaced(
+    curves: Curves, zeros: Zeros, found: Zeros, plane: Array, passing: Index, noise: float
+) -> Mask:
     """Which zeros (k,) at poses `passing` were found exactly, or have a plane that cannot be told."""
     known = np.zeros(curves.point.shape[2], dtype=bool)
     known[passing] = True
@@ -50,11 +60,19 @@ def _replaced(curves: Curves, zeros: Zeros, found: Zeros, plane: Array, passing:
     away = np.hypot(x, y)
     apart = zeros.angle[there, None] - found.angle
     same = np.abs(apart - TURN * np.rint(apart * (1.0 / TURN))) < SAME_RAD
-    for own, other in ((zeros.pose, found.pose), (zeros.side, found.side), (zeros.elbow, found.elbow)):
+    for own, other in (
+        (zeros.pose, found.pose),
+        (zeros.side, found.side),
+        (zeros.elbow, found.elbow),
+    ):
         same &= own[there, None] == other
     x, y = x[:, None] - away[:, None] * plane[1], y[:, None] - away[:, None] * plane[0]
     same &= np.hypot(x, y) < SAME_SINE * away[:, None]
-    mismatch = np.abs(geometry(curves, zeros.pose[there], zeros.angle[there], zeros.side[there], zeros.bent[:, there]).value)
+    mismatch = np.abs(
+        geometry(
+            curves, zeros.pose[there], zeros.angle[there], zeros.side[there], zeros.bent[:, there]
+        ).value
+    )
     result[there] = (away < noise) | (mismatch > MISMATCH) | same.any(axis=1)
     return result
 
@@ -72,14 +90,20 @@ def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
     centre, cos, sin = curves.point[:, :2]
     # the point is on axis 1 where the centre is the ellipse's affine map of a unit vector; its distance bounds from below
     size = np.abs(cos[0] * sin[1] - cos[1] * sin[0])
-    mapped = np.hypot(sin[1] * centre[0] - sin[0] * centre[1], cos[0] * centre[1] - cos[1] * centre[0])
-    likely = np.flatnonzero(np.abs(mapped - size) <= PASS_SHARE * length * np.sqrt((cos * cos + sin * sin).sum(axis=0)))
+    mapped = np.hypot(
+        sin[1] * centre[0] - sin[0] * centre[1], cos[0] * centre[1] - cos[1] * centre[0]
+    )
+    likely = np.flatnonzero(
+        np.abs(mapped - size) <= PASS_SHARE * length * np.sqrt((cos * cos + sin * sin).sum(axis=0))
+    )
     if not len(likely):
         return likely, np.zeros(0)
     angles = np.arange(SAMPLES) * (TURN / SAMPLES)
     at = _point(curves, likely[:, None], angles)[0]  # type: ignore[arg-type]
     away = np.hypot(at[0], at[1])
-    row, number = np.nonzero((away <= np.roll(away, 1, axis=1)) & (away < np.roll(away, -1, axis=1)))
+    row, number = np.nonzero(
+        (away <= np.roll(away, 1, axis=1)) & (away < np.roll(away, -1, axis=1))
+    )
     pose, angle = likely[row], angles[number]
     for _ in range(ROUNDS):
         (x, y, _), (u, v, _), (du, dv, _) = _point(curves, pose, angle)
@@ -92,7 +116,9 @@ def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
     return pose[close], angle[close]
 
 
-def _solved(curves: Curves, length: float, pose: Index, angle: Array, elbow: Array, way: Array) -> tuple[Zeros, Array]:
+def _solved(
+    curves: Curves, length: float, pose: Index, angle: Array, elbow: Array, way: Array
+) -> tuple[Zeros, Array]:
     """Zeros near angles of axis 6 (k,), of an elbow 1 or -1 and one of the two ways 1 or -1 in which axis 5 is met, and sine
     and cosine (2, k) of the plane."""
     ahead, before = np.zeros(len(pose)), (angle, np.full(len(pose), np.nan))
@@ -105,10 +131,14 @@ def _solved(curves: Curves, length: float, pose: Index, angle: Array, elbow: Arr
         moved = angle - before[0]
         with np.errstate(invalid="ignore", divide="ignore"):
             secant = (off - before[1]) / moved
-        slope = np.where(np.isfinite(secant) & (np.abs(moved) > 1e-10) & (secant * slope > 0.0), secant, slope)
+        slope = np.where(
+            np.isfinite(secant) & (np.abs(moved) > 1e-10) & (secant * slope > 0.0), secant, slope
+        )
         before = angle, off
         angle = angle - np.clip(off / np.where(slope == 0.0, TINY, slope), -STEP_RAD, STEP_RAD)
-    kept = np.flatnonzero(sure & (np.abs(off) < PLANE_SHARE * length) & (np.abs(ahead) < SOLVED_SHARE * length))
+    kept = np.flatnonzero(
+        sure & (np.abs(off) < PLANE_SHARE * length) & (np.abs(ahead) < SOLVED_SHARE * length)
+    )
     sweep = (x * v - y * u) / (x * x + y * y + TINY)
     rising = along[0] * (plane[1] * five[1] - plane[0] * five[0]) * sweep
     side = np.where(ahead >= 0.0, 1.0, -1.0)
@@ -125,7 +155,10 @@ def _met(
     squared = forward * forward + above * above
     bend = (squared - (curves.upper**2 + curves.fore**2)) / (2.0 * curves.upper * curves.fore)
     bent = np.stack([elbow * np.sqrt(np.maximum(1.0 - bend * bend, 0.0)), bend])
-    common, turn = (curves.fore + curves.upper * bend) / (squared + TINY), curves.upper * bent[0] / (squared + TINY)
+    common, turn = (
+        (curves.fore + curves.upper * bend) / (squared + TINY),
+        curves.upper * bent[0] / (squared + TINY),
+    )
     fore = common * forward + turn * above, common * above - turn * forward
     cos, sin = curves.lean
     along = np.stack([fore[0] * cos + fore[1] * sin, fore[1] * cos - fore[0] * sin])
@@ -135,4 +168,10 @@ def _met(
     size = along[0] * np.hypot(five[0], five[1])
     share = wanted / np.where(size == 0.0, TINY, size)
     towards = np.arctan2(five[1], five[0]) + way * np.arccos(np.clip(share, -1.0, 1.0))
-    return bent, along, five, np.stack([np.sin(towards), np.cos(towards)]), (np.abs(bend) <= 1.0) & (np.abs(share) <= 1.0)
+    return (
+        bent,
+        along,
+        five,
+        np.stack([np.sin(towards), np.cos(towards)]),
+        (np.abs(bend) <= 1.0) & (np.abs(share) <= 1.0),
+    )

@@ -63,8 +63,14 @@ def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array
 def plane_of(curves: Curves, pose: Index, angle: Array, side: Array) -> Plane:
     """What is known of the arm at angles of axis 6 (k,) without its elbow."""
     cos, sin = np.cos(angle), np.sin(angle)
-    x, y, above = (part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.point.transpose(1, 0, 2))
-    five = [part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.five.transpose(1, 0, 2)]
+    x, y, above = (
+        part[0][pose] + cos * part[1][pose] + sin * part[2][pose]
+        for part in curves.point.transpose(1, 0, 2)
+    )
+    five = [
+        part[0][pose] + cos * part[1][pose] + sin * part[2][pose]
+        for part in curves.five.transpose(1, 0, 2)
+    ]
     x = x + TINY
     ahead = side * np.sqrt(x * x + y * y)
     return Plane(y / ahead, x / ahead, ahead - curves.ahead, above, five)
@@ -80,7 +86,8 @@ def spot_of(curves: Curves, plane: Plane, bent: Array | tuple[Array, Array]) -> 
     fore_ahead = common * ahead + turn * above
     fore_above = common * above - turn * ahead
     along = (
-        fore_ahead * curves.lean[0] + fore_above * curves.lean[1], fore_above * curves.lean[0] - fore_ahead * curves.lean[1],
+        fore_ahead * curves.lean[0] + fore_above * curves.lean[1],
+        fore_above * curves.lean[0] - fore_ahead * curves.lean[1],
     )
     value = along[0] * (cosine * five[0] + sine * five[1]) + along[1] * five[2] - curves.square
     return Spot(sine, cosine, ahead, above, fore_ahead, fore_above, five, value, along)

@@ -76,10 +76,18 @@ def is_even(curves: Curves) -> bool:
 def zeros(curves: Curves) -> Zeros:
     """All zeros, in no order, as of `search.zeros`."""
     length = 1.0 / (curves.upper + curves.fore)
-    arm = _Lengths(curves.upper * length, curves.fore * length, curves.ahead * length, *curves.lean, curves.square)
+    arm = _Lengths(
+        curves.upper * length,
+        curves.fore * length,
+        curves.ahead * length,
+        *curves.lean,
+        curves.square,
+    )
     parts = np.stack([curves.point * length, curves.five])
     even = is_even(curves)
-    number, low, high, near, close, touching, drowned = trigonometric.parted(_coefficients(arm, parts, even))
+    number, low, high, near, close, touching, drowned = trigonometric.parted(
+        _coefficients(arm, parts, even)
+    )
     of_zero = np.take(parts, number, axis=3)
     side = np.ones(len(number)) if even else _side(arm, of_zero, low, high)
     angle, sure, away = _roots(arm, of_zero, side, low, high, near)
@@ -87,7 +95,10 @@ def zeros(curves: Curves) -> Zeros:
     if not sure.all():
         # where three meet, rounding moves a zero by more than is asked for
         moved = np.flatnonzero(~sure)
-        touching = np.concatenate([touching[0], number[moved]]), np.concatenate([touching[1], angle[moved]])
+        touching = (
+            np.concatenate([touching[0], number[moved]]),
+            np.concatenate([touching[1], angle[moved]]),
+        )
         kept = np.flatnonzero(sure)
         number, angle, side, of_zero = number[kept], angle[kept], side[kept], of_zero[..., kept]
     found = _solutions(arm, of_zero, number, angle, side)
@@ -96,8 +107,17 @@ def zeros(curves: Curves) -> Zeros:
     left = np.flatnonzero(close)
     if not len(left):
         return found
-    others = search.zeros(Curves(curves.point[:, :, left], curves.five[:, :, left], curves.upper, curves.fore, curves.lean,
-                                 curves.square, curves.ahead))
+    others = search.zeros(
+        Curves(
+            curves.point[:, :, left],
+            curves.five[:, :, left],
+            curves.upper,
+            curves.fore,
+            curves.lean,
+            curves.square,
+            curves.ahead,
+        )
+    )
     found = _together(found, others._replace(pose=left[others.pose]), close)
     found = _with(found, _touching(arm, curves, parts, *touching))
     return _with(found, without_digits.zeros(curves, *drowned)) if len(drowned[0]) else found
@@ -120,10 +140,19 @@ def _touching(arm: _Lengths, curves: Curves, parts: Array, number: Index, angle:
 def _with(found: Zeros, more: Zeros) -> Zeros:
     """Zeros, and those of some more that are none of them, each once."""
     for k in range(len(more.pose)):
-        same = (found.pose == more.pose[k]) & (found.side == more.side[k]) & (found.elbow == more.elbow[k])
+        same = (
+            (found.pose == more.pose[k])
+            & (found.side == more.side[k])
+            & (found.elbow == more.elbow[k])
+        )
         apart = found.angle[same] - more.angle[k]
         if not (np.abs(apart - TURN * np.rint(apart * (1.0 / TURN))) < TWICE_RAD).any():
-            found = Zeros(*(np.concatenate([own, other[..., k : k + 1]], axis=-1) for own, other in zip(found, more)))
+            found = Zeros(
+                *(
+                    np.concatenate([own, other[..., k : k + 1]], axis=-1)
+                    for own, other in zip(found, more)
+                )
+            )
     return found
 
 
@@ -132,12 +161,18 @@ def _together(found: Zeros, others: Zeros, close: Mask) -> Zeros:
     sure = np.flatnonzero(~close[found.pose])
     unsure = np.flatnonzero(close[found.pose])
     same = np.ones((len(unsure), len(others.pose)), dtype=bool)
-    for own, other in ((found.pose, others.pose), (found.side, others.side), (found.elbow, others.elbow)):
+    for own, other in (
+        (found.pose, others.pose),
+        (found.side, others.side),
+        (found.elbow, others.elbow),
+    ):
         same &= own[unsure, None] == other
     apart = found.angle[unsure, None] - others.angle
     same &= np.abs(apart - TURN * np.rint(apart * (1.0 / TURN))) < SAME_RAD
     kept = np.concatenate([sure, unsure[~same.any(axis=1)]])
-    return Zeros(*(np.concatenate([own[..., kept], other], axis=-1) for own, other in zip(found, others)))
+    return Zeros(
+        *(np.concatenate([own[..., kept], other], axis=-1) for own, other in zip(found, others))
+    )
 
 
 def _coefficients(arm: _Lengths, parts: Array, even: bool) -> Array:
@@ -165,13 +200,19 @@ def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array
     common = (flat + z * z + (arm.ahead**2 + arm.fore**2 - arm.upper**2)) * (0.5 / arm.fore)
     factor = -arm.ahead / arm.fore
     squared = common * common + (factor * factor) * flat
-    across, by_across = arm.cos * rise + (arm.sin * arm.ahead) * within, (arm.cos * arm.ahead) * up - arm.sin * level
+    across, by_across = (
+        arm.cos * rise + (arm.sin * arm.ahead) * within,
+        (arm.cos * arm.ahead) * up - arm.sin * level,
+    )
     sizes = within * within + flat * up * up
     whole = squared * sizes - across * across - flat * by_across * by_across
     by_radius = 2.0 * (factor * common * sizes - across * by_across)
     if arm.square:
         # what is multiplied by q, then what by its square
-        out, by_out = arm.sin * rise - (arm.cos * arm.ahead) * within, (arm.sin * arm.ahead) * up + arm.cos * level
+        out, by_out = (
+            arm.sin * rise - (arm.cos * arm.ahead) * within,
+            (arm.sin * arm.ahead) * up + arm.cos * level,
+        )
         whole -= (2.0 * arm.square) * flat * (common * by_out + factor * out)
         by_radius -= (2.0 * arm.square) * (common * out + factor * by_out * flat)
         whole += arm.square**2 * flat * (flat + z * z + arm.ahead**2)
@@ -216,12 +257,18 @@ def _terms(arm: _Lengths, parts: Array, angle: Array, side: Array) -> _Terms:
     common = (squared + (arm.fore**2 - arm.upper**2)) * (0.5 / arm.fore)
     common_ = (half_flat_ + z * z_ - arm.ahead * radius_) * (1.0 / arm.fore)
     level, rise = within + z * up, z * within - flat * up
-    level_, rise_ = within_ + z_ * up + z * up_, z_ * within + z * within_ - 2.0 * half_flat_ * up - flat * up_
+    level_, rise_ = (
+        within_ + z_ * up + z * up_,
+        z_ * within + z * within_ - 2.0 * half_flat_ * up - flat * up_,
+    )
     # S and N
     out, out_ = radius * level, radius_ * level + radius * level_
     if arm.ahead:
         out, out_ = out - arm.ahead * within, out_ - arm.ahead * within_
-        rise, rise_ = rise + arm.ahead * radius * up, rise_ + arm.ahead * (radius_ * up + radius * up_)
+        rise, rise_ = (
+            rise + arm.ahead * radius * up,
+            rise_ + arm.ahead * (radius_ * up + radius * up_),
+        )
     ahead, across = arm.cos * out + arm.sin * rise, arm.cos * rise - arm.sin * out
     across_ = arm.cos * rise_ - arm.sin * out_
     sizes = within * within + flat * up * up
@@ -233,7 +280,10 @@ def _terms(arm: _Lengths, parts: Array, angle: Array, side: Array) -> _Terms:
         product, product_ = radius * common, radius_ * common + radius * common_
         value -= arm.square * (2.0 * product * ahead - arm.square * squared * flat)
         slope -= (2.0 * arm.square) * (
-            product_ * ahead + product * ahead_ - arm.square * (arm.fore * common_ * flat + squared * half_flat_))
+            product_ * ahead
+            + product * ahead_
+            - arm.square * (arm.fore * common_ * flat + squared * half_flat_)
+        )
     return _Terms(radius, squared, common, ahead, across, value, slope)
 
 
@@ -276,7 +326,9 @@ def _solutions(arm: _Lengths, parts: Array, pose: Index, angle: Array, side: Arr
 
 def _both_sides(found: Zeros) -> Zeros:
     """Solutions in front of axis 1, and those at the back at the same angles."""
-    pose, angle, side, elbow, bent, slope = (np.concatenate([column, column], axis=-1) for column in found)
+    pose, angle, side, elbow, bent, slope = (
+        np.concatenate([column, column], axis=-1) for column in found
+    )
     count = len(found.pose)
     side[count:] *= -1.0
     elbow[count:] *= -1.0

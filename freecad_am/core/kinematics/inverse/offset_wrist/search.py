@@ -22,7 +22,10 @@ from .plane import TINY, Curves, Spot, geometry, plane_of, spot_of
 SAMPLES = 36
 SAMPLE_SHIFT = 0.37  # of a step: no sample where the arm is stretched or folded, where a zero of it would have either sign
 PIECES, LEVELS = 8, 6  # into which a step is divided where the arm swings fast, and how often again
-FLAT = (0.02, 4e-4)  # of the cosine between axes 4 and 5: steps whose ends are less are divided, and again
+FLAT = (
+    0.02,
+    4e-4,
+)  # of the cosine between axes 4 and 5: steps whose ends are less are divided, and again
 SWING = 0.96  # cosine of the most that arm or axis 4 may turn in a step
 ROUNDS, PEAKS = 60, 12  # of the search for a zero, and for an extreme
 TOUCHES = 1e-11  # of the cosine between axes 4 and 5: an extreme so near is a zero
@@ -83,7 +86,10 @@ def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) 
         squared = shoulder_loops.squared_distance(curves, pose, angle, side)
     else:
         cos, sin = np.cos(angle), np.sin(angle)
-        point = [part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.point.transpose(1, 0, 2)]
+        point = [
+            part[0][pose] + cos * part[1][pose] + sin * part[2][pose]
+            for part in curves.point.transpose(1, 0, 2)
+        ]
         squared = point[0] ** 2 + point[1] ** 2 + point[2] ** 2
     scale = 1.0 / (2.0 * curves.upper * curves.fore)
     cosine = (squared - (curves.upper**2 + curves.fore**2)) * scale
@@ -101,7 +107,9 @@ def _sampled(curves: Curves, loops: Loops, which: Index, t: Array, alike: bool) 
     one = t[:1] if alike else t
     course, rising = np.cos(one), np.where(np.sin(one) >= 0.0, 1.0, -1.0)
     pose, side, elbow, middle, half = (
-        column[which][:, None] for column in (loops.pose, loops.side, loops.elbow, loops.middle, loops.half))
+        column[which][:, None]
+        for column in (loops.pose, loops.side, loops.elbow, loops.middle, loops.half)
+    )
     whole = elbow != 0.0
     plane = plane_of(curves, pose, np.where(whole, middle + t, middle - half * course), side)  # type: ignore[arg-type]
     squared = plane.ahead * plane.ahead + plane.above * plane.above
@@ -173,17 +181,25 @@ def _touching(
         wide = np.where(c - b > b - a, b + 0.3 * (c - b), b - 0.3 * (b - a))
         x = np.where((x > a) & (x < c) & (np.abs(x - b) > 1e-12), x, wide)
         fx = sign * _at(curves, loop, x).value
-        x, fx = np.where(fb < 0.0, b, x), np.where(fb < 0.0, fb, fx)  # which lies between two zeros already
+        x, fx = (
+            np.where(fb < 0.0, b, x),
+            np.where(fb < 0.0, fb, fx),
+        )  # which lies between two zeros already
         lower, right = fx < fb, x > b
         above = ~lower & (x != b)
-        a, fa = np.where(lower & right, b, np.where(above & ~right, x, a)), np.where(
-            lower & right, fb, np.where(above & ~right, fx, fa))
-        c, fc = np.where(lower & ~right, b, np.where(above & right, x, c)), np.where(
-            lower & ~right, fb, np.where(above & right, fx, fc))
+        a, fa = (
+            np.where(lower & right, b, np.where(above & ~right, x, a)),
+            np.where(lower & right, fb, np.where(above & ~right, fx, fa)),
+        )
+        c, fc = (
+            np.where(lower & ~right, b, np.where(above & right, x, c)),
+            np.where(lower & ~right, fb, np.where(above & right, fx, fc)),
+        )
         b, fb = np.where(lower, x, b), np.where(lower, fx, fb)
     through, touch = fb < 0.0, (fb >= 0.0) & (fb < TOUCHES)
     return [
-        (which[row][through], a[through], b[through]), (which[row][through], b[through], c[through]),
+        (which[row][through], a[through], b[through]),
+        (which[row][through], b[through], c[through]),
         (which[row][touch], b[touch], b[touch]),
     ]
 
@@ -214,8 +230,9 @@ def _refined(curves: Curves, at: Loops, low: Array, high: Array) -> Array:
         with np.errstate(invalid="ignore", divide="ignore"):
             xi, phi = (a[k] - b[k]) / (c[k] - b[k]), (fa[k] - fb[k]) / (fc[k] - fb[k])
             bowed = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
-            step = fa[k] / (fb[k] - fa[k]) * fc[k] / (fb[k] - fc[k]) + (c[k] - a[k]) / (b[k] - a[k]) * fa[k] / (
-                fc[k] - fa[k]) * fb[k] / (fc[k] - fb[k])
+            step = fa[k] / (fb[k] - fa[k]) * fc[k] / (fb[k] - fc[k]) + (c[k] - a[k]) / (
+                b[k] - a[k]
+            ) * fa[k] / (fc[k] - fa[k]) * fb[k] / (fc[k] - fb[k])
             least = np.minimum(0.5, 2e-16 * np.maximum(np.abs(a[k]), 1.0) / np.maximum(width, TINY))
         share[k] = np.where(bowed, np.clip(np.nan_to_num(step, nan=0.5), least, 1.0 - least), 0.5)
         active = k[~done]

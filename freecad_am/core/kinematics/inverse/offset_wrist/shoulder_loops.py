@@ -22,12 +22,16 @@ SHORTEST_RAD = 1e-12
 def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask, Index]:
     """Angles of axis 6 at which the arm reaches its point on a side, 1 in front of axis 1 or -1: the pose, begin and end of
     each span (k,) rad, whether it begins stretched and whether it ends folded, and the poses that reach it at all angles."""
-    lengths: Array = np.array([(curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2])
+    lengths: Array = np.array(
+        [(curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2]
+    )
     angles = np.concatenate([_angles(curves, squared) for squared in lengths], axis=1)
     pose = np.arange(len(angles))[:, None]
     for _ in range(NEWTON):
         off, slope = _off(curves, pose, angles, side, lengths)
-        angles = angles - np.clip(off / np.where(np.abs(slope) < TINY, TINY, slope), -LONGEST_STEP_RAD, LONGEST_STEP_RAD)
+        angles = angles - np.clip(
+            off / np.where(np.abs(slope) < TINY, TINY, slope), -LONGEST_STEP_RAD, LONGEST_STEP_RAD
+        )
     angles[np.abs(_off(curves, pose, angles, side, lengths)[0]) > ENDS * lengths[0]] = np.nan
     angles %= TURN
     angles = np.sort(angles, axis=1)
@@ -52,21 +56,30 @@ def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask,
 
 def squared_distance(curves: Curves, pose: Index, angle: Array, side: float | Array) -> Array:
     """The squared distance (...) of the point from axis 2, in the arm's plane."""
-    x, y, above = (part[0][pose] + np.cos(angle) * part[1][pose] + np.sin(angle) * part[2][pose]
-                   for part in curves.point.transpose(1, 0, 2))
+    x, y, above = (
+        part[0][pose] + np.cos(angle) * part[1][pose] + np.sin(angle) * part[2][pose]
+        for part in curves.point.transpose(1, 0, 2)
+    )
     result: Array = (side * np.hypot(x, y) - curves.ahead) ** 2 + above**2
     return result
 
 
-def _off(curves: Curves, pose: Index, angle: Array, side: float, lengths: Array) -> tuple[Array, Array]:
+def _off(
+    curves: Curves, pose: Index, angle: Array, side: float, lengths: Array
+) -> tuple[Array, Array]:
     """By how much the squared distance (...) differs from the nearer of both squared lengths, and its slope."""
     cos, sin = np.cos(angle), np.sin(angle)
-    parts = [(part[0][pose], part[1][pose], part[2][pose]) for part in curves.point.transpose(1, 0, 2)]
+    parts = [
+        (part[0][pose], part[1][pose], part[2][pose]) for part in curves.point.transpose(1, 0, 2)
+    ]
     x, y, above = (constant + cos * by_cos + sin * by_sin for constant, by_cos, by_sin in parts)
     x_slope, y_slope, rise = (cos * by_sin - sin * by_cos for _, by_cos, by_sin in parts)
     away = np.hypot(x, y) + TINY
     squared = (side * away - curves.ahead) ** 2 + above**2
-    slope = 2.0 * (side * away - curves.ahead) * side * (x * x_slope + y * y_slope) / away + 2.0 * above * rise
+    slope = (
+        2.0 * (side * away - curves.ahead) * side * (x * x_slope + y * y_slope) / away
+        + 2.0 * above * rise
+    )
     both = squared[..., None] - lengths
     off = np.where(np.abs(both[..., 0]) < np.abs(both[..., 1]), both[..., 0], both[..., 1])
     return off, slope
@@ -78,7 +91,10 @@ def difference(curves: Curves, pose: Index, angle: Array, half: Array, side: Arr
     there = angle + 2.0 * half
     constant, cos, sin = (curves.point[part][:, pose] for part in range(3))
     # of cosine and sine between both angles
-    by_cos, by_sin = (-2.0 * np.sin(half) * np.sin(angle + half), 2.0 * np.sin(half) * np.cos(angle + half))
+    by_cos, by_sin = (
+        -2.0 * np.sin(half) * np.sin(angle + half),
+        2.0 * np.sin(half) * np.cos(angle + half),
+    )
     squares = 2.0 * ((constant * cos).sum(axis=0) * by_cos + (constant * sin).sum(axis=0) * by_sin)
     rise = cos[2] * by_cos + sin[2] * by_sin
     here, after = (constant + np.cos(at) * cos + np.sin(at) * sin for at in (angle, there))
@@ -128,7 +144,12 @@ def _angles(curves: Curves, squared: float) -> Array:
 
 def _square(constant: Array, cos: Array, sin: Array) -> Array:
     """The square (5, n) of constant + cos c + sin s, by constant, cosine, sine, and those of twice the angle."""
-    return np.stack([
-        constant**2 + 0.5 * (cos**2 + sin**2), 2.0 * constant * cos, 2.0 * constant * sin, 0.5 * (cos**2 - sin**2),
-        cos * sin,
-    ])
+    return np.stack(
+        [
+            constant**2 + 0.5 * (cos**2 + sin**2),
+            2.0 * constant * cos,
+            2.0 * constant * sin,
+            0.5 * (cos**2 - sin**2),
+            cos * sin,
+        ]
+    )

@@ -19,7 +19,10 @@ from ....geometry.angles import TURN
 from ....types import Array, Index, Mask
 
 STEPS = {4: 32, 8: 48}  # of a turn, by degree
-PIECES, LEVELS = 4, {4: 10, 8: 7}  # into which undecided steps are cut, and how often: of the higher degree while it tells
+PIECES, LEVELS = (
+    4,
+    {4: 10, 8: 7},
+)  # into which undecided steps are cut, and how often: of the higher degree while it tells
 SURE = 7  # levels: zeros parted by later ones are so near to each other that they have few digits
 VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
 # of the sum of all coefficients, by degree: how far off a value is, and how far an extreme that is a double zero may be
@@ -64,7 +67,10 @@ def harmonics(degree: int, angle: Array, derivative: int = 0) -> Array:
     order = np.arange(degree + 1)[:, None]
     # a derivative turns by a quarter and multiplies
     turned = order * angle + 0.5 * math.pi * derivative
-    rows: Array = np.concatenate([np.cos(turned), np.sin(turned)[1:]]) * np.concatenate([order, order[1:]]) ** derivative
+    rows: Array = (
+        np.concatenate([np.cos(turned), np.sin(turned)[1:]])
+        * np.concatenate([order, order[1:]]) ** derivative
+    )
     return rows
 
 
@@ -103,10 +109,14 @@ def parted(coefficients: Array) -> Parted:
         if is_last or not len(open_.number):
             break
         if waves is None:
-            waves = np.concatenate([coefficients[:1], coefficients[1 : degree + 1] - 1j * coefficients[degree + 1 :]])
+            waves = np.concatenate(
+                [coefficients[:1], coefficients[1 : degree + 1] - 1j * coefficients[degree + 1 :]]
+            )
         width /= PIECES
         steps = _without_empty(_cut(waves, open_, width), fourth, touching, width)
-    number, low, high, near = (np.concatenate(columns) for columns in zip(*(_places(*one) for one in found)))
+    number, low, high, near = (
+        np.concatenate(columns) for columns in zip(*(_places(*one) for one in found))
+    )
     numbers, middles = (np.concatenate(columns) for columns in zip(*touches))
     flat, begin, end = (np.concatenate(columns) for columns in zip(*drowned))
     found_at = _touching(coefficients, numbers, middles, touching, rounding)
@@ -135,23 +145,36 @@ def _touching(
     unsure = np.sqrt(2.0 * noise / np.abs(bend))
     # the same one found from several steps
     order = np.lexsort((at, number))
-    number, at, value, bend, noise, unsure = (column[order] for column in (number, at, value, bend, noise, unsure))
+    number, at, value, bend, noise, unsure = (
+        column[order] for column in (number, at, value, bend, noise, unsure)
+    )
     once = np.ones(len(number), dtype=bool)
     once[1:] = (number[1:] != number[:-1]) | (np.diff(at) > unsure[1:])
     apart = np.sqrt(np.maximum(-2.0 * value / bend, 0.0))
     apart[np.abs(value) <= noise] = 0.0
     two = once & (apart > 0.0)
-    return np.concatenate([number[once], number[two]]), np.concatenate([(at - apart)[once], (at + apart)[two]])
+    return np.concatenate([number[once], number[two]]), np.concatenate(
+        [(at - apart)[once], (at + apart)[two]]
+    )
 
 
 def _first(coefficients: Array, width: float, fourth: Array, touching: Array) -> _Steps:
     """The steps of a whole turn that may have a zero."""
     degree = len(coefficients) // 2
     values, slopes = (_grid(degree) @ coefficients).reshape(2, STEPS[degree] + 1, -1)
-    kept = np.flatnonzero(_may_be_zero(values[:-1], values[1:], slopes[:-1], slopes[1:], _off(fourth, touching, width)))
+    kept = np.flatnonzero(
+        _may_be_zero(
+            values[:-1], values[1:], slopes[:-1], slopes[1:], _off(fourth, touching, width)
+        )
+    )
     row, number = np.divmod(kept, coefficients.shape[1])
     values, slopes, after = values.ravel(), slopes.ravel(), kept + coefficients.shape[1]
-    return _Steps(number, row * width, np.stack([values[kept], values[after]]), np.stack([slopes[kept], slopes[after]]))
+    return _Steps(
+        number,
+        row * width,
+        np.stack([values[kept], values[after]]),
+        np.stack([slopes[kept], slopes[after]]),
+    )
 
 
 def _off(fourth: Array, touching: Array, width: float) -> Array:
@@ -177,7 +200,9 @@ def _some(steps: _Steps, kept: Index | Mask) -> _Steps:
     return _Steps(steps.number[kept], steps.begin[kept], steps.value[:, kept], steps.slope[:, kept])
 
 
-def _single_or_open(steps: _Steps, fourth: Array, rounding: Array, width: float) -> tuple[_Steps, _Steps]:
+def _single_or_open(
+    steps: _Steps, fourth: Array, rounding: Array, width: float
+) -> tuple[_Steps, _Steps]:
     """Of steps that may have a zero those that have one alone, and those of which it cannot be told."""
     number, _, (one, other), (rise, last) = steps
     off = SLOPE_SHARE / 3.0 * width**4 * fourth[number] + 3.0 * rounding[number]
@@ -191,7 +216,9 @@ def _drowned(steps: _Steps, rounding: Array) -> Mask:
     """Steps throughout which the cubic is of the size of rounding: pieces would tell no more."""
     one, other = np.abs(steps.value)
     rise, last = np.abs(steps.slope)
-    return np.asarray(np.maximum(one, other) + np.maximum(rise, last) < DROWNED * rounding[steps.number])
+    return np.asarray(
+        np.maximum(one, other) + np.maximum(rise, last) < DROWNED * rounding[steps.number]
+    )
 
 
 def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
@@ -214,7 +241,9 @@ def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
     values[1:-1], slopes[1:-1] = value.real, slope.imag * (-width / 3.0)
     begin = steps.begin + np.arange(PIECES)[:, None] * width
     return _Steps(
-        np.tile(steps.number, PIECES), begin.ravel(), np.stack([values[:-1].ravel(), values[1:].ravel()]),
+        np.tile(steps.number, PIECES),
+        begin.ravel(),
+        np.stack([values[:-1].ravel(), values[1:].ravel()]),
         np.stack([slopes[:-1].ravel(), slopes[1:].ravel()]),
     )
 
