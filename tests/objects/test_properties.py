@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Every parameter of every dataclass goes into a document object and comes back the same."""
 
+import copy
 import dataclasses
 import math
 import random
@@ -13,13 +14,24 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.parameters.filled import CladdingParameters, SolidParameters
+from freecad_am.core.parameters.filled import (
+    CladdingParameters,
+    DevelopableParameters,
+    SolidParameters,
+)
 from freecad_am.core.parameters.inspection import InspectionParameters
 from freecad_am.core.parameters.joints import METHODS, JointParameters
+from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.parameters.scan import ScanParameters
+from freecad_am.core.parameters.strategy import (
+    CurvesParameters,
+    RevolutionParameters,
+    SurfaceParameters,
+)
 from freecad_am.objects.fields import properties, rows
+from freecad_am.sections import fields as sections
 
 CLASSES = (
     (CellParameters, "cell"),
@@ -28,6 +40,16 @@ CLASSES = (
     (ProcessParameters, "process"),
     (JointParameters, "joints"),
     (ProgramParameters, "program"),
+)
+FAMILIES = (
+    (DevelopableParameters, "strategy"),
+    (SolidParameters, "strategy"),
+    (CladdingParameters, "strategy"),
+    (SurfaceParameters, "strategy"),
+    (CurvesParameters, "strategy"),
+    (InspectionParameters, "inspection"),
+    (PlaceParameters, "place"),
+    (ScanParameters, "scan"),
 )
 TEXTS = {
     "machine": "staubli-rx60bl",
@@ -327,3 +349,109 @@ def test_a_wire_feed_of_an_older_document_keeps_its_number_and_may_become_auto(h
     properties.write(holder, ProcessParameters())
     assert holder.WireFeed == "auto" and holder.getGroupOfProperty("WireFeed") == "Group"
     assert properties.read(holder, ProcessParameters, "process").wire.feed == "auto"
+
+
+# what some keys need: a value of their own, or another key beside them
+JOB_NUMBERS = {"spacing_range_high": 1.4, "spacing_range_low": 0.7, "step": 200.0}
+JOB_COMPANIONS = {("strategy", "base_height"): {"base": {"radius": 50.0}}}
+JOB_COMPANIONS["inspection", "side"] = {"thickness": 2.0}
+NOT_FOR_CLADDING = ("solid_layers", "margin")
+
+
+def job_section(row, spelling, name):
+    """The section of a job file that gives one key, the other end of a range at its default."""
+    value = spelling
+    if isinstance(row.path[-1], int):
+        ends = list(default_range(row))
+        ends[row.path[-1]] = spelling
+        value = ends
+    section = copy.deepcopy(JOB_COMPANIONS.get((name, row.key), {}))
+    steps = [step for step in row.path if isinstance(step, str)]
+    inner = section
+    for step in steps[:-1]:
+        inner = inner.setdefault(step, {})
+    inner[steps[-1]] = value
+    return section
+
+
+def default_range(row):
+    """The default ends, in outer units, of the range that a row is an end of."""
+    for cls, _ in (*CLASSES, *FAMILIES):
+        ends = {each.path: each for each in rows.rows(cls)}
+        if row in ends.values():
+            return tuple(row.outer(ends[(*row.path[:-1], end)].default) for end in (0, 1))
+    raise AssertionError(row)
+
+
+def job_number(row):
+    """A number in inner units that is allowed and not the default."""
+    if row.key in JOB_NUMBERS:
+        return JOB_NUMBERS[row.key]
+    spec = row.spec
+    step = {f.ANGLE: math.radians(7.0), f.TURN_RATE: math.radians(7.0), f.RATIO: 0.07}
+    low = spec.low if spec.low is not None else 0.0
+    value = low + step.get(spec.kind, 3)
+    if spec.high is not None and value > spec.high:
+        value = 0.5 * (low + spec.high)
+    return value if value != row.default else value + step.get(spec.kind, 1)
+
+
+def job_values(row):
+    if row.spec.kind == f.FLAG:
+        return [not row.default]
+    if row.spec.kind == f.CHOICE:
+        return [choice for choice in row.spec.choices if choice != row.default]
+    words = [word for word in row.spec.words if word not in (row.default, "inf")]
+    return [job_number(row), *words]
+
+
+def spellings(row, value):
+    """What a job file may have for a value: the word, the bare number, and texts with the unit."""
+    if row.spec.kind in (f.CHOICE, f.FLAG) or isinstance(value, str):
+        return [value]
+    shown = row.outer(value)
+    return [shown, f"{shown} {row.unit}", f"{shown}{row.unit}"] if row.unit else [shown]
+
+
+def job_cases():
+    for cls, section in (*CLASSES, *FAMILIES):
+        for row in rows.rows(cls):
+            plain_text = row.spec.kind in (f.TEXT, f.POSE) or row.form == rows.TEXT_LIST
+            if not plain_text and not (cls is CladdingParameters and row.key in NOT_FOR_CLADDING):
+                yield pytest.param(cls, section, row, id=f"{cls.__name__}-{row.key}")
+
+
+@pytest.mark.parametrize(("cls", "section", "row"), job_cases())
+def test_every_key_of_a_job_file_reaches_the_core_by_its_property(holder, cls, section, row):
+    """With a value that is not the default, in each spelling; a macro takes the same spellings."""
+    properties.add(holder, cls, "Group")
+    for value in job_values(row):
+        for spelling in spellings(row, value):
+            parameters = sections.build(cls, job_section(row, spelling, section), section)
+            properties.write(holder, parameters)
+            again = properties.read(holder, cls, section)
+            assert_same(again, parameters)
+            reached = rows.flat(again)[row.key]
+            assert reached == (pytest.approx(value, rel=1e-12) if type(value) is float else value)
+            assert row.inner(spelling, row.key) == pytest.approx(reached, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["20 %", "20%", " 20.0 % ", "20", "2e1 %", 20, 20.0])
+@pytest.mark.parametrize("key", ["bead_overlap", "fill_density", "gap", "spacing_range_low"])
+def test_a_percentage_may_be_written_with_its_sign_or_without(text, key):
+    row = next(row for row in rows.rows(SolidParameters) if row.key == key)
+    assert row.inner(text, key) == pytest.approx(0.2, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["20 %%", "%", "twenty", "20 mm", "20 % of it", ""])
+def test_what_is_no_percentage_is_rejected_with_an_example(text):
+    row = next(row for row in rows.rows(SolidParameters) if row.key == "fill_density")
+    with pytest.raises(InputError, match="is not a percentage; give one such as 20 %"):
+        row.inner(text, "fill_density")
+
+
+def test_a_percentage_in_a_property_has_no_digits_of_rounding(holder):
+    properties.add(holder, SolidParameters, "Group")
+    for percent in range(1, 90):
+        properties.write(holder, rows.build(SolidParameters, {"bead_overlap": percent * 0.01}))
+        assert holder.BeadOverlap == f"{float(percent)} %"

@@ -134,7 +134,7 @@ class Row:
             and not isinstance(value, str)
             and value is not None
         ):
-            return value / f.TO_INNER[f.RATIO] if self.spec.kind == f.RATIO else degrees(value)
+            return percent(value) if self.spec.kind == f.RATIO else degrees(value)
         return value
 
     def text(self, value: Any) -> str:
@@ -215,6 +215,14 @@ def degrees(angle: float) -> float:
     return short if abs(math.radians(short) - angle) <= 4e-16 * max(1.0, abs(angle)) else value
 
 
+def percent(ratio: float) -> float:
+    """Percent of a ratio, without the noise of the last digits where the round number means the same."""
+    value = ratio / f.TO_INNER[f.RATIO]
+    short = float(f"{value:.13g}")
+    inner = short * f.TO_INNER[f.RATIO]
+    return short if abs(inner - ratio) <= 4e-16 * max(1.0, abs(ratio)) else value
+
+
 def _assemble(cls: type, nested: dict[str, Any]) -> Any:
     values = {}
     for field in dataclasses.fields(cls):
@@ -271,12 +279,16 @@ def quantity(text: str) -> Any:
 def _number(spec: f.Spec, value: Any, where: str) -> Any:
     also = Text.joined(" or ", ("", *spec.words))
     if spec.kind not in _UNITS:
+        percentage = spec.kind == f.RATIO
         try:
-            number = float(value)
+            number = float(_without_percent_sign(value) if percentage else value)
         except (TypeError, ValueError):
-            raise InputError(
-                "BAD_VALUE", where, "{!r} is not a number; give one such as 2{}", value, also
-            ) from None
+            template = (
+                "{!r} is not a percentage; give one such as 20 %{}"
+                if percentage
+                else "{!r} is not a number; give one such as 2{}"
+            )
+            raise InputError("BAD_VALUE", where, template, value, also) from None
         if spec.kind == f.COUNT:
             return int(number) if number.is_integer() else number
         return number * f.TO_INNER.get(spec.kind, 1.0)
@@ -286,6 +298,13 @@ def _number(spec: f.Spec, value: Any, where: str) -> Any:
     if found.Unit != unit and found.Unit != App.Units.Unit():
         raise InputError("BAD_UNIT", where, "{!s} has another dimension; give {}", value, wanted)
     return math.radians(found.Value) if spec.kind in (f.ANGLE, f.TURN_RATE) else float(found.Value)
+
+
+def _without_percent_sign(value: Any) -> Any:
+    """The number of a text such as '20 %' or '20%', still a text; any other value as it is."""
+    if isinstance(value, str) and value.rstrip().endswith("%"):
+        return value.rstrip()[:-1]
+    return value
 
 
 def _quantity(value: Any, where: str, example: str) -> Any:
