@@ -18,6 +18,7 @@ from .results.fingerprints import digits, fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape
 from .shapes.chosen import FeatureStage, names_of, source_of
 from .shapes.marks import EDGE
+from .shapes.places import global_placement
 from .stage_parts import Link, Outcome, Section, Work
 
 
@@ -99,9 +100,7 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
         return None
     target, names = link[0], names_of(link)
     name = names[0] if names else ""
-    placement = (
-        target.getGlobalPlacement() if hasattr(target, "getGlobalPlacement") else App.Placement()
-    )
+    placement = global_placement(target)
     sketch_axes = {
         "V_Axis": App.Vector(0, 1, 0),
         "H_Axis": App.Vector(1, 0, 0),
@@ -109,15 +108,10 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
     }
     if name in sketch_axes:
         return placement.Base, placement.Rotation.multVec(sketch_axes[name])
-    shape = getattr(target, "Shape", None)
-    edges = [] if shape is None or shape.isNull() else _named(shape, name)
+    edges = _edges_of(target, name)
     if len(edges) == 1 and edges[0].ShapeType == "Edge" and edges[0].Curve.TypeId in _LINES:
         edge = edges[0]
-        outer = placement.multiply(target.Placement.inverse())
-        start, end = (
-            outer.multVec(edge.valueAt(edge.FirstParameter)),
-            outer.multVec(edge.valueAt(edge.LastParameter)),
-        )
+        start, end = edge.valueAt(edge.FirstParameter), edge.valueAt(edge.LastParameter)
         return start, (end - start).normalize()
     if target.TypeId in ("App::Line", "PartDesign::Line"):
         along = App.Vector(1, 0, 0) if target.TypeId == "App::Line" else App.Vector(0, 0, 1)
@@ -131,6 +125,12 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
     )
 
 
-def _named(shape: Any, name: str) -> list[Any]:
-    """The edge of a shape that has a name, all without one; none where it has no such."""
+def _edges_of(target: Any, name: str) -> list[Any]:
+    """The edge of an object that has a name, all without one, in document coordinates; none where it has no such."""
+    try:
+        shape = global_shape(target)
+    except InputError as error:
+        if error.code != "NO_SHAPE":
+            raise
+        return []
     return [edge for k, edge in enumerate(shape.Edges, start=1) if name in ("", f"{EDGE}{k}")]

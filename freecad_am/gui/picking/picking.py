@@ -10,6 +10,7 @@ from typing import Any
 import FreeCADGui as Gui
 
 from ...brep.walls.standing import stand
+from ...objects.fields.link_targets import links_to_nothing
 from ...objects.job_group import is_group
 from ...objects.shapes import marks, nested
 from ...objects.shapes.bodies import global_shape
@@ -139,7 +140,7 @@ def refused(document: Any) -> str:
             continue
         if stage_of(obj) is not None or is_group(obj):
             return tr("{} belongs to a job; select the part itself.").format(obj.Label)
-        if obj.isDerivedFrom("App::Link") and obj.getLinkedObject() in (None, obj):
+        if links_to_nothing(obj):
             return tr("{} links to nothing: what it showed is gone or was not loaded.").format(
                 obj.Label
             )

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from ..shapes.bodies import body_of, global_shape, outer_placement, shape_of
+from ..shapes.bodies import body_of, global_shape, shape_of
+from ..shapes.places import outer_matrix
 
 MOST_KEPT = 64  # shapes, and meshes
 
@@ -42,7 +43,7 @@ def shape_fingerprint(source: Any) -> str:
         parts,
         shape.Orientation,
         shape.Placement.toMatrix().A,
-        outer_placement(source).toMatrix().A,
+        outer_matrix(source).tobytes(),
     )
     for k, (kept, decided, text) in enumerate(_shapes):
         if kept.isPartner(shape) and decided == rest:
@@ -68,7 +69,7 @@ def _of_shape(shape: Any) -> str:
 
 
 def _mesh_fingerprint(source: Any) -> str:
-    asked = f"{_digest(source.Mesh)} {outer_placement(source).toMatrix().A}"
+    asked = f"{_digest(source.Mesh)} {outer_matrix(source).tobytes()}"
     if asked not in _meshes:
         body = body_of(source)
         rounded = np.round(body.vertices, 4) + 0.0

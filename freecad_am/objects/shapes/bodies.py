@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import FreeCAD as App
 import numpy as np
 import Part
 
@@ -16,8 +15,19 @@ from ...brep.shapes import tessellate
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ..stage_parts import Link
+from .places import (
+    GROUPS,
+    dependencies_of,
+    elements_of,
+    is_rigid,
+    is_scaled,
+    link_property,
+    outer_matrix,
+    outer_placement,
+    path_from_top,
+    shown_paths,
+)
 
-GROUPS = ("App::Part", "App::DocumentObjectGroup")
 FIXTURES = Link(
     "Fixtures",
     "",
@@ -27,33 +37,99 @@ FIXTURES = Link(
 )
 
 
-def global_shape(source: Any) -> Any:
-    """The shape of an object in the coordinates of the document, wherever it is nested. InputError 'NO_SHAPE'."""
-    shape, outer = shape_of(source), outer_placement(source)
-    if not outer.isIdentity():
-        shape = shape.copy()
-        shape.Placement = outer.multiply(shape.Placement)
-    return shape
+def global_shape(source: Any, path: str = "") -> Any:
+    """The shape of an object in the coordinates of its document, wherever the object is nested.
+
+    Parameters
+    ----------
+    source : App.DocumentObject
+        An object with a shape: a part, body, link, link array, container.
+    path : str
+        What of the object is meant: `""` for all of it, `"Face3"`, `"Box.Edge1"` of what a container or link shows, `"1."`
+        for the second element of a link array.
+
+    Raises
+    ------
+    InputError
+        NO_SHAPE for what has no shape, SEVERAL_PLACES for an object that several link groups show.
+    """
+    shape, outer = shape_of(source, path), outer_matrix(source)
+    if is_rigid(outer):
+        placement = outer_placement(source)
+        if not placement.isIdentity():
+            shape = shape.copy()
+            shape.Placement = placement.multiply(shape.Placement)
+        return shape
+    top, whole_path = path_from_top(source, path)
+    if path or shape.ShapeType != "Compound":
+        seen = Part.getShape(top, whole_path, needSubElement=_is_element(path))
+    else:
+        leaves = [Part.getShape(top, whole_path + leaf) for leaf in shown_paths(source)]
+        seen = Part.makeCompound([leaf for leaf in leaves if not leaf.isNull()])
+    if seen.isNull():
+        raise _no_shape(source)
+    return _once(seen) if _shows_group(source) else seen
 
 
-def shape_of(source: Any) -> Any:
-    """The shape of an object where it places itself. InputError 'NO_SHAPE'."""
+def shape_of(source: Any, path: str = "") -> Any:
+    """The shape of an object where it places itself. path: as of `global_shape`. InputError 'NO_SHAPE'."""
+    if path:
+        shape = Part.getShape(source, path, needSubElement=_is_element(path))
+        if shape is None or shape.isNull():
+            raise InputError(
+                "NO_SHAPE",
+                source.Label,
+                "{} of it has no shape; choose an object with a shape",
+                path,
+            )
+        return shape
     shape = getattr(source, "Shape", None)
     if shape is None or shape.isNull():
-        raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
-    return _once(shape) if _is_group(source) else shape
+        raise _no_shape(source)
+    shape = _with_scales(source, shape)
+    return _once(shape) if _shows_group(source) else shape
+
+
+def _with_scales(source: Any, shape: Any) -> Any:
+    """The shape of an object; of a container or link array with scaled links in it, put together from what it shows.
+
+    FreeCAD 0.20 scales such elements of a compound by the cube root of the volume's factor in all directions, and no
+    version applies the scale that an element object of a link array has. The shape of a single path is right in all.
+    """
+    if shape.ShapeType != "Compound" or "Shape" in source.PropertiesList:
+        return shape
+    if not any(is_scaled(one) for one in dependencies_of(source).objects):
+        return shape
+    leaves = [Part.getShape(source, path) for path in shown_paths(source)]
+    return Part.makeCompound([leaf for leaf in leaves if not leaf.isNull()])
+
+
+def _no_shape(source: Any) -> InputError:
+    return InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
+
+
+def _is_element(path: str) -> bool:
+    """Whether a path ends with the name of a face or an edge, and not with a dot."""
+    return bool(path) and not path.endswith(".")
 
 
 def renumbers(source: Any) -> bool:
     """Whether faces and edges of a part or group have other numbers in its `shape_of` than FreeCAD gives them: something is
     there twice, and others follow."""
-    shape = getattr(source, "Shape", None) if _is_group(source) else None
+    shape = getattr(source, "Shape", None) if _shows_group(source) else None
     kept = [] if shape is None or shape.isNull() else _kept(_leaves(shape))
     return kept != list(range(len(kept)))
 
 
-def _is_group(source: Any) -> bool:
-    return any(source.isDerivedFrom(kind) for kind in GROUPS)
+def _shows_group(source: Any) -> bool:
+    """Whether an object is a part or group, or a link, link array or link group that shows one."""
+    shown = source.getLinkedObject(True) or source
+    if any(shown.isDerivedFrom(kind) for kind in GROUPS):
+        return True
+    base = link_property(shown, "LinkedObject")
+    base = base[0] if isinstance(base, tuple) else base
+    bases = elements_of(shown) if base is None else [base]
+    return any(_shows_group(one) for one in bases if one != shown)
 
 
 def _once(shape: Any) -> Any:
@@ -84,13 +160,6 @@ def _is_same(one: Any, other: Any) -> bool:
     return np.allclose(
         one.Placement.toMatrix().A, other.Placement.toMatrix().A, rtol=0.0, atol=1e-9
     )
-
-
-def outer_placement(source: Any) -> Any:
-    """What moves an object as it places itself to where it stands in the document: the placements of all it is nested in."""
-    if hasattr(source, "getGlobalPlacement") and hasattr(source, "Placement"):
-        return source.getGlobalPlacement().multiply(source.Placement.inverse())
-    return App.Placement()
 
 
 def body_of(source: Any) -> Body:
@@ -125,8 +194,7 @@ def taken(source: Any) -> Taken:
     if mesh is None:
         return Taken(source.Label, global_shape(source))
     # a mesh stands where its own placement puts it
-    frame = np.array(outer_placement(source).toMatrix().A).reshape(4, 4)
-    return Taken(source.Label, None, mesh.copy(), frame)
+    return Taken(source.Label, None, mesh.copy(), outer_matrix(source))
 
 
 def fixtures_of(obj: Any) -> tuple[Taken, ...]:

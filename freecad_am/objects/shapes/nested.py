@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...core.issues import InputError
-from .bodies import GROUPS, global_shape, outer_placement, renumbers
+from .bodies import global_shape, renumbers
 from .marks import EDGE, FACE, PLANE
+from .places import GROUPS, outer_placement
 
 LINES = ("App::Line", "PartDesign::Line")
 SKETCH_AXES = ("V_Axis", "H_Axis", "N_Axis")

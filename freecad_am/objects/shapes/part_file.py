@@ -15,7 +15,8 @@ from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import InputError
 from ..work import hooks
 from . import document_file
-from .bodies import global_shape, outer_placement, renumbers
+from .bodies import global_shape, renumbers
+from .places import outer_placement
 
 # what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
 ORIGIN = ("App::Line", "App::Plane", "App::Point")

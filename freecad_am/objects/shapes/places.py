@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where an object stands in its document, and what decides that: containers, links and linked objects.
+
+FreeCAD stores a placement relative to the container. `getGlobalPlacement` gives the place in the document, but objects of
+type App::Link and App::LinkElement do not have it, and it ignores link groups and link arrays. So we walk up the containers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+
+from ...core.issues import InputError
+
+GROUPS = ("App::Part", "App::DocumentObjectGroup")
+RIGID = 1e-9  # by which rows of a rotation may differ from unit vectors at right angles
+
+
+@dataclass(frozen=True)
+class Dependencies:
+    """What determines the shape and the place of an object.
+
+    Attributes
+    ----------
+    objects : tuple
+        The object itself, what it is made from, and what its links show, in whatever document that is.
+    containers : tuple
+        The containers that place the object, from the innermost to the outermost.
+    documents : tuple
+        The documents of all these, that of the object first.
+    """
+
+    objects: tuple[Any, ...]
+    containers: tuple[Any, ...]
+    documents: tuple[Any, ...]
+
+
+def containers_of(source: Any) -> tuple[Any, ...]:
+    """The containers that hold an object, from the innermost to the outermost.
+
+    App::Part, PartDesign::Body, assemblies, link groups, link arrays (of their elements) and plain groups.
+    InputError SEVERAL_PLACES for an object that several link groups show.
+    """
+    chain: list[Any] = []
+    container = _container_of(source)
+    while container is not None and container != source and container not in chain:
+        chain.append(container)
+        container = _container_of(container)
+    return tuple(chain)
+
+
+def _container_of(obj: Any) -> Any:
+    """The container that places an object, None for an object at the top of its document."""
+    group = obj.getParentGeoFeatureGroup()
+    if group is not None:
+        return group
+    linking = [one for one in dict.fromkeys(obj.InList) if obj in elements_of(one)]
+    if len(linking) > 1:
+        raise InputError(
+            "SEVERAL_PLACES",
+            obj.Label,
+            "it is shown by several link groups ({}), each at a place of its own; choose one of these, or make a link to it",
+            ", ".join(one.Label for one in linking),
+        )
+    return linking[0] if linking else obj.getParentGroup()
+
+
+def elements_of(obj: Any) -> list[Any]:
+    """The objects that a link group or a link array shows, [] for other objects."""
+    return list(link_property(obj, "ElementList") or ())
+
+
+def link_property(obj: Any, name: str) -> Any:
+    """A property of an object as a link, whatever the object calls it; None for an object that is no link."""
+    try:
+        return obj.getLinkExtProperty(name)
+    except (AttributeError, RuntimeError, TypeError):
+        return None
+
+
+def outer_matrix(source: Any) -> np.ndarray:
+    """The matrix (4, 4) from where an object places itself to the coordinates of its document."""
+    chain = containers_of(source)
+    if _asks_freecad(source, chain):
+        placement = source.getGlobalPlacement().multiply(source.Placement.inverse())
+        return _array(placement.toMatrix())
+    matrix = np.eye(4)
+    for container in chain:
+        matrix = _own_matrix(container) @ matrix
+    return matrix
+
+
+def outer_placement(source: Any) -> Any:
+    """As `outer_matrix`, as a placement. InputError SCALED_CONTAINER where a container scales or mirrors the object."""
+    chain = containers_of(source)
+    if _asks_freecad(source, chain):
+        return source.getGlobalPlacement().multiply(source.Placement.inverse())
+    scaling = [one for one in chain if not is_rigid(_own_matrix(one))]
+    if not scaling:
+        placement = App.Placement()
+        for container in chain:
+            if hasattr(container, "Placement"):
+                placement = container.Placement.multiply(placement)
+        return placement
+    matrix = outer_matrix(source)
+    if is_rigid(matrix):
+        return App.Placement(App.Matrix(*matrix.ravel().tolist()))
+    raise InputError(
+        "SCALED_CONTAINER",
+        source.Label,
+        "{} scales or mirrors it; choose {} itself",
+        scaling[0].Label,
+        scaling[0].Label,
+    )
+
+
+def global_placement(source: Any) -> Any:
+    """The placement of an object in the coordinates of its document. InputError as `outer_placement`."""
+    own = getattr(source, "Placement", None)
+    chain = containers_of(source)
+    if _asks_freecad(source, chain):
+        return source.getGlobalPlacement()
+    outer = outer_placement(source)
+    return outer if own is None else outer.multiply(own)
+
+
+def is_rigid(matrix: np.ndarray) -> bool:
+    """Whether a matrix (4, 4) moves and turns, but neither scales nor mirrors."""
+    turn = matrix[:3, :3]
+    is_unit = np.allclose(turn.T @ turn, np.eye(3), rtol=0.0, atol=RIGID)
+    return bool(is_unit and np.linalg.det(turn) > 0.0)
+
+
+def path_from_top(source: Any, path: str = "") -> tuple[Any, str]:
+    """The outermost container of an object, or the object itself, and the path from there to the object and to what
+    `path` names in it."""
+    top, steps = source, path
+    for container in containers_of(source):
+        steps, top = f"{top.Name}.{steps}", container
+    return top, steps
+
+
+def _asks_freecad(source: Any, chain: tuple[Any, ...]) -> bool:
+    """Whether FreeCAD itself knows the place: of a feature that no link group or link array holds."""
+    if not hasattr(source, "getGlobalPlacement") or not hasattr(source, "Placement"):
+        return False
+    return all(link_property(one, "ElementList") is None for one in chain)
+
+
+def _own_matrix(container: Any) -> np.ndarray:
+    """What a container does to what it holds: its placement, and the scale of a link array."""
+    placement = getattr(container, "Placement", None)
+    matrix = np.eye(4) if placement is None else _array(placement.toMatrix())
+    scale = link_property(container, "ScaleVector")
+    if scale is not None:
+        matrix[:3, :3] = matrix[:3, :3] * np.array([scale.x, scale.y, scale.z])
+    return matrix
+
+
+def is_scaled(obj: Any) -> bool:
+    """Whether an object is a link that scales or mirrors what it shows, or one of its elements."""
+    scales = [link_property(obj, "ScaleVector"), *(link_property(obj, "ScaleList") or ())]
+    return any(scale is not None and tuple(scale) != (1.0, 1.0, 1.0) for scale in scales)
+
+
+def shown_paths(source: Any) -> list[str]:
+    """The paths to the objects that a container, link group or link array shows, in FreeCAD's order; `[""]` for an object
+    with a shape of its own. What is hidden in it is left out, as FreeCAD does."""
+    shown = source.getLinkedObject(True) or source
+    if "Shape" in shown.PropertiesList or "Mesh" in shown.PropertiesList:
+        return [""]
+    paths = []
+    for path in source.getSubObjects():
+        held = source.getSubObject(path, retType=1)
+        if held is not None and _is_visible(source, path.rstrip("."), held):
+            paths += [path + rest for rest in shown_paths(held)]
+    return paths
+
+
+def _is_visible(container: Any, name: str, held: Any) -> bool:
+    visible = container.isElementVisible(name)
+    return bool(held.Visibility if visible < 0 else visible)
+
+
+def _array(matrix: Any) -> np.ndarray:
+    return np.array(matrix.A).reshape(4, 4)
+
+
+def dependencies_of(source: Any) -> Dependencies:
+    """Everything that determines the shape of an object and its place in the document.
+
+    A change of any property of these objects may change the shape, or move it. Stages of this workbench are left out.
+    """
+    chain = containers_of(source)
+    found = _made_from([source])
+    placed_by: list[Any] = []
+    for container in chain:
+        placed_by += [one for one in container.OutList if not _is_held(one, container)]
+    found = _made_from([*found, *placed_by], (*chain, *found))
+    documents = dict.fromkeys(one.Document for one in (source, *found, *chain))
+    return Dependencies(tuple(found), chain, tuple(documents))
+
+
+def _made_from(start: list[Any], known: tuple[Any, ...] = ()) -> list[Any]:
+    """Objects with all that they are made from, each once. known: objects whose inputs are not looked at."""
+    found = dict.fromkeys(start)
+    waiting = [one for one in start if one not in known]
+    while waiting:
+        for one in _inputs_of(waiting.pop()):
+            if one not in found and one not in known and not hasattr(one, "ResultLayout"):
+                found[one] = None
+                waiting.append(one)
+    return list(found)
+
+
+def _inputs_of(obj: Any) -> Iterator[Any]:
+    yield from (one for one in obj.OutList if one is not None)
+    linked = obj.getLinkedObject(False)
+    if linked is not None and linked != obj:
+        yield linked
+
+
+def _is_held(obj: Any, container: Any) -> bool:
+    """Whether an object is in a container, and so does not place it."""
+    held = (*getattr(container, "Group", ()), *elements_of(container))
+    return obj in held or obj == getattr(container, "Origin", None)
