@@ -28,9 +28,10 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
             table = open_points(doc, path)
             table.purgeTouched()
         return table
-    from ..objects.shapes.part_file import part_shape
+    from ..objects.shapes.file_issues import keep_file_issues
+    from ..objects.shapes.part_file import part_content
 
-    shape, label = part_shape(path, object, scale)
+    shape, label, issues = part_content(path, object, scale)
     with one_step(doc, "Open part"):
         is_mesh = hasattr(shape, "Topology")
         part = doc.addObject("Mesh::Feature" if is_mesh else "Part::Feature", "Part")
@@ -41,5 +42,6 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
                 "App::PropertyLength", "FileScale", "Part", "How long one unit of the file is.", 1
             )
             part.FileScale = scale
+        keep_file_issues(part, issues)
         part.purgeTouched()
     return part

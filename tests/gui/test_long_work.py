@@ -290,7 +290,7 @@ def test_progress_is_shown_with_words(person, feature, monkeypatch):
         while True:
             time.sleep(0.01)
 
-    monkeypatch.setattr(part_file, "read_shape", endlessly)
+    monkeypatch.setattr(part_file, "shape_content", endlessly)
     watcher = Watcher(person, look)
     with pytest.raises(Cancelled):
         part_file.part_shape("/parts/cup.step")

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import FreeCAD  # before Part, which crashes the process without
 import Mesh
@@ -17,7 +17,7 @@ import Part
 
 from ...core.geometry.located import located
 from ...core.geometry.mesh.file_unit import MESHES
-from ...core.issues import InputError
+from ...core.issues import InputError, Issue
 from . import apart
 
 READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -26,7 +26,19 @@ FARTHEST = (
 )
 
 
+class FileContent(NamedTuple):
+    """shape: the Part.Shape or Mesh.Mesh of a file. issues: notes on what of the file was left out."""
+
+    shape: Any
+    issues: tuple[Issue, ...]
+
+
 def read_shape(path: str | os.PathLike[str]) -> Any:
+    """The Part.Shape of a STEP, IGES or BREP file, as `shape_content`."""
+    return shape_content(path).shape
+
+
+def shape_content(path: str | os.PathLike[str]) -> FileContent:
     """The Part.Shape of a STEP, IGES or BREP file, in the file's coordinates, mm.
 
     Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or 'BAD_FILE' naming the file.
@@ -62,7 +74,7 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
         ) from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
-    return apart.apart(_shape, file, where)
+    return FileContent(*apart.apart(_shape, file, where))
 
 
 def reading_shape(path: str | os.PathLike[str]) -> AbstractContextManager[None]:
@@ -74,6 +86,11 @@ def reading_shape(path: str | os.PathLike[str]) -> AbstractContextManager[None]:
 
 
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
+    """The Mesh.Mesh of an STL, OBJ or 3MF file, as `mesh_content`."""
+    return mesh_content(path, scale).shape
+
+
+def mesh_content(path: str | os.PathLike[str], scale: float = 1.0) -> FileContent:
     """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. scale: mm of one unit of an STL or OBJ file,
     which tells none; a 3MF file tells its own. InputErrors as `read_shape`."""
     file = located(path)
@@ -82,7 +99,7 @@ def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
         raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
     if file.stat().st_size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
-    return apart.apart(_mesh, file, where, scale)
+    return FileContent(*apart.apart(_mesh, file, where, scale))
 
 
 def placed_mesh(mesh: Any, placement: Any) -> Any:
@@ -93,12 +110,12 @@ def placed_mesh(mesh: Any, placement: Any) -> Any:
     return found
 
 
-def _mesh(file: Path, where: str, scale: float) -> Any:
+def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]:
     from . import obj_polygons, three_mf  # few parts are meshes
 
     mesh = Mesh.Mesh()
     if file.suffix.lower() == ".3mf":
-        points, corners = three_mf.triangles(file)
+        points, corners, issues = three_mf.content(file)
         _refuse_far(float(np.abs(points).max()), where)
         mesh.addFacets(
             (
@@ -106,7 +123,7 @@ def _mesh(file: Path, where: str, scale: float) -> Any:
                 [tuple(row) for row in corners.tolist()],
             )
         )
-        return mesh
+        return mesh, issues
     try:
         with _quiet():
             mesh.read(str(file))
@@ -129,10 +146,10 @@ def _mesh(file: Path, where: str, scale: float) -> Any:
         larger = FreeCAD.Matrix()
         larger.scale(scale, scale, scale)
         mesh.transform(larger)
-    return mesh
+    return mesh, ()
 
 
-def _shape(file: Path, where: str) -> Any:
+def _shape(file: Path, where: str) -> tuple[Any, tuple[Issue, ...]]:
     bad = InputError(
         "BAD_FILE", where, "it is damaged or not what its ending says; export the part again"
     )
@@ -147,7 +164,7 @@ def _shape(file: Path, where: str) -> Any:
     if not (shape.Faces or shape.Edges):
         raise InputError("EMPTY_FILE", where, "it holds no shape; export the part again")
     _refuse_far(_reach(shape.BoundBox), where)
-    return shape
+    return shape, ()
 
 
 def _reach(box: Any) -> float:

@@ -2,7 +2,9 @@
 """Triangles of a 3MF file, which FreeCAD reads since 0.21 only (decision 0011).
 
 3MF core specification 1.3: a zip with an XML model of objects - a mesh, or components: other objects, moved - and of
-what is to be built, items: objects, moved. The production extension puts objects into further files of the zip.
+what is to be built, items: objects, moved. The production extension puts objects into further files of the zip. Roles
+that slicers give to objects are in `three_mf_roles`. What an extension adds to an object changes its shape, unless the
+extension is known to be harmless: such an object is rejected when it is built.
 """
 
 from __future__ import annotations
@@ -12,13 +14,17 @@ import zipfile
 import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 from xml.parsers import expat
 
 import numpy as np
 
 from freecad_am.core.types import Array, Index
 
-from ...core.issues import InputError, Text, Word
+from ...core.issues import NOTE, InputError, Issue, Text, Word
+from . import three_mf_roles as roles
+from .mesh_difference import difference
+from .three_mf_roles import NEGATIVE, PART, Volume
 
 UNITS = {
     "micron": 0.001,
@@ -31,17 +37,59 @@ UNITS = {
 MODEL = "3D/3dmodel.model"  # where it is when the zip does not say
 MODEL_RELATION = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
+ALTERNATIVES = "http://schemas.3mf.io/3dmanufacturing/productionalternatives/2021/04"
+SLICE = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07"
+VOLUMETRIC = "http://schemas.3mf.io/3dmanufacturing/volumetric/2022/01"
 # extensions that change nothing of a mesh's shape, or whose part we read
 KNOWN = (
-    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
+    PRODUCTION,
+    ALTERNATIVES,
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
 )
-NOT_DEPOSITED = ("support", "other")  # types of objects that are not part
+CURA = "http://software.ultimaker.com/xml/cura/3mf/2015/10"
+SLIC3R = (
+    "http://schemas.slic3r.org/3mf/2017/06",
+    "http://schemas.slic3r.org/3mf/2017/06/",
+)
+# of programs whose elements inside objects hold settings, but for the roles that are read
+PROGRAMS = (
+    CURA,
+    *SLIC3R,
+    "http://schemas.bambulab.com/package/2021",
+    "http://schemas.openxmlformats.org/markup-compatibility/2006",
+    "http://www.w3.org/XML/1998/namespace",
+)
+# extensions whose resources are harmless where no object uses them
+RESOURCES = ("/slice/", "/volumetric/", "/implicit/", "/displacement/", "/beamlattice/")
+VOLUME_DATA = ("volumedata", "composite", "materialmapping", "color", "property")
+CORE_IN_OBJECTS = (
+    "object",
+    "metadatagroup",
+    "metadata",
+    "mesh",
+    "vertices",
+    "triangles",
+    "components",
+)
+CORE_ELSEWHERE = ("metadata", "metadatagroup", "resources", "build", "basematerials", "base")
+DEPOSITED = ("model", "surface")  # types of objects that are part
+NOT_DEPOSITED = {"support": roles.SUPPORT, "solidsupport": roles.SUPPORT, "other": "other"}
 LARGEST = 1 << 29  # bytes of a file of the zip, unpacked
 MAX_TRIANGLES = 20_000_000  # triangles of all items together
 MOST_PLACED, DEEPEST = 100_000, 100  # objects of all items together, and one inside the other
 CHUNK = 1 << 20
 LONGEST = 4 << 20  # bytes of one element
+MAX_CUT = 4000  # triangles that take part in all subtractions of negative volumes
+MAX_NAMED = 5  # pieces that a note names
+CONTENT = "FILE_CONTENT"
+# files of a zip that hold no shape: pictures, settings, and what describes the zip
+HARMLESS = re.compile(
+    r"\[content_types\]\.xml|mimetype|.*/?_rels/.*|.*\.(png|jpe?g|gif|bmp|webp|svg|gcode|md5|txt|ini|json|cfg|rels|psmdcp)"
+    r"|cura/.*|docprops/.*|metadata/.*\.(config|xml|bin)|auxiliaries/.*|3d/textures?/.*|thumbnails?/.*|.*/",
+    re.IGNORECASE,
+)
 
 Key = tuple[str, int]  # file of the zip, id
 
@@ -49,15 +97,47 @@ Key = tuple[str, int]  # file of the zip, id
 @dataclass
 class _Object:
     kind: str = "model"
+    name: str = ""
     points: list[tuple[float, float, float]] = field(default_factory=list)
     triangles: list[tuple[int, int, int]] = field(default_factory=list)
     parts: list[tuple[Key, Array]] = field(default_factory=list)
+    role: str = PART
+    volumes: list[Volume] = field(default_factory=list)  # ranges of its triangles
+    unread: str = ""  # what of it changes its shape and is not read
+
+
+class _Item(NamedTuple):
+    key: Key
+    moved: Array
+    role: str
+
+
+class _Piece(NamedTuple):
+    points: Array
+    corners: Index
+    role: str
+    name: str
+    item: int
+
+
+class Content(NamedTuple):
+    """points (n, 3) mm and corners (m, 3) of all that a file builds, and notes on what of it was left out."""
+
+    points: Array
+    corners: Index
+    issues: tuple[Issue, ...]
 
 
 def triangles(path: Path) -> tuple[Array, Index]:
-    """Points (n, 3) mm and corners (m, 3) of all that a 3MF file builds, pieces apart, mirrored ones outside out.
+    """Points (n, 3) mm and corners (m, 3) of all that a 3MF file builds, as `content`."""
+    return content(path)[:2]
 
-    Supports, and items that are not to be printed, are left out. InputError BAD_FILE, EMPTY_FILE, UNSUPPORTED_FILE.
+
+def content(path: Path) -> Content:
+    """All that a 3MF file builds, pieces apart, mirrored ones outside out, negative volumes subtracted.
+
+    Supports, modifiers, and items that are not to be printed, are left out, and a note names them. InputError BAD_FILE,
+    EMPTY_FILE, UNSUPPORTED_FILE.
     """
     where = path.name
     try:
@@ -77,22 +157,174 @@ class _Package:
     def __init__(self, archive: zipfile.ZipFile, where: str) -> None:
         self.archive, self.where = archive, where
         self.objects: dict[Key, _Object] = {}
-        self.items: list[tuple[Key, Array]] = []
+        self.items: list[_Item] = []
         self.read: dict[str, float] = {}  # files read, and their units in mm
-        self.count = self.placed = self.points = 0  # triangles, objects and points built so far
+        self.count = self.placed = 0  # triangles and objects built so far
+        self.points = 0
+        self.start = ""
+        self.parts: dict[int, dict[int, Volume]] = {}  # of an object's id, by that of a component
+        self.encrypted: set[str] = set()
+        self.spaces: dict[str, None] = {}  # unknown namespaces, in their order
+        self.left_out: list[tuple[str, str]] = []  # names and roles
+        self.pieces: list[_Piece] = []
+        self.cut = 0  # triangles that took part in subtractions
+        self.subtracted: list[tuple[str, str]] = []
 
-    def built(self) -> tuple[Array, Index]:
-        start = self._start()
-        self._load(start)
-        points: list[Array] = []
-        corners: list[Index] = []
-        for key, moved in self.items:
-            self._add(key, moved, self.read[start], (), points, corners)
-        if not corners:
+    def built(self) -> Content:
+        self._read_keystore()
+        self.start = self._start()
+        self._load(self.start)
+        self._read_roles()
+        for number, item in enumerate(self.items):
+            self._add(item.key, item.moved, item.role, (), number)
+        points, corners = self._joined()
+        if not len(corners):
             raise InputError(
-                "EMPTY_FILE", self.where, "it builds no triangles; export the part again"
+                "EMPTY_FILE",
+                self.where,
+                "it builds no triangles{}; export the part again",
+                Word(self._names_left_out()),
             )
+        return Content(points, corners, tuple(self._notes()))
+
+    def _joined(self) -> tuple[Array, Index]:
+        """The parts, with the negative volumes of the same item subtracted."""
+        negatives = [piece for piece in self.pieces if piece.role == NEGATIVE]
+        points: list[Array] = [np.zeros((0, 3))]
+        corners: list[Index] = [np.zeros((0, 3), dtype=np.intp)]
+        count = 0
+        for piece in self.pieces:
+            if piece.role != PART:
+                continue
+            own, faces = piece.points, piece.corners
+            for negative in negatives:
+                if negative.item == piece.item:
+                    own, faces = self._subtracted(own, faces, negative)
+            points.append(own)
+            corners.append(faces + count)
+            count += len(own)
         return np.vstack(points), np.vstack(corners)
+
+    def _subtracted(self, points: Array, corners: Index, tool: _Piece) -> tuple[Array, Index]:
+        if not len(corners) or not _meet(points, tool.points):
+            return points, corners
+        self.cut += len(corners) + len(tool.corners)
+        found = None
+        if self.cut <= MAX_CUT:
+            found = difference(points, corners, tool.points, tool.corners)
+        if found is None:
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "{!r} is a negative volume, and cannot be subtracted from the part here; subtract it where the part was "
+                "drawn, or remove it in the slicer, and export again",
+                tool.name,
+            )
+        self.subtracted.append((tool.name, NEGATIVE))
+        return found
+
+    def _names_left_out(self) -> str:
+        if not self.left_out:
+            return ""
+        return Text(", for what it holds is not part ({})", Word(_listed(self.left_out)))
+
+    def _notes(self) -> list[Issue]:
+        notes = []
+        if self.left_out:
+            message = Text(
+                "{}: left out, as they are not part of the shape: {}",
+                self.where,
+                Word(_listed(self.left_out)),
+            )
+            notes.append(Issue(NOTE, CONTENT, message))
+        if self.subtracted:
+            message = Text(
+                "{}: subtracted from the part: {}", self.where, Word(_listed(self.subtracted))
+            )
+            notes.append(Issue(NOTE, CONTENT, message))
+        if self.spaces:
+            message = Text(
+                "{}: not read, as no object uses it for its shape: what these extensions add: {}",
+                self.where,
+                ", ".join(list(self.spaces)[:MAX_NAMED]),
+            )
+            notes.append(Issue(NOTE, CONTENT, message))
+        read = {name.lower() for name in self.read}
+        others = [
+            name
+            for name in self.archive.namelist()
+            if name.lower() not in read and not HARMLESS.fullmatch(name)
+        ]
+        if others:
+            message = Text(
+                "{}: files in it that are not read, as nothing that is built uses them: {}",
+                self.where,
+                ", ".join(others[:MAX_NAMED]),
+            )
+            notes.append(Issue(NOTE, CONTENT, message))
+        return notes
+
+    def _named(self, name: str) -> str | None:
+        """The file of the zip with that name, whatever its case."""
+        return next((one for one in self.archive.namelist() if one.lower() == name.lower()), None)
+
+    def _read_keystore(self) -> None:
+        """Learn which files of the zip the extension for secure content encrypts."""
+        name = self._named("Secure/keystore.xml")
+        if name is None:
+            return
+
+        def resource(element: str, values: dict[str, str]) -> None:
+            if element.rpartition(" ")[2] == "resourcedata":
+                self.encrypted.add(values.get("path", "").lstrip("/").lower())
+
+        self._parse(name, resource)
+
+    def _read_roles(self) -> None:
+        """Give the objects the roles that a slicer's own files say."""
+        for config in roles.CONFIGS:
+            name = self._named(config)
+            if name is None:
+                continue
+            reader = roles.ConfigReader()
+            try:
+                self._parse(name, reader.start, None, reader.end)
+            except ValueError as error:
+                raise _bad(
+                    self.where, Text("{} in it has a value that is not a number ({})", name, error)
+                ) from None
+            if reader.unknown:
+                raise InputError(
+                    "UNSUPPORTED_FILE",
+                    self.where,
+                    "{} gives a piece of it the role {!r}, which is not known; export the part alone",
+                    name,
+                    reader.unknown[0],
+                )
+            for number, volumes in reader.volumes.items():
+                self._give_roles(number, volumes)
+        name = self._named(roles.DRAIN_HOLES)
+        if name is not None and len(self.archive.read(name).split(b"\n", 1)[-1].strip()):
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "{} in it says that the slicer drills holes, which the mesh does not have; remove them, or export "
+                "the drilled part as a mesh",
+                name,
+            )
+
+    def _give_roles(self, number: int, volumes: list[Volume]) -> None:
+        made = self.objects.get((self.start, number))
+        if made is None:
+            return
+        ranges = [volume for volume in volumes if volume.first is not None]
+        if made.triangles and ranges:
+            made.volumes = ranges
+            return
+        self.parts[number] = {volume.part: volume for volume in volumes if volume.part is not None}
+        if made.triangles and len(volumes) == 1:
+            made.role = volumes[0].role if made.role == PART else made.role
+            made.name = volumes[0].name or made.name
 
     def _start(self) -> str:
         """The file of the zip that holds the model."""
@@ -118,32 +350,42 @@ class _Package:
             name = waiting.pop()
             if name in self.read:
                 continue
+            if name.lower() in self.encrypted:
+                raise _encrypted(self.where)
             reader = _Model(self.where, name)
-            self._parse(name, reader.start, reader.prefix)
+            self._parse(name, reader.start, reader.prefix, reader.end, reader.text)
             self.read[name] = reader.unit
             self.objects |= reader.objects
+            self.spaces |= reader.spaces
             if name == file:
                 self.items = reader.items
             wanted = [key for made in reader.objects.values() for key, _ in made.parts] + [
-                key for key, _ in reader.items
+                item.key for item in reader.items
             ]
             waiting += [key[0] for key in wanted]
 
-    def _parse(self, name: str, start: object, prefix: object = None) -> None:
+    def _parse(
+        self,
+        name: str,
+        start: object,
+        prefix: object = None,
+        end: object = None,
+        text: object = None,
+    ) -> None:
         try:
             info = self.archive.getinfo(name)
         except KeyError:
             raise _bad(self.where, Text("{} is missing in it", name)) from None
         if info.flag_bits & 1:
-            raise InputError(
-                "UNSUPPORTED_FILE", self.where, "it is encrypted; export it without protection"
-            )
+            raise _encrypted(self.where)
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise _bad(self.where, "it is compressed in a way that 3MF does not allow")
         parser = expat.ParserCreate(namespace_separator=" ")
         parser.buffer_text = True
         parser.StartElementHandler = start  # type: ignore[assignment]
+        parser.EndElementHandler = end  # type: ignore[assignment]
         parser.StartNamespaceDeclHandler = prefix  # type: ignore[assignment]
+        parser.CharacterDataHandler = text  # type: ignore[assignment]
         parser.StartDoctypeDeclHandler = self._refuse_doctype
         size = 0
         with self.archive.open(info) as stream:
@@ -170,16 +412,8 @@ class _Package:
     def _refuse_doctype(self, *_: object) -> None:
         raise _bad(self.where, "it has a document type, which 3MF does not allow")
 
-    def _add(
-        self,
-        key: Key,
-        moved: Array,
-        unit: float,
-        within: tuple[Key, ...],
-        points: list[Array],
-        corners: list[Index],
-    ) -> None:
-        """An object, moved (4, 3), behind the points and corners there are."""
+    def _add(self, key: Key, moved: Array, role: str, within: tuple[Key, ...], item: int) -> None:
+        """Add an object, moved (4, 3), to the pieces. role: that of what holds it."""
         made = self.objects.get(key)
         if made is None or key in within:
             text = "holds itself" if made else "is not in it"
@@ -190,19 +424,56 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE", self.where, "it builds more than {}; simplify it", Word(text)
             )
-        if made.kind in NOT_DEPOSITED:
+        volume = self._volume(key, within)
+        name = (volume and volume.name) or made.name or str(key[1])
+        role = self._role(made, role, volume)
+        if role not in (PART, NEGATIVE):
+            self.left_out.append((name, role))
             return
-        for part, way in made.parts:
-            self._add(
-                part,
-                np.vstack([way[:3] @ moved[:3], way[3] @ moved[:3] + moved[3]]),
-                unit,
-                (*within, key),
-                points,
-                corners,
+        if made.unread:
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "object {!r} has {}, which changes its shape and is not read; export it as plain triangles",
+                name,
+                made.unread,
             )
-        if not made.triangles:
-            return
+        for part, way in made.parts:
+            placed = np.vstack([way[:3] @ moved[:3], way[3] @ moved[:3] + moved[3]])
+            self._add(part, placed, role, (*within, key), item)
+        if made.triangles:
+            self._add_mesh(made, key, moved, role, name, item)
+
+    def _volume(self, key: Key, within: tuple[Key, ...]) -> Volume | None:
+        """What a slicer's file says of a component of the objects that hold it, the innermost first."""
+        for file, number in reversed(within):
+            if file == self.start and key[1] in self.parts.get(number, {}):
+                return self.parts[number][key[1]]
+        return None
+
+    def _role(self, made: _Object, role: str, volume: Volume | None) -> str:
+        """That of an object: its own, else the slicer's, else the one of its type, else that of what holds it."""
+        if made.kind not in (*DEPOSITED, *NOT_DEPOSITED):
+            raise _bad(
+                self.where,
+                Text("it has an object of the type {!r}, which 3MF does not know", made.kind),
+            )
+        if role not in (PART, NEGATIVE):
+            return role
+        own = made.role
+        if volume is not None:
+            # Bambu Studio gives whatever is not part the type 'other'
+            own = volume.role if own == PART else own
+            if volume.role == PART:
+                own = NOT_DEPOSITED.get(made.kind, own)
+        elif own == PART:
+            own = NOT_DEPOSITED.get(made.kind, PART)
+        return role if own == PART else own
+
+    def _add_mesh(
+        self, made: _Object, key: Key, moved: Array, role: str, name: str, item: int
+    ) -> None:
+        unit = self.read[self.start]
         self.count += len(made.triangles)
         if self.count > MAX_TRIANGLES:
             raise InputError(
@@ -217,7 +488,8 @@ class _Package:
                 self.where,
                 Text("object {} of {} has triangles with points that it has not", key[1], key[0]),
             )
-        if self.points + len(own) > 3 * MAX_TRIANGLES:
+        self.points += len(own)
+        if self.points > 3 * MAX_TRIANGLES:
             most = 3 * MAX_TRIANGLES
             raise InputError(
                 "UNSUPPORTED_FILE", self.where, "it builds more than {:,} points; simplify it", most
@@ -228,9 +500,49 @@ class _Package:
                 self.where,
                 Text("object {} of {} is moved by a matrix that flattens it", key[1], key[0]),
             )
-        points.append((own @ moved[:3] + moved[3]) * unit)
-        corners.append((some if turned > 0.0 else some[:, ::-1]) + self.points)
-        self.points += len(own)
+        placed = (own @ moved[:3] + moved[3]) * unit
+        some = some if turned > 0.0 else some[:, ::-1]
+        if not made.volumes:
+            self.pieces.append(_Piece(placed, some, role, name, item))
+            return
+        for corners, volume in self._ranges(made, some, name):
+            own_role = volume.role if role == PART else role
+            title = volume.name or name
+            if own_role not in (PART, NEGATIVE):
+                self.left_out.append((title, own_role))
+                continue
+            used, corners = np.unique(corners, return_inverse=True)
+            self.pieces.append(_Piece(placed[used], corners.reshape(-1, 3), own_role, title, item))
+
+    def _ranges(self, made: _Object, corners: Index, name: str) -> list[tuple[Index, Volume]]:
+        """The triangles of each volume of an object; those of none are part."""
+        free = np.ones(len(corners), dtype=bool)
+        found = []
+        for volume in made.volumes:
+            first, last = volume.first or 0, min(volume.last, len(corners) - 1)
+            if volume.last < first:  # a volume without triangles
+                continue
+            if first < 0 or first >= len(corners) or roles.LAST > volume.last >= len(corners):
+                raise _bad(
+                    self.where,
+                    Text(
+                        "the slicer's roles name triangles {} to {} of object {!r}, which has {}",
+                        volume.first,
+                        volume.last,
+                        name,
+                        len(corners),
+                    ),
+                )
+            if not free[first : last + 1].all():
+                raise _bad(
+                    self.where,
+                    Text("the slicer's roles name triangle {} of {!r} twice", first, name),
+                )
+            free[first : last + 1] = False
+            found.append((corners[first : last + 1], volume))
+        if free.any():
+            found.append((corners[free], Volume()))
+        return found
 
 
 class _Model:
@@ -240,32 +552,29 @@ class _Model:
         self.where, self.name = where, name
         self.unit = 1.0
         self.objects: dict[Key, _Object] = {}
-        self.items: list[tuple[Key, Array]] = []
+        self.items: list[_Item] = []
         self.prefixes: dict[str, str] = {}
+        self.spaces: dict[str, None] = {}  # unknown namespaces outside objects
         self.now = _Object()
+        self.inside = False  # of an object
+        self.item: int | None = None  # the one that metadata belongs to
+        self.setting = ""  # of Cura, whose value is being read
+        self.value: list[str] = []
 
     def prefix(self, prefix: str | None, space: str) -> None:
         self.prefixes[prefix or ""] = space
 
     def start(self, element: str, values: dict[str, str]) -> None:
         space, _, name = element.rpartition(" ")
-        if space != CORE:
-            return
         try:
-            if name == "vertex":
+            if space != CORE:
+                self._start_foreign(space, name, values)
+            elif name == "vertex":
                 self.now.points.append((float(values["x"]), float(values["y"]), float(values["z"])))
             elif name == "triangle":
                 self.now.triangles.append((int(values["v1"]), int(values["v2"]), int(values["v3"])))
-            elif name == "object":
-                self.now = self.objects[self.name, int(values["id"])] = _Object(
-                    values.get("type", "model")
-                )
-            elif name == "component":
-                self.now.parts.append((self._key(values), _matrix(values)))
-            elif name == "item" and values.get("printable", "1") not in ("0", "false"):
-                self.items.append((self._key(values), _matrix(values)))
-            elif name == "model":
-                self._model(values)
+            else:
+                self._start_core(name, values)
         except KeyError as error:
             raise _bad(self.where, Text("a {} in {} lacks {}", name, self.name, error)) from None
         except ValueError as error:
@@ -273,6 +582,97 @@ class _Model:
                 self.where,
                 Text("a {} in {} has a value that is not a number ({})", name, self.name, error),
             ) from None
+
+    def end(self, element: str) -> None:
+        if self.setting and element.endswith((" metadata", " setting")):
+            self._finish_setting()
+        elif element == CORE + " object":
+            self.inside = False
+        elif element == CORE + " item":
+            self.item = None
+
+    def text(self, text: str) -> None:
+        if self.setting:
+            self.value.append(text)
+
+    def _start_core(self, name: str, values: dict[str, str]) -> None:
+        if name == "object":
+            self._start_object(values)
+        elif name == "component":
+            self._check_attributes(values)
+            self.now.parts.append((self._key(values), _matrix(values)))
+        elif name == "item":
+            self._check_attributes(values)
+            printed = values.get("printable", "1").strip().lower() not in ("0", "false")
+            role = PART if printed else "not printable"
+            self.item = len(self.items)
+            self.items.append(_Item(self._key(values), _matrix(values), role))
+        elif name == "metadata":
+            self._start_setting(values.get("name", ""))
+        elif name == "model":
+            self._model(values)
+        elif self.inside and name not in CORE_IN_OBJECTS:
+            self._leave_unread(Text("the unknown element {}", name))
+        elif not self.inside and name not in CORE_ELSEWHERE:
+            self.spaces[name] = None
+
+    def _start_object(self, values: dict[str, str]) -> None:
+        self.now = self.objects[self.name, int(values["id"])] = _Object(
+            values.get("type", "model"), values.get("name", "")
+        )
+        self.inside = True
+        self._check_attributes(values)
+
+    def _check_attributes(self, values: dict[str, str]) -> None:
+        """Note attributes of extensions, and mark the object unread for those that change its shape."""
+        for attribute, value in values.items():
+            space, _, name = attribute.rpartition(" ")
+            if not space or space in (CORE, PRODUCTION, *PROGRAMS):
+                continue
+            if name == "slicestackid":
+                self._leave_unread(Text("a stack of slices"))
+            elif name == "meshresolution" and value == "lowres":
+                self._leave_unread(Text("a mesh of low resolution beside its slices"))
+            elif name == "modelresolution":
+                if value != "fullres":
+                    self._leave_unread(Text("a model of the resolution {!r} alone", value))
+            elif space not in KNOWN and space != SLICE:
+                self.spaces[space] = None
+
+    def _start_foreign(self, space: str, name: str, values: dict[str, str]) -> None:
+        if name == "setting" and "key" in values:
+            self._start_setting(values["key"])
+        elif space in SLIC3R:
+            if name == "volume" and self.inside:
+                role = roles.MODIFIER if values.get("modifier", "0") in roles.TRUE else PART
+                volume = Volume(role, "", int(values["ts"]), int(values["te"]))
+                self.now.volumes.append(volume)
+        elif space in (*KNOWN, *PROGRAMS):
+            return
+        elif self.inside:
+            if not (space == VOLUMETRIC and name in VOLUME_DATA):
+                self._leave_unread(Text("{} of the extension {}", name, space or "(none)"))
+        elif not any(word in space for word in RESOURCES):
+            self.spaces[space or name] = None
+
+    def _leave_unread(self, what: str) -> None:
+        if self.inside:
+            self.now.unread = self.now.unread or what
+
+    def _start_setting(self, name: str) -> None:
+        """Begin to read a setting of Cura, of an object or an item."""
+        key = name.rpartition(":")[2].strip()
+        if key in roles.CURA_ROLES and (self.inside or self.item is not None):
+            self.setting, self.value = key, []
+
+    def _finish_setting(self) -> None:
+        if "".join(self.value).strip().lower() in roles.TRUE:
+            role = roles.CURA_ROLES[self.setting]
+            if self.inside:
+                self.now.role = role
+            elif self.item is not None:
+                self.items[self.item] = self.items[self.item]._replace(role=role)
+        self.setting = ""
 
     def _key(self, values: dict[str, str]) -> Key:
         path = next((text for name, text in values.items() if name.endswith(" path")), "")
@@ -286,14 +686,29 @@ class _Model:
         for prefix in values.get("requiredextensions", "").split():
             space = self.prefixes.get(prefix, prefix)
             if space not in KNOWN:
-                text = (
-                    "it is encrypted"
-                    if "securecontent" in space
-                    else Text("it needs an extension that is not read ({})", space)
-                )
+                if "securecontent" in space:
+                    raise _encrypted(self.where)
+                text = Text("it needs an extension that is not read ({})", space)
                 raise InputError(
                     "UNSUPPORTED_FILE", self.where, "{}; export plain triangles", Word(text)
                 )
+
+
+def _listed(pieces: list[tuple[str, str]]) -> str:
+    names = list(dict.fromkeys(pieces))
+    texts = [
+        Text("{!r}: {}", name, roles.NAMES.get(role, role)) for name, role in names[:MAX_NAMED]
+    ]
+    if len(names) > MAX_NAMED:
+        texts.append(Text("{} more", len(names) - MAX_NAMED))
+    return Text.joined(", ", texts)
+
+
+def _meet(points: Array, others: Array) -> bool:
+    """Whether the boxes around two sets of points overlap."""
+    low = np.maximum(points.min(axis=0), others.min(axis=0))
+    high = np.minimum(points.max(axis=0), others.max(axis=0))
+    return bool((low < high).all())
 
 
 def _matrix(values: dict[str, str]) -> Array:
@@ -305,6 +720,10 @@ def _matrix(values: dict[str, str]) -> Array:
     if len(numbers) != 12 or not np.isfinite(numbers).all():
         raise ValueError(f"transform {values['transform']!r}")
     return numbers.reshape(4, 3)
+
+
+def _encrypted(where: str) -> InputError:
+    return InputError("UNSUPPORTED_FILE", where, "it is encrypted; export it without protection")
 
 
 def _bad(where: str, what: str) -> InputError:

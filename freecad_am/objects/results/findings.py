@@ -71,25 +71,26 @@ def _remember(obj: Any, messages: Sequence[str], said: set[str]) -> None:
         **_texts(obj),
         **{str(one): one for one in messages if isinstance(one, Text) and one.values},
     }
-    kept = json.dumps([_parts(text) for sentence, text in known.items() if sentence in said])
+    kept = json.dumps([parts_of(text) for sentence, text in known.items() if sentence in said])
     if kept != (obj.Texts or "[]"):
         obj.Texts = kept
 
 
 def _texts(obj: Any) -> dict[str, Text]:
     """Texts that the object tells, by what they say. One of an older document gets the property once it is restored."""
-    found = [_text(parts) for parts in json.loads(getattr(obj, "Texts", "") or "[]")]
+    found = [text_of(parts) for parts in json.loads(getattr(obj, "Texts", "") or "[]")]
     return {str(text): text for text in found}
 
 
-def _parts(text: str) -> Any:
+def parts_of(text: str) -> Any:
     """A text for JSON: its template and values; one without is itself."""
     return (
-        [text.template, *map(_parts, text.values)]
+        [text.template, *map(parts_of, text.values)]
         if isinstance(text, Text) and text.values
         else str(text)
     )
 
 
-def _text(parts: Any) -> Any:
-    return Text(parts[0], *map(_text, parts[1:])) if isinstance(parts, list) else parts
+def text_of(parts: Any) -> Any:
+    """The text that `parts_of` was given."""
+    return Text(parts[0], *map(text_of, parts[1:])) if isinstance(parts, list) else parts

@@ -19,6 +19,7 @@ from ..staleness import UP_TO_DATE
 from ..work import faults
 from . import nested
 from .bodies import shape_of
+from .file_issues import file_issues
 from .marks import EDGE, FACE, LINE, PLANE, TOLERANCE, WHOLE, Mark, marks_of, read, whole_of
 
 CODES = {FACE: "FACES_CHANGED", EDGE: "EDGES_CHANGED"}
@@ -143,6 +144,8 @@ class FeatureStage(Stage):
             found += issues
             if not issues:
                 self._keep(obj, {link: marks})
+        known = set(outcome.issues)
+        found += [issue for issue in file_issues(obj) if issue not in known]
         super()._store(obj, dataclasses.replace(outcome, issues=(*found, *outcome.issues)), *packed)
 
     def _others(self, obj: Any) -> list[Issue]:

@@ -9,10 +9,10 @@ from typing import Any
 import FreeCAD as App
 
 from ...brep.files.apart import apart
-from ...brep.files.read import placed_mesh, read_mesh, read_shape
+from ...brep.files.read import mesh_content, placed_mesh, shape_content
 from ...core.geometry.located import is_there, located
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
-from ...core.issues import InputError
+from ...core.issues import InputError, Issue
 from ..work import hooks
 from . import document_file
 from .bodies import global_shape, renumbers
@@ -24,17 +24,31 @@ READING = "reading the file"
 
 
 def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[Any, str]:
-    """The shape of a part file, the mesh of an STL, OBJ or 3MF file or of an object, and a label for it.
-    `object_name`: Name or Label of an object of an FCStd file. scale: mm of one unit of an STL or OBJ file.
+    """The shape or mesh of a part file and a label for it, as `part_content`."""
+    return part_content(path, object_name, scale)[:2]
+
+
+def part_content(
+    path: str, object_name: str = "", scale: float = 1.0
+) -> tuple[Any, str, tuple[Issue, ...]]:
+    """The shape of a part file, the mesh of an STL, OBJ or 3MF file or of an object, a label for it, and notes on what of
+    the file was left out. `object_name`: Name or Label of an object of an FCStd file. scale: mm of one unit of an STL or
+    OBJ file.
 
     Raises the InputErrors of `brep.read`, NO_OBJECT, and BAD_VALUE for a scale of another file or none above 0.
     """
     stem, extension = os.path.splitext(os.path.basename(path))
     refuse_scale(scale, path, "scale")
     if extension.lower() in MESHES:
-        return hooks.carry_out(lambda: read_mesh(path, scale), stem, READING), stem
+        mesh, issues = hooks.carry_out(lambda: mesh_content(path, scale), stem, READING)
+        return mesh, stem, issues
     if extension.lower() != ".fcstd":
-        return hooks.carry_out(lambda: read_shape(path), stem, READING), stem
+        shape, issues = hooks.carry_out(lambda: shape_content(path), stem, READING)
+        return shape, stem, issues
+    return (*_of_document(path, object_name, stem), ())
+
+
+def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str]:
     if not is_there(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     for document in App.listDocuments().values():

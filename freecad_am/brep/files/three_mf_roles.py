@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Roles that slicers give to the pieces of a 3MF file: part, negative, modifier, blocker, enforcer, support.
+
+PrusaSlicer and SuperSlicer store them in `Metadata/Slic3r_PE_model.config` by ranges of triangles of an object; Bambu
+Studio, OrcaSlicer and programs made from them in `Metadata/model_settings.config` by components of an object; Cura as
+metadata of an object in the model; Slic3r as `slic3r:volume` elements in the mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ...core.issues import Text
+
+PART = "part"
+NEGATIVE = "negative volume"
+MODIFIER = "modifier"
+BLOCKER = "support blocker"
+ENFORCER = "support enforcer"
+SUPPORT = "support"
+INFILL = "infill mesh"
+CUTTING = "cutting mesh"
+NAMES = {
+    NEGATIVE: Text("negative volume"),
+    MODIFIER: Text("modifier"),
+    BLOCKER: Text("support blocker"),
+    ENFORCER: Text("support enforcer"),
+    SUPPORT: Text("support"),
+    INFILL: Text("infill mesh"),
+    CUTTING: Text("cutting mesh"),
+    "other": Text("object of type 'other'"),
+    "not printable": Text("not printable"),
+}
+# by what the files call them, in lower case
+ROLES = {
+    "modelpart": PART,
+    "negativevolume": NEGATIVE,
+    "parametermodifier": MODIFIER,
+    "supportblocker": BLOCKER,
+    "supportenforcer": ENFORCER,
+    "normal_part": PART,
+    "negative_part": NEGATIVE,
+    "modifier_part": MODIFIER,
+    "support_blocker": BLOCKER,
+    "support_enforcer": ENFORCER,
+}
+CURA_ROLES = {
+    "infill_mesh": INFILL,
+    "anti_overhang_mesh": BLOCKER,
+    "support_mesh": SUPPORT,
+    "cutting_mesh": CUTTING,
+}
+CONFIGS = ("metadata/slic3r_pe_model.config", "metadata/model_settings.config")
+DRAIN_HOLES = "metadata/slic3r_pe_sla_drain_holes.txt"
+TRUE = ("1", "true", "yes")
+LAST = 1 << 62  # of triangles, where a range has no end
+
+
+@dataclass
+class Volume:
+    """A piece of an object: its triangles from `first` to `last`, or the component or object with the id `part`."""
+
+    role: str = PART
+    name: str = ""
+    first: int | None = None
+    last: int = LAST
+    part: int | None = None
+
+
+@dataclass
+class ConfigReader:
+    """Handler of the elements of a slicer's file of roles: the volumes of each object, by its id.
+
+    `unknown` lists the values of roles that are none of ROLES.
+    """
+
+    volumes: dict[int, list[Volume]] = field(default_factory=dict)
+    unknown: list[str] = field(default_factory=list)
+    _object: int | None = None
+    _volume: Volume | None = None
+
+    def start(self, element: str, values: dict[str, str]) -> None:
+        """Read the beginning of an element. Raises ValueError for ids and ranges that are not numbers."""
+        name = element.rpartition(" ")[2]
+        if name == "object" and "id" in values:
+            self._object, self._volume = int(values["id"]), None
+        elif name in ("volume", "part") and self._object is not None:
+            self._volume = self._begin(values)
+            self.volumes.setdefault(self._object, []).append(self._volume)
+        elif name == "metadata" and self._volume is not None:
+            self._metadata(self._volume, values.get("key", ""), values.get("value", ""))
+
+    def end(self, element: str) -> None:
+        """Read the end of an element."""
+        name = element.rpartition(" ")[2]
+        if name in ("volume", "part"):
+            self._volume = None
+        elif name == "object":
+            self._object = None
+
+    def _begin(self, values: dict[str, str]) -> Volume:
+        volume = Volume()
+        if "firstid" in values:
+            volume.first = int(values["firstid"])
+            volume.last = int(values.get("lastid", LAST))
+        if "id" in values:
+            volume.part = int(values["id"])
+        if "subtype" in values:
+            volume.role = self._role(values["subtype"])
+        return volume
+
+    def _metadata(self, volume: Volume, key: str, value: str) -> None:
+        if key == "name":
+            volume.name = value
+        elif key == "volume_type":
+            volume.role = self._role(value)
+        elif key == "modifier" and value.lower() in TRUE and volume.role == PART:
+            volume.role = MODIFIER  # PrusaSlicer writes it beside the type, older ones alone
+
+    def _role(self, value: str) -> str:
+        role = ROLES.get(value.strip().lower())
+        if role is None:
+            self.unknown.append(value)
+        return role or PART
