@@ -33,10 +33,12 @@ from freecad_am.core.strategies.clearance.tilt_back import kept_clear
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 from rows import Row
+from sizes import choose
 
-LAYERS, LOOKS, ROUNDS = 40, 100, 2
+LAYERS, LOOKS, ROUNDS = choose((40, 100, 2), (20, 20, 1))
 NOZZLE = Frustum(0.5, float(np.tan(np.radians(20.0))), 1.0, 60.0)
-MANY, FEW, BESIDE, MEMORY, LINEAR = 40_000, 10_000, 1500.0, 500.0, 4.5
+MANY, FEW = choose((40_000, 10_000), (800, 400))
+BESIDE, MEMORY, LINEAR = 1500.0, 500.0, 4.5
 Array = np.ndarray
 
 

@@ -20,17 +20,23 @@ from freecad_am.core.layers.curved.voxels import voxels
 from freecad_am.core.slicing.solids.plane_sections import PlaneCuts
 
 from rows import Row
+from sizes import choose
 
-POINTS, OFFSETS, ROUNDS, DEEPEST, CHORD_ERROR = 2000, 100, 15, 20.0, 0.02
+POINTS, OFFSETS, ROUNDS = choose((2000, 100, 15), (100, 4, 1))
+DEEPEST, CHORD_ERROR = 20.0, 0.02  # mm
 WITHIN = 1.5  # times the bare library
-FEWER = 3
+FEWER = choose(3, 1)
 BRACKET = Path(__file__).resolve().parent.parent / "resources" / "examples" / "bracket.step"
 # of the bracket; mm; times its bare parallel curves, most of it for the middles that these leave open
-SECTIONS, SPACING, SEVERAL = 100, 4.0, 80.0
+SECTIONS, SPACING, SEVERAL = choose(100, 2), 4.0, 80.0
 # a plate with holes, mm; lines in it, times its bare border and lines cut off there, which leave 428 gaps beside the holes:
 # closing them is most of it
-PLATE, HOLES, LINES = (400.0, 300.0), 20, 1300.0
-BLOCK, STEPS, FIELD = (100.0, 80.0, 25.0), (1.0, 0.5848), 5.0  # mm; 200,000 and a million nodes; s
+PLATE, HOLES, LINES = (400.0, 300.0), choose(20, 2), 1300.0
+BLOCK, STEPS, FIELD = (
+    (100.0, 80.0, 25.0),
+    choose((1.0, 0.5848), (8.0, 5.0)),
+    5.0,
+)  # mm; 200,000 and a million nodes; s
 
 
 def run() -> list[Row]:

@@ -20,18 +20,20 @@ from freecad_am.core.kinematics.machines import machine
 from freecad_am.kdl import chain as kdl
 
 from rows import Row
+from sizes import choose
 
-POSES, FEW, ROUNDS = 2000, 200, 15
+POSES, FEW, ROUNDS = choose((2000, 200, 15), (20, 4, 1))
+JUDGED_POSES = choose(10_000, 20)
 MACHINE = "fanuc-arcmate120ic"
 LENGTH = 1000.0
 METRES = np.ones((4, 4))
 METRES[:3, 3] = 1e-3
 # who judges which class of wrist, and how many poses
 JUDGED = (
-    ("eaik", "fanuc-arcmate120ic", 10_000),
-    ("eaik", "ur-ur10e", 10_000),
-    ("ssik", "fanuc-crx10ia", 10_000),
-    ("ssik", "motoman-hc10", 10_000),
+    ("eaik", "fanuc-arcmate120ic", JUDGED_POSES),
+    ("eaik", "ur-ur10e", JUDGED_POSES),
+    ("ssik", "fanuc-crx10ia", JUDGED_POSES),
+    ("ssik", "motoman-hc10", JUDGED_POSES),
 )
 OF_SSIK = {"fanuc-crx10ia": "fanuc_crx10ia", "motoman-hc10": "hc10"}
 # machines, and us a pose
@@ -282,7 +284,7 @@ def _row(
     return Row(name, own, other, "us/pose", required)
 
 
-def _time(function: Callable[[], object], least: float = 0.01) -> float:
+def _time(function: Callable[[], object], least: float = choose(0.01, 0.0)) -> float:
     """Seconds per call, over enough calls to last."""
     calls, start = 0, perf_counter()
     while True:

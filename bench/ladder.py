@@ -41,17 +41,19 @@ from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.core.toolpath import Toolpath
 
 from rows import Row
+from sizes import choose
 
-RADIUS, ROUNDS = 45.0, 3
-TURNS, CLEARANCE = 72, 10.0  # rotations of a rung, mm
+RADIUS, ROUNDS = 45.0, choose(3, 1)
+TURNS, CLEARANCE = choose(72, 36), 10.0  # rotations of a rung, mm
 CERTIFIED = 10.0  # s
+LAYER_HEIGHT, LAYERS = choose((1.0, 71), (10.0, 8))  # of the certified hemisphere
 ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (1000.0, 0.0, -100.0), 45.0
 WALL_LOW, WALL = (-130.0, 104.0, 0.0), (260.0, 12.0, 420.0)
 
 
 def run() -> list[Row]:
     """Both in turns on the same job, then the certificate."""
-    dome, cell = hemisphere(15.0, 0.2, "fixed"), _beside_a_wall()
+    dome, cell = hemisphere(15.0, choose(0.2, 1.0), "fixed"), _beside_a_wall()
     rods, task = (
         link_rods.of_robot(cell.robot.chain),
         Task(cell, cell.branch or 0, JointParameters()),
@@ -90,7 +92,7 @@ def run() -> list[Row]:
         )
     found.append(
         Row(
-            "joint path of the hemisphere of 71 layers with its certificate",
+            f"joint path of the hemisphere of {LAYERS} layers with its certificate",
             _certified(),
             CERTIFIED,
             "s",
@@ -143,13 +145,16 @@ def _cost(path: JointPath) -> float:
 def _certified() -> float:
     """Seconds of a joint path with its certificate."""
     dome, cell = (
-        hemisphere(1.0, 0.02, "local"),
+        hemisphere(LAYER_HEIGHT, 0.02, "local"),
         cells.resolve(CellParameters(limits="paper"), np.eye(4)),
     )
     began = time.perf_counter()
     path = plan_joints(dome, cell, JointParameters(certificate=True))
     took = time.perf_counter() - began
-    assert path.optimality is not None and len(dome.layers) == 71, (path.issues, len(dome.layers))
+    assert path.optimality is not None and len(dome.layers) == LAYERS, (
+        path.issues,
+        len(dome.layers),
+    )
     return took
 
 

@@ -17,6 +17,7 @@ from statistics import median
 
 from pace import Watch
 from rows import Row
+from sizes import choose
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
@@ -30,14 +31,15 @@ cell: {{machine: fanuc-arcmate120ic, limits: paper, deposition_point: [1045.747,
 process: {{travel_speed: 1.5 mm/s}}
 program: {{post: fanuc}}
 """
-ROUNDS = 3  # of both jobs in turns, of which the median counts
+ROUNDS = choose(3, 1)  # of both jobs in turns, of which the median counts
 # points there are about so many: layer height and chord error in mm
-SMALL, SIZES = (1.0, 0.0004), {1e5: (0.5, 0.00025), 1e6: (0.1, 0.00006)}
+SMALL = choose((1.0, 0.0004), (20.0, 0.5))
+SIZES = {1e4: (10.0, 0.2), 1e5: (0.5, 0.00025), 1e6: (0.1, 0.00006)}
 
 
 def run() -> list[Row]:
     """Two comparisons, of the larger of two jobs."""
-    wanted = float(os.environ.get("LOAD_POINTS", "1e5"))
+    wanted = float(os.environ.get("LOAD_POINTS", choose("1e5", "1e4")))
     with tempfile.TemporaryDirectory() as folder, Watch() as watch:
         done = [
             [_planned(Path(folder), *size) for size in (SMALL, SIZES[wanted])]

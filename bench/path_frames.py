@@ -9,10 +9,10 @@ import time
 from statistics import median
 
 from in_window import Drawn, begin, settle
+from sizes import choose
 
-FRAMES = 6
-OPENINGS = 5
-SIZES = (10_000, 100_000, 300_000)
+FRAMES, OPENINGS = choose((6, 5), (1, 1))
+SIZES = choose((10_000, 100_000, 300_000), (3_000,))
 OF_LAYER = 1000
 
 

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import in_window
 from rows import Row
+from sizes import choose
 
 ROOT = Path(__file__).resolve().parent.parent
 SCRIPT = Path(__file__).resolve().parent / "path_frames.py"
@@ -35,12 +36,13 @@ document = App.newDocument("Job")
 part = document.addObject("Part::Feature", "Part")
 part.Shape = {shape}
 cell = api.make_cell(document)
-toolpath = api.make_toolpath(document, api.make_feature(document, part, min_points=1420), cell)
+toolpath = api.make_toolpath(document, api.make_feature(document, part, layer_height={layer_height}, min_points={points}), cell)
 joint_path = api.make_joint_path(document, toolpath, cell, method="constant")
 if joint_path.Status == "up to date":
     api.make_program(document, joint_path)
 document.saveAs({saved!r})
 """
+LAYER_HEIGHT, POINTS_OF_A_TURN = choose((1.0, 1420), (15.0, 60))
 # the dome is past a limit at some points, and has a joint path all the same
 SHAPES = {
     "cylinder": "Part.makeCylinder(45, 70)",
@@ -62,7 +64,17 @@ def run() -> list[Row]:
         jobs = {name: str(Path(folder) / f"{name}.FCStd") for name in SHAPES}
         for name, saved in jobs.items():
             subprocess.run(
-                [sys.executable, "-c", JOB.format(root=str(ROOT), saved=saved, shape=SHAPES[name])],
+                [
+                    sys.executable,
+                    "-c",
+                    JOB.format(
+                        root=str(ROOT),
+                        saved=saved,
+                        shape=SHAPES[name],
+                        layer_height=LAYER_HEIGHT,
+                        points=POINTS_OF_A_TURN,
+                    ),
+                ],
                 check=True,
                 env=plain,
                 stdin=subprocess.DEVNULL,

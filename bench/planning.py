@@ -30,12 +30,13 @@ from freecad_am.core.strategies.revolution import plan as strategy
 from freecad_am.kdl import chain as kdl
 
 from rows import Row
+from sizes import choose
 from whole import EXAMPLE
 
-ROUNDS = 5
+ROUNDS, LAYER_HEIGHT = choose((5, 5.0), (1, 15.0))
 PARAMETERS = JointParameters(min_condition=0.15, characteristic_length=1000.0)
 # the peer's candidates are taken one in so many, evenly, and the time multiplied
-SAMPLED = 8
+SAMPLED = choose(8, 640)
 
 
 def run() -> list[Row]:
@@ -44,7 +45,7 @@ def run() -> list[Row]:
     cell_parameters = CellParameters(limits="paper")
     toolpath = strategy.plan(
         wall,
-        RevolutionParameters(layer_height=5.0),
+        RevolutionParameters(layer_height=LAYER_HEIGHT),
         BuildDirectionParameters(),
         ProcessParameters(),
         cell_parameters.nozzle,
@@ -74,7 +75,7 @@ def run() -> list[Row]:
     lost = single()
     return [
         Row(
-            "optimised sphere, 15 layers, all feasible; the same search pose by pose with PyKDL's NR",
+            f"optimised sphere, {len(beads)} layers, all feasible; the same search pose by pose with PyKDL's NR",
             middle["ours"],
             middle.get("PyKDL"),
             "s",

@@ -31,9 +31,10 @@ from freecad_am.core.toolpath import Toolpath
 from freecad_am.kdl import chain as kdl
 
 from rows import Row
+from sizes import choose
 from whole import EXAMPLE
 
-ROUNDS = 3
+ROUNDS, LAYER_HEIGHT = choose((3, 1.0), (1, 15.0))
 LEVEL = 10.0  # deg from the vertical at most
 SPEED = 4.0  # mm/s, as fast as the table can turn where the wall closes
 POSITIONER = CellParameters(
@@ -45,7 +46,9 @@ POSITIONER = CellParameters(
     external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part",
 )
 SIX = CellParameters(limits="paper", branch=("front", "up", "flip"))  # the paper's cell
-SAMPLED = 64  # the peer's candidates are taken one in so many, evenly, and the time multiplied
+SAMPLED = choose(
+    64, 640
+)  # the peer's candidates are taken one in so many, evenly, and the time multiplied
 
 
 def run() -> list[Row]:
@@ -53,7 +56,7 @@ def run() -> list[Row]:
     wall = revolution.find_wall(read.read_shape(str(EXAMPLE)))
     toolpath = strategy.plan(
         wall,
-        RevolutionParameters(layer_height=1.0),
+        RevolutionParameters(layer_height=LAYER_HEIGHT),
         BuildDirectionParameters(),
         ProcessParameters(travel_speed=SPEED),
         SIX.nozzle,

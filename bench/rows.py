@@ -26,11 +26,11 @@ class Row(NamedTuple):
         """True when the ratio asked for is not reached."""
         return self.ratio is not None and self.ratio < self.required
 
-    def line(self) -> str:
-        """The comparison in words."""
+    def line(self, judged: bool = True) -> str:
+        """Return the comparison in words; `ran` instead of a verdict when it is not judged."""
         if self.peer is None or self.ratio is None:
             return f"  --   {self.name}: {self.ours:.3f} {self.unit}, peer not installed"
-        mark = "SHORT" if self.short else "ok"
+        mark = ("SHORT" if self.short else "ok") if judged else "ran"
         return (
             f"{mark:>5}  {self.name}: {self.ours:.3f} against {self.peer:.3f} {self.unit}, {self.ratio:.2f} times "
             f"(at least {self.required:g})"

@@ -7,13 +7,11 @@ import time
 from statistics import median
 
 from in_window import Drawn, begin, settle
+from sizes import choose
 
-FRAMES = 40
-SIZES = (
-    (2.4, 140),
-    (1.0, 1420),
-    (1.0, 4280),
-)  # layer height, points of a turn: some 10,000, 100,000, 300,000 in all
+FRAMES = choose(40, 4)
+# layer height, points of a turn: some 10,000, 100,000, 300,000 in all
+SIZES = choose(((2.4, 140), (1.0, 1420), (1.0, 4280)), ((15.0, 60),))
 
 
 def run_of_points(layer_height: float, points: int, document: str):

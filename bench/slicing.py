@@ -15,11 +15,15 @@ from freecad_am.core.slicing.solids.equidistant import Facets
 from freecad_am.core.slicing.solids.plane_sections import PlaneCuts
 
 from rows import Row
+from sizes import choose
 
-AROUND, UP, CUTS, ROUNDS = 400, 250, 50, 5
+AROUND, UP = choose((400, 250), (40, 24))  # triangles round and up
+CUTS, ROUNDS = choose((50, 5), (3, 1))
 CHORD_ERROR = 0.05
-SECTIONS, FEWER = 1000, 3  # planes, and rounds of them
-SMALL, PLANES = 10, 20  # rows of triangles, and planes, for a slicer that takes minutes for more
+SECTIONS, FEWER = choose((1000, 3), (5, 1))  # planes, and rounds of them
+SMALL, PLANES = choose(
+    (10, 20), (4, 3)
+)  # rows of triangles, and planes, for a slicer that takes minutes for more
 
 
 def run() -> list[Row]:
@@ -106,7 +110,7 @@ def _peer_slicer(vertices: np.ndarray, faces: np.ndarray, height: float) -> floa
 def _ours(vertices: np.ndarray, faces: np.ndarray, cuts: int) -> float:
     start = process_time()
     facets = Facets(Developable(60.0, 200.0), vertices, faces)
-    distances = np.linspace(facets.away.min(), facets.away.max(), cuts + 2)[1:-1]
+    distances = np.linspace(facets.distances.min(), facets.distances.max(), cuts + 2)[1:-1]
     loops = [facets.cut(float(distance), CHORD_ERROR) for distance in distances]
     spent = process_time() - start
     assert all(loops)

@@ -22,11 +22,14 @@ from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid
 from tests.core.patch_walls import bend
 
 from rows import Row
+from sizes import choose
 
-HEIGHT, POINTS, TOLERANCE, ROUNDS = 1.0, 360, 1e-4, 3
-SAMPLED, EVERY = (10, 40, 70), 6
-DOUBLED = (720, 1440, 2880)  # points of a layer whose time per point is compared with that before
-FRONTS = (5.0, 2.5)  # mm, layer heights
+HEIGHT, POINTS, TOLERANCE, ROUNDS = choose((1.0, 360, 1e-4, 3), (5.0, 360, 1e-4, 1))
+SAMPLED, EVERY = choose(((10, 40, 70), 6), ((3,), 60))
+DOUBLED = choose(
+    (720, 1440, 2880), (720,)
+)  # points of a layer whose time per point is compared with that before
+FRONTS = choose((5.0, 2.5), (20.0, 10.0))  # mm, layer heights
 LINEAR = 0.7  # what a shared machine does to a time is forgiven; quadratic time would show as 0.5
 REFINED = 4
 

@@ -11,9 +11,10 @@ from pathlib import Path
 from statistics import median
 
 from rows import Row
+from sizes import choose
 
 ROOT = Path(__file__).resolve().parent.parent
-ROUNDS = 5
+ROUNDS, LAYER_HEIGHT, CHORD_ERROR = choose((5, 10, 0.01), (1, 60, 0.5))
 MACRO = f"""import os, sys, time
 sys.path.insert(0, {str(ROOT)!r})
 from freecad_am.batch import host
@@ -28,7 +29,7 @@ doc = FreeCAD.newDocument()
 part = doc.addObject("Part::Feature", "Vase")
 part.Shape = curve.toShape().revolve(FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(0, 0, 1), 360)
 cell = am.make_cell(doc, parameters=cell_of("kuka-kr16-2"))
-toolpath = am.make_toolpath(doc, am.make_feature(doc, part, layer_height=10, chord_error=0.01), cell)
+toolpath = am.make_toolpath(doc, am.make_feature(doc, part, layer_height={LAYER_HEIGHT}, chord_error={CHORD_ERROR}), cell)
 started = time.process_time()
 am.make_joint_path(doc, toolpath, cell)
 print(time.process_time() - started)

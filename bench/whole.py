@@ -25,11 +25,12 @@ from typing import NamedTuple
 
 from pace import Watch
 from rows import Row
+from sizes import choose
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
-BRACKET, SECONDS, FEWER = EXAMPLE.parent / "bracket.yaml", 10.0, 3
-ROUNDS = 9
+BRACKET, SECONDS, FEWER = EXAMPLE.parent / "bracket.yaml", 10.0, choose(3, 1)
+ROUNDS = choose(9, 1)
 BARE = """import os, sys
 import FreeCAD, Import
 document = FreeCAD.newDocument("Bare")

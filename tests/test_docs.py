@@ -225,7 +225,7 @@ def test_decisions_are_numbered_and_whole():
 
 def test_every_tool_has_a_page_and_the_index_lists_it():
     source = (ROOT / "freecad_am" / "gui" / "tools" / "commands.py").read_text(encoding="utf-8")
-    tools = re.findall(r'Tool\(\s*"(\w+)", marked\("([^"]+)"\)', source)
+    tools = re.findall(r'Tool\(\s*"(\w+)",\s*marked\("([^"]+)"\)', source)
     pages = [(name, f"{icon.replace('_', '-')}.md") for icon, name in tools]
     index = (DOCS / "tools" / "README.md").read_text(encoding="utf-8")
     row = r"^\| !\[\]\(\.\./\.\./resources/icons/(\w+)\.svg\) \| \[([^\]]+)\]\(([\w-]+\.md)\)"

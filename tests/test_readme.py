@@ -110,7 +110,7 @@ def test_packages_are_those_the_launcher_installs():
 def test_tools_have_the_names_of_the_toolbar():
     source = (ROOT / "freecad_am" / "gui" / "tools" / "commands.py").read_text(encoding="utf-8")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    tools = re.findall(r'Tool\(\s*"\w+", marked\("([^"]+)"\)', source)
+    tools = re.findall(r'Tool\(\s*"\w+",\s*marked\("([^"]+)"\)', source)
     assert len(tools) == len(
         re.findall(r"\bTool\(", source.split("TOOLS = {")[1].split("def register")[0])
     )

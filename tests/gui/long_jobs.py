@@ -49,11 +49,13 @@ def hub(root):
     return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
 
 
-def joints(root):
+def joints(root, layer_height=0.15, chord_error=0.002):
     """A joint path of a hemisphere with thin layers."""
     document = App.newDocument("Long")
     cell = api.make_cell(document, limits="paper")
-    feature = api.make_feature(document, sphere(document), layer_height=0.15, chord_error=0.002)
+    feature = api.make_feature(
+        document, sphere(document), layer_height=layer_height, chord_error=chord_error
+    )
     toolpath = api.make_toolpath(document, feature, cell)
     return SimpleNamespace(
         document=document, function="make_joint_path", inputs={"toolpath": toolpath, "cell": cell}

@@ -33,9 +33,8 @@ SHIFTS = (
 
 def with_cell(job: Tried, remedy: str, **values: object) -> Tried:
     """The job in its cell with other values."""
-    return dataclasses.replace(
-        job, settings=dataclasses.replace(job.settings, **values), remedy=remedy
-    )  # type: ignore[arg-type]
+    settings = dataclasses.replace(job.settings, **values)  # type: ignore[arg-type]
+    return dataclasses.replace(job, settings=settings, remedy=remedy)
 
 
 def branches(job: Tried) -> Iterator[Tried]:

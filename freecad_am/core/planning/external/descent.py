@@ -14,6 +14,10 @@ from .freedom import Bound, Freedom
 ROUNDS = 4  # each with the constraints added that the one before came close to
 ACTIVE = 0.1  # rows with so much more margin than asked for are not told to the optimiser at first
 ITERATIONS, TOLERANCE = 80, 1e-7
+# Largest changes of a variable in further attempts, after one without bounds ended outside its constraints. SLSQP may
+# step across a singularity, from which it does not return; whether it does depends on the last bits of the processor.
+CLOSER = (0.5, 0.1)
+VIOLATION = 1e-5  # of a constraint, no more than the start's own violation, that still counts as an end within
 LOST = 1e3  # the objective out of reach, in those of the start
 
 
@@ -116,23 +120,29 @@ def _solved(
             values, slopes = kept(found, z)
             return values[reported], np.nan_to_num(slopes[reported])
 
-        result: Any = minimize(
-            lambda z: value(z)[0],
-            z,
-            jac=lambda z: value(z)[1],
-            method="SLSQP",
-            constraints=[
-                {
-                    "type": "ineq",
-                    "fun": lambda z: constraints(z)[0],
-                    "jac": lambda z: constraints(z)[1],
-                }
-            ]
-            if len(reported)
-            else [],
-            options={"ftol": TOLERANCE, "maxiter": ITERATIONS},
-        )
-        count += int(result.nit)
+        for reach in (np.inf, *CLOSER):
+            result: Any = minimize(
+                lambda z: value(z)[0],
+                z,
+                jac=lambda z: value(z)[1],
+                method="SLSQP",
+                bounds=None if np.isinf(reach) else list(zip(z - reach, z + reach)),
+                constraints=[
+                    {
+                        "type": "ineq",
+                        "fun": lambda z: constraints(z)[0],
+                        "jac": lambda z: constraints(z)[1],
+                    }
+                ]
+                if len(reported)
+                else [],
+                options={"ftol": TOLERANCE, "maxiter": ITERATIONS},
+            )
+            count += int(result.nit)
+            if constraints(result.x)[0].min(initial=0.0) >= min(
+                -VIOLATION, constraints(z)[0].min(initial=0.0)
+            ):
+                break
         if seen.at(result.x[:v]) is None:
             break
         z = result.x

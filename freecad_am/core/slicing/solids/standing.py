@@ -65,9 +65,13 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
     away = np.zeros((len(seats), 2))
     for k, seat in enumerate(seats):
         # seats are on cylinders and cones
+        vertices = seat.base.inside(body.vertices)
         facets = Facets(
-            seat.base.surface, seat.base.inside(body.vertices), body.triangles, body.name
-        )  # type: ignore[arg-type]
+            seat.base.surface,  # type: ignore[arg-type]
+            vertices,
+            body.triangles,
+            body.name,
+        )
         away[k] = facets.distances.min(), facets.distances.max()
         for loop in cut(facets, 0.0, chord_error):
             step = np.linalg.norm(np.roll(loop.points, -1, axis=0) - loop.points, axis=1)
