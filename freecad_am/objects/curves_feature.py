@@ -7,14 +7,14 @@ from typing import Any
 
 from ..brep.curves import curves_of
 from ..core.geometry.curves.bead_curves import Curves
-from ..core.issues import InputError
+from ..core.issues import InputError, Issue
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CurvesParameters
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .shapes.chosen import FeatureStage, names_of
 from .stage_parts import Link, Outcome, Section, Work
-from .table_part import points_of
+from .table_part import points_of, refuse_gcode_keys
 
 
 class CurvesFeature(FeatureStage):
@@ -58,14 +58,22 @@ class CurvesFeature(FeatureStage):
         fixtures = fixtures_of(obj)
 
         def work() -> Outcome:
+            issues: tuple[Issue, ...] = ()
             if table is not None:
-                found = table.curves(label, strategy.chord_error)
+                found, issues = table.read(
+                    label, strategy.chord_error, strategy.roles, strategy.rotary
+                )
             else:
+                refuse_gcode_keys(label, strategy.roles, strategy.rotary)
                 found = tuple(curves_of(shape, edges, faces, strategy.chord_error, label))
             curves = Curves(
-                label, found, bodies((*ground, *fixtures)), edges=None if shape is None else edges
+                label,
+                found,
+                bodies((*ground, *fixtures)),
+                issues,
+                edges=None if shape is None else edges,
             )
-            return Outcome(curves, (), (("Curves", len(found)),))
+            return Outcome(curves, issues, (("Curves", len(found)),))
 
         return work
 

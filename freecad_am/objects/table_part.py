@@ -12,8 +12,8 @@ from typing import Any
 import FreeCAD as App
 import Part
 
-from ..core.geometry.curves import ada3dp, curve_table, gcode
-from ..core.geometry.curves.bead_curves import POINT_FILES, BeadCurve
+from ..core.geometry.curves import ada3dp, curve_table, gcode, gcode_roles
+from ..core.geometry.curves.bead_curves import POINT_FILES
 from ..core.geometry.file_content import content
 from ..core.issues import InputError, Word
 
@@ -30,20 +30,25 @@ class Points:
     form: str
     text: str
 
-    def curves(self, label: str, chord_error: float) -> tuple[BeadCurve, ...]:
-        """Its beads, arcs within the chord error (mm). InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP."""
+    def read(self, label: str, chord_error: float, roles: str, rotary: str) -> gcode.ReadCurves:
+        """Its beads, arcs within the chord error (mm), and what of it is not read.
+
+        roles, rotary: of G-code, as `gcode.read` has them. InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP; BAD_VALUE for roles
+        that are not there; NOT_USED for roles and rotary words of other files.
+        """
         if self.form == GCODE:
-            return gcode.curves_of(self.text, label, chord_error)
+            return gcode.read(self.text, label, chord_error, roles, rotary)
+        refuse_gcode_keys(label, roles, rotary)
         if self.form == ADA:
-            return ada3dp.curves_of(base64.b64decode(self.text), label)
-        return curve_table.curves_of(self.text, label)
+            return gcode.ReadCurves(ada3dp.curves_of(base64.b64decode(self.text), label))
+        return gcode.ReadCurves(curve_table.curves_of(self.text, label))
 
 
 def open_points(document: Any, path: str) -> Any:
     """A file of points as an object. InputError NO_FILE, BAD_FILE, and those of `Points.curves`."""
     name = os.path.basename(path)
     found = _read(path, name, POINT_FILES[os.path.splitext(name)[1].lower()])
-    curves = found.curves(name, _DRAWN)
+    curves = found.read(name, _DRAWN, gcode_roles.ALL, gcode.ANY_ROTARY).curves
     part = document.addObject("Part::Feature", "Table")
     part.Label = os.path.splitext(name)[0]
     part.addProperty(
@@ -59,13 +64,29 @@ def open_points(document: Any, path: str) -> Any:
     return part
 
 
+def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
+    """InputError NOT_USED where keys that are for G-code are given for something else."""
+    defaults = {
+        "strategy.roles": (roles, (gcode_roles.PART, gcode_roles.ALL)),
+        "strategy.rotary": (rotary, (gcode.NO_ROTARY, gcode.ANY_ROTARY)),
+    }
+    for key, (value, allowed) in defaults.items():
+        if value not in allowed:
+            raise InputError(
+                "NOT_USED", key, "{!r} is for G-code, which {} is not; leave it out", value, label
+            )
+
+
 def _read(path: str, name: str, form: str) -> Points:
     try:
         data = content(path, _LARGEST, "BAD_FILE", name)
+        if form == GCODE:  # comments may be in any encoding; commands are ASCII, and read as such
+            return Points(form, data.decode(errors="replace"))
         return Points(form, base64.encodebytes(data).decode() if form == ADA else data.decode())
     except UnicodeDecodeError:
-        what = "G-code" if form == GCODE else "a table of points as CSV"
-        raise InputError("BAD_FILE", name, "it is not text; give {}", Word(what)) from None
+        raise InputError(
+            "BAD_FILE", name, "it is not text; give {}", Word("a table of points as CSV")
+        ) from None
     except OSError as error:
         raise InputError(
             "NO_FILE", name, "it cannot be read: {}; choose a file that can", error.strerror

@@ -238,6 +238,38 @@ def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
         assert done.status == 2 and "error[BAD_GCODE]" in done.err and words in done.err, done.err
 
 
+def test_a_turn_of_a_vase_may_end_where_it_turns_back(workshop, planned):
+    done, report, rows = planned(
+        "vase.gcode", "M83\nG0 X0 Y0 Z0.4\nG1 X10 E1\nG1 X0 Z0.8 E1\nG1 X10 Z0.8 E1\n"
+    )
+    assert done.status == 0, done.err
+    assert report["length_mm"] == pytest.approx(20.0 + np.hypot(10.0, 0.4))
+    assert np.isfinite(column(rows, "tx", "ty", "tz")).all()
+    done, _, _ = planned("up.gcode", "M83\nG0 X0 Y0 Z0.4\nG1 X10 E1\nG1 Z5 E1\nG1 Z9 E1\n")
+    assert done.status == 2 and "error[ALONG_DIRECTION]" in done.err, done.err
+
+
+def test_roles_of_g_code_in_a_job_file(workshop):
+    lines = "M83\nG0 X0 Y0 Z2\n;TYPE:Custom\nG1 X60 E1\n;LAYER_CHANGE\n;TYPE:Skirt/Brim\nG0 X0 Y9\nG1 X24 E1\n"
+    (workshop.folder / "s.gcode").write_text(lines + ";TYPE:Perimeter\nG0 X0 Y19\nG1 X48 E1\n")
+    lengths = {
+        "": 48.0,
+        "roles: all, ": 132.0,
+        "roles: [part, skirt], ": 72.0,
+        "roles: [Custom], ": 60.0,
+    }
+    for roles, wanted in lengths.items():
+        job = workshop.write_job(
+            "version: 1\nname: s\npart: {file: s.gcode}\nprocess: {bead_width: 4 mm}\n"
+            f"strategy: {{kind: curves, {roles}layer_height: 2 mm}}\n"
+        )
+        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        assert done.status == 0, done.err
+        report = json.loads((workshop.folder / "out" / "report.json").read_text())
+        assert report["length_mm"] == pytest.approx(wanted) and report["unsupported_mm"] == 0.0
+        assert ("ROLES_LEFT_OUT" in done.err) == ("all" not in roles)
+
+
 def test_beads_that_begin_beside_the_end_of_others_have_a_kuka_program(workshop):
     """The way over is so short that the axes would need less than the least share of their speeds that KRL is told."""
     (workshop.folder / "beads.csv").write_text(

@@ -120,6 +120,8 @@ def strategy_of(section: Any) -> LayerParameters:
         section = _with_base(section)
     if kind in ("solid", "curves"):
         section = with_direction(section)
+    if kind == "curves":
+        section = _with_roles(section)
     factory: type[LayerParameters] = KINDS[kind].parameters
     return fields.build(factory, section, "strategy", also=kept_clear(kind))
 
@@ -131,6 +133,17 @@ def with_direction(section: dict[str, Any]) -> dict[str, Any]:
         return section
     numbers = [quantity.read(number, f.NUMBER, "strategy.direction") for number in direction]
     return {**section, "direction": " ".join(f"{number:.15g}" for number in numbers)}
+
+
+def _with_roles(section: dict[str, Any]) -> dict[str, Any]:
+    """The section with roles, a list of names, as their text."""
+    roles = section.get("roles")
+    if not isinstance(roles, list):
+        return section
+    return {
+        **section,
+        "roles": ", ".join(fields.text(role, "strategy.roles") for role in roles) or " ",
+    }
 
 
 def _with_base(section: dict[str, Any]) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..geometry.curves import gcode, gcode_roles
 from ..issues import InputError
 from . import field as f
 
@@ -158,11 +159,33 @@ class CurvesParameters(LayerParameters):
         low=1,
         high=MOST_LAYERS,
     )
+    roles: str = f.parameter(
+        gcode_roles.PART,
+        f.TEXT,
+        "Of G-code, what is deposited: part, all, or groups and types of the slicer, separated by commas, such as "
+        "part, support. Skirt, brim, raft, support, towers, ironing and purge lines are not part.",
+        advanced=True,
+    )
+    rotary: str = f.parameter(
+        gcode.NO_ROTARY,
+        f.CHOICE,
+        "Of G-code, how the words A, B and C turn the tool while X, Y and Z are the tip in the part: the head by C and "
+        "then A (head-ac) or B (head-bc), or the part under it (table-ac, table-bc); none rejects them.",
+        choices=gcode.ROTARY,
+        advanced=True,
+    )
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
 
     def __post_init__(self) -> None:
         f.check(self, "strategy")
         self.way()
+        if not gcode_roles.wanted(self.roles):
+            raise InputError(
+                "BAD_VALUE",
+                "strategy.roles",
+                "{!r} names no roles; give part, all, or a list",
+                self.roles,
+            )
 
     def way(self) -> tuple[float, float, float]:
         """`direction` as a unit vector. InputError BAD_VALUE for what is not a direction."""

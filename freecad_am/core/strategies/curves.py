@@ -25,6 +25,9 @@ ALONG = np.cos(
 )  # a bead runs along the direction in which it is laid if the angle between them is less
 
 
+TURNED_BACK = 0.05  # of the shorter segment: a mean of two segments that is less says nothing
+
+
 def plan(
     given: Curves,
     strategy: CurvesParameters,
@@ -82,6 +85,23 @@ def _classed(
     return replace(_bead(curve, fixed, up, sum(place), *own, label), bead_class=name)
 
 
+def _tangents(points: Array, away: Array) -> Array:
+    """Unit vectors (n, 3) along a bead at its points. Where it turns back, so that the mean of the segments before and after a
+    point vanishes or runs along the direction (n, 3) in which the bead is laid, the segment after the point counts."""
+    segments = np.diff(points, axis=0)
+    segments /= np.linalg.norm(segments, axis=1, keepdims=True)
+    if len(points) == 2:
+        return np.repeat(segments, 2, axis=0)
+    mean = np.gradient(points, axis=0)
+    size = np.linalg.norm(mean, axis=1, keepdims=True)
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    turned = size[:, 0] < TURNED_BACK * np.minimum(np.r_[steps, steps[-1]], np.r_[steps[0], steps])
+    forward = mean / np.where(size > 0.0, size, 1.0)
+    turned |= np.abs((forward * away).sum(axis=1)) > ALONG
+    forward[turned] = np.vstack([segments, segments[-1:]])[turned]
+    return np.asarray(forward)
+
+
 def _bead(
     curve: BeadCurve,
     fixed: Array,
@@ -97,10 +117,7 @@ def _bead(
     points = curve.points + up * away
     if process.direction == "alternate" and index % 2:
         points, away = points[::-1], away[::-1]
-    forward = (
-        np.gradient(points, axis=0) if len(points) > 2 else np.tile(points[1] - points[0], (2, 1))
-    )
-    forward /= np.linalg.norm(forward, axis=1, keepdims=True)
+    forward = _tangents(points, away)
     worst = int(np.abs((forward * away).sum(axis=1)).argmax())
     if abs(float(forward[worst] @ away[worst])) > ALONG:
         raise InputError(

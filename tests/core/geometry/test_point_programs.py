@@ -111,6 +111,208 @@ def test_programs_that_are_not_understood_are_told_with_their_line(text, line, w
     ), told.value
 
 
+def length(curves):
+    return sum(np.linalg.norm(np.diff(one.points, axis=0), axis=1).sum() for one in curves)
+
+
+HEAD = "G90\nM83\nG0 X0 Y0 Z1\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        (
+            "M83\nG90\nG0 X0 Y0 Z1\n"
+            + "".join(f"G1 {w} E5\n" for w in ("X100", "Y100", "X0", "Y0")),
+            400,
+        ),
+        ("G0 X0 Y0 Z1\nG91 G1 Y10 E1\nG91 G1 Y10 E1\nG1 Y10 E1\n", 30),
+        ("M82\nG0 X0 Y0 Z1\nG1 X10 E5\nG1 X20 E5\nG1 X30 E6\n", 20),
+        (HEAD + "G92 E9\nM82\nG1 X10 E8\nG1 X30 E9\n", 20),
+        (HEAD + "G1 X-1.5E+01 E1\n", 15),
+        (HEAD + "G1 X1e1 E1\n", 10),
+        (HEAD + "G1 X10 E1.2e-05\n", 10),
+        (HEAD + "G1X10Y0E1\n", 10),
+        (HEAD + "G1 X.5 E+1. (half) ; a comment (open\n", 0.5),
+        (HEAD + "N7 G1 X10 E1*2\n", 10),
+        (HEAD + "G92 X100\nG53 G1 X7 E1\n", 7),
+        (HEAD + "G10\nG11\nG1 X3 E1\nM2\nG0 X9\n", 3),
+        (
+            HEAD
+            + "SAVE_GCODE_STATE NAME=a\nG91\nM82\nRESTORE_GCODE_STATE NAME=a\nG1 X4 E1\nG1 X6 E1\n",
+            6,
+        ),
+        (HEAD + 'M117 5" X=3 G91 (hm\nG1 X4 E1\n', 4),
+        (HEAD + "G2 Z2 I1 J0 P1 F100\nG1 X4 E1\n", 4),
+    ],
+)
+def test_numbers_modes_and_commands_are_those_of_the_firmware(text, wanted):
+    assert length(laid(text)) == pytest.approx(wanted, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "G1 X20,5 E1",
+        "G1 X=20 E1",
+        "G1 X--5 E1",
+        "G1 X1.2.3 E1",
+        "G1 X E1",
+        "G1 X{a} E1",
+        "G1 X1 X2 E1",
+        "G1 X5 I2 J3 K1 E1",
+    ]
+    + [
+        "G1 X10 B30 E1",
+        "G90.1",
+        "G55",
+        "M98 P100",
+        "M99",
+        "G81 X1",
+        "G1 X1 H2 E1",
+        "G91 X10",
+        "G1 X10 E1 G91",
+        "X10 G1 E1",
+    ]
+    + [
+        "#1=5",
+        "if true",
+        "while x < 3",
+        "o100 sub",
+        "/ G1 X10 E1",
+        "G1 X10 E1*5",
+        "G10 L2 P1 X5",
+        "SET_GCODE_OFFSET Z=0.2",
+    ]
+    + [
+        "G1 X1E1 Y5",
+        "(a comment",
+        "M206 X5",
+        "RESTORE_GCODE_STATE NAME=none",
+        "G1 X5 E1 \u00e9",
+        "M82\nG91 G1 X1 E1",
+    ]
+    + ["M30\nG1 X5 E1", "G28 X\nG1 X5 E1\nG28 Z\nG1 X9 E1"],
+)
+def test_what_is_not_understood_is_rejected_with_its_line(line):
+    with pytest.raises(InputError) as told:
+        laid(HEAD + "G1 X1 E1\n" + line + "\nG1 X2 E1\n")
+    last = 4 + len(line.splitlines())
+    assert told.value.code == "BAD_GCODE" and told.value.where == f"part.gcode line {last}", (
+        told.value
+    )
+
+
+def test_macros_codes_and_tools_are_noted_with_their_lines():
+    read = gcode.read(
+        HEAD
+        + 'START_PRINT T=200\nM98 P"start.g"\nM104 S200 T1\nG1 X5 E1\nM9999\nT1\nG1 X9 E1\nM9999\n',
+        "p",
+        0.01,
+    )
+    assert length(read.curves) == pytest.approx(9.0)
+    told = " / ".join(issue.message for issue in read.issues)
+    for words in (
+        "START_PRINT (line 4)",
+        'M98 P"start.g" (line 5)',
+        "M9999 (line 8, 2 in all)",
+        "T0, T1",
+    ):
+        assert words in told, told
+    assert "M104" not in told and {issue.code for issue in read.issues} == {"GCODE_NOT_READ"}
+
+
+STYLES = {
+    "prusa": (
+        ";TYPE:{}",
+        "Custom",
+        "Skirt/Brim",
+        "Support material",
+        "Wipe tower",
+        "External perimeter",
+    ),
+    "orca": (";TYPE:{}", "Custom", "Skirt", "Support transition", "Prime tower", "Outer wall"),
+    "bambu": (
+        "; FEATURE: {}",
+        "Custom",
+        "Brim",
+        "Support interface",
+        "Prime tower",
+        "Internal solid infill",
+    ),
+    "cura": (";TYPE:{}", None, "SKIRT", "SUPPORT-INTERFACE", "PRIME-TOWER", "WALL-OUTER"),
+    "simplify": ("; feature {}", None, "skirt", "dense support", "prime pillar", "outer perimeter"),
+    "simplify 3": ("; {}", None, "skirt", "support", "ooze shield", "solid layer"),
+}
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_moves_that_are_not_part_are_left_out_by_the_comments_of_slicers(style):
+    form, purge, *types = STYLES[style]
+    purge_mark = "" if purge is None else form.format(purge) + "\n"
+    text = HEAD + purge_mark + "G1 X60 E1\n;LAYER:0\n; LAYER_CHANGE\n"
+    for k, name in enumerate(types):
+        text += f"{form.format(name)}\nG0 X0 Y{10 * k + 10}\nG1 X{10 * k + 10} E1\n"
+    read = gcode.read(text, "p", 0.01)
+    assert length(read.curves) == pytest.approx(40.0)
+    (note,) = read.issues
+    assert note.code == "ROLES_LEFT_OUT"
+    for name, size in zip([purge or "before the first type", *types[:3]], (60, 10, 20, 30)):
+        assert f"{name} {size} mm" in note.message
+    whole = gcode.read(text, "p", 0.01, "all")
+    assert length(whole.curves) == pytest.approx(160.0) and not whole.issues
+    assert {one.layer for one in whole.curves} == {0}  # purge line and first layer at one height
+    assert length(gcode.read(text, "p", 0.01, f"support, {types[3]}").curves) == pytest.approx(60.0)
+    with pytest.raises(InputError) as told:
+        gcode.read(text, "p", 0.01, "part, suport")
+    assert told.value.code == "BAD_VALUE" and "'suport'" in told.value.message
+
+
+def test_types_that_nobody_knows_are_deposited_with_a_note():
+    read = gcode.read(HEAD + ";TYPE:Zebra\nG1 X10 E1\n", "p", 0.01)
+    assert length(read.curves) == pytest.approx(10.0)
+    assert [issue.code for issue in read.issues] == ["GCODE_NOT_READ"] and "Zebra" in read.issues[
+        0
+    ].message
+
+
+@pytest.mark.parametrize(
+    ("rotary", "words", "wanted"),
+    [
+        ("head-ac", "A90 C0", (0, -1, 0)),
+        ("head-ac", "A90 C90", (1, 0, 0)),
+        ("head-bc", "B90 C0", (1, 0, 0)),
+        ("head-bc", "B90 C90", (0, 1, 0)),
+        ("table-ac", "A90 C0", (0, 1, 0)),
+        ("table-bc", "B30 C90", (0, 0.5, np.sqrt(0.75))),
+    ],
+)
+def test_rotary_words_are_directions(rotary, words, wanted):
+    """table: the part point under the tool, turned by the table's own rotations, has its direction upwards again."""
+    (curve,) = gcode.curves_of(HEAD + f"G1 X30 {words} E1\n", "p", 0.01, rotary=rotary)
+    np.testing.assert_allclose(curve.directions[0], (0, 0, 1), atol=1e-12)
+    np.testing.assert_allclose(curve.directions[-1], wanted, atol=1e-12)
+    turns = np.degrees(
+        np.arccos(np.clip((curve.directions[1:] * curve.directions[:-1]).sum(axis=1), -1, 1))
+    )
+    assert turns.max() < 1.5
+    if rotary.startswith("table"):
+        angles = {word[0]: np.radians(float(word[1:])) for word in words.split()}
+        tilt, c = angles.get("A", angles.get("B")), angles["C"]
+        about_z = np.array([[np.cos(c), -np.sin(c), 0], [np.sin(c), np.cos(c), 0], [0, 0, 1]])
+        turned = about_z @ curve.directions[-1]
+        k = 0 if "A" in angles else 1
+        s, co = np.sin(tilt), np.cos(tilt)
+        table = [
+            np.array([[1, 0, 0], [0, co, -s], [0, s, co]]),
+            np.array([[co, 0, s], [0, 1, 0], [-s, 0, co]]),
+        ][k]
+        np.testing.assert_allclose(table @ turned, (0, 0, 1), atol=1e-12)
+    with pytest.raises(InputError) as told:
+        laid(HEAD + f"G1 X30 {words} E1\n")
+    assert "strategy.rotary" in told.value.message
+
+
 def message(*fields):
     """Fields (number, kind, value) as protocol buffers write them: 0 a number, 1 a double, 2 bytes."""
     found = b""

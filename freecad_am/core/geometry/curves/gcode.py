@@ -1,27 +1,32 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""G-code of a slicer as curves: what it extrudes on the way is a bead, layers are those of its comments, else of its Z.
+"""G-code of a slicer as curves: each run of moves that extrude is a bead; layers are those of its comments, else of its Z.
 
-Known are G0 to G3 in the plane XY, G21, G90 to G92, G92 of any axis, M82 and M83, as RepRap firmware and Marlin have them;
-https://marlinfw.org/meta/gcode tells what each means. Words about temperature, fans and the like are passed over.
+Modes are those of Marlin 2 and Klipper: G90 keeps M83, and G91 makes the extruder relative unless M82 or M83 was given. Where the
+two disagree whether a move extrudes (M82, then G91), the move is rejected. Sources: https://marlinfw.org/meta/gcode,
+https://www.klipper3d.org/G-Codes.html, https://docs.duet3d.com/User_manual/Reference/Gcodes.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
-from ...issues import InputError, Text
+from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array
+from . import gcode_roles as roles_of
 from .bead_curves import BeadCurve
+from .gcode_words import BadWords, Command, commands_of, split_comments
 
 CODE = "BAD_GCODE"
-WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:\d+\.?\d*|\.\d+))")
-START = re.compile(r"[A-Za-z]\s*[-+.\d]")
+LEFT_OUT, NOT_READ = "ROLES_LEFT_OUT", "GCODE_NOT_READ"
 LAYER = re.compile(
-    r";\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)", re.IGNORECASE
+    r"\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|CHANGE_LAYER|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)",
+    re.IGNORECASE,
 )
 APART = 1e-6  # mm; points no farther apart are one
 MAX_MM = 1e7  # mm; farther away is a slip of the pen
@@ -29,115 +34,686 @@ ARC_END = (
     0.1  # mm by which the ends of an arc may be on different circles: slicers round to hundredths
 )
 ROUNDED = 1e-9
-UP = np.array([0.0, 0.0, 1.0])
+SAME_HEIGHT = 1e-3  # mm; slicers write Z to hundredths or thousandths
+MAX_TURN_DEG = 1.0  # by which the direction turns from one point to the next
+NO_ROTARY, ANY_ROTARY = "none", "any"  # any: of a drawing, which shows no directions
+ROTARY = (NO_ROTARY, "head-ac", "head-bc", "table-ac", "table-bc")
 FORM = "give absolute or relative moves in mm, G0 to G3 with E, as a slicer for filament or pellets writes them"
+MOTIONS = frozenset({"G0", "G1", "G2", "G3"})
+LINEAR_WORDS, ARC_WORDS = frozenset("XYZEF"), frozenset("XYZEFIJRP")
+# codes without a meaning for the path: dwell, plane XY, mm, cancelled modes, first work offset, feed modes, fans, states
+NO_MOTION = frozenset(
+    {
+        "G4",
+        "G17",
+        "G21",
+        "G40",
+        "G49",
+        "G54",
+        "G60",
+        "G64",
+        "G69",
+        "G80",
+        "G91.1",
+        "G93",
+        "G94",
+        "G95",
+        "G97",
+    }
+)
+# the machine moves by itself: homing, levelling, cleaning, parking. Afterwards positions are to be given anew
+OWN_MOTION = frozenset(
+    {"G12", "G27", "G28", "G29", "G29.1", "G29.2", "G30", "G32", "G33", "G34", "G35", "G392"}
+)
 REFUSED = {
     "G20": "it is in inches; let the slicer write mm (G21)",
-    "G18": "arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines only",
+    "G18": "arcs are in the plane of X and Z, which Klipper and Marlin turn in opposite ways; let the slicer write arcs in the "
+    "plane of X and Y, or lines only",
     "G19": "arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines only",
     "G5": "splines are not known; let the slicer write lines and arcs",
     "G6": "direct moves of steppers are not known; let the slicer write G1",
+    "G26": "it prints a pattern of the machine's own; leave it out",
+    "G41": "tool radius compensation is not known; leave it out",
+    "G42": "tool radius compensation and moves to points of a mesh are not known; leave it out",
     "G43": "tool lengths are not known; let the slicer leave them out",
+    "G51": "scaled coordinates are not known; let the slicer leave them out",
+    "G61": "it returns to a stored position; write the move out",
     "G68": "turned coordinates are not known; let the slicer leave them out",
+    "G90.1": "absolute centres of arcs are not known; give I and J from the start of the arc",
+    "M97": "it calls a subprogram; write its moves out",
+    "M99": "it returns from a subprogram, or repeats the program; leave it out",
+    "M206": "it shifts the origin; leave it out, or use G92",
+    "M290": "it shifts Z while the program runs; leave it out",
+    "M428": "it shifts the origin; leave it out, or use G92",
+    "M579": "it scales axes; leave it out",
+    "SET_GCODE_OFFSET": "it shifts the origin; leave it out, or use G92",
+    "SET_KINEMATIC_POSITION": "it shifts the origin; leave it out, or use G92",
+    "FORCE_MOVE": "it moves a motor alone; leave it out",
+    "EXCLUDE_OBJECT": "it drops an object while the program runs; let the slicer leave the object out",
 }
+WORK_OFFSETS = re.compile(r"G5[5-9](?:\.[123])?")
+# M codes and macros that are known to leave the path as it is
+HARMLESS_M = frozenset(
+    {
+        f"M{k}"
+        for k in (
+            *range(12),
+            *range(16, 32),
+            33,
+            36,
+            37,
+            38,
+            42,
+            48,
+            70,
+            72,
+            73,
+            75,
+            76,
+            77,
+            78,
+            80,
+            81,
+            82,
+            83,
+            84,
+        )
+    }
+    | {
+        f"M{k}"
+        for k in (
+            85,
+            92,
+            104,
+            105,
+            106,
+            107,
+            108,
+            109,
+            110,
+            111,
+            112,
+            113,
+            114,
+            115,
+            116,
+            117,
+            118,
+            119,
+            120,
+            121,
+        )
+    }
+    | {
+        f"M{k}"
+        for k in (
+            125,
+            126,
+            127,
+            140,
+            141,
+            142,
+            143,
+            144,
+            145,
+            150,
+            155,
+            163,
+            164,
+            165,
+            190,
+            191,
+            200,
+            201,
+            201.1,
+        )
+    }
+    | {
+        f"M{k}"
+        for k in (
+            202,
+            203,
+            204,
+            205,
+            207,
+            208,
+            209,
+            211,
+            220,
+            221,
+            240,
+            250,
+            280,
+            291,
+            292,
+            300,
+            301,
+            302,
+            303,
+            304,
+        )
+    }
+    | {
+        f"M{k}"
+        for k in (
+            307,
+            350,
+            355,
+            400,
+            401,
+            402,
+            403,
+            404,
+            405,
+            406,
+            407,
+            412,
+            413,
+            420,
+            486,
+            500,
+            501,
+            502,
+            503,
+            550,
+        )
+    }
+    | {
+        f"M{k}"
+        for k in (
+            566,
+            569,
+            572,
+            592,
+            593,
+            600,
+            601,
+            602,
+            603,
+            701,
+            702,
+            710,
+            851,
+            862.1,
+            862.2,
+            862.3,
+            862.4,
+            862.5,
+        )
+    }
+    | {
+        f"M{k}"
+        for k in (
+            862.6,
+            871,
+            900,
+            906,
+            907,
+            911,
+            912,
+            913,
+            914,
+            915,
+            928,
+            930,
+            950,
+            960,
+            970,
+            970.3,
+            973,
+            974,
+            975,
+        )
+    }
+    | {
+        f"M{k}"
+        for k in (976, 982, 982.2, 982.4, 983, 984, 991, 1002, 1003, 1004, 1006, 17.1, 143.1)
+    }
+)
+HARMLESS_MACROS = frozenset(
+    {
+        "EXCLUDE_OBJECT_DEFINE",
+        "EXCLUDE_OBJECT_START",
+        "EXCLUDE_OBJECT_END",
+        "DEFINE_OBJECT",
+        "SET_VELOCITY_LIMIT",
+    }
+    | {
+        "SET_PRESSURE_ADVANCE",
+        "SET_PRINT_STATS_INFO",
+        "SET_FAN_SPEED",
+        "TIMELAPSE_TAKE_FRAME",
+        "TIMELAPSE_RENDER",
+    }
+    | {
+        "SET_HEATER_TEMPERATURE",
+        "TEMPERATURE_WAIT",
+        "TURN_OFF_HEATERS",
+        "SET_LED",
+        "RESPOND",
+        "ECHO",
+    }
+)
 
 
-def curves_of(text: str, where: str, chord_error: float) -> tuple[BeadCurve, ...]:
+class ReadCurves(NamedTuple):
+    """Beads of a file, and findings about what of it is no bead."""
+
+    curves: tuple[BeadCurve, ...]
+    issues: tuple[Issue, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """Points (n, 3) and directions (n, 3) of a run of moves that extrude, the number of layer comments before it, and the
+    slicer's type."""
+
+    points: Array
+    directions: Array
+    comments: int
+    role: str | None
+
+    @property
+    def length(self) -> float:
+        return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+
+    @property
+    def heights(self) -> tuple[float, float]:
+        return float(self.points[:, 2].min()), float(self.points[:, 2].max())
+
+
+@dataclass
+class _State:
+    """Modes and positions of a program. at: as the program counts; extruders: what Klipper and Marlin count."""
+
+    at: dict[str, float] = field(default_factory=lambda: dict.fromkeys("XYZABC", 0.0))
+    extruders: list[float] = field(default_factory=lambda: [0.0, 0.0])
+    shift: Array = field(default_factory=lambda: np.zeros(3))
+    absolute: bool = True
+    extruder_mode: str = ""  # M82 or M83, '' before either
+
+    def copied(self) -> _State:
+        """A copy that does not change with this one."""
+        return _State(
+            dict(self.at),
+            list(self.extruders),
+            self.shift.copy(),
+            self.absolute,
+            self.extruder_mode,
+        )
+
+    def extruder_is_relative(self) -> tuple[bool, bool]:
+        """Whether E counts from the position before, for Klipper and for Marlin."""
+        relative = self.extruder_mode == "M83"
+        return (
+            relative or not self.absolute,
+            relative or (not self.absolute and self.extruder_mode != "M82"),
+        )
+
+    @property
+    def place(self) -> Array:
+        return np.array([self.at[axis] for axis in "XYZ"]) + self.shift
+
+
+def curves_of(
+    text: str, where: str, chord_error: float, roles: str = roles_of.PART, rotary: str = NO_ROTARY
+) -> tuple[BeadCurve, ...]:
     """The beads of a program in its coordinates, arcs within the chord error (mm). InputError BAD_GCODE with the line."""
-    reader = _Reader(where, chord_error)
+    return read(text, where, chord_error, roles, rotary).curves
+
+
+def read(
+    text: str, where: str, chord_error: float, roles: str = roles_of.PART, rotary: str = NO_ROTARY
+) -> ReadCurves:
+    """Read the beads of a program, and say what of it is not read.
+
+    Parameters
+    ----------
+    text
+        The program.
+    where
+        Its name, for messages.
+    chord_error
+        Largest distance between an arc and its chords, mm.
+    roles
+        ``part``, ``all``, or groups and types of the slicer separated by commas; other moves are left out, with a note.
+    rotary
+        How the words A, B and C turn the tool, one of `ROTARY`; ``none`` rejects them.
+
+    Raises
+    ------
+    InputError
+        BAD_GCODE with the line; BAD_VALUE for roles that the file does not have.
+    """
+    if text.startswith("GCDE"):
+        raise InputError(CODE, where, "it is binary G-code; let the slicer export G-code as text")
+    reader = _Reader(where, chord_error, rotary)
     for number, line in enumerate(text.lstrip("\ufeff").splitlines(), 1):
         reader.take(line, number)
-    return reader.done()
+    return reader.done(roles)
 
 
 class _Reader:
     """Where the head is, what is understood of words so far, and the beads."""
 
-    def __init__(self, where: str, chord_error: float) -> None:
-        self.where, self.chord_error = where, chord_error
-        self.at = {"X": 0.0, "Y": 0.0, "Z": 0.0, "E": 0.0}  # as the program counts
-        self.shift = np.zeros(3)  # from there to where it is, after G92
+    def __init__(self, where: str, chord_error: float, rotary: str) -> None:
+        self.where, self.chord_error, self.rotary = where, chord_error, rotary
+        self.state, self.stored = _State(), dict[str, _State]()
         self.known: set[str] = set()  # axes told so far
-        self.absolute, self.absolute_e = True, True
         self.motion = ""
-        self.run: list[Array] = []
-        self.beads: list[tuple[int, Array]] = []  # comments before, points
-        self.comments = 0
-        self.line = 0
+        self.points: list[Array] = []
+        self.directions: list[Array] = []
+        self.runs: list[_Run] = []
+        self.comments, self.line = 0, 0
+        self.role: str | None = None
+        self.tool, self.tools = "T0", set[str]()
+        self.ended = ""  # the code that ended the program
+        self.not_read: dict[str, list[int]] = {}  # names of macros and codes, and their lines
 
     def take(self, line: str, number: int) -> None:
-        """One line."""
+        """Read one line."""
         self.line = number
-        code, _, comment = line.partition(";")
-        if comment and LAYER.match(f";{comment}"):
+        try:
+            code, comments = split_comments(line)
+            for comment in comments:
+                self._take_comment(comment)
+            if not code or code[0] in "%:":
+                return
+            if code[0] == "/":
+                raise BadWords(
+                    "it is skipped or run by a switch of the machine; leave it out, or its slash"
+                )
+            commands = commands_of(code)
+        except BadWords as error:
+            raise self._error(error.text) from None
+        machine_frame, moved = False, False
+        for command in commands:
+            if command.name == "G53":
+                machine_frame = True
+                if not command.words:
+                    continue
+                command = Command("", command.words)
+            if command.name == "" and command is not commands[-1]:
+                raise self._error(
+                    Text("{} stands before a command; write the command first", command.words[0][0])
+                )
+            if moved and command.name in ("G90", "G91", "G53", "M82", "M83"):
+                raise self._error(
+                    Text("{} follows a move in its line; give it a line of its own", command.name)
+                )
+            moved |= command.name in (*MOTIONS, "")
+            self._run(command, machine_frame)
+
+    def _take_comment(self, comment: str) -> None:
+        if LAYER.match(comment):
             self._end()
             self.comments += 1
-        code = re.sub(r"\([^)]*\)", " ", code).strip()
-        if not code or code[0] in "%/:" or code[0] in "oO":
-            return
-        if START.match(code) is None:  # a command of words, such as a macro of Klipper
-            return
-        words = [(letter.upper(), float(value)) for letter, value in WORD.findall(code)]
-        words = [word for word in words if word[0] != "N"]
-        if not words:
-            return
-        letter, value = words[0]
-        name = f"{letter}{value:g}"
-        if letter in "XYZE" and self.motion:
-            name = self.motion
-        else:
-            words = words[1:]
-        if name in REFUSED or name.split(".")[0] in REFUSED:
-            raise self._error(
-                Text("{}: {}", name, REFUSED.get(name) or REFUSED[name.split(".")[0]])
-            )
-        if name in ("G0", "G1", "G2", "G3"):
+        role = roles_of.role_in(comment)
+        if role is not None and role != self.role:
+            self._end()
+            self.role = role
+
+    def _run(self, command: Command, machine_frame: bool) -> None:
+        name = command.name
+        if name == "":
+            name = self._modal(command)
+            if not name:
+                return
+        if name in MOTIONS:
             self.motion = name
-            self._moved(name, dict(words))
-        elif name in ("G90", "G91"):
-            self.absolute = self.absolute_e = name == "G90"
-        elif name in ("M82", "M83"):
-            self.absolute_e = name == "M82"
-        elif name == "G92":
-            self._reset_origin(dict(words))
-        elif name in ("G28", "G29"):
+            self._move(name, self._numbers(command), machine_frame)
+        elif name == "T":
             self._end()
-            self.known -= {letter for letter, _ in words} or {"X", "Y", "Z"}
-        elif name in ("G10", "G11"):
-            self._end()  # drawn back, and on again
+            self.tool = f"T{command.rest or '0'}"
+        elif self._is_refused(command):
+            return
+        elif name in ("G90", "G91", "M82", "M83"):
+            self._set_mode(command)
+        elif name in ("G92", "G92.1"):
+            self._reset_origin(command)
+        elif name in OWN_MOTION:
+            self._home(command)
+        elif name in ("G10", "G11", "G22", "G23"):
+            self._retract(command)
+        elif name not in NO_MOTION:
+            self._other(command)
 
-    def _place(self) -> Array:
-        return np.array([self.at[axis] for axis in "XYZ"]) + self.shift
+    def _modal(self, command: Command) -> str:
+        """The motion that words without a command mean; '' of the number of a program."""
+        letter = command.words[0][0]
+        if letter == "O" and len(command.words) == 1 and command.words[0][1] is not None:
+            return ""
+        if letter in "OPNDHLQ" or not self.motion:
+            raise self._error(
+                Text("{} stands without a command before it; begin the line with G, M or T", letter)
+            )
+        return self.motion
 
-    def _reset_origin(self, words: dict[str, float]) -> None:
-        """G92: what the program counts from now on, with the head where it is."""
-        here = self._place()
-        for axis in ("X", "Y", "Z", "E"):
-            if axis in words or not words:
-                self.at[axis] = words.get(axis, 0.0)
-        self.shift = here - np.array([self.at[axis] for axis in "XYZ"])
+    def _is_refused(self, command: Command) -> bool:
+        """Raise for what would be understood wrongly; True of codes that are harmless with these words."""
+        name = command.name
+        reason = REFUSED.get(name) or (
+            REFUSED.get(name.split(".")[0])
+            if name[0] == "G" and "." in name and name != "G64.1"
+            else None
+        )
+        values = dict(command.words)
+        if name == "SET_GCODE_OFFSET" and not re.search(
+            r"\b[XYZ]\w*\s*=\s*[-+]?0*\.?0*[1-9]", command.rest, re.IGNORECASE
+        ):
+            return True
+        if name == "M206" and not any(values.get(axis) for axis in "XYZ"):
+            return True
+        if name == "M98" and re.match(r"[Pp]\s*\d", command.rest):
+            reason = REFUSED["M97"]
+        if name == "M605" and values.get("S", 0.0) not in (0.0, 1.0):
+            reason = "it prints copies side by side; print one"
+        if WORK_OFFSETS.fullmatch(name):
+            reason = "where the coordinates of another work offset begin is not known; leave it out"
+        if name.startswith("G43.4") and self.rotary != NO_ROTARY:
+            return True
+        if reason is not None:
+            raise self._error(Text("{}: {}", name, Text(reason)))
+        return False
 
-    def _moved(self, name: str, words: dict[str, float]) -> None:
-        start, extruded = self._place(), 0.0
-        for axis, value in words.items():
-            if axis not in self.at:
-                continue
-            if not math.isfinite(value) or abs(value) > MAX_MM:
-                raise self._error(
-                    Text("{} is {:g}; give a number of at most {:g}", axis, value, MAX_MM)
+    def _set_mode(self, command: Command) -> None:
+        if command.words:
+            raise self._error(
+                Text(
+                    "{} has the word {} after it; give it a line of its own",
+                    command.name,
+                    command.words[0][0],
                 )
-            absolute = self.absolute_e if axis == "E" else self.absolute
-            before = self.at[axis]
-            self.at[axis] = value if absolute else before + value
-            if axis == "E":
-                extruded = self.at[axis] - before
-            else:
+            )
+        if command.name in ("G90", "G91"):
+            self.state.absolute = command.name == "G90"
+        else:
+            self.state.extruder_mode = command.name
+
+    def _home(self, command: Command) -> None:
+        """The machine moves by itself; axes that are homed count from the machine's own origin."""
+        self._end()
+        axes = {letter for letter, _ in command.words if letter in "XYZ"} or set("XYZ")
+        self.known -= axes
+        if command.name == "G28":
+            for k, axis in enumerate("XYZ"):
+                if axis in axes:
+                    self.state.at[axis], self.state.shift[k] = 0.0, 0.0
+
+    def _retract(self, command: Command) -> None:
+        """Retract and recover, or set temperatures of a tool; offsets are rejected."""
+        self._end()
+        letters = {letter for letter, _ in command.words}
+        if letters & set("XYZABCL"):
+            raise self._error(
+                Text("{} sets offsets, which are not known; leave it out", command.name)
+            )
+
+    def _other(self, command: Command) -> None:
+        """Codes and macros of the machine: the path is as if they did nothing, and those that are not known are noted."""
+        name = command.name
+        if name in ("M2", "M30") and not command.rest:
+            self._end()
+            self.ended = name
+        elif name == "SAVE_GCODE_STATE":
+            self.stored[self._state_name(command)] = self.state.copied()
+        elif name == "RESTORE_GCODE_STATE":
+            self._restore(command)
+        elif name[0] == "G" and name[1:2].isdigit():
+            raise self._error(Text("{} is not known; {}", name, Text(FORM)))
+        elif name in ("M98", "M32"):  # another file of the machine
+            self._end()
+            self.not_read.setdefault(f"{name} {command.rest}".strip(), []).append(self.line)
+        elif (
+            name not in HARMLESS_M
+            and name not in HARMLESS_MACROS
+            and not name.startswith("BED_MESH_")
+        ):
+            self._end()
+            self.not_read.setdefault(name, []).append(self.line)
+
+    def _state_name(self, command: Command) -> str:
+        found = re.search(r"NAME\s*=\s*(\S+)", command.rest, re.IGNORECASE)
+        return found[1] if found else "default"
+
+    def _restore(self, command: Command) -> None:
+        """RESTORE_GCODE_STATE of Klipper: modes and origins as stored; the head stays unless MOVE is 1."""
+        stored = self.stored.get(self._state_name(command))
+        if stored is None:
+            raise self._error(
+                Text("{} names a state that was not stored; store it first", command.name)
+            )
+        self._end()
+        here, state = self.state.place, stored.copied()
+        if not re.search(r"MOVE\s*=\s*1", command.rest, re.IGNORECASE):
+            for k, axis in enumerate("XYZ"):
+                state.at[axis] = float(here[k] - state.shift[k])
+        self.state = state
+
+    def _numbers(self, command: Command) -> dict[str, float]:
+        """The words of a motion. InputError for words that it does not have, or without a number."""
+        allowed = LINEAR_WORDS if self.motion in ("G0", "G1") else ARC_WORDS
+        numbers: dict[str, float] = {}
+        for letter, value in command.words:
+            if letter in "ABC":
+                self._check_rotary(letter, value)
+            elif letter not in allowed:
+                raise self._error(
+                    Text(
+                        "{} has no word {}; give {}, or correct the line",
+                        self.motion,
+                        letter,
+                        " ".join(sorted(allowed)),
+                    )
+                )
+            if value is None:
+                raise self._error(Text("{} has no number; give one", letter))
+            if letter != "F" and abs(value) > MAX_MM:
+                raise self._error(
+                    Text("{} is {:g}; give a number of at most {:g}", letter, value, MAX_MM)
+                )
+            numbers[letter] = value
+        return numbers
+
+    def _check_rotary(self, letter: str, value: float | None) -> None:
+        if self.rotary == ANY_ROTARY:
+            return
+        axes = "" if self.rotary == NO_ROTARY else self.rotary[-2:].upper()
+        if letter not in axes and value != 0.0:
+            raise self._error(
+                Text(
+                    "{} turns an axis, and strategy.rotary is {}; name there how A, B and C turn the tool ({}), "
+                    "or leave them out",
+                    letter,
+                    self.rotary,
+                    ", ".join(ROTARY[1:]),
+                )
+            )
+
+    def _reset_origin(self, command: Command) -> None:
+        """G92: what the program counts from now on, with the head where it is."""
+        state, here = self.state, self.state.place
+        if command.name == "G92.1":
+            state.shift = np.zeros(3)
+            state.at.update(zip("XYZ", here.tolist()))
+            return
+        for letter, value in command.words:
+            if letter not in "XYZEABC" or value is None:
+                raise self._error(
+                    Text("G92 has no word {}; give X, Y, Z or E with a number", letter)
+                )
+            if letter in "ABC":
+                self._check_rotary(letter, value - self.state.at[letter])
+        words = {letter: float(value or 0.0) for letter, value in command.words}
+        for axis in "XYZ":
+            if axis in words or not words:
+                state.at[axis] = words.get(axis, 0.0)
+        if "E" in words or not words:
+            state.extruders = [words.get("E", 0.0)] * 2
+        state.shift = here - np.array([state.at[axis] for axis in "XYZ"])
+
+    def _extrude(self, words: dict[str, float]) -> bool:
+        """Whether a move extrudes. InputError where Klipper and Marlin differ."""
+        if "E" not in words:
+            return False
+        value, extrudes = words["E"], []
+        for k, relative in enumerate(self.state.extruder_is_relative()):
+            before = self.state.extruders[k]
+            self.state.extruders[k] = before + value if relative else value
+            extrudes.append(self.state.extruders[k] - before > ROUNDED)
+        if extrudes[0] != extrudes[1]:
+            raise self._error(
+                "M82 and G91 are both on: Klipper counts E from the position before, Marlin from zero; write M83, or G90"
+            )
+        return extrudes[0]
+
+    def _target(self, words: dict[str, float], machine_frame: bool) -> None:
+        state = self.state
+        if machine_frame and not state.absolute:
+            raise self._error("G53 in relative moves (G91) is not known; write G90 before it")
+        for k, axis in enumerate("XYZ"):
+            if axis in words:
                 self.known.add(axis)
-        end = self._place()
-        way = [end] if name in ("G0", "G1") else self._arc(name, start, end, words)
-        if extruded <= ROUNDED or (len(way) == 1 and float(np.linalg.norm(end - start)) < APART):
+                value = words[axis] - (state.shift[k] if machine_frame else 0.0)
+                state.at[axis] = float(value if state.absolute else state.at[axis] + value)
+        for axis in "ABC":
+            if axis in words:
+                value = words[axis]
+                state.at[axis] = value if state.absolute else state.at[axis] + value
+
+    def _move(self, name: str, words: dict[str, float], machine_frame: bool) -> None:
+        start, before = self.state.place, [self.state.at[axis] for axis in "ABC"]
+        extrudes = self._extrude(words)
+        self._target(words, machine_frame)
+        end = self.state.place
+        if name in ("G2", "G3"):
+            way = self._arc(name, start, end, words, extrudes)
+        else:
+            way = [end]
+        still = len(way) == 1 and float(np.linalg.norm(end - start)) < APART
+        if not extrudes or still:
             self._end()
             return
+        self._check_extruding()
+        after = [self.state.at[axis] for axis in "ABC"]
+        angles = np.array([before, after])
+        if len(way) == 1:
+            count = max(1, math.ceil(float(np.abs(angles[1] - angles[0]).max()) / MAX_TURN_DEG))
+            way = [start + k / count * (end - start) for k in range(1, count)] + [end]
+        if not self.points:
+            self.points, self.directions = [start], [self._direction(angles[0])]
+        share = np.arange(1, len(way) + 1) / len(way)
+        self.points += way
+        self.directions += [self._direction(angles[0] + s * (angles[1] - angles[0])) for s in share]
+
+    def _check_extruding(self) -> None:
+        if self.ended:
+            raise self._error(
+                Text(
+                    "it extrudes after {}, which ends the program; leave out what follows",
+                    self.ended,
+                )
+            )
         if len(self.known) < 3:
             raise self._error(
                 Text(
@@ -145,12 +721,28 @@ class _Reader:
                     FORM,
                 )
             )
-        if not self.run:
-            self.run = [start]
-        self.run += way
+        self.tools.add(self.tool)
 
-    def _arc(self, name: str, start: Array, end: Array, words: dict[str, float]) -> list[Array]:
+    def _direction(self, angles: Array) -> Array:
+        """The unit vector from the deposit towards the tool, for A, B and C in degrees."""
+        a, b, c = np.radians(angles)
+        if self.rotary in (NO_ROTARY, ANY_ROTARY):
+            return np.array([0.0, 0.0, 1.0])
+        if self.rotary.startswith("table"):  # the part turns by the angles, so the tool by less
+            a, b, c = -a, -b, -c
+        if self.rotary.endswith("ac"):
+            tilted = (0.0, -math.sin(a), math.cos(a))
+        else:
+            tilted = (math.sin(b), 0.0, math.cos(b))
+        x, y, z = tilted
+        return np.array([x * math.cos(c) - y * math.sin(c), x * math.sin(c) + y * math.cos(c), z])
+
+    def _arc(
+        self, name: str, start: Array, end: Array, words: dict[str, float], extrudes: bool
+    ) -> list[Array]:
         """Points (3,) of an arc but its first."""
+        if extrudes and words.get("P", 0.0) > 1.0:
+            raise self._error("P asks for several turns, which are not known; write each turn out")
         middle = self._middle(name, start, end, words)
         one, other = start[:2] - middle, end[:2] - middle
         radius = float(np.hypot(*one))
@@ -184,6 +776,8 @@ class _Reader:
 
     def _middle(self, name: str, start: Array, end: Array, words: dict[str, float]) -> Array:
         if "I" in words or "J" in words:
+            if "R" in words:
+                raise self._error("the arc has I or J, and R; give one of them")
             return np.asarray(start[:2] + np.array([words.get("I", 0.0), words.get("J", 0.0)]))
         if "R" not in words:
             raise self._error(
@@ -207,32 +801,155 @@ class _Reader:
 
     def _end(self) -> None:
         """The bead ends here."""
-        if self.run:
-            points = np.array(self.run)
+        if self.points:
+            points, directions = np.array(self.points), np.array(self.directions)
             kept = np.r_[True, np.linalg.norm(np.diff(points, axis=0), axis=1) > APART]
             if kept.sum() > 1:
-                self.beads.append((self.comments, points[kept]))
-        self.run = []
+                self.runs.append(_Run(points[kept], directions[kept], self.comments, self.role))
+        self.points, self.directions = [], []
 
     def _error(self, message: str) -> InputError:
         return InputError(CODE, f"{self.where} line {self.line}", message)
 
-    def done(self) -> tuple[BeadCurve, ...]:
-        """The beads, each with its layer."""
+    def done(self, roles: str) -> ReadCurves:
+        """The beads of these roles, each with its layer, and what was left out."""
         self._end()
-        if not self.beads:
+        if not self.runs:
             raise InputError(
                 CODE, self.where, "no move of it extrudes, so there is no bead; {}", FORM
             )
-        texts = [comments for comments, _ in self.beads]
-        keys: Iterable[float] = (
-            texts if self.comments else [round(float(points[0, 2]), 3) for _, points in self.beads]
+        if any(run.role is not None for run in self.runs):
+            self.runs = [
+                _Run(run.points, run.directions, run.comments, run.role or roles_of.BEFORE)
+                for run in self.runs
+            ]
+        runs, issues = self._laid(roles)
+        curves = tuple(
+            BeadCurve(
+                run.points,
+                None if self.rotary in (NO_ROTARY, ANY_ROTARY) else run.directions,
+                layer,
+            )
+            for run, layer in zip(runs, _layers(runs, self.comments > 0))
         )
-        layers, layer, before = [], -1, math.nan
-        for key in keys:
-            layer += key != before
-            before = key
-            layers.append(layer)
-        return tuple(
-            BeadCurve(points, None, number) for number, (_, points) in zip(layers, self.beads)
-        )
+        return ReadCurves(curves, (*issues, *self._notes()))
+
+    def _laid(self, roles: str) -> tuple[list[_Run], list[Issue]]:
+        """The runs of roles, and a note about others."""
+        entries = roles_of.wanted(roles)
+        names = list(dict.fromkeys(run.role for run in self.runs if run.role is not None))
+        unknown = roles_of.unknown_entries(entries, names)
+        if unknown:
+            raise InputError(
+                "BAD_VALUE",
+                "strategy.roles",
+                "{!r} is neither a group ({}) nor a type of {} ({}); use one of them",
+                unknown[0],
+                ", ".join((roles_of.PART, roles_of.ALL, *(group for group, _ in roles_of.GROUPS))),
+                self.where,
+                ", ".join(names) or "it has no types",
+            )
+        runs = [run for run in self.runs if roles_of.is_laid(run.role, entries)]
+        others = [run for run in self.runs if not roles_of.is_laid(run.role, entries)]
+        lengths = _lengths(others)
+        if not runs:
+            raise InputError(
+                CODE,
+                self.where,
+                "its moves are {}, and strategy.roles is {}: nothing is left to deposit; name other roles",
+                lengths,
+                roles,
+            )
+        issues = []
+        if others:
+            message = Text(
+                "{}: {} left out, as strategy.roles is {}; name other roles to deposit more",
+                self.where,
+                lengths,
+                roles,
+            )
+            issues.append(Issue(NOTE, LEFT_OUT, message))
+        strange = [name for name in names if not roles_of.group_of(name)]
+        if strange and roles_of.PART in entries:
+            message = Text(
+                "{}: the types {} are not known and are deposited as the part; name roles in strategy.roles "
+                "to leave them out",
+                self.where,
+                ", ".join(strange),
+            )
+            issues.append(Issue(NOTE, NOT_READ, message))
+        return runs, issues
+
+    def _notes(self) -> list[Issue]:
+        issues = []
+        if self.not_read:
+            names = Text.joined(
+                ", ",
+                (
+                    Text("{} (line {}, {} in all)", name, lines[0], len(lines))
+                    if len(lines) > 1
+                    else Text("{} (line {})", name, lines[0])
+                    for name, lines in self.not_read.items()
+                ),
+            )
+            message = Text(
+                "{}: {} not read: codes and macros of the machine, taken as if they moved nothing and deposited nothing",
+                self.where,
+                names,
+            )
+            issues.append(Issue(NOTE, NOT_READ, message))
+        if len(self.tools) > 1:
+            message = Text(
+                "{}: tools {} deposit, all of which are taken for the one of the cell",
+                self.where,
+                ", ".join(sorted(self.tools)),
+            )
+            issues.append(Issue(NOTE, NOT_READ, message))
+        return issues
+
+
+def _lengths(runs: Sequence[_Run]) -> str:
+    """Types with their lengths."""
+    lengths: dict[str, float] = {}
+    for run in runs:
+        lengths[run.role or ""] = lengths.get(run.role or "", 0.0) + run.length
+    return Text.joined(
+        ", ", (Text("{} {:.5g} mm", role, length) for role, length in lengths.items())
+    )
+
+
+def _layers(runs: Sequence[_Run], has_comments: bool) -> list[int]:
+    """The layer of each run, from 0: by comments where there are such, else by Z.
+
+    Runs before the first comment that lie at one height, such as a purge line, belong to the first layer, and so do neighbours
+    at the same height.
+    """
+    keys: list[float] = [
+        float(run.comments) if has_comments else round(float(run.points[0, 2]), 3) for run in runs
+    ]
+    if has_comments:
+        first = next((key for key in keys if key > 0.0), 0.0)
+        before = [run for run, key in zip(runs, keys) if key == 0.0]
+        if before and _span(before) <= SAME_HEIGHT:
+            keys = [key or first for key in keys]
+    groups: list[list[int]] = []
+    for k, key in enumerate(keys):
+        if groups and keys[groups[-1][0]] == key:
+            groups[-1].append(k)
+        else:
+            groups.append([k])
+    layers, layer = [0] * len(runs), -1
+    previous: list[_Run] = []
+    for group in groups:
+        members = [runs[k] for k in group]
+        layer += not (previous and _span([*previous, *members]) <= SAME_HEIGHT)
+        previous = members
+        for k in group:
+            layers[k] = layer
+    return layers
+
+
+def _span(runs: Sequence[_Run]) -> float:
+    """Between the lowest and the highest point, mm."""
+    low, high = zip(*(run.heights for run in runs))
+    return max(high) - min(low)
