@@ -20,7 +20,8 @@ from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import InputError, Issue
 from . import apart
 
-READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+STEP, IGES = (".step", ".stp"), (".iges", ".igs")
+READABLE = (*STEP, *IGES, ".brep", ".brp")
 FARTHEST = (
     1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
 )
@@ -150,6 +151,30 @@ def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]
 
 
 def _shape(file: Path, where: str) -> tuple[Any, tuple[Issue, ...]]:
+    from .step_content import StepContent, refuse_iges
+
+    issues: list[Issue] = []
+    step = None
+    if file.suffix.lower() in STEP:
+        step = StepContent(file, where)
+        step.refuse_unread()
+        if step.is_whole and not step.has_geometry:
+            raise InputError(
+                "EMPTY_FILE",
+                where,
+                "it holds no shape, only product data or annotations; export the part again",
+            )
+    elif file.suffix.lower() in IGES:
+        issues += refuse_iges(file, where)
+    shape = _read_shape(file, where)
+    _refuse_bare(shape, where)
+    if step is not None:
+        issues += step.compare(shape)
+    _refuse_far(_reach(shape.BoundBox), where)
+    return shape, tuple(issues)
+
+
+def _read_shape(file: Path, where: str) -> Any:
     bad = InputError(
         "BAD_FILE", where, "it is damaged or not what its ending says; export the part again"
     )
@@ -163,8 +188,27 @@ def _shape(file: Path, where: str) -> tuple[Any, tuple[Issue, ...]]:
         raise bad
     if not (shape.Faces or shape.Edges):
         raise InputError("EMPTY_FILE", where, "it holds no shape; export the part again")
-    _refuse_far(_reach(shape.BoundBox), where)
-    return shape, ()
+    return shape
+
+
+def _refuse_bare(shape: Any, where: str) -> None:
+    """InputError UNSUPPORTED_FILE where a face has triangles alone and no surface."""
+    bare = sum(not _has_surface(face) for face in shape.Faces)
+    if bare:
+        raise InputError(
+            "UNSUPPORTED_FILE",
+            where,
+            "{} of its {} faces have no surfaces, only triangles; export exact faces, or a mesh (STL, OBJ, 3MF)",
+            bare,
+            len(shape.Faces),
+        )
+
+
+def _has_surface(face: Any) -> bool:
+    try:
+        return face.Surface is not None
+    except (TypeError, RuntimeError, AttributeError, Part.OCCError):
+        return False
 
 
 def _reach(box: Any) -> float:

@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a STEP or IGES file holds beside what the geometry kernel reads of it.
+
+The kernel leaves out what it cannot read without a message: solids by constructive geometry, triangles without surfaces,
+parts in other files. The text of the file names them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from ...core.issues import NOTE, WARNING, InputError, Issue, Text, Word
+
+CONTENT = "FILE_CONTENT"
+TYPE = re.compile(rb"#(\d+)\s*=\s*(?:\(\s*)?([A-Z][A-Z0-9_]*)\s*\(")
+TESSELLATED = re.compile(rb"\bTESSELLATED_(?:SOLID|SHELL)\s*\(")
+FACE_SETS = re.compile(rb"=\s*(?:COMPLEX_)?TRIANGULATED_SURFACE_SET\s*\(")
+DOCUMENT_FILE = re.compile(rb"=\s*DOCUMENT_FILE\s*\(\s*'((?:[^']|'')*)'")
+REFERENCE = re.compile(rb"#(\d+)")
+CAD_FILES = (
+    ".stp",
+    ".step",
+    ".p21",
+    ".stpx",
+    ".igs",
+    ".iges",
+    ".prt",
+    ".catpart",
+    ".sldprt",
+    ".ipt",
+    ".jt",
+)
+SOLIDS = ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "FACETED_BREP")
+FACES = ("ADVANCED_FACE", "FACE_SURFACE")
+# kinds of geometry of which at least one is in any file with a shape
+GEOMETRY = (
+    *SOLIDS,
+    *FACES,
+    "SHELL_BASED_SURFACE_MODEL",
+    "FACE_BASED_SURFACE_MODEL",
+    "GEOMETRIC_SET",
+    "GEOMETRIC_CURVE_SET",
+    "EDGE_BASED_WIREFRAME_MODEL",
+    "SHELL_BASED_WIREFRAME_MODEL",
+    "POLY_LOOP",
+    "TRIMMED_CURVE",
+)
+# solids that the kernel does not read
+CONSTRUCTED = (
+    "CSG_SOLID",
+    "BOOLEAN_RESULT",
+    "EXTRUDED_AREA_SOLID",
+    "EXTRUDED_FACE_SOLID",
+    "REVOLVED_AREA_SOLID",
+    "REVOLVED_FACE_SOLID",
+    "SURFACE_CURVE_SWEPT_AREA_SOLID",
+    "SURFACE_CURVE_SWEPT_FACE_SOLID",
+    "SWEPT_DISK_SOLID",
+    "SOLID_REPLICA",
+    "HALF_SPACE_SOLID",
+    "BLOCK",
+    "SPHERE",
+    "TORUS",
+    "ELLIPSOID",
+    "RIGHT_ANGULAR_WEDGE",
+    "RIGHT_CIRCULAR_CYLINDER",
+    "RIGHT_CIRCULAR_CONE",
+    "FACETED_PRIMITIVE",
+    "B_SPLINE_VOLUME",
+    "B_SPLINE_VOLUME_WITH_KNOTS",
+)
+PLAIN = "export exact faces (AP203, AP214 or AP242 with B-rep), or a mesh (STL, OBJ, 3MF)"
+# types of IGES entities
+IGES_CONSTRUCTED = {
+    150: "block",
+    152: "wedge",
+    154: "cylinder",
+    156: "cone",
+    158: "sphere",
+    160: "torus",
+    162: "solid of revolution",
+    164: "solid of extrusion",
+    168: "ellipsoid",
+    180: "boolean tree",
+    182: "selected component",
+}
+IGES_ELEMENTS = {134: "node", 136: "finite element", 138: "nodal displacement", 146: "nodal result"}
+IGES_EXTERNAL = 416
+IGES_GROUPS = (308, 402, 408)
+IGES_SHAPES = (*range(100, 135), 140, 141, 142, 143, 144, 186, 190, 192, 194, 196, 198)
+
+
+class StepContent:
+    """The kinds of entities in a STEP file."""
+
+    def __init__(self, file: Path, where: str) -> None:
+        self.where = where
+        self.data = file.read_bytes()
+        self.kinds: Counter[str] = Counter()
+        self._representations: list[int] = []  # where their texts begin
+        self._solids: set[bytes] = set()
+        for found in TYPE.finditer(self.data):
+            kind = found.group(2).decode("ascii")
+            self.kinds[kind] += 1
+            if kind in SOLIDS:
+                self._solids.add(found.group(1))
+            elif kind.endswith("SHAPE_REPRESENTATION"):
+                self._representations.append(found.end())
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is a STEP file that was written to its end."""
+        text = self.data.rstrip()
+        return self.data.lstrip()[:12] == b"ISO-10303-21" and text.endswith(b"END-ISO-10303-21;")
+
+    @property
+    def has_geometry(self) -> bool:
+        return any(self.kinds[kind] for kind in GEOMETRY)
+
+    def refuse_unread(self) -> None:
+        """InputError UNSUPPORTED_FILE for triangles without surfaces, constructed solids, and parts in other files."""
+        self._refuse_triangles()
+        constructed = [kind for kind in CONSTRUCTED if self.kinds[kind]]
+        if constructed:
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "it has solids by constructive geometry ({}), which are not read; {}",
+                ", ".join(constructed),
+                Word(PLAIN),
+            )
+        names = [name.decode("utf-8", "replace") for name in DOCUMENT_FILE.findall(self.data)]
+        others = [name for name in names if name.lower().endswith(CAD_FILES)]
+        if others:
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "parts of it are in other files ({}), which are not read; export the assembly as one file",
+                ", ".join(dict.fromkeys(others)),
+            )
+
+    def _refuse_triangles(self) -> None:
+        """InputError for tessellated solids, shells and sets that stand for no exact ones."""
+        loose = sum(
+            _last_argument(self.data, found.end()) == b"$"
+            for found in TESSELLATED.finditer(self.data)
+        )
+        if not self.has_geometry:  # whatever they are linked to is not there
+            loose += len(TESSELLATED.findall(self.data)) + len(FACE_SETS.findall(self.data))
+            loose += self.kinds["TRIANGULATED_FACE"] + self.kinds["COMPLEX_TRIANGULATED_FACE"]
+        if loose:
+            where = "its faces" if not self.has_geometry else "some of its faces"
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "{} have no surfaces: it holds triangles (AP242 tessellated geometry); {}",
+                Word(Text(where)),
+                Word(PLAIN),
+            )
+
+    def compare(self, shape: Any) -> list[Issue]:
+        """Notes and warnings on what of the file is not in its shape. InputError BAD_FILE where solids are lost."""
+        issues = []
+        solids, faces = len(self._represented()), sum(self.kinds[kind] for kind in FACES)
+        lost_solids, lost_faces = solids - len(shape.Solids), faces - len(shape.Faces)
+        if lost_solids > 0 and lost_faces > 0:
+            raise InputError(
+                "BAD_FILE",
+                self.where,
+                "{} of its {} solids and {} of its {} faces cannot be read; check these where they were drawn, and export "
+                "the part again",
+                lost_solids,
+                solids,
+                lost_faces,
+                faces,
+            )
+        if lost_solids > 0:
+            text = "{}: {} of its {} solids are read as faces that enclose nothing; check the part (Part, Check geometry)"
+            issues.append(Issue(WARNING, CONTENT, Text(text, self.where, lost_solids, solids)))
+        elif lost_faces > 0:
+            text = "{}: {} of its {} faces are not in any shape that was read; check the part (Part, Check geometry)"
+            issues.append(Issue(WARNING, CONTENT, Text(text, self.where, lost_faces, faces)))
+        if self.kinds["INVISIBILITY"]:
+            text = "{}: it marks items as invisible; they are read as the others"
+            issues.append(Issue(NOTE, CONTENT, Text(text, self.where)))
+        if self.kinds["CONSTRUCTIVE_GEOMETRY_REPRESENTATION"]:
+            text = "{}: its construction geometry (axes, planes) is not read"
+            issues.append(Issue(NOTE, CONTENT, Text(text, self.where)))
+        return issues
+
+    def _represented(self) -> set[bytes]:
+        """The numbers of the solids that a representation of a shape lists."""
+        listed: set[bytes] = set()
+        for start in self._representations:
+            end = self.data.find(b";", start)
+            listed.update(REFERENCE.findall(self.data[start : end if end >= 0 else None]))
+        return self._solids & listed
+
+
+def _last_argument(data: bytes, start: int) -> bytes:
+    """The last argument of a list of them that begins at `start`, after its bracket."""
+    depth, at, begin = 1, start, start
+    while at < len(data) and depth:
+        sign = data[at : at + 1]
+        if sign == b"'":
+            at = data.find(b"'", at + 1)
+            if at < 0:
+                break
+        elif sign == b"(":
+            depth += 1
+        elif sign == b")":
+            depth -= 1
+        elif sign == b"," and depth == 1:
+            begin = at + 1
+        at += 1
+    return data[begin : at - 1].strip()
+
+
+def refuse_iges(file: Path, where: str) -> list[Issue]:
+    """Notes on what of an IGES file is not read. InputError UNSUPPORTED_FILE for constructed solids and references to other
+    files, EMPTY_FILE where no entity is a shape."""
+    kinds, blanked, visible = _iges_kinds(file)
+    constructed = [name for kind, name in IGES_CONSTRUCTED.items() if kinds[kind]]
+    if constructed:
+        raise InputError(
+            "UNSUPPORTED_FILE",
+            where,
+            "it has solids by constructive geometry ({}), which are not read; {}",
+            ", ".join(constructed),
+            Word(PLAIN),
+        )
+    if kinds[IGES_EXTERNAL]:
+        raise InputError(
+            "UNSUPPORTED_FILE",
+            where,
+            "parts of it are in other files (entity {}), which are not read; export the assembly as one file",
+            IGES_EXTERNAL,
+        )
+    if kinds and not any(kinds[kind] for kind in IGES_SHAPES):
+        raise InputError(
+            "EMPTY_FILE", where, "it holds no shape, only annotations; export the part again"
+        )
+    if blanked and not visible:
+        raise InputError(
+            "EMPTY_FILE",
+            where,
+            "all that it holds is marked as invisible, which is not read; show the part and export it again",
+        )
+    issues = []
+    elements = [name for kind, name in IGES_ELEMENTS.items() if kinds[kind]]
+    if elements:
+        text = "{}: not read: {}"
+        issues.append(Issue(NOTE, CONTENT, Text(text, where, ", ".join(elements))))
+    if blanked:
+        text = "{}: {} of its entities are marked as invisible, and are left out"
+        issues.append(Issue(NOTE, CONTENT, Text(text, where, blanked)))
+    return issues
+
+
+def _iges_kinds(file: Path) -> tuple[Counter[int], int, int]:
+    """How many entities of each type an IGES file lists; how many independent ones are blanked, and how many are not."""
+    kinds: Counter[int] = Counter()
+    blanked = visible = 0
+    with file.open("rb") as stream:
+        for line in stream:
+            number = line[73:80].strip()
+            if line[72:73] != b"D" or not number.isdigit() or int(number) % 2 == 0:
+                continue  # each entity has two lines
+            kind = line[:8].strip()
+            if not kind.isdigit():
+                continue
+            kinds[int(kind)] += 1
+            status = line[64:72].replace(b" ", b"0")
+            if status[2:4] == b"00" and int(kind) in IGES_SHAPES + IGES_GROUPS:
+                blanked += status[:2] == b"01"
+                visible += status[:2] != b"01"
+    return kinds, blanked, visible
