@@ -12,7 +12,7 @@ import time
 from collections.abc import Iterable
 from typing import Any
 
-from freecad_am.core.issues import ERROR, Issue
+from freecad_am.core.issues import ERROR, Issue, summarised
 
 DEBOUNCE_S = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
 FIRST = ("REMEDY", "NO_REMEDY")  # codes of what would make a job feasible
@@ -81,9 +81,13 @@ class Session:
         _write(self._saved[1], text + "\n")
 
     def issues(self, found: Iterable[Issue], others: str = "stand in report.json") -> None:
-        """Tell findings, first what would make the job feasible, then errors, on stderr; of many only some, and where the
-        others are."""
-        ordered = sorted(found, key=lambda issue: (issue.code not in FIRST, issue.level != ERROR))
+        """Write findings to stderr, first what would make the job feasible, then errors.
+
+        Findings of one kind in several layers are one line. After a dozen lines the rest is counted, with where it is.
+        """
+        ordered = sorted(
+            summarised(found), key=lambda issue: (issue.code not in FIRST, issue.level != ERROR)
+        )
         for issue in ordered[:_MOST_ISSUES]:
             self.say(
                 f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}"

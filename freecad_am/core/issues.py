@@ -7,12 +7,14 @@ that cannot be understood is an `InputError`. Nothing else leaves this package f
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from math import inf
 from string import Formatter
 from typing import Any
 
 ERROR, WARNING, NOTE = "error", "warning", "note"
+MAX_RANGES = 6  # of layers that a merged issue names
 
 
 class Text(str):
@@ -124,20 +126,66 @@ class Issue:
         )
 
 
-def one_of_each(issues: Iterable[Issue]) -> list[Issue]:
-    """Of issues of layers the first of each code, with how many more layers have one like it."""
-    of_code: dict[str, list[Issue]] = {}
+def summarised(issues: Iterable[Issue]) -> list[Issue]:
+    """Merge issues of the same kind in several layers into one each, for people; reports keep every issue.
+
+    Parameters
+    ----------
+    issues
+        Issues in any order. Two are of the same kind when level, code and message template agree.
+
+    Returns
+    -------
+    list of Issue
+        In the order of the first of each kind. A merged issue stands at the worst place, which is the one whose message
+        has the largest leading figure, and its message names the count and the layers.
+    """
+    kinds: dict[tuple[str, str, str], list[Issue]] = {}
     for issue in issues:
-        of_code.setdefault(issue.code, []).append(issue)
-    found = []
-    for code, (first, *others) in sorted(of_code.items()):
-        text = (
-            Text("{} (more layers like it: {})", first.message, len(others))
-            if others
-            else first.message
+        template = getattr(issue.message, "template", issue.message)
+        kinds.setdefault((issue.level, issue.code, template), []).append(issue)
+    return [_merged(same) for same in kinds.values()]
+
+
+def _merged(issues: list[Issue]) -> Issue:
+    """Merge issues of one kind; a single one, or several in fewer than two layers, stay as the first is."""
+    layers = sorted({issue.layer for issue in issues if issue.layer is not None})
+    worst = max(issues, key=_leading_figure)
+    if len(issues) == 1:
+        return worst
+    if len(layers) < 2:
+        message = Text("{} (and {} more like it)", worst.message, len(issues) - 1)
+    else:
+        message = Text(
+            "{} findings in layers {}, the worst here: {}",
+            len(issues),
+            ranges(layers),
+            worst.message,
         )
-        found.append(Issue(first.level, code, text, first.layer))
-    return found
+    return replace(worst, message=message)
+
+
+def _leading_figure(issue: Issue) -> float:
+    """Return the first number that was put into the message, -inf without one."""
+    for value in getattr(issue.message, "values", ()):
+        try:
+            return float(value)
+        except ValueError:
+            continue
+    return -inf
+
+
+def ranges(numbers: Sequence[int]) -> str:
+    """Write ascending numbers as ranges, `2 to 5, 9`; after the first six ranges with the number of further ones."""
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    words = [str(run[0]) if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in runs]
+    rest = sum(map(len, runs[MAX_RANGES:]))
+    return ", ".join([*words[:MAX_RANGES], *([f"{rest} more"] if rest else [])])
 
 
 def has_errors(issues: tuple[Issue, ...] | list[Issue]) -> bool:

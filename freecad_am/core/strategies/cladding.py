@@ -7,7 +7,7 @@ import numpy as np
 
 from ..filling.cover import Cover
 from ..geometry.walls.clad_faces import CladFaces
-from ..issues import NOTE, InputError, Issue, Text, one_of_each
+from ..issues import NOTE, InputError, Issue, Text
 from ..layers.curved.on_faces import FaceLayer, pieces, slices
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
@@ -81,7 +81,7 @@ def plan(
         for one in notes(made, layers, strategy, build, process, model)
         if one.code != "SINGLE_LAYER"
     ]  # as asked
-    issues = [*given.issues, *_stretched(stretch), *one_of_each(issues), *noted]
+    issues = [*given.issues, *_stretched(stretch), *issues, *noted]
     return Toolpath(
         layers,
         np.eye(4),

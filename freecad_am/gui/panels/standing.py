@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ... import api
+from ...core.issues import summarised
 from ...objects.results.findings import issues_of, message_of, reason_of
 from ...objects.staleness import FAILED, INFEASIBLE
 from ..texts.translation import tr, translated
@@ -15,7 +16,7 @@ MOST_ISSUES = 6
 
 def own_lines(obj: Any) -> list[str]:
     """The status of a stage, its message and its findings."""
-    found = issues_of(obj)
+    found = summarised(issues_of(obj))
     message = [translated(message_of(obj))] if obj.Message and not found else []
     lines = [
         tr("{}: {}").format(

@@ -165,14 +165,12 @@ def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, 
         ]
 
     path, (round_it, aside) = beads(fill)
-    (told,) = [issue for issue in path.issues if issue.code == "PATTERN_ROUND_HUB"]
-    assert (
-        told.level == "note"
-        and f"is filled with {instead}" in told.message
-        and f"strategy.fill = {fill}" in told.message
-    )
+    notes = [issue for issue in path.issues if issue.code == "PATTERN_ROUND_HUB"]
+    for note in notes:
+        assert note.level == "note" and f"is filled with {instead}" in note.message
+        assert f"strategy.fill = {fill}" in note.message
     levels = {layer for layer, _, bead in path if bead.points[:, 2].min() > 65.0}
-    assert f"(more layers like it: {len(levels) - 1})" in told.message and len(levels) > 2
+    assert len(notes) == len(levels) > 2
     other, (same, _) = beads(instead)
     assert not [issue for issue in other.issues if issue.code == "PATTERN_ROUND_HUB"]
     assert len(round_it) == len(same) and all(
@@ -214,7 +212,7 @@ def test_no_bead_of_its_width_stands_out(hub, fill, contour):
 
 def test_a_single_bead_wider_than_its_region_is_told_with_place_and_overhang():
     path = planned("cylinder", (0.0,), thick=3.0, width=9.5, bead_spacing=6.5)
-    (told,) = [issue for issue in path.issues if issue.code == "THIN_SINGLE"]
+    told = next(issue for issue in path.issues if issue.code == "THIN_SINGLE")
     assert told.level == "note" and "9.5 mm" in told.message
     out = float(re.findall(r"by up to ([\d.]+) mm", told.message)[0])
     place = np.array(

@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull, cKDTree
 
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.geometry.obstacles import Body
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, summarised
 from freecad_am.core.layers.planes.stacking import stacked
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
@@ -574,7 +574,11 @@ def test_walls_that_lean_out_are_told(lean, most, told):
         outer = inner + 2.0 * math.tan(math.radians(lean))
         free = math.pi * (outer**2 - (inner + 2.0 * math.tan(math.radians(most)) + ERROR) ** 2)
         assert float(found[0].message.split(" mm^2")[0]) == pytest.approx(free, rel=0.05)
-        assert found[0].layer == 1 and "(more layers like it: 3)" in found[0].message
+        assert [issue.layer for issue in found] == [1, 2, 3, 4]  # every layer stays in the report
+        (line,) = summarised(found)
+        assert line.layer == 4 and line.message.startswith(
+            "4 findings in layers 1 to 4, the worst here: "
+        )
 
 
 def test_a_wall_thinner_than_a_bead_gets_one_bead_and_says_so():

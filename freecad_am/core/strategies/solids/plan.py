@@ -10,7 +10,7 @@ import numpy as np
 from ...filling.cover import Cover
 from ...geometry.beyond_hub import solids_beyond
 from ...geometry.on_hub import SolidsOnHub
-from ...issues import InputError, Issue, one_of_each
+from ...issues import InputError, Issue
 from ...layers import field
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
@@ -99,7 +99,7 @@ def plan(
     )
     issues = [
         *solids.issues,
-        *one_of_each(issues),
+        *issues,
         *notes(made, layers, strategy, build, process, model),
     ]
     return Toolpath(
