@@ -58,7 +58,7 @@ from .macro.features import (
     make_solid_feature,
     make_surface_feature,
 )
-from .macro.parts import open_part
+from .macro.parts import array_element, open_part
 from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
 from .macro.suit import in_vain, on_platform, refuse_otherwise, suit
@@ -75,6 +75,7 @@ from .objects.toolpath import Toolpath, own_process
 from .objects.work.progress import told_to
 
 __all__ = (
+    "array_element",
     "change",
     "export",
     "export_cell",

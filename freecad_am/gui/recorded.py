@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Iterator
 from typing import Any
 
 import FreeCAD as App
@@ -11,6 +12,7 @@ import FreeCADGui as Gui
 
 from .. import api
 from ..objects.results.findings import reason_of
+from ..objects.shapes.array_elements import ArrayElement
 from ..objects.staleness import FAILED, INFEASIBLE
 from .background.busy import busy
 from .texts.translation import tr, translated
@@ -36,6 +38,8 @@ def act(obj: Any, function: str, arguments: dict[str, str]) -> None:
 
 def reference(obj: Any) -> str:
     """The object as Python text. ReferenceError when it is no longer there."""
+    if isinstance(obj, ArrayElement):
+        return f"am.array_element({reference(obj.array)}, {obj.index})"
     # removed, but kept to be brought back by undo: FreeCAD 0.20 raises, later ones have no name for it
     name = None
     with contextlib.suppress(RuntimeError):
@@ -58,12 +62,32 @@ def _run(document: Any, function: str, first: str, arguments: dict[str, str]) ->
     texts = [first, *(f"{key}={text}" for key, text in arguments.items())]
     before = _wrong(document)
     Gui.doCommand(IMPORT)
-    with busy():
-        Gui.doCommand(f"am.{function}({', '.join(texts)})")
+    call = f"am.{function}({', '.join(texts)})"
+    # an element of a link array is made an object in the same step of undo
+    step = (
+        _one_step(document, function) if "am.array_element(" in call else contextlib.nullcontext()
+    )
+    with busy(), step:
+        Gui.doCommand(call)
     new = [finding for finding in _wrong(document) if finding not in before]
     for name, status, message in new[:1]:  # those that follow say it again
         text = tr("{} failed: {}") if status == FAILED else tr("{} is infeasible: {}")
         App.Console.PrintError(text.format(name, translated(message)) + "\n")
+
+
+@contextlib.contextmanager
+def _one_step(document: Any, name: str) -> Iterator[None]:
+    """One step of undo for all that is made within it."""
+    if App.getActiveTransaction():
+        yield
+        return
+    document.openTransaction(name)
+    try:
+        yield
+    except BaseException:
+        document.abortTransaction()
+        raise
+    document.commitTransaction()
 
 
 def _wrong(document: Any) -> list[tuple[str, str, str]]:

@@ -6,7 +6,15 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.geometry.curves.bead_curves import POINT_FILES
-from .arguments import checked_document, checked_number, checked_target, checked_text
+from ..core.issues import InputError
+from .arguments import (
+    checked_document,
+    checked_number,
+    checked_object,
+    checked_target,
+    checked_text,
+    named,
+)
 from .steps import one_step
 
 
@@ -45,3 +53,20 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
         keep_file_issues(part, issues)
         part.purgeTouched()
     return part
+
+
+def array_element(array: Any, index: int) -> Any:
+    """An element of a link array as an object that stages can be made of, numbered from 0 as in FreeCAD's selection.
+
+    It is the element itself where FreeCAD shows elements as objects (`ShowElement`, of Draft `ExpandArray`), else a hidden
+    link to it beside the array. `am.make_solid_feature(doc, am.array_element(doc.Array, 1))`
+    """
+    from ..objects.shapes.array_elements import object_of
+
+    checked_object(array, "array")
+    if isinstance(index, bool) or not isinstance(index, int):
+        raise InputError(
+            "BAD_INPUT", "index", "{} is not a whole number; give one such as 1", named(index)
+        )
+    with one_step(array.Document, "Element of array"):
+        return object_of(array, index)

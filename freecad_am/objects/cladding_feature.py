@@ -14,7 +14,7 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters
 from ..core.strategies import size
-from .results.fingerprints import fingerprint, shape_fingerprint
+from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
 from .shapes.chosen import FeatureStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
@@ -78,9 +78,7 @@ class CladdingFeature(FeatureStage):
         source, faces = source_of(obj)
         ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         return [
-            fingerprint(source)
-            if getattr(source, "Mesh", None) is not None
-            else shape_fingerprint(source),
+            fingerprint(source),
             " ".join(faces),
             *ground,
             "|",

@@ -19,6 +19,7 @@ from ..core.strategies import size
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .shapes.chosen import FeatureStage, names_of, source_of
+from .shapes.meshes import is_mesh
 from .stage_parts import Link, Outcome, Section, Work
 
 
@@ -175,7 +176,7 @@ def _picked(
     if strategy.layers not in layers:
         raise InputError("NOT_FOR_FAMILY", f"{obj.Label}.{name}", refusal)
     owner = getattr(obj, name)[0]
-    if getattr(owner, "Mesh", None) is not None:
+    if is_mesh(owner):
         raise InputError(
             "NO_SHAPE",
             f"{obj.Label}.{name}",

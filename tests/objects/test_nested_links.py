@@ -3,10 +3,12 @@
 
 import FreeCAD as App
 import numpy as np
+import Part
 import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
+from freecad_am.objects.shapes.array_elements import ArrayElement
 from freecad_am.objects.shapes.bodies import global_shape
 from freecad_am.objects.shapes.part_file import part_shape
 
@@ -188,3 +190,87 @@ def test_a_path_to_a_body_by_its_tip_is_the_body(doc):
     feature.Source = (body, ["Bore.Edge3"])
     api.recompute(feature)
     assert feature.Status == "up to date"
+
+
+@pytest.fixture
+def linked(doc):
+    """An assembly, turned, with a link to a box and a link array of three, whose elements are objects or not."""
+    box = doc.addObject("Part::Box", "Box")
+    box.Length, box.Width, box.Height = 20, 30, 10
+    asm = doc.addObject("App::Part", "Asm")
+    asm.Placement = App.Placement(App.Vector(0, 7, 50), App.Rotation(App.Vector(1, 2, 3), 30))
+    link = doc.addObject("App::Link", "L1")
+    link.LinkedObject = box
+    link.Placement = App.Placement(App.Vector(0, 50, 0), App.Rotation(App.Vector(0, 1, 0), 40))
+    for name in ("Shown", "Hidden"):
+        array = doc.addObject("App::Link", name)
+        array.LinkedObject, array.ElementCount = box, 3
+        doc.recompute()
+        for k, element in enumerate(array.ElementList):
+            element.Placement = App.Placement(
+                App.Vector(100 * k, 0, 0), App.Rotation(App.Vector(0, 0, 1), 20 * k)
+            )
+        array.ShowElement, array.Placement.Base.z = name == "Shown", 200 * len(name)
+        asm.addObject(array)
+    asm.addObject(link)
+    doc.recompute()
+    return doc
+
+
+def seen(doc, path):
+    """The ends of the edge at a path of the assembly, as FreeCAD shows it."""
+    return ends(Part.getShape(doc.Asm, path, needSubElement=True))
+
+
+@pytest.mark.parametrize("edge", [f"Edge{k}" for k in (1, 5, 12)])
+@pytest.mark.parametrize("path", ["L1.", "Shown.Shown_i1.", "Shown.2.", "Hidden.1.", "Hidden.2."])
+def test_edges_of_links_and_link_arrays_by_paths(linked, path, edge):
+    feature = api.make_curves_feature(linked, linked.Asm, [path + edge])
+    assert laid(feature) == seen(linked, path + edge)
+    owner = {"L1.": "L1", "Shown.Shown_i1.": "Shown_i1", "Shown.2.": "Shown_i2"}.get(path, "Hidden")
+    assert feature.Source[0].Name == owner
+    step, _, rest = path.partition(".")
+    if rest:  # from the array itself, as a selection outside of the assembly has it
+        feature = api.make_curves_feature(linked, linked.getObject(step), [rest + edge])
+        assert laid(feature) == seen(linked, path + edge)
+
+
+@pytest.mark.parametrize("name", ["Shown", "Hidden"])
+def test_an_element_of_a_link_array_in_every_role(linked, name):
+    """One of three boxes is deposited, stood on or kept clear of; the whole array was."""
+    array = linked.getObject(name)
+    element = api.array_element(array, 1)
+    assert element == api.array_element(array, 1), "it is made once"
+    expected = Part.getShape(linked.Asm, f"{name}.1.")
+    for shape in (global_shape(element), global_shape(ArrayElement(array, 1))):
+        assert shape.CenterOfMass.distanceToPoint(expected.CenterOfMass) < 1e-6
+        assert len(shape.Solids) == 1 and shape.Volume == pytest.approx(6000)
+    assert len(global_shape(linked.Asm).Solids) == 7, (
+        "what stands for an element is not there twice"
+    )
+    top = api.array_element(array, 2)
+    feature = api.make_solid_feature(linked, element, substrate=top, fixtures=[linked.L1])
+    assert feature.Solids == 1
+    assert [body.name for body in api.result(feature).surroundings] == [top.Label, "L1"]
+    linked.Asm.Placement.Base.x += 5
+    assert global_shape(element).CenterOfMass.x == pytest.approx(expected.CenterOfMass.x + 5)
+
+
+def test_what_is_no_element_is_rejected(linked):
+    for obj, index, message in (
+        (linked.Box, 0, "not a link array"),
+        (linked.Hidden, 3, "3 elements are numbered from 0"),
+        (linked.Hidden, -1, "no element -1"),
+        (linked.Hidden, "1", "not a whole number"),
+        (None, 1, "not an object"),
+    ):
+        with pytest.raises(InputError, match=message) as caught:
+            api.array_element(obj, index)
+        assert caught.value.code == "BAD_INPUT"
+
+
+def test_all_of_an_element_by_its_path(linked):
+    for path, centre in (("Hidden.1.", "Hidden.1."), ("Shown.Shown_i2.", "Shown.2.")):
+        feature = api.make_curves_feature(linked, linked.Asm, [path])
+        place = Part.getShape(linked.Asm, centre).CenterOfMass
+        assert global_shape(feature.Source[0]).CenterOfMass.distanceToPoint(place) < 1e-6

@@ -255,3 +255,84 @@ def test_an_axis_in_a_link_in_a_part(doc):
     point, way = (np.array(vector) for vector in axis_of(feature))
     start, end = moved(np.array([[1.0, 0, 0], [1.0, 0, 9]]), LINK, INNER, OUTER)
     assert point == pytest.approx(start) and way == pytest.approx((end - start) / 9)
+
+
+def extents(body):
+    return np.concatenate([body.vertices.min(axis=0), body.vertices.max(axis=0)])
+
+
+def box_extents(*point_sets):
+    points = np.concatenate(point_sets)
+    return np.concatenate([points.min(axis=0), points.max(axis=0)])
+
+
+MESH_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * SIZE / 2
+
+
+@pytest.mark.parametrize("transform", [False, True])
+@pytest.mark.parametrize("scale", [(1, 1, 1), (-1, 1, 1), (2, 1, 1)])
+def test_links_to_meshes_stand_where_the_link_does(doc, transform, scale):
+    """FreeCAD gives the mesh of the linked object, at its own place."""
+    import Mesh
+
+    mesh = doc.addObject("Mesh::Feature", "Mesh")
+    mesh.Mesh = Mesh.createBox(*SIZE)
+    mesh.Placement = placement(*IN)
+    link = link_to(doc, mesh, transform=transform)
+    link.ScaleVector = App.Vector(*scale)
+    inside(doc, link)
+    own = moved(MESH_CORNERS, IN) if transform else MESH_CORNERS
+    body = body_of(link)
+    assert extents(body) == pytest.approx(
+        box_extents(moved(own, LINK, INNER, OUTER, scale=scale)), abs=1e-4
+    )
+    a, b, c = body.vertices[body.triangles].transpose(1, 0, 2)
+    volume = np.einsum("ij,ij->", np.cross(a, b), c) / 6
+    assert volume == pytest.approx(SIZE.prod() * abs(np.prod(scale)), rel=1e-4)  # outwards
+
+
+@pytest.mark.parametrize("shown", [True, False])
+def test_link_arrays_of_meshes(doc, shown):
+    import Mesh
+
+    mesh = doc.addObject("Mesh::Feature", "Mesh")
+    mesh.Mesh = Mesh.createBox(*SIZE)
+    mesh.Placement = placement(*IN)
+    array = doc.addObject("App::Link", "Array")
+    array.LinkedObject, array.ElementCount, array.LinkTransform = mesh, 3, True
+    array.Placement, array.ScaleVector = placement(*LINK), App.Vector(2, 1, 1)
+    doc.recompute()
+    steps = [(20 * k, 0, k, 15 * k) for k in range(3)]
+    for element, step in zip(array.ElementList, steps):
+        element.Placement = placement(*step)
+    array.ShowElement = shown
+    inside(doc, array)
+    boxes = [
+        moved(moved(MESH_CORNERS, IN, step), LINK, INNER, OUTER, scale=(2, 1, 1)) for step in steps
+    ]
+    assert extents(body_of(array)) == pytest.approx(box_extents(*boxes), abs=1e-4)
+    array.setElementVisible("Array_i2" if shown else "2", False)
+    assert extents(body_of(array)) == pytest.approx(box_extents(*boxes[:2]), abs=1e-4)
+
+
+def test_a_container_of_shapes_and_meshes_is_rejected(doc, box):
+    """Its mesh was left out without a message."""
+    import Mesh
+
+    mesh = doc.addObject("Mesh::Feature", "Mesh")
+    mesh.Mesh = Mesh.createBox(*SIZE)
+    part = doc.addObject("App::Part", "Part")
+    part.Placement = placement(*INNER)
+    part.addObject(mesh)
+    doc.recompute()
+    assert extents(body_of(part)) == pytest.approx(
+        box_extents(moved(MESH_CORNERS, INNER)), abs=1e-4
+    )
+    part.addObject(box)
+    doc.recompute()
+    with pytest.raises(InputError) as caught:
+        body_of(part)
+    assert caught.value.code == "MIXED" and caught.value.where == "Part"
+    mesh.Visibility = False
+    assert is_at(global_shape(part), moved(CORNERS, IN, INNER))
+    body_of(part)

@@ -39,6 +39,8 @@ def world(tmp_path_factory):
     tube = doc.addObject("Part::Feature", "Tube")
     tube.Shape = Part.makeCylinder(15, 20, App.Vector(0, 0, 40)).Faces[0]
     dome = sphere(doc)
+    array = doc.addObject("App::Link", "Array")
+    array.LinkedObject, array.ElementCount, array.ShowElement = box, 3, False
     doc.recompute()
     Part.makeBox(20, 20, 20).exportStep(str(folder / "cup.step"))
     corners = [f"{x} {y} 10" for x in (0, 5, 10) for y in (0, 5, 10)]
@@ -59,6 +61,7 @@ def world(tmp_path_factory):
 
 COARSE = {"layer_height": 10, "chord_error": 0.5}
 RIGHT = {  # of each function arguments that serve, by name
+    "array_element": lambda w: {"array": w.array, "index": 1},
     "change": lambda w: {
         "obj": w.feature,
         "source": w.dome,

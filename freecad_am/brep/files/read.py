@@ -103,11 +103,11 @@ def mesh_content(path: str | os.PathLike[str], scale: float = 1.0) -> FileConten
     return FileContent(*apart.apart(_mesh, file, where, scale))
 
 
-def placed_mesh(mesh: Any, placement: Any) -> Any:
-    """A Mesh.Mesh where its own placement, and another after that, put it; it has none left itself."""
+def placed_mesh(mesh: Any, matrix: Any) -> Any:
+    """A Mesh.Mesh where its own placement, and a matrix after that, put it; it has none left itself."""
     found = Mesh.Mesh()
     found.addFacets(mesh.Topology)
-    found.transform(placement.toMatrix())
+    found.transform(matrix)
     return found
 
 

@@ -12,7 +12,7 @@ import FreeCADGui as Gui
 from ...brep.walls.standing import stand
 from ...objects.fields.link_targets import links_to_nothing
 from ...objects.job_group import is_group
-from ...objects.shapes import marks, nested
+from ...objects.shapes import marks, meshes, nested
 from ...objects.shapes.bodies import global_shape
 from ...objects.stage import stage_of
 from ..texts.translation import tr
@@ -33,7 +33,7 @@ def selected(document: Any) -> list[Pick]:
     found: dict[str, Pick] = {}
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
-            obj, name = nested.owner_of(entry.Object, path)
+            obj, name = nested.clicked(entry.Object, path)
             obj = _alone(obj)
             if usable(obj):
                 before = found.get(obj.Name, Pick(obj)).names
@@ -75,7 +75,7 @@ def usable(obj: Any) -> bool:
 
 def is_mesh(obj: Any) -> bool:
     """Whether an object is a mesh, which has no faces to deposit."""
-    return hasattr(obj, "Mesh")
+    return meshes.is_mesh(obj)
 
 
 def with_faces(pick: Pick) -> Pick:
@@ -106,7 +106,12 @@ def is_alone(obj: Any) -> bool:
     """Whether the document of an object has no solid and no mesh but those that it is made of, or that are made of it."""
     own = {obj.Name, *(one.Name for one in (*obj.OutListRecursive, *obj.InListRecursive))}
     others = [one for one in obj.Document.Objects if one.Name not in own and stage_of(one) is None]
-    return not any(is_mesh(one) or (hasattr(one, "Shape") and one.Shape.Solids) for one in others)
+    return not any(is_mesh(one) or _has_solids(one) for one in others)
+
+
+def _has_solids(obj: Any) -> bool:
+    shape = getattr(obj, "Shape", None)
+    return shape is not None and not shape.isNull() and bool(shape.Solids)
 
 
 def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
@@ -135,7 +140,7 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
 def refused(document: Any) -> str:
     """Why nothing that is selected in a document can be deposited; '' where nothing is selected."""
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
-        obj, _ = nested.owner_of(entry.Object, (entry.SubElementNames or ("",))[0])
+        obj, _ = nested.clicked(entry.Object, (entry.SubElementNames or ("",))[0])
         if usable(obj):
             continue
         if stage_of(obj) is not None or is_group(obj):

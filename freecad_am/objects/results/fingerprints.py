@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..shapes.bodies import body_of, global_shape, shape_of
+from ..shapes.meshes import is_mesh, mesh_of
 from ..shapes.places import outer_matrix
 
 MOST_KEPT = 64  # shapes, and meshes
@@ -28,11 +29,7 @@ _meshes: dict[str, str] = {}
 
 def fingerprint(source: Any) -> str:
     """The text of an object's solid or mesh, where it stands in the document. InputError NO_SHAPE, NO_FACES."""
-    return (
-        shape_fingerprint(source)
-        if getattr(source, "Mesh", None) is None
-        else _mesh_fingerprint(source)
-    )
+    return _mesh_fingerprint(source) if is_mesh(source) else shape_fingerprint(source)
 
 
 def shape_fingerprint(source: Any) -> str:
@@ -69,7 +66,8 @@ def _of_shape(shape: Any) -> str:
 
 
 def _mesh_fingerprint(source: Any) -> str:
-    asked = f"{_digest(source.Mesh)} {outer_matrix(source).tobytes()}"
+    mesh, frame = mesh_of(source)
+    asked = f"{_digest(mesh)} {frame.tobytes()}"
     if asked not in _meshes:
         body = body_of(source)
         rounded = np.round(body.vertices, 4) + 0.0

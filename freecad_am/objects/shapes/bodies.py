@@ -15,6 +15,7 @@ from ...brep.shapes import tessellate
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ..stage_parts import Link
+from .meshes import is_mesh, mesh_of, refuse_mixed
 from .places import (
     GROUPS,
     dependencies_of,
@@ -190,11 +191,11 @@ class Taken:
 
 def taken(source: Any) -> Taken:
     """What an object is now; costs little, as shapes are shared. InputError 'NO_SHAPE'."""
-    mesh = getattr(source, "Mesh", None)
-    if mesh is None:
-        return Taken(source.Label, global_shape(source))
-    # a mesh stands where its own placement puts it
-    return Taken(source.Label, None, mesh.copy(), outer_matrix(source))
+    if is_mesh(source):
+        return Taken(source.Label, None, *mesh_of(source))
+    shape = global_shape(source)
+    refuse_mixed(source)
+    return Taken(source.Label, shape)
 
 
 def fixtures_of(obj: Any) -> tuple[Taken, ...]:

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from typing import Any
 
+import Part
+
 from ...core.issues import InputError
+from .array_elements import ArrayElement, is_hidden_array, object_of
 from .bodies import global_shape, renumbers
 from .marks import EDGE, FACE, PLANE
-from .places import GROUPS, outer_placement
+from .meshes import is_mesh
+from .places import GROUPS, containers_of, elements_of
 
 LINES = ("App::Line", "PartDesign::Line")
 SKETCH_AXES = ("V_Axis", "H_Axis", "N_Axis")
@@ -22,25 +27,53 @@ def owner_of(top: Any, path: str) -> tuple[Any, str]:
     for all of it, and for one that it does not have.
 
     A click within an assembly selects 'Body.Pad.Face3' of its outermost group: that is Face3 of the body, or of the
-    feature where it is not the body's tip. What a link shows belongs to the link.
+    feature where it is not the body's tip. What a link shows belongs to the link. What a link group or link array shows
+    belongs to the object in it, and to the array where its elements are no objects.
     """
-    *steps, element = path.split(".")
+    return _owner(top, path, element=False)
+
+
+def clicked(top: Any, path: str) -> tuple[Any, str]:
+    """As `owner_of`, but an element of a link array is an `ArrayElement` where it is no object."""
+    return _owner(top, path, element=True)
+
+
+def _owner(top: Any, path: str, element: bool) -> tuple[Any, str]:
+    *steps, name = path.split(".")
     steps = [
         step for step in steps if step[:1] not in (";", "?")
     ]  # names of FreeCAD 1.0 that outlive changes
     obj, own = top, not steps
-    while steps and any(obj.isDerivedFrom(kind) for kind in GROUPS):
-        held = obj.getSubObject(f"{steps.pop(0)}.", retType=1)
+    while steps:
+        held = _held(obj, steps[0])
         if held is None:
-            return top, ""
+            break
         obj = held
+        steps.pop(0)
+    if steps and any(obj.isDerivedFrom(kind) for kind in GROUPS):
+        return top, ""
     if steps and obj.isDerivedFrom("PartDesign::Body"):
         feature = obj.Document.getObject(steps[-1])
         if feature is not None and feature != obj.Tip and _has_shape(feature):
             obj = feature
-    if not element.startswith((FACE, EDGE)) or hasattr(obj, "Mesh"):
+    if steps and element and is_hidden_array(obj) and steps[0].isdigit():
+        clicked_element = ArrayElement(obj, int(steps[0]))
+        obj = clicked_element if _has_shape(clicked_element) else obj
+    if not name.startswith((FACE, EDGE)) or is_mesh(obj):
         return obj, ""
-    return obj, element if own else _own_name(obj, _seen(top, path), element)
+    return obj, name if own else _own_name(obj, _seen(top, path), name)
+
+
+def _held(container: Any, name: str) -> Any:
+    """The object that a container, link group or link array has by a name of a path; None for what belongs to `container`
+    itself, and for an object that several link groups show."""
+    if any(container.isDerivedFrom(kind) for kind in GROUPS):
+        return container.getSubObject(f"{name}.", retType=1)
+    for k, obj in enumerate(elements_of(container)):
+        if name in (obj.Name, f"${obj.Label}", str(k)):
+            with contextlib.suppress(InputError):
+                return obj if containers_of(obj) else None
+    return None
 
 
 def line_of(top: Any, path: str) -> tuple[Any, str]:
@@ -116,6 +149,8 @@ def _found(obj: Any, name: str, where: str) -> tuple[Any, str]:
         name = f"{name}."  # an object, which FreeCAD would have the path end with a dot for
     element = name.rsplit(".", maxsplit=1)[-1]
     owner, own = (owner_of if element.startswith(FACE) else line_of)(obj, name)
+    if not element and isinstance(shown := clicked(obj, name)[0], ArrayElement):
+        return object_of(shown.array, shown.index), ""
     gapped = "" in name.split(".")[:-1]  # which FreeCAD 1.0 takes for a path without the gap
     if gapped or obj.getSubObject(name, retType=1) is None or (element and not own):
         raise InputError(
@@ -140,13 +175,10 @@ def _has_shape(obj: Any) -> bool:
 
 def _seen(top: Any, path: str) -> Any:
     """The face or edge at the end of a path, in the coordinates of the document; None where there is none."""
-    seen = top.getSubObject(path)
-    if seen is not None and not seen.isNull():
-        outer = outer_placement(top)
-        if not outer.isIdentity():
-            seen = seen.copy()
-            seen.Placement = outer.multiply(seen.Placement)
-    return seen
+    try:
+        return global_shape(top, path)
+    except (InputError, Part.OCCError, ValueError, RuntimeError):
+        return None
 
 
 def _own_name(obj: Any, seen: Any, element: str) -> str:

@@ -15,8 +15,10 @@ from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import InputError, Issue
 from ..work import hooks
 from . import document_file
+from .array_elements import ArrayElement, element_count
 from .bodies import global_shape, renumbers
-from .places import outer_placement
+from .meshes import is_mesh, mesh_of, refuse_mixed
+from .places import GROUPS, elements_of
 
 # what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
 ORIGIN = ("App::Line", "App::Plane", "App::Point")
@@ -78,11 +80,12 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
     shapes = [
         obj for obj in placed if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()
     ]
-    meshes = [
-        obj for obj in document.Objects if getattr(getattr(obj, "Mesh", None), "CountFacets", 0)
-    ]
+    meshes = [obj for obj in placed if obj not in shapes and is_mesh(obj)]
+    if not object_name:  # a container of one mesh is called as the mesh is
+        meshes = [obj for obj in meshes if not any(obj.isDerivedFrom(kind) for kind in GROUPS)]
     known = [*shapes, *meshes]
     if object_name:
+        known += [*_elements(document, object_name)]
         found = [obj for obj in known if object_name in (obj.Name, obj.Label)]
     else:
         found = [
@@ -100,7 +103,7 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
             asked,
             names,
         )
-    if found[0] in shapes:
+    if found[0] not in meshes:
         if renumbers(found[0]):
             raise InputError(
                 "NO_OBJECT",
@@ -109,5 +112,21 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
                 "not certain; name an object in it, or take that out of the group",
                 found[0].Label,
             )
-        return global_shape(found[0]).copy(), found[0].Label
-    return placed_mesh(found[0].Mesh, outer_placement(found[0])), found[0].Label
+        shape = global_shape(found[0]).copy()
+        refuse_mixed(found[0])
+        return shape, found[0].Label
+    mesh, frame = mesh_of(found[0])
+    return placed_mesh(mesh, App.Matrix(*frame.ravel().tolist())), found[0].Label
+
+
+def _elements(document: Any, name: str) -> list[ArrayElement]:
+    """The element of a link array that a name such as `Array.1` means, where it is no object with this name."""
+    array, _, number = name.rpartition(".")
+    if not number.isdigit():
+        return []
+    arrays = [obj for obj in document.Objects if array in (obj.Name, obj.Label)]
+    return [
+        ArrayElement(obj, int(number))
+        for obj in arrays
+        if int(number) < max(element_count(obj), len(elements_of(obj)))
+    ]

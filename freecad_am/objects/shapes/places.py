@@ -46,7 +46,7 @@ def containers_of(source: Any) -> tuple[Any, ...]:
     InputError SEVERAL_PLACES for an object that several link groups show.
     """
     chain: list[Any] = []
-    container = _container_of(source)
+    container = _container_of(getattr(source, "placed_as", source))
     while container is not None and container != source and container not in chain:
         chain.append(container)
         container = _container_of(container)
@@ -90,7 +90,7 @@ def outer_matrix(source: Any) -> np.ndarray:
         return _array(placement.toMatrix())
     matrix = np.eye(4)
     for container in chain:
-        matrix = _own_matrix(container) @ matrix
+        matrix = own_matrix(container) @ matrix
     return matrix
 
 
@@ -99,7 +99,7 @@ def outer_placement(source: Any) -> Any:
     chain = containers_of(source)
     if _asks_freecad(source, chain):
         return source.getGlobalPlacement().multiply(source.Placement.inverse())
-    scaling = [one for one in chain if not is_rigid(_own_matrix(one))]
+    scaling = [one for one in chain if not is_rigid(own_matrix(one))]
     if not scaling:
         placement = App.Placement()
         for container in chain:
@@ -151,8 +151,8 @@ def _asks_freecad(source: Any, chain: tuple[Any, ...]) -> bool:
     return all(link_property(one, "ElementList") is None for one in chain)
 
 
-def _own_matrix(container: Any) -> np.ndarray:
-    """What a container does to what it holds: its placement, and the scale of a link array."""
+def own_matrix(container: Any) -> np.ndarray:
+    """What a container does to what it holds, as a matrix (4, 4): its placement, and the scale of a link array."""
     placement = getattr(container, "Placement", None)
     matrix = np.eye(4) if placement is None else _array(placement.toMatrix())
     scale = link_property(container, "ScaleVector")
@@ -173,15 +173,23 @@ def shown_paths(source: Any) -> list[str]:
     shown = source.getLinkedObject(True) or source
     if "Shape" in shown.PropertiesList or "Mesh" in shown.PropertiesList:
         return [""]
-    paths = []
-    for path in source.getSubObjects():
-        held = source.getSubObject(path, retType=1)
-        if held is not None and _is_visible(source, path.rstrip("."), held):
-            paths += [path + rest for rest in shown_paths(held)]
-    return paths
+    return [path + rest for path, held in children_of(source) for rest in shown_paths(held)]
+
+
+def children_of(container: Any) -> list[tuple[str, Any]]:
+    """The visible children of a container, link group or link array: their paths from it, and the objects. The child of
+    a link array whose elements are no objects is the object that the array links to."""
+    elements = elements_of(container)
+    children = []
+    for k, path in enumerate(container.getSubObjects()):
+        held = elements[k] if k < len(elements) else container.getSubObject(path, retType=1)
+        if held is not None and _is_visible(container, path.rstrip("."), held):
+            children.append((path, held))
+    return children
 
 
 def _is_visible(container: Any, name: str, held: Any) -> bool:
+    """FreeCAD has no visibility of its own (-1) for what is in a group: that of the object counts."""
     visible = container.isElementVisible(name)
     return bool(held.Visibility if visible < 0 else visible)
 

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Meshes of a document: objects that are meshes, and links, link arrays and containers that show them.
+
+A link passes `Mesh` of its object on, at the place of that object and not of the link. So places are computed here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+
+from ...core.issues import InputError
+from .places import children_of, outer_matrix, own_matrix
+
+
+def is_mesh(source: Any) -> bool:
+    """Whether an object is a mesh, or a link, link array or container that shows meshes and no shape."""
+    if "Mesh" in source.PropertiesList:
+        return True
+    if "Shape" in source.PropertiesList:
+        return False
+    shape = getattr(source, "Shape", None)
+    return (shape is None or shape.isNull()) and next(_shown_meshes(source), None) is not None
+
+
+def mesh_of(source: Any) -> tuple[Any, np.ndarray]:
+    """The mesh of an object, and the matrix (4, 4) from its coordinates to those of the document.
+
+    The meshes that a link, link array or container shows are one mesh, in document coordinates. InputError NO_SHAPE.
+    """
+    if "Mesh" in source.PropertiesList:
+        return source.Mesh.copy(), outer_matrix(source)  # it stands where its placement puts it
+    whole = None
+    for mesh, matrix in _shown_meshes(source):
+        placed = _transformed(mesh, matrix)
+        if whole is None:
+            whole = placed
+        else:
+            whole.addMesh(placed)
+    if whole is None:
+        raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
+    return whole, np.eye(4)
+
+
+def refuse_mixed(source: Any) -> None:
+    """Reject a container that shows shapes and meshes: one of them would be left out. InputError MIXED."""
+    if "Shape" in source.PropertiesList or "Mesh" in source.PropertiesList:
+        return
+    if next(_shown_meshes(source), None) is not None:
+        raise InputError(
+            "MIXED",
+            source.Label,
+            "it holds shapes and meshes, and only one kind can be used at a time; choose the objects in it one by one",
+        )
+
+
+def _shown_meshes(source: Any) -> Iterator[tuple[Any, np.ndarray]]:
+    """Each mesh that an object shows, and the matrix from the mesh, without its own placement, to the document."""
+    return _within(source, outer_matrix(source))
+
+
+def _within(obj: Any, outer: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
+    """outer: from where `obj` places itself to the document."""
+    shown, matrix = obj.getLinkedObject(True, App.Matrix(), True)
+    yield from _inside(shown, outer @ _array(matrix))
+
+
+def _inside(shown: Any, inside: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
+    """inside: from within `shown`, its placement applied, to the document."""
+    if "Mesh" in shown.PropertiesList:
+        if shown.Mesh.CountFacets:
+            yield shown.Mesh, inside
+        return
+    if "Shape" in shown.PropertiesList:
+        return
+    for path, held in children_of(shown):
+        if held.Name == path.rstrip(".") or held.TypeId == "App::LinkElement":
+            yield from _within(held, inside)
+        else:  # an element of a link array that is no object of its own
+            # this matrix begins outside of the array, and without `transform` it would still have the array's scale
+            step = np.linalg.inv(own_matrix(shown)) @ _array(shown.getSubObject(path, retType=4))
+            target, matrix = held.getLinkedObject(True, App.Matrix(), False)
+            yield from _inside(target, inside @ step @ _array(matrix))
+
+
+def _transformed(mesh: Any, matrix: np.ndarray) -> Any:
+    """A copy of a mesh, without its placement, moved by a matrix; its triangles face outwards also where it mirrors."""
+    placed = mesh.copy()
+    placed.Placement = App.Placement()
+    placed.transform(App.Matrix(*matrix.ravel().tolist()))
+    if np.linalg.det(matrix[:3, :3]) < 0.0:
+        placed.flipNormals()
+    return placed
+
+
+def _array(matrix: Any) -> np.ndarray:
+    return np.array(matrix.A).reshape(4, 4)
