@@ -18,6 +18,18 @@ def deviation(distance: float) -> str:
     return f"{max(distance, 1e-3):.2g}"
 
 
+def differing(value: float, reference: float, digits: int = 6) -> str:
+    """A number as text, with so many digits that it is not the text of the reference, from which it differs."""
+    return next(
+        (
+            text
+            for count in range(digits, 18)
+            if (text := f"{value:.{count}g}") != f"{reference:.{count}g}"
+        ),
+        repr(value),
+    )
+
+
 def count(number: float) -> str:
     """About how many, as text: to two digits, 47,000,000, of very many 4.7e+12."""
     return f"{float(f'{number:.1e}'):,.0f}" if number < 1e12 else f"{number:.1e}"

@@ -188,3 +188,82 @@ def test_what_cannot_be_read_is_refused_for_what_it_is(what, tmp_path):
     with pytest.raises(InputError) as refused:
         urdf_machine.described(Reference(str(path), None, None))
     assert is_so(text, moving(text), refused.value.message), refused.value.message
+
+
+def with_right_angles(text, written):
+    """The file with `written` for each quarter turn of its rpy."""
+
+    def words(found):
+        values = [float(word) for word in found[2].split()]
+        quarters = [abs(abs(value) - np.pi / 2) < 1e-9 for value in values]
+        signed = [f"{'-' if value < 0 else ''}{written}" for value in values]
+        both = zip(quarters, signed, found[2].split())
+        return (
+            found[1] + " ".join(one if is_quarter else word for is_quarter, one, word in both) + '"'
+        )
+
+    return re.sub(r'(\brpy=")([^"]+)"', words, text)
+
+
+@pytest.mark.parametrize("robot", [*WRISTS, "kuka-kr16-2"])
+@pytest.mark.parametrize(
+    ("written", "noted"),
+    [
+        ("1.5708", ""),
+        ("1.57", ""),
+        ("1.57079", ""),
+        ("1.570796325", "right angle"),
+        ("1.5707965", "right angle"),
+    ]
+    + [("1.57075", "right angle")],
+)
+def test_rounded_right_angles_are_right_angles(robot, written, noted, tmp_path):
+    machine_of = machine.load(robot)
+    path = tmp_path / "robot.urdf"
+    path.write_text(with_right_angles(urdf_text.text(machine_of), written), encoding="utf-8")
+    described, arm = urdf_machine.described(Reference(str(path), None, None))
+    q = np.random.default_rng(5).uniform(-2.5, 2.5, (20, 6))
+    np.testing.assert_allclose(described.chain.forward(q), machine_of.chain.forward(q), atol=1e-9)
+    assert type(arm) is type(machine_of.arm)
+    assert any("read as a right angle" in note for note in described.notes) == bool(noted)
+
+
+@pytest.mark.parametrize("robot", [*WRISTS, "kuka-kr16-2"])
+@pytest.mark.parametrize("off_deg", [1e-6, 0.0004, 0.05])
+def test_arms_that_are_nearly_square_are_solved_as_they_are(robot, off_deg, tmp_path):
+    """Every frame leans by its own angle, written with all its digits: poses of the file come back to 1e-6 rad."""
+    text = urdf_text.text(machine.load(robot))
+    leans = iter(np.random.default_rng(2).uniform(-1.0, 1.0, 100))
+
+    def lean(found):
+        values = [float(word) + np.radians(off_deg) * next(leans) for word in found[2].split()]
+        return found[1] + " ".join(map(repr, map(float, values))) + '"'
+
+    path = tmp_path / "robot.urdf"
+    path.write_text(re.sub(r'(\brpy=")([^"]+)"', lean, text), encoding="utf-8")
+    described, arm = urdf_machine.described(Reference(str(path), None, None))
+    assert any("deg off right angles" in note for note in described.notes)
+    q = np.random.default_rng(5).uniform(-2.5, 2.5, (200, 6))
+    poses = described.chain.forward(q)
+    solutions, words = arm.solutions(poses)
+    known = np.isfinite(solutions[..., 0])
+    there = described.chain.forward(np.nan_to_num(solutions))
+    assert np.abs(there - poses[None])[known].max() < 1e-6
+    off = np.abs((solutions - q + np.pi) % (2.0 * np.pi) - np.pi).max(axis=2)
+    assert (np.nanmin(np.where(known, off, np.inf), axis=0) < 1e-6).mean() > 0.95  # beside singularities
+    assert ((words >= 0) == known).all()
+
+
+def test_angles_in_reasons_have_digits_that_differ(tmp_path):
+    """An axis 3 that leans too far for a right angle, by less than six digits of 90 deg show nothing of."""
+    from freecad_am.core.geometry.formatting import differing
+
+    assert differing(90.0000004, 90.0) == "90.0000004" and differing(91.25, 90.0) == "91.25"
+    text = urdf_text.text(machine.load(WRISTS[0]))
+    path = tmp_path / "robot.urdf"
+    path.write_text(
+        text.replace('<axis xyz="0.0 1.0 0.0"/>', '<axis xyz="0 1 0.02"/>', 1), encoding="utf-8"
+    )
+    with pytest.raises(InputError) as refused:
+        urdf_machine.described(Reference(str(path), None, None))
+    assert "not 90 deg" in refused.value.message and "90 deg apart" not in refused.value.message

@@ -18,6 +18,7 @@ from ..jacobian import jacobian
 from .serial_arm import SerialArm
 
 CHUNK = 2048
+WORDS = 8  # configurations
 STEPS, AGAIN = 16, 4  # steps at most, and after how many the Jacobian is found again
 ASIDE = 5.0  # mm
 TINY = 1e-9
@@ -36,7 +37,10 @@ class CalibratedArm:
     near: SerialArm
     chain: Chain
 
-    followed = False
+    @property
+    def followed(self) -> bool:
+        """Whether several solutions may bear the same words; as of the closed form."""
+        return self.near.followed
 
     @property
     def shoulder(self) -> tuple[float, float]:
@@ -49,9 +53,9 @@ class CalibratedArm:
         return self.near.reach
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Joint angles (8, n, 6) of all configurations for flange poses (n, 4, 4), in [-pi, pi]; NaN where not reached."""
-        given = np.ascontiguousarray(poses, float)
-        return np.stack([self._brought(given, words) for words in range(8)])
+        """Joint angles (8, n, 6) of all configurations for flange poses (n, 4, 4), in [-pi, pi]; NaN where not reached. Of
+        arms that are `followed` as many as the closed form has."""
+        return self.solutions(poses)[0]
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
         """Joint angles (n, 6) of one configuration; else as `inverse`."""
@@ -60,8 +64,13 @@ class CalibratedArm:
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
-        found = self.inverse(poses)
-        return found, np.where(np.isnan(found[..., 0]), -1, np.arange(len(found))[:, None])
+        given = np.ascontiguousarray(poses, float)
+        if not self.near.followed:
+            solved = np.stack([self._brought(given, words) for words in range(WORDS)])
+            return solved, np.where(np.isnan(solved[..., 0]), -1, np.arange(WORDS)[:, None])
+        starts, words = self.near.solutions(given)
+        solved = np.stack([self._from(start, given, word) for start, word in zip(starts, words)])
+        return solved, np.where(np.isnan(solved[..., 0]), -1, words)
 
     def branch_of(self, q: ArrayLike) -> Index:
         """The configuration (...) that joint angles `q` (..., 6) are in."""
@@ -88,8 +97,8 @@ class CalibratedArm:
             result[lost] = self._from(self.near.inverse_branch(moved, words), poses[lost], words)
         return result
 
-    def _from(self, start: Array, poses: Array, words: int) -> Array:
-        """Angles (n, 6) near `start` (n, 6) that give the poses, NaN where there are none of those words."""
+    def _from(self, start: Array, poses: Array, words: int | Index) -> Array:
+        """Angles (n, 6) near `start` (n, 6) that give the poses, NaN where there are none of those words, or words (n,)."""
         result = np.full(start.shape, np.nan)
         reached = np.flatnonzero(np.isfinite(start[:, 0]))
         for first in range(0, len(reached), CHUNK):

@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from ...geometry import frames
+from ...geometry.formatting import differing
 from ...issues import InputError, Text, Word
 from ...types import Array
 from ..chain import Chain, JointFrames
@@ -135,10 +136,10 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         if off > STRAIGHT:
             raise refused(
                 Text(
-                    "axes {} and {} are {:.6g} deg apart, not 90 deg",
+                    "axes {} and {} are {} deg apart, not 90 deg",
                     first + 1,
                     second + 1,
-                    90.0 - math.degrees(off),
+                    differing(90.0 - math.degrees(off), 90.0),
                 )
             )
     off = math.asin(min(1.0, float(np.linalg.norm(np.cross(z[1], z[2])))))

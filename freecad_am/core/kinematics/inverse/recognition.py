@@ -9,14 +9,24 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry import frames
+from ...geometry.formatting import differing
 from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
 from . import opw_recognition
+from .calibrated import CalibratedArm
 from .offset_wrist.arm import OffsetWristArm
 from .opw_recognition import NEAR_MM, POSITION, ROTATION, STRAIGHT, clean
 from .parallel_axes import ParallelAxesArm
 from .serial_arm import SerialArm
+
+QUARTER = 0.5 * math.pi
+NEARLY_SQUARE = math.radians(
+    0.25
+)  # a rounded or measured right angle; no maker leans an axis by so little
+EXACT = 1e-12  # rad; what rounding of a float leaves
+LOCKED = 0.02  # cosine of the pitch, below which roll and yaw are not told apart
+MOST_LOST = 0.1  # share of poses beside singularities that an arm and the closed form next to it do not both reach
 
 
 def arm_of(chain: Chain) -> SerialArm:
@@ -25,11 +35,87 @@ def arm_of(chain: Chain) -> SerialArm:
     Raises InputError NO_CLOSED_FORM telling what of the geometry stands in the way, and by how much.
     """
     try:
+        return _exact(chain)
+    except InputError:
+        nominal = squared(chain)
+        if nominal is None:
+            raise
+    arm = CalibratedArm(_exact(nominal), chain)
+    if not _agrees(arm, chain, MOST_LOST):
+        raise opw_recognition.refused(
+            Text(
+                "its axes are up to {:.3g} deg off right angles, and its solutions do not give back its poses",
+                math.degrees(off_square(chain)),
+            )
+        )
+    return arm
+
+
+def off_square(chain: Chain) -> float:
+    """The largest angle (rad) by which a frame or an axis of a chain is off the right angle that it nearly stands at."""
+    rows = [*chain.origins[:, :3, :3], chain.flange[:3, :3]]
+    turns = [_angle(rotation, _squared_rotation(rotation)) for rotation in rows]
+    axes = [
+        math.asin(min(1.0, float(np.linalg.norm(np.cross(axis, _squared_axis(axis))))))
+        for axis in chain.directions
+    ]
+    return max(*turns, *axes)
+
+
+def squared(chain: Chain) -> Chain | None:
+    """The chain whose frames and axes stand at right angles where those of the given one nearly do, seen from a base_link whose
+    Z is axis 1; None where nothing changes."""
+    if chain.axes != 6 or chain.sliding.any() or off_square(chain) < EXACT:
+        return None
+    origins, flange = chain.origins.copy(), chain.flange.copy()
+    origins[:, :3, :3] = [_squared_rotation(rotation) for rotation in origins[:, :3, :3]]
+    flange[:3, :3] = _squared_rotation(flange[:3, :3])
+    axes = np.stack([_squared_axis(axis) for axis in chain.directions])
+    return opw_recognition.rooted(Chain(origins, axes, flange, chain.sliding))[0]
+
+
+def _squared_rotation(rotation: Array) -> Array:
+    """The rotation (3, 3) of quarter turns that is nearly the given one; of others with their roll, pitch and yaw made so."""
+    nearest = np.round(rotation)
+    if _is_rotation(nearest) and _angle(rotation, nearest) < NEARLY_SQUARE:
+        return np.asarray(nearest)
+    rpy = np.array(-frames.to_bryant(rotation.T))
+    if abs(math.cos(rpy[1])) < LOCKED:
+        return rotation
+    quarters = np.round(rpy / QUARTER) * QUARTER
+    return frames.from_rpy(
+        (0.0, 0.0, 0.0), np.where(np.abs(rpy - quarters) < NEARLY_SQUARE, quarters, rpy)
+    )[:3, :3]
+
+
+def _squared_axis(axis: Array) -> Array:
+    nearest = np.round(axis)
+    near = np.linalg.norm(axis - nearest) < NEARLY_SQUARE and np.abs(nearest).sum() == 1.0
+    return np.asarray(nearest if near else axis)
+
+
+def _is_rotation(matrix: Array) -> bool:
+    return bool(
+        np.array_equal(matrix @ matrix.T, np.eye(3)) and round(float(np.linalg.det(matrix))) == 1
+    )
+
+
+def _angle(one: Array, other: Array) -> float:
+    return 2.0 * math.asin(min(1.0, float(np.linalg.norm(one - other)) / math.sqrt(8.0)))
+
+
+def _exact(chain: Chain) -> SerialArm:
+    """The closed form of a chain as it is. InputError NO_CLOSED_FORM."""
+    try:
         return opw_recognition.recognise(chain)
     except InputError as error:
         if chain.axes != 6 or chain.sliding.any() or error.where == opw_recognition.FLANGE:
             raise
-        return parallel_axes(chain) or offset_wrist(chain)
+        return _other_wrists(chain)
+
+
+def _other_wrists(chain: Chain) -> SerialArm:
+    return parallel_axes(chain) or offset_wrist(chain)
 
 
 def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
@@ -87,7 +173,12 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
         if not _square(z[first], z[second]):
             off = math.degrees(math.acos(min(1.0, abs(float(z[first] @ z[second])))))
             raise opw_recognition.refused(
-                Text("axes {} and {} are {:.6g} deg apart, not 90 deg", first + 1, second + 1, off)
+                Text(
+                    "axes {} and {} are {} deg apart, not 90 deg",
+                    first + 1,
+                    second + 1,
+                    differing(off, 90.0),
+                )
             )
     if not _parallel(z[1], z[2]):
         raise opw_recognition.refused("axes 2 and 3 are not parallel")
@@ -137,8 +228,8 @@ def _flips(arm: OffsetWristArm) -> tuple[bool, bool, bool, bool]:
     return bool(found[0]), bool(found[1]), bool(found[2]), bool(found[3])
 
 
-def _agrees(arm: SerialArm, chain: Chain) -> bool:
-    """Whether the arm gives back joint angles of the chain; a slip of signs or zeros shows."""
+def _agrees(arm: SerialArm, chain: Chain, lost: float = 0.0) -> bool:
+    """Whether the arm gives back joint angles of the chain, but for a share `lost`; a slip of signs or zeros shows."""
     q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
     poses = chain.forward(q)
     found = arm.inverse(poses)
@@ -149,7 +240,8 @@ def _agrees(arm: SerialArm, chain: Chain) -> bool:
     return bool(
         off[..., :3, 3].max() < POSITION
         and off[..., :3, :3].max() < ROTATION * 10.0
-        and (np.nanmin(given, axis=0) < 1e-5).all()
+        and (np.nanmin(np.where(np.isnan(given), np.inf, given), axis=0) < 1e-5).mean()
+        >= 1.0 - lost
     )
 
 

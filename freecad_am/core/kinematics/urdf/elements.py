@@ -19,6 +19,7 @@ from ...types import Array
 CODE = "BAD_URDF"
 LARGEST = 64  # MB
 QUARTER = 0.5 * math.pi
+FINE_DECIMALS = 5  # from so many on the last digit of a right angle may be off by 5
 
 
 @dataclass
@@ -160,9 +161,11 @@ def unrounded(word: str) -> float:
 
 
 def nearest(word: str, step: float) -> float:
-    """The multiple of `step` that a number of two decimals or more is the rounding of, else the number."""
+    """The multiple of `step` that a number of two decimals or more is the rounding of, else the number. Half or a quarter of a
+    rounded number counts as rounded (1.570796325), and so does one that is cut off (1.57079, 3.14)."""
     value = float(word)
     decimals = len(word.partition(".")[2]) if "e" not in word.lower() else 17
     multiple = round(value / step) * step
-    # cut off counts as rounded: 1.57079 and 3.14
-    return multiple if 2 <= decimals < 15 and abs(value - multiple) < 10.0**-decimals else value
+    units = 5.0 if decimals >= FINE_DECIMALS else 1.0
+    rounded = 2 <= decimals < 15 and abs(value - multiple) < units * 10.0**-decimals
+    return multiple if rounded else value

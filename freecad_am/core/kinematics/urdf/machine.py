@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from ...parameters.external import WHERE
 from ...types import Array
 from ..chain import Chain
 from ..inverse import opw_recognition, recognition
+from ..inverse.calibrated import CalibratedArm
 from ..inverse.five_axis import is_five_axis
 from ..inverse.serial_arm import SerialArm
 from .collision import collision
@@ -32,7 +34,8 @@ def described(meant: Reference) -> tuple[Description, SerialArm | None]:
     robot, base, tip = _ends(meant, "cell.machine")
     found = grounded(robot.between(base, tip))
     try:
-        return found, closed_form(found.chain)
+        arm = closed_form(found.chain)
+        return (found if arm is None else replace(found, notes=(*found.notes, *_off(arm)))), arm
     except InputError as error:
         track = opw_recognition.track_of(found.chain)
         begin = (
@@ -55,6 +58,18 @@ def described(meant: Reference) -> tuple[Description, SerialArm | None]:
             error.message,
             Word(begin),
         ) from None
+
+
+def _off(arm: SerialArm) -> list[str]:
+    """A note about an arm whose axes are not quite at right angles."""
+    if not isinstance(arm, CalibratedArm):
+        return []
+    return [
+        Text(
+            "its axes are up to {:.2g} deg off right angles: joint angles are solved for the axes as they are",
+            math.degrees(recognition.off_square(arm.chain)),
+        )
+    ]
 
 
 def chain_of(meant: Reference) -> Description:

@@ -7,7 +7,7 @@ Read are origins, axes, kinds, limits and speeds of joints, fixed joints, and th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,7 +29,7 @@ FIXED = "fixed"
 BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
 ROBOT = 6  # joints of one
 STRAIGHT, BEHIND_MM = (
-    1e-6,
+    math.radians(0.25),
     1e-3,
 )  # of a tip: rad that its Z is off the axis, mm that it may lie behind
 DEGREE = math.radians(1.0)
@@ -184,7 +184,7 @@ class Urdf:
                 origins.append(rest)
                 rest = np.eye(4)
         limits = [_limits(joint) for joint in moving]
-        notes: list[str] = []
+        notes: list[str] = _rounded_angles(joints)
         shapes = tuple(
             self._mesh(link, notes)
             for link in (base, *(joint.one("child").text("link") for joint in moving))
@@ -344,6 +344,19 @@ def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
         rest
         @ frames.pose(frames.about_y(-0.5 * math.pi if inwards else 0.5 * math.pi), (0.0, 0.0, 0.0))
     )
+
+
+def _rounded_angles(joints: Sequence[Element]) -> list[str]:
+    """Notes on angles that are taken for right angles although their last digit is off by more than it is rounded."""
+    notes = []
+    for joint in joints:
+        origin = joint.first("origin")
+        for word in [] if origin is None else origin.words("rpy", 3, "0 0 0"):
+            off = abs(urdf_xml.unrounded(word) - float(word))
+            if off >= 10.0 ** -len(word.partition(".")[2]):
+                line = joint.line if origin is None else origin.line
+                notes.append(Text("line {}: {} is read as a right angle", line, word))
+    return notes
 
 
 def _axis(joint: Element) -> Array:
