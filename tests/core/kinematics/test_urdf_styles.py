@@ -250,7 +250,9 @@ def test_arms_that_are_nearly_square_are_solved_as_they_are(robot, off_deg, tmp_
     there = described.chain.forward(np.nan_to_num(solutions))
     assert np.abs(there - poses[None])[known].max() < 1e-6
     off = np.abs((solutions - q + np.pi) % (2.0 * np.pi) - np.pi).max(axis=2)
-    assert (np.nanmin(np.where(known, off, np.inf), axis=0) < 1e-6).mean() > 0.95  # beside singularities
+    assert (
+        np.nanmin(np.where(known, off, np.inf), axis=0) < 1e-6
+    ).mean() > 0.95  # beside singularities
     assert ((words >= 0) == known).all()
 
 

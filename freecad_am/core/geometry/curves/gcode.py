@@ -952,4 +952,4 @@ def _layers(runs: Sequence[_Run], has_comments: bool) -> list[int]:
 def _span(runs: Sequence[_Run]) -> float:
     """Between the lowest and the highest point, mm."""
     low, high = zip(*(run.heights for run in runs))
-    return max(high) - min(low)
+    return float(max(high) - min(low))

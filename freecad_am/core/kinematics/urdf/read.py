@@ -348,7 +348,7 @@ def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
 
 def _rounded_angles(joints: Sequence[Element]) -> list[str]:
     """Notes on angles that are taken for right angles although their last digit is off by more than it is rounded."""
-    notes = []
+    notes: list[str] = []
     for joint in joints:
         origin = joint.first("origin")
         for word in [] if origin is None else origin.words("rpy", 3, "0 0 0"):
