@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from typing import Any
 
@@ -19,6 +20,8 @@ from freecad_am.objects.shapes import document_file
 from .part_source import PartSource
 
 PATIENCE = 100.0  # times as long as reading a document may take; building a part of other values may be long work
+CELL_ADDRESS = re.compile("[A-Z]{1,2}[1-9][0-9]*")  # of a spreadsheet
+UNIT_OF_BARE_NUMBERS = {"Length": "mm", "Angle": "deg"}  # in a cell that has a unit
 
 
 def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = False) -> Any:
@@ -123,24 +126,57 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
     obj = found[0]
     try:
         if constraints:
-            obj.setDatum(key, App.Units.Quantity(text))
+            _set_constraint(obj, key, text, place)
+        elif obj.TypeId == "Spreadsheet::Sheet" and key not in ("Label", "Label2"):
+            _set_cell(obj, key, text, place)
         elif key not in obj.PropertiesList:
-            raise AttributeError(key)
-        elif obj.TypeId == "Spreadsheet::Sheet":
-            obj.set(obj.getCellFromAlias(key) or key, text)
+            near = ", ".join(sorted(obj.PropertiesList))
+            message = "{} has no property {!r}; use one of {}"
+            raise InputError("BAD_VALUE", place, message, name, key, near)
         else:
-            obj.setExpression(
-                key, None
-            )  # a value that is set is meant, whatever it was computed from
+            # the given value replaces an expression too
+            obj.setExpression(key, None)
             setattr(obj, key, _typed(getattr(obj, key), text))
-    except AttributeError:
-        near = ", ".join(sorted(obj.PropertiesList))
-        raise InputError(
-            "BAD_VALUE", place, "{} has no property {!r}; use one of {}", name, key, near
-        ) from None
     except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
         message = Text("{!r} does not fit this property; give a value such as it has now", text)
         raise InputError("BAD_VALUE", place, message) from None
+    except AttributeError:
+        message = Text("{} cannot be set here; set what it is computed from", key)
+        raise InputError("BAD_VALUE", place, message) from None
+
+
+def _set_constraint(sketch: Any, name: str, text: str, place: str) -> None:
+    """Set a named dimension of a sketch; an expression that drives it is removed."""
+    constraints = [item for item in getattr(sketch, "Constraints", ()) if item.Name]
+    if name not in [item.Name for item in constraints]:
+        names = ", ".join(item.Name for item in constraints) or "none"
+        message = "{} has no constraint of this name (it has {}); name it in the sketch"
+        raise InputError("BAD_VALUE", place, message, sketch.Label, names)
+    now = sketch.getDatum(name)
+    sketch.setExpression(f"Constraints.{name}", None)
+    sketch.setDatum(name, _typed(now, text))
+
+
+def _set_cell(sheet: Any, key: str, text: str, place: str) -> None:
+    """Set a cell of a spreadsheet by its alias or its address; its unit stays."""
+    address = sheet.getCellFromAlias(key) or key
+    if not CELL_ADDRESS.fullmatch(address):
+        message = "{} has no cell with the alias or address {!r}; check the spreadsheet"
+        raise InputError("BAD_VALUE", place, message, sheet.Label, key)
+    if not sheet.getContents(address):
+        message = "cell {} of {} is empty; name one that has a value"
+        raise InputError("BAD_VALUE", place, message, address, sheet.Label)
+    now = sheet.get(address)
+    if isinstance(now, str):
+        sheet.set(address, f"'{text}")
+        return
+    value = _typed(now if isinstance(now, App.Units.Quantity) else float(now), text)
+    unit = ""
+    if isinstance(value, App.Units.Quantity) and value.Unit != now.Unit:
+        if now.Unit.Type not in UNIT_OF_BARE_NUMBERS:
+            raise InputError("BAD_VALUE", place, "{!r} has no unit; give it with one", text)
+        unit = UNIT_OF_BARE_NUMBERS[now.Unit.Type]
+    sheet.set(address, f"={text} {unit}")
 
 
 def _typed(now: Any, text: str) -> Any:
