@@ -61,7 +61,14 @@ from .macro.features import (
 from .macro.parts import array_element, open_part
 from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
-from .macro.suit import in_vain, on_platform, refuse_otherwise, suit
+from .macro.suit import (
+    in_vain,
+    is_held_apart,
+    on_platform,
+    proposed_place,
+    refuse_otherwise,
+    suit,
+)
 from .objects import user_machines
 from .objects.cell import Cell
 from .objects.checks.controllers import post_of
@@ -117,11 +124,16 @@ def make_cell(
 ) -> Any:
     """A cell: machine, set-up, platform and nozzle. `am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)`
 
-    external="urdf" takes track and positioner of the URDF that is the machine, and the robot of it.
+    A robot other than the default one gets the deposition point and the branch that suit it, as a new job does, unless they
+    are given. external="urdf" takes track and positioner of the URDF that is the machine, and the robot of it.
     """
     if values.get("external") == urdf_machine.WHOLE:
         values["machine"], values["external"] = urdf_cell.texts_of_machine(values.get("machine"))
-    return make_stage(doc, Cell, "Cell", label, {}, [parameters], values)
+    with one_step(doc, f"Make {checked_text(label, 'label')}"):
+        cell = make_stage(doc, Cell, "Cell", label, {}, [parameters], values)
+        if parameters is None:
+            proposed_place(cell, values)
+    return cell
 
 
 def make_toolpath(
@@ -282,7 +294,12 @@ def make_all(
     def planned(layers: str) -> list[Any]:
         own = make_cell(doc, parameters=chosen)
         features = [_feature_of_job(doc, one) for one in ({**first, "layers": layers}, *then)]
-        toolpath = on_platform(own, features, lambda: make_toolpath(doc, features, own, **process))
+        toolpath = on_platform(
+            own,
+            features,
+            lambda: make_toolpath(doc, features, own, **process),
+            sized=not cell,
+        )
         path = (
             []
             if toolpath.Status == "infeasible"
@@ -311,10 +328,10 @@ def make_all(
 
 def _suited_path(doc: Any, toolpath: Any, cell: Any, setup: str, saved: bool) -> Any:
     """The joint path of a new job, in a cell that suits it unless that is a saved one."""
-    if setup:
+    if setup or not (saved or is_held_apart(cell, toolpath)):
         suit(cell, toolpath)
     path = make_joint_path(doc, toolpath, cell)
-    if path.Status == "infeasible" and not (setup or saved):
+    if path.Status == "infeasible" and not saved:
         suit(cell, toolpath, path)
     return path
 

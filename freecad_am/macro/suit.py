@@ -3,16 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import dataclasses
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import FreeCAD as App
 
-from ..core.issues import ERROR, InputError
+from ..core.issues import ERROR, InfeasibleError, InputError
+from ..core.kinematics import cell as cells
+from ..core.kinematics.arrangement import of_setup
+from ..core.kinematics.proposed_cell import proposed
+from ..core.parameters.cell import CellParameters
 from ..core.parameters.filled import SolidParameters
-from ..core.strategies.support import ABOVE_PLATFORM, surely_above
+from ..core.strategies.support import ABOVE_PLATFORM, OVER_PLATFORM, surely_above
+from ..objects import user_machines
+from ..objects.checks.collisions import in_platform
 from ..objects.fields import properties
-from ..objects.planned import suited_cell
+from ..objects.planned import platform_size, suited_cell
 from ..objects.results.findings import issues_of
 from ..objects.staleness import INFEASIBLE
 from .changes import change
@@ -25,15 +32,75 @@ def suit(cell: Any, *stages: Any) -> None:
     settings = cell.Proxy.value(cell)
     found = suited_cell.of_toolpath(stages[0])(settings)
     if found != settings:
-        with one_step(cell.Document, f"Edit {cell.Label}"):
-            properties.write(cell, found)
-            for stage in (cell, *stages):
-                renew(stage)
+        _write(cell, found, stages)
+        changed = ", ".join(
+            field.name
+            for field in dataclasses.fields(found)
+            if getattr(found, field.name) != getattr(settings, field.name)
+        )
+        App.Console.PrintWarning(
+            f"{cell.Label}: {changed}: proposed for this job; enter what yours really has\n"
+        )
 
 
-def on_platform(cell: Any, features: Sequence[Any], make: Callable[[], Any]) -> Any:
+def _write(cell: Any, settings: CellParameters, stages: Sequence[Any]) -> None:
+    with one_step(cell.Document, f"Edit {cell.Label}"):
+        properties.write(cell, settings)
+        for stage in (cell, *stages):
+            renew(stage)
+
+
+def proposed_place(cell: Any, values: Mapping[str, Any]) -> None:
+    """Give a cell object of a robot the deposition point, and the branch, that a new job with it has, where the values that
+    it was made of do not tell them. The default robot keeps those of its parameters, which macros count on."""
+    settings = cell.Proxy.value(cell)
+    asked = ("deposition_point", "touched", "external")
+    if settings.machine == CellParameters().machine or any(values.get(key) for key in asked):
+        return
+    found = proposed(settings, user_machines.folders(), own_branch="branch" in values)
+    if found != settings:
+        _write(cell, found, ())
+
+
+def is_held_apart(cell: Any, toolpath: Any) -> bool:
+    """Whether part and substrate of a toolpath stay out of the platform of a cell."""
+    made, folders = toolpath.Proxy.value(toolpath), tuple(user_machines.folders())
+    settings = cell.Proxy.value(cell)
+    if not of_setup(settings.setup).planned:
+        return True
+    return not in_platform(cells.resolve(settings, made.frame, made.family, folders), made)
+
+
+def fit_platform(cell: Any, toolpath: Any) -> None:
+    """Give a cell object a platform that all of the first layer of a toolpath lies on, with the part in its middle where
+    `mount` puts it there; all is as it was where it lies on it, or the toolpath cannot be planned so."""
+    if not any(issue.code == OVER_PLATFORM for issue in issues_of(toolpath)):
+        return
+    settings = cell.Proxy.value(cell)
+    found = platform_size.fitted(toolpath.Proxy.value(toolpath), settings)
+    planned, key = toolpath.Status != INFEASIBLE, toolpath.Key
+    try:
+        _write(cell, found, [toolpath])
+    except (InputError, InfeasibleError):
+        planned, key = True, ""
+    if planned and (toolpath.Status == INFEASIBLE or not key):
+        _write(cell, settings, [toolpath])
+
+
+def on_platform(
+    cell: Any, features: Sequence[Any], make: Callable[[], Any], sized: bool = False
+) -> Any:
     """The toolpath object that is made of features; what reaches below the platform, or begins above it, over nothing, is
-    put on it where `mount` does so: before, where that is known beforehand, as layers may take minutes."""
+    put on it where `mount` does so: before, where that is known beforehand, as layers may take minutes. sized: the platform
+    is as large as it has to be."""
+    toolpath = _mounted(cell, features, make)
+    if sized:
+        fit_platform(cell, toolpath)
+    return toolpath
+
+
+def _mounted(cell: Any, features: Sequence[Any], make: Callable[[], Any]) -> Any:
+    """The toolpath object, with `mount` changed where that puts the part on the platform."""
     if _is_above(cell, features):
         change(cell, mount="feature")
     try:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.issues import NOTE, AmError, InputError, Issue, Text
+from ..core.issues import NOTE, AmError, InputError, Issue, Text, has_errors
 from ..core.kinematics import cell as cells
 from ..core.kinematics.links.external_links import of_unknown_shape
 from ..core.kinematics.machines.machine import UNKNOWN_REMARK
@@ -30,6 +30,7 @@ from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
 from . import user_machines
+from .checks.collisions import collision_issues, look, margin_issues
 from .checks.links_clear import arm_issues, cylinders_of
 from .shapes import cell_obstacles
 from .stage import Stage, stage_of
@@ -182,10 +183,16 @@ class JointPath(Stage):
                 )
             )
             notes = (*_not_kept(cell), *_not_known(cell), *_drawn_plain(cell), *_moved(cell))
+            found = (*joint_path.issues, *rapid_issues, *near)
+            if not has_errors(found):
+                progress.report(TRYING, "looking for collisions of the arm")
+                found = (
+                    *found,
+                    *collision_issues(motion, cell, toolpath, process),
+                    *margin_issues(motion, cell),
+                )
             issues = (
-                *joint_path.issues,
-                *rapid_issues,
-                *near,
+                *found,
                 *notes,
                 *_heights_as_run(joint_path, toolpath, process),
             )
@@ -197,10 +204,11 @@ class JointPath(Stage):
                 job.parameters,
                 job.fixed,
                 own_speed=job.own_speed,
-                cylinders=cylinders,
+                cylinders=cylinders or cylinders_of(cell),
                 obstacles=cell.obstacles,
                 torch=cell.torch,
                 external_links=cell.external_links,
+                look=look,
             )
             _tell_remedies(cell, toolpath, issues)
             issues = (
@@ -265,8 +273,8 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
             NOTE,
             "OBSTACLES_NOT_KEPT",
             Text(
-                "{}: checked for the nozzle, and for links and part only in simulation and "
-                "preflight; give cell.arm_clearance so that these are kept clear of it while planning",
+                "{}: checked for the nozzle while planning, for links and part only once the path is planned; give "
+                "cell.arm_clearance so that planning keeps these clear of it",
                 names,
             ),
         )

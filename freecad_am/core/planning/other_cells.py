@@ -10,7 +10,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..issues import Text
+from ..geometry import frames
+from ..issues import Text, Word
 from ..kinematics import cell as cells
 from ..kinematics import proposed_cell
 from ..kinematics.arrangement import of_setup
@@ -23,6 +24,9 @@ from .external.level import levelled
 from .plan import best_branches
 from .tried import Tried
 
+COLLISIONS = frozenset({"ARM_COLLISION", "PLATFORM_COLLISION", "ARM_CLEARANCE"})
+CLEARANCE = 5.0  # mm, of the arm
+BELOW = 0.5  # mm; what reaches farther below the plane of the platform is in it
 SHIFTS = (
     (0.0, -150.0),
     (0.0, 150.0),
@@ -35,6 +39,50 @@ def with_cell(job: Tried, remedy: str, **values: object) -> Tried:
     """The job in its cell with other values."""
     settings = dataclasses.replace(job.settings, **values)  # type: ignore[arg-type]
     return dataclasses.replace(job, settings=settings, remedy=remedy)
+
+
+def clear_of_arm(job: Tried, codes: set[str]) -> Iterator[Tried]:
+    """What may clear arm and platform of part and substrate: to hold these by a clamp that reaches below all of them, to plan
+    with a clearance of the arm, and both."""
+    if codes.isdisjoint(COLLISIONS):
+        return
+    held = held_by_clamp(job)
+    if held is not None:
+        yield held
+    for one in (job, held):
+        if one is not None and one.settings.arm_clearance is None:
+            remedy = Text("`cell.arm_clearance: {:g} mm`", CLEARANCE)
+            if one is held:
+                remedy = Text("{} and `cell.arm_clearance: {:g} mm`", Word(one.remedy), CLEARANCE)
+            yield with_cell(one, remedy, arm_clearance=CLEARANCE)
+
+
+def held_by_clamp(job: Tried) -> Tried | None:
+    """The job with what reaches below the platform held above it, in the middle, by what is no plate: as pipes are clamped.
+    None where nothing reaches below it."""
+    toolpath, settings = job.toolpath(), job.settings
+    cell = job.cell(toolpath)
+    if cell.offset is not None:
+        return None
+    to_platform = frames.inverse(cell.mount)
+    points = [bead.points for _, _, bead in toolpath]
+    points += [body.vertices for body in toolpath.surroundings]
+    local = np.vstack(points) @ to_platform[:3, :3].T + to_platform[:3, 3]
+    low, high = local.min(axis=0), local.max(axis=0)
+    if low[2] > -BELOW:
+        return None
+    shift = [*np.round(-0.5 * (low[:2] + high[:2]), 1), math.ceil(-low[2])]
+    on_point = not (of_setup(settings.setup).carries_part or externals(settings.external))
+    pose = settings.deposition_point if on_point else settings.platform
+    before = (0.0, 0.0, pose, 0.0, 0.0, 0.0) if isinstance(pose, (int, float)) else pose
+    x, y, z = (frames.bryant(before) @ np.array([*shift, 1.0]))[:3].round(3).tolist()
+    there = (x + 0.0, y + 0.0, z, *before[3:])
+    values = {"deposition_point" if on_point else "platform": there, "platform_diameter": 0.0}
+    remedy = Text(
+        "{} and `cell.platform_diameter: 0`",
+        _shown(there, "cell.deposition_point" if on_point else "cell.platform"),
+    )
+    return with_cell(job, remedy, **values)
 
 
 def branches(job: Tried) -> Iterator[Tried]:
@@ -130,9 +178,7 @@ def _before(job: Tried) -> list[Pose]:
     ]
 
 
-def _shown(point: Pose) -> str:
+def _shown(point: Pose, key: str = "cell.deposition_point") -> str:
     angles = [math.degrees(angle) for angle in point[3:]]
-    return Text(
-        "`cell.deposition_point: [{}]`",
-        ", ".join(f"{value + 0.0:.10g}" for value in (*point[:3], *angles)),
-    )
+    numbers = ", ".join(f"{value + 0.0:.10g}" for value in (*point[:3], *angles))
+    return f"`{key}: [{numbers}]`"

@@ -112,6 +112,8 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
         {issue.code for issue in issues if issue.level == ERROR},
         of_setup(job.settings.setup).free > 0,
     )
+    if free:
+        yield from other_cells.clear_of_arm(job, codes)
     usual = CellParameters()
     left_out = (
         job.settings.deposition_point == usual.deposition_point

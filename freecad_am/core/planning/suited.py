@@ -46,7 +46,10 @@ def _changes(job: Tried, errors: set[str]) -> Iterator[Tried]:
     if NOT_LEVEL in errors:  # which no turn about the tool mends, and no place of what stands still
         return other_cells.external_axes(job, {NOT_LEVEL})
     return itertools.chain(
-        other_cells.branches(job), other_cells.points(job), other_cells.external_axes(job, errors)
+        other_cells.clear_of_arm(job, errors),
+        other_cells.branches(job),
+        other_cells.points(job),
+        other_cells.external_axes(job, errors),
     )
 
 

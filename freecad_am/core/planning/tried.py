@@ -20,11 +20,16 @@ from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
 from .arm.kept import Cylinders
+from .joint_path import JointPath
 from .motion import assemble
 from .plan import Progress, plan_joints
 
 LAYERS = 3  # of a job, planned anew with each change
 POINTS = 12_000  # planned so in all
+
+
+# the findings about a joint path, maybe of some layers alone, in a cell, with all layers of its toolpath there
+Look = Callable[[JointPath, cells.Cell, Toolpath], Sequence[Issue]]
 
 
 class Fixed(NamedTuple):
@@ -38,7 +43,8 @@ class Fixed(NamedTuple):
 class Tried:
     """A job to plan: that which is infeasible, or it with a change, told as keys of a job file. fixed: the toolpath with the
     build direction of the part's axis; None where it has it, or cannot. own_speed: of several features, whether each has a
-    travel speed of its own. beside: links of its positioner and track as they were read."""
+    travel speed of its own. beside: links of its positioner and track as they were read. look: what finds the collisions of
+    arm and platform; None where nobody looks."""
 
     toolpath: Callable[[], Toolpath]
     settings: CellParameters
@@ -52,6 +58,7 @@ class Tried:
     obstacles: tuple[Body, ...] = ()
     torch: Torch | None = None
     external_links: tuple[ExternalLink, ...] = ()
+    look: Look | None = None
 
     def cell(self, toolpath: Toolpath) -> cells.Cell:
         """The cell of a toolpath of it."""
@@ -73,6 +80,8 @@ class Tried:
                 path, cell, self.process, toolpath.surroundings, joints, height, self.cylinders
             )
             found += rapids
+        if self.look is not None and not has_errors(found):
+            found += tuple(self.look(path, cell, self.toolpath()))
         return found
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..collision.bead_ends import LINK_GRAIN, Beads
 from ..collision.obstacles import Obstacles
+from ..kinematics.cell import Cell
 from ..kinematics.links.contact import ArmContact
 from ..kinematics.links.rounds import NONE
 from ..motion import Motion
@@ -52,9 +53,7 @@ def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> Arm
     """What the arm touches on the way, at so many places at most. Rows without joint values touch nothing."""
     n = len(motion)
     link, what = np.full(n, NONE, dtype=np.int64), np.full(n, NONE, dtype=np.int64)
-    tracks = arm.cell.machine.chain.sliding.copy()
-    tracks[: arm.cell.robot.chain.axes] = False
-    joints, row, step = places(motion.joints, most, tracks)
+    joints, row, step = places(motion.joints, most, tracks_of(arm.cell))
     before: Index = np.cumsum(motion.deposit) - motion.deposit
     found = arm.touches(joints, before[row])
     # rows that lie closer than the places looked at are as the next of these is: every run of rows ends with one
@@ -65,6 +64,13 @@ def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> Arm
     rows, first = np.unique(row[found.any], return_index=True)
     link[rows], what[rows] = found.link[found.any][first], found.what[found.any][first]
     return ArmTouches(link, what, arm.names, step, arm.links)
+
+
+def tracks_of(cell: Cell) -> Mask:
+    """(axes,) which axes of a cell are those of a track."""
+    tracks: Mask = cell.machine.chain.sliding.copy()
+    tracks[: cell.robot.chain.axes] = False
+    return tracks
 
 
 def places(

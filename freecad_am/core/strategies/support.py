@@ -99,7 +99,7 @@ def over_edge(
     worst = out[beyond[out].argmax()]
     mounted = (
         feature is not None
-        and _stands_on(toolpath, feature, bodies)
+        and stands_on(toolpath, feature, bodies)
         and bool((_beyond(toolpath, first, feature, diameter) <= 0.5 * first.width).all())
     )
     return [
@@ -134,7 +134,7 @@ def _beyond(toolpath: Toolpath, first: Pieces, frame: Array, diameter: float) ->
     return np.where(on_plane, np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter, -np.inf)
 
 
-def _stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
+def stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
     """Whether all that is deposited, and bodies, are above a plane, z = 0 of a frame (4, 4), onto which the first layer
     comes."""
     points = [bead.points for _, _, bead in toolpath]

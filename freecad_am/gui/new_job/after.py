@@ -9,13 +9,15 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from ... import api
-from ...core.issues import WARNING
+from ...core.issues import NOTE, WARNING
 from ...core.parameters.external import externals
 from ...core.parameters.filled import GEODESIC
+from ...objects.checks.collisions import ARM_NEAR, LOW_MARGIN
 from ...objects.results.findings import issues_of
 from ...objects.staleness import FAILED, INFEASIBLE, STALE, UP_TO_DATE
-from ..texts.translation import tr
+from ..texts.translation import sentence, tr
 
+LOOK_AT = (ARM_NEAR, LOW_MARGIN)  # notes that are told with the result
 SHOWN_MS = 15000  # ms that the next step is told on the status bar
 
 
@@ -46,6 +48,14 @@ def tell_next(stages: list[Any], proposed: str = "") -> None:
     ]
     if wrong is None and warned:
         text = tr("{} Read the warnings first: double-click {}.").format(text, ", ".join(warned))
+    near = [
+        sentence(issue.message)
+        for obj in stages
+        for issue in issues_of(obj)
+        if issue.code in LOOK_AT and issue.level == NOTE
+    ]
+    if wrong is None and near:
+        text = f"{text} {' '.join(near)}"
     if proposed == GEODESIC and any(
         obj.Proxy.kind == "feature" and obj.Layers != GEODESIC for obj in stages
     ):

@@ -13,6 +13,8 @@ from ...core.parameters.process import ProcessParameters
 from ...core.planning.suited import suited
 from ...core.planning.tried import Tried
 from .. import user_machines
+from ..checks.collisions import look
+from ..checks.links_clear import cylinders_of
 from ..shapes import cell_obstacles
 from ..work import progress
 
@@ -37,6 +39,8 @@ def of_toolpath(toolpath: Any) -> Callable[[CellParameters], CellParameters]:
             obstacles=cell.obstacles,
             torch=cell.torch,
             external_links=cell.external_links,
+            cylinders=cylinders_of(cell),
+            look=look,
         )
         return suited(job, progress.report)
 

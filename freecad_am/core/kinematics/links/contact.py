@@ -87,7 +87,8 @@ class Group:
 @dataclass(frozen=True, eq=False)
 class ArmContact:
     """A robot in its cell. cylinders: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
-    deposit: in part coordinates. clearance: mm, links that are nearer touch.
+    deposit: in part coordinates. clearance: mm, links that are nearer touch; below 0 those that are less deep do not.
+    holders: the last two links are looked at against a part that they carry too, all but its platform.
 
     names: what can be touched, in the end links of the robot; links: what touches it: base, axes, then part, nozzle and
     torch, and the links of what stands beside the robot.
@@ -99,6 +100,7 @@ class ArmContact:
     bodies: Sequence[Body] = ()
     deposit: Obstacles | None = None
     clearance: float = 0.0
+    holders: bool = False
     names: tuple[str, ...] = field(init=False)
     links: tuple[str, ...] = field(init=False)
     solids: tuple[tuple[Solid, ...], ...] = field(init=False, repr=False)
@@ -111,11 +113,12 @@ class ArmContact:
             around.append(disc(self.cell.platform_diameter, self.cell.mount, PLATFORM))
         held, holder = self.cell.torch, self._links(not self._carries_part)
         part = [*self._links(self._carries_part), *self._torch, *self._track(self.cell.part_moves)]
+        held_part = [*part, *self._holders]
         about_nozzle = [nozzle_body(self.cell.nozzle)]
         about_nozzle += [] if held is None else [dataclasses.replace(held.body, name=TORCH)]
         groups = [
             *(_of_body(body, holder, NOZZLE) for body in about_nozzle),
-            *(_of_body(body, part) for body in around),
+            *(_of_body(body, part if body.name == PLATFORM else held_part) for body in around),
         ]
         names = [body.name for body in (*about_nozzle, *around)]
         more = ABOUT_FACES + self.clearance
@@ -133,7 +136,12 @@ class ArmContact:
             centre, radius = ball(points)
             wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
             groups.append(
-                Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide)
+                Group(
+                    Scene(of_bodies([], points, 0.0), self.deposit),
+                    held_part,
+                    centre,
+                    radius + wide,
+                )
             )
         groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
         names += [body.name for body in self.cell.obstacles]
@@ -182,6 +190,12 @@ class ArmContact:
         """The links that are looked at against what is carried, or what stands still."""
         axes = self.cell.robot.chain.axes
         return range(axes - 1) if carried else range(1, axes + 1)
+
+    @property
+    def _holders(self) -> list[int]:
+        """The links that carry the part, where they are looked at against it."""
+        axes = self.cell.robot.chain.axes
+        return [axes - 1, axes] if self.holders and self._carries_part else []
 
     @property
     def _torch(self) -> list[int]:

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What of a planned job is in something else, arm or platform, and how near its axes come to their limits: findings of every
+joint path, whether or not planning kept clearances."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...core.collision.bead_ends import LINK_GRAIN, Beads
+from ...core.issues import ERROR, NOTE, WARNING, Issue, Text
+from ...core.kinematics.cell import Cell
+from ...core.kinematics.links import cylinders as link_cylinders
+from ...core.kinematics.links.collisions import (
+    Collision,
+    arm_collisions,
+    platform_collisions,
+)
+from ...core.motion import Motion
+from ...core.parameters.process import ProcessParameters
+from ...core.planning.joint_path import JointPath
+from ...core.simulation.arm import deposit_obstacles, places, tracks_of
+from ...core.simulation.watch import shown_margins
+from ...core.toolpath import Toolpath
+from ...core.types import Index
+from ..shapes.link_meshes import meshes_of
+
+ARM_COLLISION, PLATFORM_COLLISION, ARM_NEAR, LOW_MARGIN = (
+    "ARM_COLLISION",
+    "PLATFORM_COLLISION",
+    "ARM_NEAR",
+    "LOW_MARGIN",
+)
+ROUNDING = 1e-6  # deg or mm
+LEAST_MARGIN = 0.5  # deg or mm to a limit, below which it is reported; as Simulate marks it
+
+
+def collision_issues(
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters
+) -> list[Issue]:
+    """The errors about what the arm, on the whole motion, and the platform are in, and a note on what links that are drawn
+    from the kinematics alone come near. None for machines of whose links no file tells enough."""
+    if not cell.arrangement.links_known:
+        return []
+    width = toolpath.bead_width or process.bead_width
+    deposit = deposit_obstacles(motion, width, toolpath.layer_height)
+    found = in_platform(cell, toolpath)
+    joints, row, _ = places(motion.joints, None, tracks_of(cell))
+    before = np.cumsum(motion.deposit) - motion.deposit
+    shapes = meshes_of(cell.machine)
+    collisions = arm_collisions(
+        cell,
+        link_cylinders.of_robot(cell.robot.chain, shapes),
+        toolpath.surroundings,
+        deposit,
+        joints,
+        before[row],
+        [shape is not None for shape in shapes],
+    )
+    return [*found, *(_arm_issue(one, motion, row[one.rows], len(joints)) for one in collisions)]
+
+
+def look(path: JointPath, cell: Cell, toolpath: Toolpath) -> list[Issue]:
+    """The collisions of a joint path, maybe of some layers of a toolpath alone, at the points of its beads."""
+    if not cell.arrangement.links_known:
+        return []
+    found = in_platform(cell, toolpath)
+    if found:
+        return found
+    beads = [bead for _, _, bead in toolpath]
+    width = toolpath.bead_width or toolpath.layer_height
+    deposit = Beads.of(beads, width, toolpath.layer_height).solid(LINK_GRAIN)
+    counts = np.cumsum([0, *(len(bead) for bead in beads)])
+    first = {(layer, index): int(n) for (layer, index, _), n in zip(toolpath, counts, strict=False)}
+    moment = [first.get((one.layer, one.index), first[one.layer, 0]) for one in path.beads]
+    shapes = meshes_of(cell.machine)
+    collisions = arm_collisions(
+        cell,
+        link_cylinders.of_robot(cell.robot.chain, shapes),
+        toolpath.surroundings,
+        deposit,
+        path.joints,
+        np.repeat(moment, [len(one.joints) for one in path.beads]),
+        [shape is not None for shape in shapes],
+    )
+    return [
+        Issue(ERROR, ARM_COLLISION, Text("{} with {}", one.what, one.link))
+        for one in collisions
+        if one.sure
+    ]
+
+
+def in_platform(cell: Cell, toolpath: Toolpath) -> list[Issue]:
+    """The errors about what of the substrate and the fixtures reaches into the platform."""
+    collisions = platform_collisions(cell, toolpath.surroundings)
+    return [_platform_issue(cell, one) for one in collisions]
+
+
+def _platform_issue(cell: Cell, collision: Collision) -> Issue:
+    return Issue(
+        ERROR,
+        PLATFORM_COLLISION,
+        Text(
+            "{} reaches into the platform, a plate of {:.4g} mm below the origin of the frame that sits on it; set "
+            "cell.platform to where the part is held and cell.platform_diameter to what there is (0 for none)",
+            collision.what,
+            cell.platform_diameter,
+        ),
+    )
+
+
+def _arm_issue(collision: Collision, motion: Motion, rows: Index, looked: int) -> Issue:
+    """The issue about a link, at the first row of the motion where it is in something."""
+    row = int(rows[0])
+    share = 100.0 * len(rows) / max(looked, 1)
+    place = {
+        "layer": int(motion.layer[row]),
+        "bead": int(motion.bead[row]),
+        "point": int(motion.point[row]),
+    }
+    x, y, z = (float(value) for value in motion.position[row])
+    where = Text("({:.4g}, {:.4g}, {:.4g})", x, y, z)
+    if collision.sure:
+        return Issue(
+            ERROR,
+            ARM_COLLISION,
+            Text(
+                "link {} of the arm is inside {} on {:.3g} % of the motion, first with the nozzle at {}; move "
+                "cell.platform or cell.deposition_point, choose another cell.branch, or set cell.arm_clearance",
+                collision.link,
+                collision.what,
+                share,
+                where,
+            ),
+            **place,
+        )
+    return Issue(
+        NOTE,
+        ARM_NEAR,
+        Text(
+            "link {} of the arm, as drawn, touches {} on {:.3g} % of the motion, first with the nozzle at {}; its core stays "
+            "clear, so look at it in Simulate, or set cell.arm_clearance",
+            collision.link,
+            collision.what,
+            share,
+            where,
+        ),
+        **place,
+    )
+
+
+def margin_issues(motion: Motion, cell: Cell) -> list[Issue]:
+    """An issue for each limit that an axis comes nearer to than LEAST_MARGIN, where it is nearest: a warning, but a note about
+    the last axis of a robot, whose range plans often use up for the rotation about the tool."""
+    margins = shown_margins(cell, motion.joints)
+    known = np.isfinite(margins)
+    if not known.any():
+        return []
+    rows = np.argmin(np.where(known, margins, np.inf), axis=0)
+    units, labels = cell.machine.units, cell.limits.labels
+    last = cell.robot.chain.axes - 1 if cell.machine.free else -1
+    found = []
+    for limit, row in enumerate(rows.tolist()):
+        least = float(margins[row, limit])
+        if not -ROUNDING <= least < LEAST_MARGIN:
+            continue
+        share = float(cell.limits.shares(motion.joints[row][None])[0, limit])
+        text = Text(
+            "{} comes within {:.3g} {} of its limit, {:.1f} % of half its range; move the part, or choose another "
+            "cell.branch or joints.rotation_range",
+            labels[limit],
+            max(least, 0.0),
+            units[limit] if limit < len(units) else "deg",
+            100.0 * max(share, 0.0),
+        )
+        place = int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
+        found.append(Issue(NOTE if limit == last else WARNING, LOW_MARGIN, text, *place))
+    return found

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The platform that a new job is given: as large as its first layer needs it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+
+from ...core.kinematics.cell import mounted
+from ...core.parameters.cell import CellParameters
+from ...core.strategies.support import stands_on
+from ...core.toolpath import Toolpath
+from ...core.types import Array
+
+STEP = 5.0  # mm, to multiples of which diameters are rounded up
+MIDDLE = 0.9  # of a diameter; a smaller one is worth another frame
+
+
+def fitted(toolpath: Toolpath, settings: CellParameters) -> CellParameters:
+    """The cell with a platform that all beads of the first layer lie on. The feature's own frame sits on it where the layer
+    stands on that and needs a smaller platform so."""
+    own = mounted(settings, toolpath.frame, toolpath.family)
+    diameter, mount = needed(toolpath, own), settings.mount
+    other = needed(toolpath, toolpath.frame)
+    if (
+        mount == "auto"
+        and other < MIDDLE * diameter
+        and stands_on(toolpath, toolpath.frame, toolpath.surroundings)
+    ):
+        diameter, mount = other, "feature"
+    return dataclasses.replace(
+        settings, platform_diameter=max(diameter, settings.platform_diameter), mount=mount
+    )
+
+
+def needed(toolpath: Toolpath, frame: Array) -> float:
+    """The diameter, mm, of a disc about the origin of a frame (4, 4) in part coordinates under all of the first layer."""
+    radius = 0.0
+    for bead in toolpath.layers[0].beads:
+        local = (bead.points - frame[:3, 3]) @ frame[:3, :2]
+        wide = toolpath.bead_width if bead.width is None else float(np.max(bead.width))
+        radius = max(radius, float(np.hypot(local[:, 0], local[:, 1]).max()) + 0.5 * (wide or 0.0))
+    return STEP * math.ceil(2.0 * radius / STEP)
