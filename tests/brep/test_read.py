@@ -114,6 +114,24 @@ def test_what_cannot_be_read_is_refused_by_name(tmp_path, name, content, code):
     assert refused.value.where == name
 
 
+@pytest.mark.parametrize(
+    "name", ["part.ply", "part.amf", "part.glb", "part.off", "part.dxf", "part.sldprt", "part"]
+)
+def test_files_of_other_formats_are_refused_with_all_that_are_read(tmp_path, name):
+    (tmp_path / name).write_bytes(b"x")
+    endings = [".step", ".stp", ".iges", ".igs", ".brep", ".stl", ".obj", ".3mf"]
+    with pytest.raises(InputError) as caught:
+        read_shape(tmp_path / name)
+    assert caught.value.code == "UNSUPPORTED_FILE"
+    assert all(ending in caught.value.message for ending in endings)
+    with pytest.raises(InputError) as caught:
+        api.open_part(FreeCAD.newDocument("Formats"), str(tmp_path / name))
+    FreeCAD.closeDocument("Formats")
+    endings += [".FCStd", ".csv", ".gcode", ".ada3dp"]
+    assert caught.value.code == "UNSUPPORTED_FILE" and caught.value.where == name
+    assert all(ending in caught.value.message for ending in endings)
+
+
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.98])
 def test_truncated_files_are_refused_and_standard_output_stays_clean(tmp_path, cone, share, capfd):
     cone.exportStep(str(tmp_path / "whole.step"))

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,6 +18,7 @@ import Part
 from ...core.geometry.located import located
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import InputError, Issue
+from ...core.types import Array, Index
 from . import apart
 
 STEP, IGES = (".step", ".stp"), (".iges", ".igs")
@@ -63,7 +64,7 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
             where,
             "{} is not read; use {}",
             suffix or "no ending",
-            ", ".join(READABLE),
+            ", ".join((*READABLE, *MESHES)),
         )
     try:
         size = file.stat().st_size
@@ -112,34 +113,24 @@ def placed_mesh(mesh: Any, matrix: Any) -> Any:
 
 
 def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]:
-    from . import obj_polygons, three_mf  # few parts are meshes
+    from . import obj_mesh, stl_check, three_mf  # few parts are meshes
 
     mesh = Mesh.Mesh()
+    issues: tuple[Issue, ...] = ()
     if file.suffix.lower() == ".3mf":
         points, corners, issues = three_mf.content(file)
         _refuse_far(float(np.abs(points).max()), where)
-        mesh.addFacets(
-            (
-                [FreeCAD.Vector(*point) for point in points.tolist()],
-                [tuple(row) for row in corners.tolist()],
-            )
-        )
+        _add_triangles(mesh, points, corners)
         return mesh, issues
-    try:
-        with _quiet():
-            mesh.read(str(file))
-        more = (
-            obj_polygons.left_out(file, mesh.CountFacets) if file.suffix.lower() == ".obj" else ()
-        )
-        if len(more):
-            mesh.addFacets(
-                [[FreeCAD.Vector(*corner) for corner in triangle] for triangle in more.tolist()]
-            )
+    if file.suffix.lower() == ".obj":
+        read = obj_mesh.ObjMesh(file, where)
+        issues = read.issues()
+        _add_triangles(mesh, read.points, read.corners)
+        if read.is_mixed:
             mesh.removeDuplicatedPoints()
-    except Exception as error:
-        raise InputError(
-            "BAD_FILE", where, "it is damaged or not what its ending says; export the part again"
-        ) from error
+    else:
+        corners, issues = stl_check.stl_triangles(file, where)
+        _read_stl(mesh, file, corners)
     if not mesh.CountFacets:
         raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
     _refuse_far(_reach(mesh.BoundBox) * scale, where)
@@ -147,7 +138,26 @@ def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]
         larger = FreeCAD.Matrix()
         larger.scale(scale, scale, scale)
         mesh.transform(larger)
-    return mesh, ()
+    return mesh, issues
+
+
+def _read_stl(mesh: Any, file: Path, corners: Array) -> None:
+    """Read an STL file by FreeCAD, or from its triangles (m, 3, 3) where FreeCAD reads another number of them."""
+    with suppress(Exception), _quiet():
+        mesh.read(str(file))
+    if mesh.CountFacets != len(corners):
+        mesh.clear()
+        mesh.addFacets([[FreeCAD.Vector(*corner) for corner in row] for row in corners.tolist()])
+        mesh.removeDuplicatedPoints()
+
+
+def _add_triangles(mesh: Any, points: Array, corners: Index) -> None:
+    mesh.addFacets(
+        (
+            [FreeCAD.Vector(*point) for point in points.tolist()],
+            [tuple(row) for row in corners.tolist()],
+        )
+    )
 
 
 def _shape(file: Path, where: str) -> tuple[Any, tuple[Issue, ...]]:

@@ -11,15 +11,13 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
-from ...brep.files.read import READABLE
-from ...core.geometry.curves.bead_curves import POINT_FILES
-from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import AmError
+from ...objects.shapes.part_file import PART_FILES
 from ...objects.work.progress import Cancelled
 from .. import recorded
 from ..texts.translation import error_line, tr, translated_error
 
-ENDINGS = (*READABLE, *MESHES, ".FCStd", *POINT_FILES)
+ENDINGS = PART_FILES
 
 
 def ask() -> None:

@@ -9,7 +9,8 @@ from typing import Any
 import FreeCAD as App
 
 from ...brep.files.apart import apart
-from ...brep.files.read import mesh_content, placed_mesh, shape_content
+from ...brep.files.read import READABLE, mesh_content, placed_mesh, shape_content
+from ...core.geometry.curves.bead_curves import POINT_FILES
 from ...core.geometry.located import is_there, located
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import InputError, Issue
@@ -23,6 +24,7 @@ from .places import GROUPS, elements_of
 # what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
 ORIGIN = ("App::Line", "App::Plane", "App::Point")
 READING = "reading the file"
+PART_FILES = (*READABLE, *MESHES, ".FCStd", *POINT_FILES)  # endings
 
 
 def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[Any, str]:
@@ -45,9 +47,22 @@ def part_content(
         mesh, issues = hooks.carry_out(lambda: mesh_content(path, scale), stem, READING)
         return mesh, stem, issues
     if extension.lower() != ".fcstd":
+        _refuse_other(path, extension)
         shape, issues = hooks.carry_out(lambda: shape_content(path), stem, READING)
         return shape, stem, issues
     return (*_of_document(path, object_name, stem), ())
+
+
+def _refuse_other(path: str, extension: str) -> None:
+    """InputError UNSUPPORTED_FILE, with all the endings that parts may have, for a file of another kind."""
+    if extension.lower() not in READABLE and is_there(path):
+        raise InputError(
+            "UNSUPPORTED_FILE",
+            os.path.basename(path),
+            "{} is not read; use {}",
+            extension or "no ending",
+            ", ".join(PART_FILES),
+        )
 
 
 def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str]:
