@@ -13,6 +13,8 @@ from math import inf
 from string import Formatter
 from typing import Any
 
+from .quantities import number_text
+
 ERROR, WARNING, NOTE = "error", "warning", "note"
 MAX_RANGES = 6  # of layers that a merged issue names
 
@@ -96,7 +98,14 @@ def _pieces(text: str, values: tuple[object, ...]) -> Iterator[tuple[str, str | 
         elif isinstance(value, Text) and not form and not conversion:
             yield literal, value
         else:
-            yield literal, format(repr(value) if conversion == "r" else value, form or "")
+            yield literal, _written(repr(value) if conversion == "r" else value, form or "")
+
+
+def _written(value: object, form: str) -> str:
+    """A value in a form; a number that a `g` form rounds has no exponent where it is of ordinary size."""
+    if form.endswith("g") and isinstance(value, (int, float)):
+        return number_text(value, form)
+    return format(value, form)
 
 
 @dataclass(frozen=True)

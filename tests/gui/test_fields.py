@@ -100,11 +100,11 @@ def test_a_speed_is_typed_in_any_unit(person, window):
         assert field.read() == pytest.approx(speed, rel=1e-14), text
 
 
-def test_milliseconds_are_read_and_stay_as_they_were_typed(person, window):
+def test_milliseconds_are_read_and_shown_in_the_unit_of_the_field(person, window):
     field = QuantityField(1.0, "s", "Lead on")
     window.addWidget(field.box)
     typed(person, field, "50 ms")
-    person.until(lambda: field.line.text() == "50 ms", "what was typed", 5)
+    person.until(lambda: field.line.text() == "0.05 s", "the field's unit", 5)
     assert field.read() == 0.05
 
 
@@ -112,7 +112,7 @@ def test_another_number_is_shown_in_a_plain_line_and_read_as_it_is(person):
     field = PlainQuantity(6.0, "mm/min", "Travel speed", "=Sheet.speed")
     assert field.read() == "=Sheet.speed"
     field.show(1 / 3)
-    assert (field.line.text(), field.read()) == ("0.3333333333 mm/min", 1 / 3)
+    assert (field.line.text(), field.read()) == ("0.3333 mm/min", 1 / 3)
     field.line.setText("9")
     assert field.read() == 9.0
 
@@ -321,28 +321,6 @@ def test_a_panel_whose_object_is_gone_says_so(person, hemisphere):
     assert "is gone" in person.panel_error(panel)
     person.press("Cancel")
     person.panel_closed()
-
-
-@pytest.mark.parametrize("deleted", [True, False])
-def test_a_field_in_the_place_of_another_one_is_made_anew(person, window, monkeypatch, deleted):
-    """PySide finds what FreeCAD made by its place in memory, and a deleted field there, or a widget of another kind, if
-    something still has that."""
-    loader = person.gui.UiLoader()
-    made, wrong = (
-        [],
-        [loader.createWidget("Gui::QuantitySpinBox" if deleted else "QLabel") for _ in range(3)],
-    )
-    for one in wrong if deleted else ():
-        person.qt.delete(one)
-
-    class Loader:
-        def createWidget(self, name):
-            made.append(name)
-            return wrong.pop() if wrong else loader.createWidget(name)
-
-    monkeypatch.setattr(person.gui, "UiLoader", Loader)
-    field = QuantityField(2.5, "mm", "Width")
-    assert len(made) == 4 and person.qt.isValid(field.box) and field.read() == 2.5
 
 
 def test_long_names_are_seen_from_their_start(person, hemisphere):

@@ -10,6 +10,7 @@ from PySide import QtCore, QtGui
 
 from ...core.inspection.bands import band_of, bands
 from ...core.inspection.figures import Spread
+from ...objects.fields.shown_units import scale_of
 from ..path.colouring import round_numbers
 from ..texts.translation import tr
 
@@ -74,9 +75,10 @@ class Histogram(QtGui.QWidget):
         painter.setPen(ink)
         painter.drawLine(area.bottomLeft(), area.bottomRight())
         line = painter.fontMetrics().height()
-        for number in np.asarray(round_numbers(low, high, 0.0)).tolist():
-            box = QtCore.QRectF(across(number) - 30.0, area.bottom() + 2.0, 60.0, line)
+        factor, unit = scale_of(high, "mm")
+        for number in np.asarray(round_numbers(factor * low, factor * high, 0.0)).tolist():
+            box = QtCore.QRectF(across(number / factor) - 30.0, area.bottom() + 2.0, 60.0, line)
             painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
-        text = tr("deviation, mm (most: {} points)").format(int(self.spread.counts.max()))
+        text = tr("deviation, {} (most: {} points)").format(unit, int(self.spread.counts.max()))
         box = QtCore.QRectF(0.0, self.height() - line - 1.0, self.width(), line)
         painter.drawText(box, QtCore.Qt.AlignHCenter, text)

@@ -10,6 +10,7 @@ from pivy import coin
 
 from ...core.inspection.bands import PAST_EDGES, bands, colours
 from ...core.inspection.inspect import Inspected
+from ...objects.fields import shown_units
 from ..nodes.lines import fill, unshaded
 from ..path import legend
 from ..path.colouring import Scale
@@ -64,16 +65,20 @@ class InspectionView(StageView):
 
 def scale_of(value: Inspected) -> Scale:
     """The legend of an inspection: its bands, the most outside first."""
-    classes = tuple((band.text, band.colour) for band in reversed(bands(value.tolerance)))
+    factor, unit = shown_units.scale_of(value.tolerance, "mm")
+    classes = tuple(
+        (band.text, band.colour)
+        for band in reversed(bands(float(f"{factor * value.tolerance:.3g}")))
+    )
     if not value.counted.all():
         classes += ((marked("past the edges"), PAST_EDGES),)
     return Scale(
         marked("deviation"),
-        "mm",
+        unit,
         0.0,
         0.0,
         (),
-        value.spread.least,
-        value.spread.most,
+        factor * value.spread.least,
+        factor * value.spread.most,
         classes=classes,
     )

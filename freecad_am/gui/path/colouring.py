@@ -14,6 +14,7 @@ from ...core.geometry.formatting import round_step
 from ...core.process.deposit.spacing import local_distances
 from ...core.toolpath import Bead, Toolpath
 from ...objects.fields import preferences
+from ...objects.fields.shown_units import scale_of
 from ..colours import ramp
 from ..texts.translation import marked, translated
 
@@ -97,7 +98,9 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
     if kind == WIDTH and any(bead.width is None for bead in beads):
         return _classed(beads, [NO_WIDTH] * len(beads), WIDTH)
     if kind == WIDTH:
-        values, title, unit = np.concatenate([bead.width for bead in beads]), WIDTH, "mm"
+        values, title = np.concatenate([bead.width for bead in beads]), WIDTH
+        factor, unit = scale_of(float(values.max()), "mm")
+        values = factor * values
     elif kind == TILT:
         upright = np.concatenate([bead.tool for bead in beads]) @ toolpath.frame[:3, 2]
         values, title, unit = np.degrees(np.arccos(np.clip(upright, -1.0, 1.0))), TILT, "deg"
@@ -159,12 +162,13 @@ def automatic(values: Array, title: str, unit: str) -> Scale:
 
 
 def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
-    values = np.concatenate(local_distances(toolpath))
+    factor, unit = scale_of(toolpath.layer_height, "mm")
+    values = factor * np.concatenate(local_distances(toolpath))
     known = np.isfinite(values)
-    height, title = toolpath.layer_height, DISTANCE
+    height, title = factor * toolpath.layer_height, DISTANCE
     if not known.any():
         scale = Scale(
-            title, "mm", height, height, ((height, f"{height:.4g}"),), height, height, without=FIRST
+            title, unit, height, height, ((height, f"{height:.4g}"),), height, height, without=FIRST
         )
         return np.tile(np.array(NONE), (len(values), 1)), scale
     low, high = height * (1.0 - band), height * (1.0 + band)
@@ -174,7 +178,7 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
     ticks = _texts(np.linspace(low, high, TICKS if high > low else 1))
     scale = Scale(
         title,
-        "mm",
+        unit,
         low,
         high,
         ticks,

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...core.toolpath import Bead
-from ...objects.fields import preferences
+from ...objects.fields.shown_units import in_user_units, quantity_text
 from ..texts.translation import tr
 from .rows import Rows
 
@@ -25,7 +25,9 @@ def facts(rows: Rows, row: int) -> str:
     time = float((length / bead.speed[1:]).sum())
     x, y, z = bead.points[at]
     low, high = rows.of_layers(layer, layer)
-    place = tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(at, len(bead) - 1, x, y, z)
+    place = in_user_units(
+        tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(at, len(bead) - 1, x, y, z)
+    )
     if end - first > 1:
         place = tr("point {} (0 to {}) of the layer, of the bead {}").format(
             row - low, high - low - 1, place
@@ -36,9 +38,9 @@ def facts(rows: Rows, row: int) -> str:
             tr("bead {} (0 to {}), {}").format(
                 index - int(first), int(end - first) - 1, _kind(bead)
             ),
-            f"{preferences.speed(float(bead.speed[max(at, 1)])):.4g} {preferences.speed_unit()}",
-            tr("{:.4g} mm wide").format(float(rows.width[row])),
-            tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time),
+            quantity_text(float(bead.speed[max(at, 1)]), "mm/s"),
+            in_user_units(tr("{:.4g} mm wide").format(float(rows.width[row]))),
+            in_user_units(tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time)),
             place,
         )
     )

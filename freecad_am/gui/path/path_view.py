@@ -14,6 +14,7 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...objects.fields import preferences
+from ...objects.fields.shown_units import ORDINARY, scale_of
 from ..texts.translation import marked
 from ..views.base import StageView
 from . import legend
@@ -141,7 +142,7 @@ class PathView(StageView):
 
     def _colour(self, vobj: Any) -> None:
         """Colour the beads anew where that would be other colours."""
-        preferred = preferences.ramp(), preferences.speed_unit()
+        preferred = preferences.ramp(), preferences.speed_unit(), scale_of(ORDINARY["mm"], "mm")
         wanted = (self.drawn, vobj.Colouring, *preferred, *self.colours_depend_on(vobj.Object))
         if self.rows is not None and len(self.rows) and wanted != self.coloured_by:
             try:

@@ -17,6 +17,7 @@ from ...core.placement.place import Placed
 from ...core.placement.reach import Reach, reach
 from ...objects import user_machines
 from ...objects.checks.placed import Placing, given, placing_of
+from ...objects.fields.shown_units import in_user_units
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
 from .. import recorded
@@ -145,8 +146,10 @@ class PlacementDock:
         self.volume = found
         if found is not None:
             self.form.tell(
-                tr("The robot can be at {} places of a grid of {:.0f} mm.").format(
-                    len(found.places), found.step
+                in_user_units(
+                    tr("The robot can be at {} places of a grid of {:.0f} mm.").format(
+                        len(found.places), found.step
+                    )
                 )
             )
         self._paint()

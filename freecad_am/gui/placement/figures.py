@@ -12,6 +12,8 @@ from freecad_am.core.types import Array, Integers
 from ...core.placement.judge import UNREACHED
 from ...core.placement.moved import outer
 from ...core.placement.place import Placed, ranked
+from ...core.quantities import significant
+from ...objects.fields.shown_units import ORDINARY, scale_of
 from ..colours import ramp
 from ..texts.translation import marked, tr, translated
 
@@ -20,7 +22,7 @@ NAMES = {
     MARGIN: marked("Least margin, %"),
     SHARE: marked("Points served, %"),
     TIME: marked("Time, s"),
-    CLEARANCE: marked("Arm clearance, mm"),
+    CLEARANCE: marked("Arm clearance"),
 }
 GREY = (0.62, 0.64, 0.68)
 ROWS = 200
@@ -37,6 +39,17 @@ class Coloured:
     most: float
 
 
+def heading(name: str) -> str:
+    """What a figure is called, with its unit."""
+    text = translated(NAMES[name])
+    return f"{text}, {_length_unit()[1]}" if name == CLEARANCE else text
+
+
+def _length_unit() -> tuple[float, str]:
+    """How many of the unit of lengths in the table make 1 mm, and its name."""
+    return scale_of(ORDINARY["mm"], "mm")
+
+
 def figure(found: Placed, number: int, name: str) -> float:
     """One of the figures of a pose as it is shown."""
     one = found.of_pose(number)
@@ -44,7 +57,7 @@ def figure(found: Placed, number: int, name: str) -> float:
         SHARE: 100.0 * one.share,
         MARGIN: 100.0 * one.margin,
         TIME: one.time,
-        CLEARANCE: one.clearance,
+        CLEARANCE: _length_unit()[0] * one.clearance,
     }[name]
 
 
@@ -83,7 +96,11 @@ def rows(found: Placed, best: str) -> list[int]:
 
 def texts(found: Placed, number: int) -> list[str]:
     """The cells of a row: the pose, its figures, and with how many points it was planned or why it fails."""
-    pose = [f"{value:.6g}" for value in outer(found.pose(number))]
+    factors = [_length_unit()[0]] * 3 + [1.0] * 3
+    pose = [
+        significant(factor * float(value), 6)
+        for factor, value in zip(factors, outer(found.pose(number)), strict=True)
+    ]
     values = [figure(found, number, name) for name in (MARGIN, TIME, CLEARANCE)]
     cells = [
         format(value, form) if np.isfinite(value) else "–"
@@ -97,13 +114,11 @@ def texts(found: Placed, number: int) -> list[str]:
 def heads() -> list[str]:
     """The heads of the columns."""
     return [
-        "x",
-        "y",
-        "z",
+        *(f"{axis}, {_length_unit()[1]}" for axis in "xyz"),
         "RX",
         "RY",
         "RZ",
-        *(translated(NAMES[name]) for name in (MARGIN, TIME, CLEARANCE)),
+        *(heading(name) for name in (MARGIN, TIME, CLEARANCE)),
         tr("Points"),
     ]
 

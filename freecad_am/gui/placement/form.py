@@ -12,7 +12,7 @@ from ...core.placement.place import Placed
 from ...objects.checks.placed import given
 from ...objects.fields.rows import flat, rows
 from ..colours import WRONG
-from ..texts.translation import tr, translated
+from ..texts.translation import tr
 from ..widgets import fields
 from ..widgets.fold import Fold
 from . import figures
@@ -46,8 +46,8 @@ class Form(QtGui.QWidget):
         self.colour = QtGui.QComboBox()
         self.colour.setObjectName("colour")
         self.colour.setToolTip(tr("What the colours of the places show"))
-        for name, text in figures.NAMES.items():
-            self.colour.addItem(translated(text), name)
+        for name in figures.NAMES:
+            self.colour.addItem(figures.heading(name), name)
         self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()
         self.key.setObjectName("key")
         self.summary.setObjectName("told")

@@ -46,6 +46,7 @@ class PlotsDock(Follower):
         )
         self.source: tuple[Any, Source] | None = None  # its key, and what was made from it
         self.picture: Picture | None = None
+        self.metric: Picture | None = None  # the same in mm, for values in a file
         self.shown: tuple[Any, ...] = ()  # object, picture and axis that are looked at
         self.layers_of: tuple[str, str] | None = (
             None  # whose layers are chosen: names are those of other documents too
@@ -288,7 +289,8 @@ class PlotsDock(Follower):
             self.note.setText("")
         try:
             source, picture = worker.result()
-            picture = units.in_units(words.in_words(picture))
+            self.metric = words.in_words(picture)
+            picture = words.in_words(units.in_units(picture))
         except AmError as error:
             self._show(None, translated_error(error))
             return
@@ -314,7 +316,7 @@ class PlotsDock(Follower):
     def _save(self, *_: Any) -> None:
         obj = self.object()
         if obj is not None and self.picture is not None:
-            saving.save(self.picture, obj, self.canvas)
+            saving.save(self.picture, self.metric, obj, self.canvas)
 
     # ---- called by FreeCAD
 

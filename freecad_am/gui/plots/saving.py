@@ -20,14 +20,16 @@ from .canvas import Canvas
 _writing: list[Background] = []  # Python must keep them as long as they write
 
 
-def save(picture: Picture, obj: Any, canvas: Canvas) -> None:
-    """Ask for a file, and write to it the picture of an object as the canvas shows it, or its values."""
+def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
+    """Ask for a file, and write to it the picture of an object as the canvas shows it, or its values, which are `metric`
+    whatever the window's units are."""
     size, across, up = (canvas.width(), canvas.height()), dict(canvas.across), dict(canvas.up)
 
     def content(ending: str) -> bytes:
         from . import export  # with matplotlib, whose import takes some time
 
-        return export.content(picture, ending, size, across, up)
+        shown = metric if ending == export.CSV else picture
+        return export.content(shown, ending, size, across, up)
 
     ask(tr("Save the plot"), obj, picture.name, content)
 

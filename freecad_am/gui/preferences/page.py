@@ -117,7 +117,9 @@ class PreferencesPage:
         self.unit, self.ramp = QtGui.QComboBox(), QtGui.QComboBox()
         self.unit.setObjectName("speedUnit")
         self.unit.setToolTip(tr("Of speeds in fields and read-outs; what is typed may have any"))
-        self.unit.addItems(list(preferences.SPEED_UNITS))
+        self.unit.addItem(tr("as FreeCAD shows speeds"), "")
+        for unit in preferences.SPEED_UNITS:
+            self.unit.addItem(unit, unit)
         self.ramp.setObjectName("ramp")
         self.ramp.setToolTip(tr("Of paths, from the least to the greatest"))
         names = (tr("blue to yellow"), tr("violet to orange"), tr("grey"))
@@ -137,7 +139,7 @@ class PreferencesPage:
         self.post.setCurrentIndex(max(0, self.post.findData(preferences.post())))
         self.machines.setText(preferences.machine_folder())
         self.programs.setText(preferences.text("ProgramsFolder"))
-        self.unit.setCurrentIndex(self.unit.findText(preferences.speed_unit()))
+        self.unit.setCurrentIndex(self.unit.findData(preferences.preferred_speed_unit()))
         self.ramp.setCurrentIndex(self.ramp.findData(preferences.ramp()))
         self.colour.setProperty("color", QtGui.QColor.fromRgbF(*preferences.machine_colour()))
 
@@ -152,9 +154,7 @@ class PreferencesPage:
                 preferences.keep(name, folder)
         self._keep_machine()  # it may be in the folder
         preferences.keep_process(self._figures())
-        preferences.keep(
-            "SpeedUnit", "" if self.unit.currentIndex() == 0 else self.unit.currentText()
-        )
+        preferences.keep("SpeedUnit", self.unit.currentData())
         preferences.keep("Ramp", "" if self.ramp.currentIndex() == 0 else self.ramp.currentData())
         colour = self.colour.property("color")
         plain = QtGui.QColor.fromRgbF(*preferences.MACHINE_COLOUR).name()

@@ -12,23 +12,24 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...objects.fields.preferences import GROUP, SHOWN
+from ...objects.fields.preferences import GROUP, SCHEME, SHOWN, UNITS
 
 _listeners: list[Callable[[], None]] = []
 _readers: list[Callable[[], None]] = []  # who shows texts
 
 
 class _Watch:
-    """Attached to the group of our preferences; several changes at once are told once."""
+    """Attached to the group of our preferences and that of FreeCAD's units; several changes at once are told once."""
 
     def __init__(self) -> None:
-        self.group = App.ParamGet(GROUP)
+        self.groups = [App.ParamGet(GROUP), App.ParamGet(UNITS)]
         self.asked = False
-        self.group.Attach(self)
+        for group in self.groups:
+            group.Attach(self)
 
     def onChange(self, group: Any, name: str) -> None:
         """Called by FreeCAD when an entry has changed or gone."""
-        if name in SHOWN and not self.asked:
+        if name in (*SHOWN, SCHEME) and not self.asked:
             self.asked = True
             QtCore.QTimer.singleShot(0, self._tell)
 

@@ -10,10 +10,12 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
+from ...core.quantities import significant
 from ...core.simulation import watch
 from ...core.simulation.totals import MM3_PER_CM3
 from ...core.simulation.watch import Finding
 from ...objects.fields import preferences
+from ...objects.fields.shown_units import in_user_units
 from ..texts.touching import link_touches
 from ..texts.translation import tr, translated
 from .player import Moment
@@ -118,7 +120,7 @@ def _speed(value: float) -> str:
 
 
 def _in_unit(value: float) -> str:
-    return f"{value:.3g} {preferences.speed_unit()}"
+    return f"{significant(value, 3)} {preferences.speed_unit()}"
 
 
 def condition(moment: Moment) -> str:
@@ -185,9 +187,15 @@ def totals(run: Run) -> list[tuple[str, str]]:
         (tr("Depositing"), clock(sums.deposit_time)),
         (tr("Rapid moves"), clock(sums.rapid_time)),
         (tr("Waits"), clock(sums.wait_time)),
-        (tr("Deposit"), tr("{metres:.3f} m").format(metres=sums.length / 1000.0)),
-        (tr("Volume"), tr("{volume:.2f} cm³").format(volume=sums.volume / MM3_PER_CM3)),
-        (tr("Mass"), tr("{mass:.1f} g").format(mass=sums.mass)),
+        (
+            tr("Deposit"),
+            in_user_units(tr("{metres:.3f} m").format(metres=sums.length / 1000.0)),
+        ),
+        (
+            tr("Volume"),
+            in_user_units(tr("{volume:.2f} cm³").format(volume=sums.volume / MM3_PER_CM3)),
+        ),
+        (tr("Mass"), in_user_units(tr("{mass:.1f} g").format(mass=sums.mass))),
     ]
     if run.feed.lost > 0.05:
         rows.insert(

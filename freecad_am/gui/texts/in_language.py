@@ -3,31 +3,83 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 from ...core.issues import Text
+from ...core.quantities import UNITS
 
+# examples of what may be typed, and the formula of bead models, whose figures are of mm
+_EXAMPLE = re.compile(r"such as|for instance|, as (?:in )?[\d{]|v\^\(-1/3\)")
+_NUMBER = re.compile(r"[-+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?")
+_PLACE = re.compile(
+    r"\(-?[\d.]+(?:e-?\d+)?(?:, -?[\d.]+(?:e-?\d+)?){2}\)"
+)  # of `core.geometry.formatting.place`
+_PRIVATE = 0xE000  # signs that stand for nothing in any language
 KINDS = ("cell", "feature", "toolpath", "program", "inspection")  # stages, as messages call them
 
 
-def in_language(text: str, translate: Callable[[str], str]) -> str:
-    """A text in another language, `translate` giving that of a template; itself where there is none. Values are put in as
-    they are written, those that are texts of ours in that language too."""
+def in_language(
+    text: str, translate: Callable[[str], str], in_units: Callable[[str], str] | None = None
+) -> str:
+    """A text in another language and other units.
+
+    Parameters
+    ----------
+    text : str
+    translate : callable
+        Returns the translation of a template; the template itself where there is none.
+    in_units : callable, optional
+        Returns a text of numbers with the quantities in it in other units. None: quantities stay as they are.
+
+    Returns
+    -------
+    str
+        Values are put in as they are written, those that are texts of ours in that language too. Values that are names stay
+        whatever is in them.
+    """
     template = (
         text.template if isinstance(text, Text) else text.replace("{", "{{").replace("}", "}}")
     )
     key = template.strip()
-    values = (_value(value, translate) for value in text.values) if isinstance(text, Text) else ()
-    return template.replace(key, translate(key), 1).format(*values) if key else text
-
-
-def _value(value: str, translate: Callable[[str], str]) -> str:
-    """What is put into a text: one of ours, else a name or a number, which stay."""
-    return (
-        in_language(value, translate)
-        if isinstance(value, Text) or " " in value or value in KINDS
-        else value
+    if not key:
+        return text
+    values = (
+        [_value(value, translate, in_units) for value in text.values]
+        if isinstance(text, Text)
+        else []
     )
+    translation = template.replace(key, translate(key), 1)
+    if in_units is None or _EXAMPLE.search(key):
+        return translation.format(*values)
+    return _with_values(translation, values, in_units)
+
+
+def _with_values(template: str, values: list[str], in_units: Callable[[str], str]) -> str:
+    """The values put into a template, whose quantities are in other units then. Values that are no numbers are out of sight
+    of `in_units`: they may be names such as 'Plate 5 mm'."""
+    hidden: dict[str, str] = {}
+    seen = []
+    for number, value in enumerate(values):
+        if _NUMBER.fullmatch(value) or value in UNITS:
+            seen.append(value)
+            continue
+        sign = chr(_PRIVATE + number)
+        hidden[sign] = (
+            in_units(f"{value} mm").removesuffix(" mm") if _PLACE.fullmatch(value) else value
+        )
+        seen.append(sign)
+    text = in_units(template.format(*seen))
+    return "".join(hidden.get(sign, sign) for sign in text)
+
+
+def _value(
+    value: str, translate: Callable[[str], str], in_units: Callable[[str], str] | None
+) -> str:
+    """What is put into a text: one of ours, else a name or a number, which stay."""
+    if isinstance(value, Text):
+        return in_language(value, translate, in_units)
+    return in_language(value, translate) if " " in value or value in KINDS else value
 
 
 def names_first(text: str) -> bool:

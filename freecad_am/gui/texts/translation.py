@@ -9,6 +9,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from ...core.issues import AmError
+from ...objects.fields.shown_units import in_user_units
 from .field_names import as_in_panels
 from .in_language import in_language, names_first
 
@@ -39,14 +40,15 @@ def marked(text: str) -> str:
 def translated(text: str) -> str:
     """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
     the window, with parameters as its panels call them; itself where no translation is there."""
-    return _in_panels(text, tr("“{}”"))
+    return as_in_panels(in_language(text, tr, in_user_units), translated, tr("“{}”"))
 
 
 def translated_error(error: BaseException) -> str:
     """An error with the place it belongs to, in the language of the window."""
     if not isinstance(error, AmError):
         return str(error)
-    return tr("{}: {}").format(_in_panels(error.where, "{}"), translated(error.message))
+    where = as_in_panels(in_language(error.where, tr), translated, "{}")
+    return tr("{}: {}").format(where, translated(error.message))
 
 
 def error_line(error: AmError) -> str:
@@ -59,7 +61,3 @@ def sentence(text: str) -> str:
     with the name of a part or file keeps that as it is."""
     shown = translated(text)
     return shown if names_first(text) else shown[:1].upper() + shown[1:]
-
-
-def _in_panels(text: str, quoted: str) -> str:
-    return as_in_panels(in_language(text, tr), translated, quoted)

@@ -15,11 +15,12 @@ from ...core.parameters import field as f
 from ...objects.fields import preferences
 from ...objects.fields.expressions import FOLLOW, is_expression
 from ...objects.fields.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
+from ...objects.fields.shown_units import field_text, typed_text
 from ..texts.translation import tr, translated
 from . import choices
 from .pendant import PendantLine
 from .present import present
-from .quantity import PlainQuantity, QuantityField
+from .quantity import QuantityField
 
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
 _NUMBERS = (*_QUANTITIES, f.TURN_RATE, f.NUMBER, f.RATIO)
@@ -28,7 +29,6 @@ _POSE_NAMES = ("X", "Y", "Z", "RX", "RY", "RZ")
 _PLAIN = re.compile(r"[-+]?(?:\d+|\d*\.\d+)(?:[eE][-+]?\d+)?")
 Texts = Callable[[], list[tuple[str, str]]]
 _LARGEST = 2_147_483_647
-LEAST_MM = 1e-3  # FreeCAD shows shorter lengths in nm
 
 
 class Field:
@@ -118,10 +118,7 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
     if row.form == f.SPEED:
         return _speed(row, shown, expression)
     if row.form in _QUANTITIES:
-        made = (
-            PlainQuantity if row.form == f.LENGTH and 0.0 < abs(shown) < LEAST_MM else QuantityField
-        )
-        quantity = made(shown, row.unit, row.label, expression)
+        quantity = QuantityField(shown, row.unit, row.label, expression)
         return Field(row, quantity.box, quantity.read, quantity.show)
     if row.form == f.CHOICE:
         return _choice(row, shown)
@@ -147,26 +144,18 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
 
 def _speed(row: Row, shown: float, expression: str) -> Field:
     """A speed in the unit that the user prefers; what is read is in mm/s all the same."""
-    unit = preferences.speed_unit()
-    factor = preferences.SPEED_UNITS[unit]
-    made = QuantityField if factor == 1.0 else PlainQuantity
-    quantity = made(round(shown * factor, 9), unit, row.label, expression)
-    if isinstance(quantity.box, QtGui.QAbstractSpinBox):
-        quantity.box.setButtonSymbols(
-            QtGui.QAbstractSpinBox.NoButtons
-        )  # room for "100 mm/s" in a narrow panel
-
-    def read() -> float | str:
-        value = quantity.read()
-        return value if isinstance(value, str) else round(value / factor, 9)
-
-    def show(value: float | str) -> None:
-        quantity.show(value if isinstance(value, str) else round(value * factor, 9))
-
-    return Field(row, quantity.box, read, show)
+    unit = preferences.preferred_speed_unit()
+    quantity = QuantityField(shown, row.unit, row.label, expression, unit)
+    quantity.box.setButtonSymbols(
+        QtGui.QAbstractSpinBox.NoButtons
+    )  # room for "100 mm/s" in a narrow panel
+    quantity.make_room()
+    return Field(row, quantity.box, quantity.read, quantity.show)
 
 
 def _text(row: Row, value: Any, expression: str = "") -> Field:
+    if row.form in (MIXED, LENGTH_OR_POSE) and row.spec.kind in _QUANTITIES:
+        return _quantity_or_word(row, value, expression)
     edit = QtGui.QLineEdit()
     numeric = row.spec.kind in (*_NUMBERS, f.POSE) or row.form == TEXT_LIST
 
@@ -184,11 +173,7 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
             lambda: tuple(split(_with_point(str(edit.text()), _point(edit), "."), row.label)),
             show,
         )
-    wanted = ([row.unit] if row.unit else []) + list(row.spec.words)
-    if wanted or row.spec.optional:  # short enough for a narrow panel
-        words = tr(" or ").join(wanted)
-        none = tr("{} or empty").format(words) if words else tr("(empty: none)")
-        edit.setPlaceholderText(none if row.spec.optional else words)
+    _add_placeholder(edit, row, row.unit)
 
     def entered() -> str:
         entry = str(edit.text()).strip()
@@ -197,6 +182,43 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
     if row.form == f.NUMBER:
         return Field(row, edit, lambda: _number(entered(), row.label), show)
     return Field(row, edit, entered, show)
+
+
+def _add_placeholder(edit: Any, row: Row, unit: str) -> None:
+    """What an empty line may hold, short enough for a narrow panel: a unit, and words."""
+    wanted = ([unit] if unit else []) + list(row.spec.words)
+    if wanted or row.spec.optional:
+        words = tr(" or ").join(wanted)
+        none = tr("{} or empty").format(words) if words else tr("(empty: none)")
+        edit.setPlaceholderText(none if row.spec.optional else words)
+
+
+def _quantity_or_word(row: Row, value: Any, expression: str) -> Field:
+    """A plain line for a quantity, a word such as `auto`, nothing, or a pose. A number without a unit is in the unit that the
+    line shows, or its placeholder."""
+    edit = QtGui.QLineEdit()
+    display = preferences.preferred_speed_unit() if row.spec.kind == f.SPEED else ""
+    known: dict[str, Any] = {}
+
+    def show(shown: Any) -> None:
+        is_number = isinstance(shown, (int, float)) and not isinstance(shown, bool)
+        text, per_bare, unit = field_text(float(shown) if is_number else 0.0, row.unit, display)
+        text = text if is_number else row.outer_text(shown)
+        held = row.outer_text(shown)
+        if not is_expression(text):
+            text = _with_point(text, ".", _point(edit))
+        edit.setText(text)
+        known.update(text=str(edit.text()).strip(), held=held, per_bare=per_bare)
+        _add_placeholder(edit, row, unit)
+
+    def read() -> str:
+        entry = str(edit.text()).strip()
+        if entry == known["text"]:
+            return str(known["held"])
+        return typed_text(_with_point(entry, _point(edit), "."), row.unit, known["per_bare"])
+
+    show(expression or row.outer(value))
+    return Field(row, edit, read, show)
 
 
 def _outer_text(row: Row, shown: Any) -> str:

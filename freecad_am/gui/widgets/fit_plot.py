@@ -10,9 +10,11 @@ from PySide import QtCore
 
 from ...core.process.model.bead_model import MINUTE, BeadModel
 from ...core.process.model.bead_table import Measured
+from ...objects.fields.shown_units import in_user_units
 from ...plots.chart import Picture
 from ...plots.fit import fit
 from ..plots.canvas import Canvas
+from ..plots.units import in_units
 from ..plots.words import in_words
 from ..texts.translation import tr
 
@@ -29,7 +31,7 @@ class FitPlot(Canvas):
 
     def set(self, measured: Measured, model: BeadModel, wanted: float | None) -> None:
         """Show another fit; `wanted` is a width drawn across, mm."""
-        self.show_picture(in_words(Picture("fit", "", (fit(measured, model, wanted),))))
+        self.show_picture(in_words(in_units(Picture("fit", "", (fit(measured, model, wanted),)))))
 
     def sizeHint(self) -> Any:
         """Called by Qt."""
@@ -46,13 +48,15 @@ def fits_text(measured: Measured, model: BeadModel) -> str:
         )
     slow, fast = (MINUTE * speed for speed in model.speeds)
     lines.append(
-        tr("{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min").format(
-            len(measured.width),
-            slow,
-            fast,
-            model.radii[0],
-            model.radii[1],
-            MINUTE * model.wire_feed / 1000.0,
+        in_user_units(
+            tr("{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min").format(
+                len(measured.width),
+                slow,
+                fast,
+                model.radii[0],
+                model.radii[1],
+                MINUTE * model.wire_feed / 1000.0,
+            )
         )
     )
     return "\n".join(lines)
@@ -70,8 +74,10 @@ def speeds_text(model: BeadModel, width: float) -> str:
         str(end).format(f"{MINUTE * speed:.0f}")
         for speed, end in zip(asked.speed, ends, strict=True)
     )
-    return tr("{:g} mm wide: {} where straight, {} where r is {:g} mm").format(
-        width, straight, tight, model.radii[0]
+    return in_user_units(
+        tr("{:g} mm wide: {} where straight, {} where r is {:g} mm").format(
+            width, straight, tight, model.radii[0]
+        )
     )
 
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A number with a unit in FreeCAD's own field, read so that nothing typed becomes another number unseen.
+"""A field for a quantity: the unit shown is the unit typed.
 
-A text that starts with `=` is an expression, which the number follows; FreeCAD's own way to enter one would change the
-document before OK.
+A number typed without a unit is in the unit that the field shows. A field that is left untouched keeps its value, bit for bit,
+whatever the digits that it shows. A text that starts with `=` is an expression, which the number follows.
 
-FreeCAD's field leaves out the characters it groups digits by ('1,5' is 15 where decimals have a point), refuses keys
-that make a quantity of another kind (of 'mm/min' the m, so that 'in' is left; '20 s' would be 20 mm/s), and on leaving
-goes back to the last text it could read ('1.2.3' becomes 1.23).
+FreeCAD's own field is not used: it groups digits ('1,5' is 15 where decimals have a point), refuses keys that make a quantity
+of another kind, goes back to the last text it could read, and on leaving takes the value that it shows for the value it has
+('0' for 0.01 mm in feet and inches).
 """
 
 from __future__ import annotations
@@ -17,105 +17,157 @@ import re
 from typing import Any
 
 import FreeCAD as App
-import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError, Text, Word
 from ...objects.fields.expressions import MARK, is_expression
 from ...objects.fields.rows import plain_blanks
 from ...objects.fields.rows import quantity as quantity_of
-from ..signals import connect
+from ...objects.fields.shown_units import feet_and_inches, field_text, without_noise
 from ..texts.translation import tr
 
-_DIGITS = 10
-_OURS = re.compile(r"\d\s*ms\s*$")  # that FreeCAD's field does not know
-_LEAST_WIDTH = 70
-_TRIES = 20
+_LEAST_WIDTH, _MOST_LETTERS = 70, 16
+_LEFT_OF_UNIT = re.compile(r"[-+]?[\d.,]+(?= \D)")
 _SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.svg"  # of FreeCAD
 
 
-def _made() -> tuple[Any, Any]:
-    """FreeCAD's field, and the line that is typed into; another one where PySide takes either for one that was deleted, or
-    the line for one of another kind, which was at its place in memory (docs/versions.md)."""
-    unusable = []  # which keep their places
-    for _ in range(_TRIES):
-        box = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
-        with contextlib.suppress(RuntimeError):
-            line = box.findChild(QtGui.QLineEdit)
-            if line is not None:
-                line.objectName()
-                return box, line
-        unusable.append(box)
-    raise RuntimeError("no field can be made")
+class UnitBox(QtGui.QAbstractSpinBox):
+    """The widget of a `QuantityField`: a line with arrows."""
+
+    def __init__(self, field: QuantityField) -> None:
+        super().__init__()
+        self.field = field
+
+    def stepBy(self, steps: int) -> None:
+        """Called by Qt for the arrows and the wheel."""
+        self.field.step(steps)
+
+    def stepEnabled(self) -> Any:
+        """Called by Qt."""
+        if self.isReadOnly():
+            return QtGui.QAbstractSpinBox.StepNone
+        return QtGui.QAbstractSpinBox.StepUpEnabled | QtGui.QAbstractSpinBox.StepDownEnabled
+
+    def focusInEvent(self, event: Any) -> None:
+        """Select the number that is shown, so that its unit stays when another one is typed."""
+        super().focusInEvent(event)
+        if event.reason() in (QtCore.Qt.TabFocusReason, QtCore.Qt.BacktabFocusReason):
+            number = _LEFT_OF_UNIT.match(self.lineEdit().text())
+            if number is not None:
+                self.lineEdit().setSelection(0, number.end())
+
+    def sizeHint(self) -> Any:
+        """Called by Qt: room for the number with its unit."""
+        size = super().sizeHint()
+        return QtCore.QSize(self.minimumWidth(), size.height())
+
+    def changeEvent(self, event: Any) -> None:
+        """The font has another size."""
+        super().changeEvent(event)
+        if event.type() in (QtCore.QEvent.FontChange, QtCore.QEvent.StyleChange):
+            self.field.make_room()
+
+    def _raw_value(self) -> float:
+        return self.field.internal_value()
+
+    rawValue = QtCore.Property(float, _raw_value)
 
 
 class QuantityField:
     """The field `box` that shows a number in a unit."""
 
-    def __init__(self, shown: float, unit: str, name: str, expression: str = "") -> None:
-        """shown: the number in the unit; expression: what it follows, '' where it follows nothing."""
-        self.unit, self.name = unit, name
+    def __init__(
+        self, shown: float, unit: str, name: str, expression: str = "", display: str = ""
+    ) -> None:
+        """shown: the number in the unit; expression: what it follows, '' where it follows nothing; display: the unit that
+        the field shows, '' for that of FreeCAD's unit scheme."""
+        self.unit, self.name, self.display = unit, name, display
         self.dimension = App.Units.Quantity(f"1 {unit}").Unit
-        self.box, self.line = _made()
-        self.box.setProperty("unit", unit)
-        self.box.setMinimumWidth(_LEAST_WIDTH)
-        self.line.setValidator(None)  # it refuses keys, unseen; `read` tells what is wrong
+        self.box = UnitBox(self)
+        self.line = self.box.lineEdit()
+        self.shown: float | str = shown
+        self.known_text = ""
         self.show(shown)
         if expression:
             self.show(expression)
         self._add_mark()
-        connect(self.line, "textEdited(QString)", self._keep)
-        connect(self.line, "textChanged(QString)", self._forget)
-        connect(self.line, "cursorPositionChanged(int,int)", self._begin_in_sight)
-        connect(self.box, "editingFinished()", self._restore)
-        connect(self.box, "editingFinished()", self._begin_in_sight)
+        self.make_room()
+        self.line.cursorPositionChanged.connect(self._begin_in_sight)
+        self.box.editingFinished.connect(self._settle)
 
     def show(self, number: float | str) -> None:
         """Show another number, in the field's unit, or an expression, in place of what is there."""
-        self.shown: float | str = number
-        self.typed: str | None = None
+        self.shown = number
         if isinstance(number, str):
-            self.typed = number
+            _, self.per_bare, self.shown_unit = field_text(0.0, self.unit, self.display)
             self._put(number)
             return
-        quantity = App.Units.Quantity(f"{number!r} {self.unit}")
-        # the display would be cut to the decimals of the preferences, and the value with it
-        quantity.Format = {"NumberFormat": "g", "Precision": _DIGITS, "Denominator": 8}
-        self.box.setProperty("value", quantity)
-        self.line.setCursorPosition(0)
-        self.first_text = self.plain = (
-            self.line.text()
-        )  # plain: what the field goes back to by itself
+        text, self.per_bare, self.shown_unit = field_text(number, self.unit, self.display)
+        self._put(text.replace(".", str(self.box.locale().decimalPoint())))
 
     def _put(self, text: str) -> None:
         self.line.setText(text)
         self.line.setCursorPosition(0)
-        self.first_text = self.line.text()
+        self.known_text = self.line.text()
+        self.make_room()
+
+    def make_room(self) -> None:
+        """Make the field as wide as its text with the unit, for the font it has."""
+        metrics = self.line.fontMetrics()
+        advance = getattr(metrics, "horizontalAdvance", metrics.width)
+        text = "" if isinstance(self.shown, str) else self.known_text
+        letters = text if len(text) <= _MOST_LETTERS else text[-_MOST_LETTERS:]
+        mark = (
+            self.box.style().pixelMetric(QtGui.QStyle.PM_SmallIconSize)
+            + 2 * metrics.averageCharWidth()
+        )
+        buttons = self.box.buttonSymbols() != QtGui.QAbstractSpinBox.NoButtons
+        arrows = 2 * metrics.averageCharWidth() + 4 if buttons else 4
+        self.box.setMinimumWidth(max(_LEAST_WIDTH, advance(letters) + mark + arrows))
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
         self.mark.setToolTip(
             tr("Let it follow an expression, such as {}Spreadsheet.height / 2").format(MARK)
         )
-        connect(self.mark, "triggered(bool)", self._begin)
+        self.mark.triggered.connect(self._begin)
         self._show_mark()
-        connect(self.line, "textChanged(QString)", self._show_mark)
+        self.line.textChanged.connect(self._show_mark)
 
     def read(self) -> float | str:
         """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""
-        text = self.line.text() if self.typed is None else self.typed
-        if text == self.first_text:
+        text = str(self.line.text())
+        if text == self.known_text:
             return self.shown
-        if is_expression(text):
-            return text.strip()
-        number = self._number(text)
-        return float(self.box.property("rawValue")) if self.typed is None else number
+        return text.strip() if is_expression(text) else self._number(text)
+
+    def internal_value(self) -> float:
+        """What FreeCAD calls the raw value, in mm, mm/s and so on; NaN for what is not understood, and expressions."""
+        try:
+            number = self.read()
+        except InputError:
+            return math.nan
+        if isinstance(number, str):
+            return math.nan
+        return float(App.Units.Quantity(f"{number!r} {self.unit}").Value)
+
+    def step(self, steps: int) -> None:
+        """Add to the number, in the unit that the field shows."""
+        try:
+            number = self.read()
+        except InputError:
+            return
+        if not isinstance(number, str):
+            self.show(without_noise(number + steps * self.per_bare))
 
     def _number(self, text: str) -> float:
         locale = self.box.locale()
         point, group = str(locale.decimalPoint()), str(locale.groupSeparator())
+        inches = feet_and_inches(text.replace(point, "."))
+        if inches is not None and self.dimension == App.Units.Length:
+            return float(App.Units.Quantity(f"{inches!r} mm").getValueAs(self.unit).Value)
         if (group.strip() and group in text) or re.search(r"\d[\s’]+\d", text):
-            example = Text("1{}5 {}", point, self.unit)
+            example = Text("1{}5 {}", point, self.shown_unit)
             raise self._wrong(
                 text,
                 Text(
@@ -126,61 +178,42 @@ class QuantityField:
             )
         if not text.strip():
             raise InputError(
-                "BAD_VALUE", self.name, "it is empty; give a quantity in {}", self.unit
+                "BAD_VALUE", self.name, "it is empty; give a quantity in {}", self.shown_unit
             )
         try:
             quantity = quantity_of(text.replace(point, "."))
         except (ValueError, TypeError, ArithmeticError):
-            raise self._wrong(text, Text("give a quantity in {}", self.unit)) from None
-        if quantity.Unit not in (self.dimension, App.Units.Unit()) or not math.isfinite(
-            quantity.Value
-        ):
-            raise self._wrong(text, Text("give a quantity in {}", self.unit))
-        plain = quantity.Unit == App.Units.Unit()
-        return float(quantity.Value if plain else quantity.getValueAs(self.unit))
+            raise self._wrong(text, Text("give a quantity in {}", self.shown_unit)) from None
+        is_bare = quantity.Unit == App.Units.Unit()
+        if not (is_bare or quantity.Unit == self.dimension) or not math.isfinite(quantity.Value):
+            raise self._wrong(text, Text("give a quantity in {}", self.shown_unit))
+        if is_bare:
+            return without_noise(float(quantity.Value) * self.per_bare)
+        return float(quantity.getValueAs(self.unit))
 
     def _wrong(self, text: str, remedy: str) -> InputError:
         return InputError(
             "BAD_VALUE", self.name, "{!r} is not understood; {}", plain_blanks(text), remedy
         )
 
-    # ---- the field changes its own text when it is left
+    # ---- what the user does
 
-    def _keep(self, text: str) -> None:
-        self.typed = text
-
-    def _forget(self, text: str) -> None:
-        if is_expression(self.typed) and text == self.plain:
-            QtCore.QTimer.singleShot(0, self._restore)
-        elif text != self.typed and self.box.hasFocus():  # by the arrows or the wheel
-            self.typed = None
+    def _settle(self, *_: Any) -> None:
+        """Show what was typed in the field's unit; what is not understood stays to be seen, with its first digits."""
+        text = str(self.line.text())
+        if text != self.known_text and not is_expression(text):
+            with contextlib.suppress(InputError):
+                self.show(self._number(text))
+        self.line.setCursorPosition(0)
 
     def _begin_in_sight(self, *_: Any) -> None:
         """Where the field is too narrow for the number, its first digits are seen: '1000 m', not '000 mm'."""
         if not self.box.hasFocus() and not self.line.hasFocus():
             self.line.setCursorPosition(0)
 
-    def _restore(self, *_: Any) -> None:
-        with contextlib.suppress(RuntimeError):  # the panel is closed
-            if self.typed is None or self.line.text() == self.typed:
-                return
-            try:
-                if not is_expression(self.typed) and not _OURS.search(self.typed):
-                    self._number(self.typed)
-                    return
-            except InputError:
-                pass
-            self.line.setText(
-                self.typed
-            )  # an expression, a unit of ours, or what is refused, stays to be seen
-            self.line.setCursorPosition(0)
-
-    # ---- expressions
-
     def _begin(self, *_: Any) -> None:
         """Begin an expression, or mark the one there is, to be typed over."""
         if not is_expression(self.line.text()):
-            self.typed = MARK
             self.line.setText(MARK)
         self.line.setFocus()
         self.line.setSelection(len(MARK), len(self.line.text()))
@@ -190,28 +223,7 @@ class QuantityField:
 
 
 class PlainQuantity(QuantityField):
-    """The same in a plain line, for units other than those that FreeCAD shows in its own field."""
+    """The same in its own unit, whatever FreeCAD's unit scheme is."""
 
     def __init__(self, shown: float, unit: str, name: str, expression: str = "") -> None:
-        self.unit, self.name = unit, name
-        self.dimension = App.Units.Quantity(f"1 {unit}").Unit
-        self.box = self.line = QtGui.QLineEdit()
-        self.line.setMinimumWidth(_LEAST_WIDTH)
-        self.typed = None  # only a field of FreeCAD changes what was typed
-        self.show(shown)
-        if expression:
-            self.show(expression)
-        self._add_mark()
-
-    def show(self, number: float | str) -> None:
-        """Show another number, in the field's unit, or an expression, in place of what is there."""
-        self.shown: float | str = number
-        plain = "" if isinstance(number, str) else f"{number:.{_DIGITS}g} {self.unit}"
-        self._put(plain.replace(".", str(self.box.locale().decimalPoint())) or str(number))
-
-    def read(self) -> float | str:
-        """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""
-        text = str(self.line.text())
-        if text == self.first_text:
-            return self.shown
-        return text.strip() if is_expression(text) else self._number(text)
+        super().__init__(shown, unit, name, expression, unit)

@@ -16,9 +16,17 @@ import FreeCAD as App
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.process import ProcessParameters
 from . import rows
+from .unit_scheme import scheme_speed_unit
 
 GROUP = "User parameter:BaseApp/Preferences/Mod/RoboticAM"
-SPEED_UNITS = {"mm/s": 1.0, "mm/min": 60.0, "m/min": 0.06}  # how many of them 1 mm/s is
+UNITS, SCHEME = "User parameter:BaseApp/Preferences/Units", "UserSchema"  # of FreeCAD
+SPEED_UNITS = {  # how many of them 1 mm/s is
+    "mm/s": 1.0,
+    "mm/min": 60.0,
+    "m/min": 0.06,
+    "in/min": 60.0 / 25.4,
+    "ft/min": 60.0 / 304.8,
+}
 SHOWN = ("SpeedUnit", "Ramp", "MachineColour")  # entries that what is drawn and told depends on
 RAMPS = ("blue to yellow", "violet to orange", "grey")
 MACHINE_COLOUR = (0.86, 0.87, 0.88)
@@ -131,15 +139,23 @@ def proposed(section: str, row: rows.Row) -> Any:
 # ---- what is shown
 
 
+def preferred_speed_unit() -> str:
+    """The unit of speeds that the user has chosen, '' for that of FreeCAD's unit scheme."""
+    unit = text("SpeedUnit")
+    return unit if unit in SPEED_UNITS else ""
+
+
 def speed_unit() -> str:
-    """The unit of speeds in fields and read-outs."""
-    unit = text("SpeedUnit", "mm/s")
-    return unit if unit in SPEED_UNITS else "mm/s"
+    """The unit of speeds in read-outs: the chosen one, else that of FreeCAD's unit scheme."""
+    return preferred_speed_unit() or scheme_speed_unit()
 
 
 def speed(value: float) -> float:
     """A speed in mm/s in that unit."""
-    return value * SPEED_UNITS[speed_unit()]
+    unit = speed_unit()
+    if unit in SPEED_UNITS:
+        return value * SPEED_UNITS[unit]
+    return float(value * App.Units.Quantity("1 mm/s").getValueAs(unit).Value)
 
 
 def ramp() -> str:

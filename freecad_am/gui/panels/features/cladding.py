@@ -8,6 +8,7 @@ from typing import Any
 
 from ....core.parameters.filled import CladdingParameters
 from ....objects.cladding_feature import CladdingFeature
+from ....objects.fields.shown_units import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.stage_parts import Link, Outcome
 from ... import recorded
@@ -111,7 +112,7 @@ class CladdingPanel(PickPanel):
                     made.value.area / CM2, strategy.layers
                 ),
             ]
-            return made, ", ".join(found)
+            return made, in_user_units(", ".join(found))
 
         return both
 

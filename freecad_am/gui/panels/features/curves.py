@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ....objects.curves_feature import CurvesFeature
+from ....objects.fields.shown_units import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.stage_parts import Link, Outcome
 from ... import recorded
@@ -126,7 +127,7 @@ class CurvesPanel(PickPanel):
             float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for points in curves
         )
         text = tr("{} curves, {:.4g} mm in all").format(len(curves), length)
-        return "\n".join([text, *(sentence(issue.message) for issue in made.issues)])
+        return "\n".join([in_user_units(text), *(sentence(issue.message) for issue in made.issues)])
 
     def _draw_without(self) -> None:
         self.nodes.set_first([])

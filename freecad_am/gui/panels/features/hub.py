@@ -15,6 +15,7 @@ from ....core.parameters.filled import DevelopableParameters
 from ....core.strategies import size
 from ....objects.checks import deposit
 from ....objects.developable_feature import DevelopableFeature
+from ....objects.fields.shown_units import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.stage_parts import Link, Outcome
 from ... import recorded
@@ -229,5 +230,6 @@ def _summary(
         )
         stands = tr("1 solid on {1} ({2})") if count == 1 else tr("{0} solids on {1} ({2})")
         first = tr("first layer: {} contours, {:.1f} mm").format(sum(map(len, solids)), length)
-        lines.append(f"{stands.format(count, group.base.name, shape)}; {first}")
+        stands = stands.format(count, group.base.name, in_user_units(shape))
+        lines.append(f"{stands}; {in_user_units(first)}")
     return "\n".join([*lines, *(sentence(issue.message) for issue in findings)])

@@ -11,6 +11,7 @@ from ....core.parameters.strategy import RevolutionParameters
 from ....core.strategies.revolution.plan import Slices, sliced
 from ....objects.checks import deposit
 from ....objects.feature import RevolutionFeature
+from ....objects.fields.shown_units import in_user_units
 from ....objects.stage_parts import Outcome
 from ...nodes.meridian import MeridianNodes
 from ...picking import inputs
@@ -56,7 +57,7 @@ class FeaturePanel(PreviewPanel):
             sentence(issue.message)
             for issue in (*deposit.expected(made.value, self.obj), *made.issues, *issues)
         )
-        return "\n".join([text.format(count, made.value.meridian.length), *found])
+        return "\n".join([in_user_units(text.format(count, made.value.meridian.length)), *found])
 
     def _draw_without(self) -> None:
         self.nodes.clear()

@@ -19,6 +19,7 @@ from ....core.layers.leaning import Leaning, leaning
 from ....core.layers.planes.stacking import STANDING, stacked
 from ....core.parameters.filled import SolidParameters
 from ....core.strategies import size
+from ....objects.fields.shown_units import in_user_units
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.solid_feature import SolidFeature
 from ....objects.stage_parts import Link, Outcome
@@ -146,7 +147,9 @@ class SolidPanel(PickPanel):
         self.nodes.set_overhang(corners)
         share = 100.0 * area / max(self.leaning.whole, 1e-300)
         self.overhung.setText(
-            tr("Overhang > {}°: {:.4g} cm² ({:.0f} %)").format(angle, area / MM2_PER_CM2, share)
+            in_user_units(
+                tr("Overhang > {}°: {:.4g} cm² ({:.0f} %)").format(angle, area / MM2_PER_CM2, share)
+            )
         )
 
     def _propose(self, picks: list[picking.Pick]) -> str:
@@ -249,7 +252,7 @@ class SolidPanel(PickPanel):
             if contours == 1
             else tr("first layer: {} contours").format(contours)
         )
-        text = f"{found}; {first}"
+        text = f"{in_user_units(found)}; {first}"
         return "\n".join([text, *(sentence(issue.message) for issue in made.issues)])
 
     def _draw_without(self) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ....core.issues import Issue
 from ....objects.checks import deposit
+from ....objects.fields.shown_units import in_user_units
 from ....objects.shapes.bodies import taken
 from ....objects.stage_parts import Outcome
 from ....objects.surface_feature import SurfaceFeature
@@ -136,4 +137,4 @@ def _summary(curves: list[Any], issues: tuple[Issue, ...]) -> str:
         for curve, length in zip(curves, lengths, strict=True)
     ]
     findings = (sentence(issue.message) for issue in issues)
-    return "\n".join([tr("First layer: {}").format("; ".join(parts)), *findings])
+    return "\n".join([tr("First layer: {}").format(in_user_units("; ".join(parts))), *findings])

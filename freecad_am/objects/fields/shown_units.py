@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The units that a user reads and types: those of FreeCAD's unit scheme, and the preferred unit of speeds.
+
+Job files, CSV, programs and reports of commands are metric whatever the scheme is.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+import FreeCAD as App
+
+from ...core.quantities import (
+    UNITS,
+    exact_or_rounded,
+    in_other_units,
+    significant,
+    without_exponents,
+)
+from . import preferences
+from .unit_scheme import is_metric, plain_name, scheme_unit
+
+ORDINARY = {"mm": 10.0, "mm/s": 6.0}  # what tells the unit of a field that has no number yet
+_BARE = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_METRIC = re.compile(r"(?:µ|n|m|c|k)?m(?:\^[23]|²|³)?(?:/.*)?|ml|l|k?g|t")
+
+
+def conversion(value: float, unit: str) -> tuple[float, str] | None:
+    """How many of the unit that is shown make one `unit`, and its name, as `core.quantities.in_other_units` asks; None
+    where the quantity is shown as it is."""
+    if App.Units.Quantity(f"1 {unit}").Unit == App.Units.Velocity:
+        return _speed_conversion(unit)
+    if is_metric() or not math.isfinite(value):
+        return None
+    per_unit, name = scheme_unit(value, unit)
+    if name == unit or (_METRIC.fullmatch(name) and not _is_length(unit)):
+        return None
+    return 1.0 / per_unit, _with_powers(plain_name(name))
+
+
+def scale_of(most: float, unit: str) -> tuple[float, str]:
+    """How many of the unit that is shown make one `unit`, and its name, for values of up to `most`: of an axis of a picture,
+    a legend, a column."""
+    base, per_hour, _ = unit.partition("/h")
+    other = conversion(most, UNITS[base]) if base in UNITS else None
+    return (1.0, unit) if other is None else (other[0], other[1] + per_hour)
+
+
+def _speed_conversion(unit: str) -> tuple[float, str] | None:
+    shown = preferences.speed_unit()
+    if shown == unit:
+        return None
+    return float(App.Units.Quantity(f"1 {unit}").getValueAs(shown).Value), shown
+
+
+def _is_length(unit: str) -> bool:
+    return bool(App.Units.Quantity(f"1 {unit}").Unit == App.Units.Length)
+
+
+def _with_powers(name: str) -> str:
+    return name.replace("^2", "²").replace("^3", "³")
+
+
+def in_user_units(text: str) -> str:
+    """A text of numbers in mm, mm/s and so on, with these in the user's units and without exponents; no names of users may
+    be in it."""
+    return in_other_units(without_exponents(text), conversion)
+
+
+def quantity_text(value: float, unit: str, digits: int = 4) -> str:
+    """A quantity for people, in the user's units. value: in `unit`, one of `core.quantities.UNITS`, or deg, s or %."""
+    other = conversion(value, UNITS[unit]) if unit in UNITS else None
+    factor, name = (1.0, unit) if other is None else other
+    return f"{significant(value * factor, digits)} {name}"
+
+
+def field_text(value: float, unit: str, display: str = "") -> tuple[str, float, str]:
+    """What a field shows of a value in `unit`: the text, how many `unit` a bare number there is, and the unit's name.
+
+    display: the unit it is shown in; '' for that of FreeCAD's scheme. A fraction of inches is shown where it is the value.
+    """
+    if display:
+        per_unit = App.Units.Quantity(f"1 {display}").getValueAs(unit).Value
+        return f"{exact_or_rounded(value / per_unit)} {display}", per_unit, display
+    per_unit, name = scheme_unit(value or ORDINARY.get(unit, 0.0), unit)
+    fraction = _fraction(value, unit, name)
+    shown = plain_name(name) if name in ('"', "'") else name
+    return fraction or f"{exact_or_rounded(value / per_unit)} {shown}", per_unit, shown
+
+
+def _fraction(value: float, unit: str, name: str) -> str:
+    """The value in feet and fractions of inches, '' where the scheme has none or it would be another value."""
+    if name != "in" or value == 0.0:
+        return ""
+    quantity = App.Units.Quantity(f"{value!r} {unit}")
+    text = str(quantity.UserString)
+    if not text.endswith(("'", '"')):
+        return ""
+    read = feet_and_inches(text)
+    return text if read is not None and math.isclose(read, quantity.Value, rel_tol=1e-9) else ""
+
+
+_FEET = re.compile(
+    r"\s*(?P<sign>[-+]?)\s*(?:(?P<feet>\d+(?:\.\d+)?)\s*')?\s*"
+    r"(?:(?P<inches>(?:\d+(?:\.\d+)?(?:\s*\+\s*|\s+))?\d+\s*/\s*\d+|\d+(?:\.\d+)?)\s*(?:\"|in))?\s*"
+)
+
+
+def feet_and_inches(text: str) -> float | None:
+    """Millimetres of `1' 7+5/8"`, `1 1/2 in` and the like; None for another text. FreeCAD reads `-1' 3"` as -12 + 3 in."""
+    match = _FEET.fullmatch(text.replace("′", "'").replace("″", '"'))
+    if match is None or (match["feet"] is None and match["inches"] is None):
+        return None
+    inches = 12.0 * float(match["feet"] or 0.0)
+    for part in re.split(r"\s*\+\s*|(?<=\d)\s+(?=\d)", match["inches"] or "0"):
+        above, _, below = part.partition("/")
+        if below and float(below) == 0.0:
+            return None
+        inches += float(above) / float(below or 1.0)
+    return 25.4 * (-inches if match["sign"] == "-" else inches)
+
+
+def without_noise(value: float) -> float:
+    """A number typed in one unit, in another one, without the last digits that conversion leaves."""
+    return float(f"{value:.14g}")
+
+
+def typed_text(text: str, unit: str, per_bare: float) -> str:
+    """A text typed into a plain line, for a parameter in `unit`: a number without a unit gets `per_bare` of it each. Other
+    texts, such as words, stay."""
+    inches = feet_and_inches(text) if unit == "mm" else None
+    if inches is not None:
+        return f"{without_noise(inches)!r} mm"
+    if per_bare != 1.0 and _BARE.fullmatch(text):
+        return f"{without_noise(float(text) * per_bare)!r} {unit}"
+    return text
