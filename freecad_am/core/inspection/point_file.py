@@ -28,6 +28,9 @@ _NAMES = {None: "blanks", ";": "semicolons", "\t": "tabs", ",": "commas"}
 _UNIT = re.compile(
     r"(?<![a-z])(mm|cm|m|um|µm|μm|inch|inches|in|millimet(?:er|re)s?|met(?:er|re)s?)(?![a-z])"
 )
+_OTHER_UNIT = re.compile(
+    r"(?<![a-z])(ft|feet|foot|mils?|thou|yd|yards?|nm|km|dm|px|pixels?|pt)(?![a-z])"
+)
 _UNIT_NAMES = {"in": "inch", "inches": "inch", "µm": "um", "μm": "um"}
 
 
@@ -131,7 +134,7 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
     first = is_row.index(True)
     heads = [row for _, row in cells[:first]]
     width = len(cells[first][1])
-    columns, named, messages = _columns(heads, cells[first:][:LOOK], width, comma)
+    columns, named, messages = _columns(heads, cells[first:][:LOOK], width, comma, label)
     messages.insert(
         0, f"columns between {_NAMES[delimiter]}" + (", decimal commas" if comma == "," else "")
     )
@@ -205,13 +208,27 @@ def _is_number(cell: str, comma: str) -> bool:
 
 
 def _columns(
-    heads: list[list[str]], rows: list[tuple[int, list[str]]], width: int, comma: str
+    heads: list[list[str]],
+    rows: list[tuple[int, list[str]]],
+    width: int,
+    comma: str,
+    label: str,
 ) -> tuple[list[int], list[str], list[str]]:
     """The columns of x, y and z, what their headings say, and how they were chosen."""
     for head in reversed(heads):
         plain = [re.sub(r"[^a-z].*", "", cell.strip().lower()) for cell in head]
         if len(head) == width and {"x", "y", "z"} <= set(plain):
+            twice = next((axis for axis in "xyz" if plain.count(axis) > 1), None)
+            if twice is not None:
+                raise InputError(
+                    "AMBIGUOUS",
+                    label,
+                    "several columns are {}: {}; keep the one that was measured",
+                    twice,
+                    ", ".join(cell for cell, name in zip(head, plain) if name == twice),
+                )
             columns = [plain.index(axis) for axis in "xyz"]
+            _check_units([head[k] for k in columns], label)
             more = width - 3
             messages = ["x, y and z by their headings"] + (
                 [f"{more} more columns not used"] if more else []
@@ -227,6 +244,26 @@ def _columns(
             f"x, y and z are the first three columns{' of the others' if messages else ''}"
         )
     return columns[:3], [], messages
+
+
+def _check_units(names: list[str], label: str) -> None:
+    """InputError BAD_UNIT for a unit that is not read, or units that differ."""
+    for name in names:
+        if _OTHER_UNIT.search(name.lower().replace("_", " ")) is not None:
+            raise InputError(
+                "BAD_UNIT",
+                label,
+                "the unit of the column {!r} is not read; use mm, cm, m, um or inch",
+                name,
+            )
+    known = {_unit_in(name) for name in names} - {""}
+    if len(known) > 1:
+        raise InputError(
+            "BAD_UNIT",
+            label,
+            "its columns have different units: {}; export them in one",
+            ", ".join(names),
+        )
 
 
 def _running(cells: list[str]) -> bool:

@@ -179,3 +179,22 @@ def test_files_are_told_by_their_ending_and_missing_ones_by_their_path(tmp_path)
     with pytest.raises(InputError) as caught:
         point_file.read(tmp_path / "scan.csv")
     assert caught.value.code == "NO_FILE"
+
+
+@pytest.mark.parametrize(
+    ("head", "code", "words"),
+    [
+        (
+            "x nominal;y nominal;z nominal;x actual;y actual;z actual",
+            "AMBIGUOUS",
+            "x nominal, x actual",
+        ),
+        ("x [ft];y [ft];z [ft];a;b;c", "BAD_UNIT", "x [ft]"),
+        ("x [mm];y [inch];z [mm];a;b;c", "BAD_UNIT", "different units"),
+    ],
+)
+def test_headings_that_leave_a_choice_are_refused(head, code, words):
+    rows = "".join(f"{k};{2 * k};{3 * k};{k + 1};{2 * k + 1};{3 * k + 1}\n" for k in range(5))
+    with pytest.raises(InputError) as refused:
+        point_file.parse(f"{head}\n{rows}".encode(), "scan.csv")
+    assert refused.value.code == code and words in refused.value.message

@@ -261,3 +261,57 @@ def test_speeds_a_machine_can_follow():
             assert any(by_neighbour) or k in (0, len(got) - 1)
         if closed:
             assert got[0] == pytest.approx(got[-1])
+
+
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        (HEAD.replace("\n", ",posture_deg\n"), "'posture_deg' is not known"),
+        (HEAD.replace("\n", ",width_mm\n"), "'width_mm' stands twice"),
+        (HEAD.replace("radius_mm", "radius_in"), "'radius_in' is not known"),
+    ],
+)
+def test_columns_that_would_be_lost_are_rejected(tmp_path, head, words):
+    rows = "".join(f"{r},{v},{w},{h},6.5,9\n" for r, v, w, h in TABLE)
+    (tmp_path / "mine.csv").write_text(head + rows, encoding="utf-8")
+    with pytest.raises(InputError, match=words) as caught:
+        bead_table.load("mine.csv", tmp_path)
+    assert caught.value.code == "BAD_TABLE" and caught.value.where == "mine.csv line 1"
+
+
+def test_semicolons_and_a_byte_order_mark_are_read_and_decimal_commas_are_not(tmp_path):
+    rows = "".join(f"{r},{v},{w},{h},6.5\n" for r, v, w, h in TABLE)
+    (tmp_path / "mine.csv").write_text("\ufeff" + (HEAD + rows).replace(",", ";"), encoding="utf-8")
+    assert bead_table.load("mine.csv", tmp_path) == bead_table.load("csw")
+    text = (HEAD + rows).replace(",", ";").replace("12.52", "12,52")
+    (tmp_path / "mine.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="'12,52' is not a number"):
+        bead_table.load("mine.csv", tmp_path)
+
+
+def straight_table(tmp_path, more):
+    rows = [
+        "inf,300,9,3,6.5",
+        "inf,600,7,2.5,6.5",
+        "inf,900,6,2,6.5",
+        "inf,1200,5.4,1.8,6.5",
+        *more,
+    ]
+    (tmp_path / "mine.csv").write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
+    return bead_table.load("mine.csv", tmp_path)
+
+
+def test_rows_that_contradict_each_other_are_named(tmp_path):
+    assert straight_table(tmp_path, ["inf,600,7.4,2.6,6.5"]).contradictions == ()
+    assert straight_table(tmp_path, ["40,600,4,1,6.5", "60,600,9,2.5,6.5"]).contradictions == ()
+    (pair,) = straight_table(tmp_path, ["inf,600,4,2.4,6.5"]).contradictions
+    assert "row 5 (line 6)" in pair and "row 2 (line 3)" in pair and "width 4 and 7 mm" in pair
+
+
+def test_a_table_of_straight_beads_says_nothing_of_bends(tmp_path):
+    model = straight_table(tmp_path, [])
+    assert not model.speed_for(7.0, np.array([3.0, 50.0, np.inf])).too_tight.any()
+    assert bead_table.load("csw").speed_for(9.0, np.array([3.0, 50.0])).too_tight.tolist() == [
+        True,
+        False,
+    ]

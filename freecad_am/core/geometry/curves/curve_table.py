@@ -81,6 +81,8 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
     found = []
     for cell, name in zip(cells, columns):
         try:
+            if "_" in cell:
+                raise ValueError
             number = float(cell)
         except ValueError:
             raise InputError(

@@ -21,6 +21,7 @@ from ...types import Array, Mask
 
 MINUTE = 60.0
 FEWEST = 4  # rows; three coefficients and one that says how well they fit
+CONTRADICTING = 0.25  # of their mean; beads laid alike are measured nearer to each other
 FLATTEST = 1e-8  # least relative singular value of a table that determines the coefficients
 
 
@@ -54,7 +55,8 @@ class Asked:
 @dataclass(frozen=True)
 class BeadModel:
     """The fits of width and height, and what they were made from: speeds mm/s, radii mm, infinite of straight beads,
-    wire_feed mm/s. feeds: least and largest wire feed, mm/s, paces: speeds as shares of their wire feed."""
+    wire_feed mm/s. feeds: least and largest wire feed, mm/s, speed_ratios: speeds as shares of their wire feed.
+    contradictions: rows of the table that were laid alike and measured differently, as text."""
 
     width: Fit
     height: Fit
@@ -63,6 +65,7 @@ class BeadModel:
     wire_feed: float
     feeds: tuple[float, float] | None = field(default=None, repr=False)
     speed_ratios: tuple[float, float] | None = field(default=None, repr=False)
+    contradictions: tuple[str, ...] = field(default=(), repr=False)
 
     def at_feed(self, feed: float) -> BeadModel:
         """The model of beads at another wire feed, mm/s; the same where nothing like it was measured."""
@@ -108,7 +111,8 @@ class BeadModel:
 
     def speed_for(self, width: float | Array, radius: Array) -> Asked:
         """The travel speed that keeps `width` mm, one or (n,), at radii of curvature (n,) mm; within those of the table."""
-        tight = radius < self.radii[0] * (1.0 - 1e-9)
+        straight_only = np.isinf(self.radii[0])  # such a table says nothing of bends
+        tight = (radius < self.radii[0] * (1.0 - 1e-9)) & (not straight_only)
         rest = width - self.width.p / np.maximum(radius, self.radii[0]) - self.width.t
         with np.errstate(divide="ignore", over="ignore"):
             speed = (
@@ -185,12 +189,47 @@ def fit(
         (float(speed.min()), float(speed.max())),
         (float(radius.min()), float(radius.max())),
         wire_feed,
+        contradictions=_contradictions(
+            radius, speed, feeds, {"width": width, "height": height}, lines
+        ),
     )
     return (
         made
         if feeds is None
         else replace(made, feeds=_ends(feeds), speed_ratios=_ends(speed / feeds))
     )
+
+
+def _contradictions(
+    radius: Array,
+    speed: Array,
+    feeds: Array | None,
+    measured: dict[str, Array],
+    lines: Sequence[int],
+) -> tuple[str, ...]:
+    """Pairs of rows of the same radius, speed and wire feed whose width or height differs by more than `CONTRADICTING` of their
+    mean, with both values."""
+    settings = [radius, speed, np.zeros(len(speed)) if feeds is None else feeds]
+    groups: dict[tuple[str, ...], list[int]] = {}
+    for row in range(len(radius)):
+        groups.setdefault(tuple(f"{column[row]:.9g}" for column in settings), []).append(row)
+    pairs = []
+    for rows in groups.values():
+        for name, values in measured.items():
+            low, high = (rows[int(pick)] for pick in (values[rows].argmin(), values[rows].argmax()))
+            mean = 0.5 * (values[low] + values[high])
+            if values[high] - values[low] > CONTRADICTING * mean:
+                pairs.append(
+                    Text(
+                        "{} and {} ({} {:g} and {:g} mm)",
+                        row_name("", low, lines).strip(),
+                        row_name("", high, lines).strip(),
+                        Word(name),
+                        values[low],
+                        values[high],
+                    )
+                )
+    return tuple(pairs)
 
 
 def _ends(values: Array) -> tuple[float, float]:

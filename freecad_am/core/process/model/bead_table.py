@@ -2,7 +2,8 @@
 """Calibration tables of bead models: comma separated values with one measured bead per row.
 
 Columns by name, in any order: radius_mm (inf of a straight bead), travel_speed_mm_min, width_mm, height_mm and
-wire_feed_m_min; lines that begin with # are remarks.
+wire_feed_m_min; separated by commas, or by semicolons, with decimal points. Lines that begin with # are remarks. A column
+that is not known, or stands twice, is rejected: what it says would be lost.
 """
 
 from __future__ import annotations
@@ -83,8 +84,11 @@ def measured(name: str, folder: Path | None = None) -> Measured:
         if line.strip() and not line.lstrip().startswith("#")
     ]
     lines, numbers = [line for _, line in filled], tuple(number for number, _ in filled[1:])
-    rows = list(csv.DictReader(lines))
-    header = [] if not lines else next(csv.reader(lines[:1]))
+    separator = ";" if lines and ";" in lines[0] else ","
+    cells = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
+    header = cells[0] if cells else []
+    _check_columns(header, f"{path.name} line {filled[0][0]}" if filled else path.name)
+    rows = [_row(header, row) for row in cells[1:]]
     missing = [column for column in COLUMNS if column not in header]
     if missing:
         raise InputError(
@@ -133,7 +137,33 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     )
 
 
-def _number(row: dict[str, str | None], column: str, where: str) -> float:
+def _check_columns(header: list[str], where: str) -> None:
+    """InputError BAD_TABLE for columns that are not known, or stand twice."""
+    for column in header:
+        if header.count(column) > 1:
+            raise InputError(
+                "BAD_TABLE", where, "the column {!r} stands twice; keep one of them", column
+            )
+        if column not in COLUMNS and any(name in COLUMNS for name in header):
+            raise InputError(
+                "BAD_TABLE",
+                where,
+                "the column {!r} is not known; remove it, or name it one of {}",
+                column,
+                ", ".join(COLUMNS),
+            )
+
+
+def _row(header: list[str], cells: list[str]) -> dict[str | None, str | None]:
+    """The cells of a row by their columns; None where they are missing, and under None those that are too many."""
+    row: dict[str | None, str | None] = dict.fromkeys(header)
+    row.update(zip(header, cells))
+    if len(cells) > len(header):
+        row[None] = "".join(cells[len(header) :])
+    return row
+
+
+def _number(row: dict[str | None, str | None], column: str, where: str) -> float:
     if None in row:
         raise InputError(
             "BAD_TABLE",
@@ -142,6 +172,8 @@ def _number(row: dict[str, str | None], column: str, where: str) -> float:
         )
     text = (row[column] or "").strip()
     try:
+        if "_" in text:
+            raise ValueError
         return float(text)
     except ValueError:
         what = (

@@ -60,6 +60,18 @@ def of_model(
             ),
         )
     ]
+    if model.contradictions:
+        found.append(
+            Issue(
+                WARNING,
+                "TABLE_CONTRADICTS",
+                Text(
+                    "rows of the bead table were laid alike and measured differently: {}; measure these beads again, or "
+                    "leave one of each pair out",
+                    Text.joined(", ", model.contradictions),
+                ),
+            )
+        )
     found += _outside(made, length, process.bead_width, model)
     found.append(with_heights([one.bead for one in made], layer_height, process, model))
     feed = with_model(process, model)
