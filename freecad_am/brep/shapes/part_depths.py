@@ -14,11 +14,12 @@ from freecad_am.core.types import Array
 from ...core.collision.depths import grain, measured
 from ...core.geometry.curves.profile import RevolvedWall
 from ...core.geometry.mesh.facets import doubled_areas
-from ...core.geometry.mesh.solid import spread
+from ...core.geometry.mesh.solid import SolidMesh, spread
 from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.part_depths import PartDepths, Surface
 from ..kernel.limits import FAULTS
 from ..kernel.process import in_kernel_process
+from ..sections_agree import sections_agree
 from .tessellate import tessellated
 
 CHORD = 1e-3  # of the part's size, between it and its triangles
@@ -88,6 +89,8 @@ def _of(
     known = {name for k in left for name in owned[k]} | set(faces)
     rest = [k for k, name in enumerate(names) if name not in known]
     volumes = [abs(float(solid.Volume)) for solid in solids]
+    if len(solids) == 1:
+        volumes = [_volume(solids[0], volumes[0], body, chord)]
     return PartDepths(
         label,
         share * sum(volumes),
@@ -99,6 +102,16 @@ def _of(
         tuple(float(shape.Faces[k].Area) for k in rest),
         tuple((f"Solid{k + 1}", volumes[k]) for k in left),
     )
+
+
+def _volume(solid: Any, volume: float, body: Body, chord: float) -> float:
+    """That of the kernel, or of triangles within `chord` mm where the kernel's own integral is off."""
+    mesh = abs(SolidMesh(body.vertices, body.triangles).volume)
+    doubt = abs(mesh - volume)
+    if doubt <= 2.0 * chord * float(solid.Area):
+        return volume
+    agree = sections_agree(solid, body.vertices, body.triangles, chord, doubt)
+    return mesh if agree else volume
 
 
 def _solids(shape: Any) -> list[Any]:
