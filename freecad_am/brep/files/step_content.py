@@ -72,7 +72,7 @@ CONSTRUCTED = (
     "B_SPLINE_VOLUME",
     "B_SPLINE_VOLUME_WITH_KNOTS",
 )
-PLAIN = "export exact faces (AP203, AP214 or AP242 with B-rep), or a mesh (STL, OBJ, 3MF)"
+PLAIN = Text("export exact faces (AP203, AP214 or AP242 with B-rep), or a mesh (STL, OBJ, 3MF)")
 # types of IGES entities
 IGES_CONSTRUCTED = {
     150: "block",
@@ -152,12 +152,12 @@ class StepContent:
             loose += len(TESSELLATED.findall(self.data)) + len(FACE_SETS.findall(self.data))
             loose += self.kinds["TRIANGULATED_FACE"] + self.kinds["COMPLEX_TRIANGULATED_FACE"]
         if loose:
-            where = "its faces" if not self.has_geometry else "some of its faces"
+            where = Text("its faces") if not self.has_geometry else Text("some of its faces")
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
                 "{} have no surfaces: it holds triangles (AP242 tessellated geometry); {}",
-                Word(Text(where)),
+                Word(where),
                 Word(PLAIN),
             )
 
@@ -178,17 +178,49 @@ class StepContent:
                 faces,
             )
         if lost_solids > 0:
-            text = "{}: {} of its {} solids are read as faces that enclose nothing; check the part (Part, Check geometry)"
-            issues.append(Issue(WARNING, CONTENT, Text(text, self.where, lost_solids, solids)))
+            issues.append(
+                Issue(
+                    WARNING,
+                    CONTENT,
+                    Text(
+                        "{}: {} of its {} solids are read as faces that enclose nothing; check the part (Part, Check geometry)",
+                        self.where,
+                        lost_solids,
+                        solids,
+                    ),
+                )
+            )
         elif lost_faces > 0:
-            text = "{}: {} of its {} faces are not in any shape that was read; check the part (Part, Check geometry)"
-            issues.append(Issue(WARNING, CONTENT, Text(text, self.where, lost_faces, faces)))
+            issues.append(
+                Issue(
+                    WARNING,
+                    CONTENT,
+                    Text(
+                        "{}: {} of its {} faces are not in any shape that was read; check the part (Part, Check geometry)",
+                        self.where,
+                        lost_faces,
+                        faces,
+                    ),
+                )
+            )
         if self.kinds["INVISIBILITY"]:
-            text = "{}: it marks items as invisible; they are read as the others"
-            issues.append(Issue(NOTE, CONTENT, Text(text, self.where)))
+            issues.append(
+                Issue(
+                    NOTE,
+                    CONTENT,
+                    Text(
+                        "{}: it marks items as invisible; they are read as the others", self.where
+                    ),
+                )
+            )
         if self.kinds["CONSTRUCTIVE_GEOMETRY_REPRESENTATION"]:
-            text = "{}: its construction geometry (axes, planes) is not read"
-            issues.append(Issue(NOTE, CONTENT, Text(text, self.where)))
+            issues.append(
+                Issue(
+                    NOTE,
+                    CONTENT,
+                    Text("{}: its construction geometry (axes, planes) is not read", self.where),
+                )
+            )
         return issues
 
     def _represented(self) -> set[bytes]:
@@ -252,11 +284,19 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
     issues = []
     elements = [name for kind, name in IGES_ELEMENTS.items() if kinds[kind]]
     if elements:
-        text = "{}: not read: {}"
-        issues.append(Issue(NOTE, CONTENT, Text(text, where, ", ".join(elements))))
+        issues.append(Issue(NOTE, CONTENT, Text("{}: not read: {}", where, ", ".join(elements))))
     if blanked:
-        text = "{}: {} of its entities are marked as invisible, and are left out"
-        issues.append(Issue(NOTE, CONTENT, Text(text, where, blanked)))
+        issues.append(
+            Issue(
+                NOTE,
+                CONTENT,
+                Text(
+                    "{}: {} of its entities are marked as invisible, and are left out",
+                    where,
+                    blanked,
+                ),
+            )
+        )
     return issues
 
 

@@ -67,8 +67,8 @@ def _binary(data: bytes, count: int, where: str) -> tuple[Array, tuple[Issue, ..
         )
     issues: tuple[Issue, ...] = ()
     if rest.strip(b"\0 \t\r\n"):
-        text = "{}: {} bytes after its triangles are not read"
-        issues = (Issue(NOTE, CONTENT, Text(text, where, len(rest))),)
+        message = Text("{}: {} bytes after its triangles are not read", where, len(rest))
+        issues = (Issue(NOTE, CONTENT, message),)
     read = np.frombuffer(data, TRIANGLE, count, HEAD)
     return read["corners"].astype(np.float64), issues
 

@@ -14,7 +14,7 @@ from ...core.geometry.mesh.triangles import closest
 from ...core.geometry.walls.patch import SPLINE
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot
-from ...core.issues import InputError, Text
+from ...core.issues import InputError, Text, Word
 
 BENT, FOLDED = (
     0.3,
@@ -58,10 +58,41 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
             raise InputError(
                 "SELF_INTERSECTION",
                 f"{label} {wall.faces[k]}",
-                "the face folds back and cuts itself at {}; give the "
-                "bend a larger radius than the tube",
+                "the face folds back and cuts itself at {}; {}",
                 place(patch.at(start[:1])[0][0]),
+                Word(FOLDS_TUBE if any(patch.periods) else FOLDS),
             )
+
+
+FOLDS_TUBE = Text("give the bend a larger radius than the tube")
+FOLDS = Text(
+    "redraw it with a larger radius there, or divide it and deposit its parts one after the other"
+)
+APART = 0.02  # of the length of a tube, between places of it that cross in a bend
+
+
+def _remedy(wall: PatchWall, triangles: tuple[int, int]) -> str:
+    """What to do where two triangles of a wall cut each other."""
+    one, other = (int(wall.patch[k]) for k in triangles)
+    if one != other:
+        return Text(
+            "trim the faces where they cross, or choose those that do not cross and deposit the others as a feature of their own"
+        )
+    if _is_bend(wall, one, triangles):
+        return Text("give bends a larger radius than the tube")
+    return Text(
+        "redraw the face so that it does not cross itself, or divide it and deposit its parts one after the other"
+    )
+
+
+def _is_bend(wall: PatchWall, patch: int, triangles: tuple[int, int]) -> bool:
+    """Whether two triangles of a tube, a patch that closes one way, lie at different places along it."""
+    closed = np.array(wall.patches[patch].periods) > 0.0
+    if closed.sum() != 1:
+        return bool(closed.all())
+    along = wall.uv[..., int(np.argmin(closed))]
+    places = along[list(triangles)].mean(axis=1)
+    return bool(abs(places[0] - places[1]) > APART * np.ptp(along[wall.patch == patch]))
 
 
 def refuse_crossing(wall: PatchWall, label: str) -> None:
@@ -112,10 +143,10 @@ def _refuse_cuts(
             raise InputError(
                 "SELF_INTERSECTION",
                 label,
-                "the wall cuts itself at {} ({}); give bends a larger radius than the "
-                "tube, and let no faces cross",
+                "the wall cuts itself at {} ({}); {}",
                 place(found),
                 Text.joined(" and ", names),
+                Word(_remedy(wall, faces)),
             )
 
 
