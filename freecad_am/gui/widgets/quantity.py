@@ -14,6 +14,7 @@ from __future__ import annotations
 import contextlib
 import math
 import re
+import weakref
 from typing import Any
 
 import FreeCAD as App
@@ -24,6 +25,7 @@ from ...objects.fields.expressions import MARK, is_expression
 from ...objects.fields.rows import plain_blanks
 from ...objects.fields.rows import quantity as quantity_of
 from ...objects.fields.shown_units import feet_and_inches, field_text, without_noise
+from ..signals import connect
 from ..texts.translation import tr
 
 _LEAST_WIDTH, _MOST_LETTERS = 70, 16
@@ -36,11 +38,17 @@ class UnitBox(QtGui.QAbstractSpinBox):
 
     def __init__(self, field: QuantityField) -> None:
         super().__init__()
-        self.field = field
+        self._field = weakref.ref(field)  # a circle would keep both after the panel is closed
+
+    @property
+    def field(self) -> QuantityField | None:
+        """What it belongs to; None once that is gone."""
+        return self._field()
 
     def stepBy(self, steps: int) -> None:
         """Called by Qt for the arrows and the wheel."""
-        self.field.step(steps)
+        if self.field is not None:
+            self.field.step(steps)
 
     def stepEnabled(self) -> Any:
         """Called by Qt."""
@@ -64,11 +72,12 @@ class UnitBox(QtGui.QAbstractSpinBox):
     def changeEvent(self, event: Any) -> None:
         """The font has another size."""
         super().changeEvent(event)
-        if event.type() in (QtCore.QEvent.FontChange, QtCore.QEvent.StyleChange):
+        kinds = (QtCore.QEvent.FontChange, QtCore.QEvent.StyleChange)
+        if event.type() in kinds and self.field is not None:
             self.field.make_room()
 
     def _raw_value(self) -> float:
-        return self.field.internal_value()
+        return math.nan if self.field is None else self.field.internal_value()
 
     rawValue = QtCore.Property(float, _raw_value)
 
@@ -92,8 +101,8 @@ class QuantityField:
             self.show(expression)
         self._add_mark()
         self.make_room()
-        self.line.cursorPositionChanged.connect(self._begin_in_sight)
-        self.box.editingFinished.connect(self._settle)
+        connect(self.line, "cursorPositionChanged(int,int)", self._begin_in_sight)
+        connect(self.box, "editingFinished()", self._settle)
 
     def show(self, number: float | str) -> None:
         """Show another number, in the field's unit, or an expression, in place of what is there."""
@@ -130,9 +139,9 @@ class QuantityField:
         self.mark.setToolTip(
             tr("Let it follow an expression, such as {}Spreadsheet.height / 2").format(MARK)
         )
-        self.mark.triggered.connect(self._begin)
+        connect(self.mark, "triggered(bool)", self._begin)
         self._show_mark()
-        self.line.textChanged.connect(self._show_mark)
+        connect(self.line, "textChanged(QString)", self._show_mark)
 
     def read(self) -> float | str:
         """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""
