@@ -188,6 +188,9 @@ def _known(path: str) -> Known:
     values = tree.read(path).values
     if not {"part", "features", "cell"} & set(values):
         return Known(job_cell.of_file(os.path.abspath(path)), None, JointParameters(), None)
+    if not {"part", "features"} & set(values):
+        read_cell = job.read_without_part(path)
+        return Known(read_cell.cell, read_cell.program, read_cell.joints, None)
     read = job.read_job(path)
     if read.cell is None:
         raise InputError(

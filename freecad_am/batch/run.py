@@ -179,6 +179,8 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
         controllers.check_beads(
             api.result(stages.toolpath), job.program.post, job.program.max_points
         )
+        # before the work that takes long; the stage of the program has the same findings
+        session.issues(controllers.size_issues(api.result(stages.toolpath), job.program))
     with stages.timed("joint_path", session):
         stages.joint_path = api.make_joint_path(
             document, stages.toolpath, stages.cell, joints=job.joints

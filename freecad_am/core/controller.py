@@ -20,6 +20,8 @@ class Controller:
     next to a point, by controllers that blend by a share of it at 100 % and stop where that is too little. arc_moves:
     whether arc instructions are linear moves themselves, the one onto the start of a bead and its last one. linear_triggers:
     whether the deposit is switched ahead of a place on linear moves, in Cartesian programs on the one onto a bead too.
+    point_bytes: about how many bytes of the program a point takes. memory_mb: MB of programs that a user of such a controller
+    was known to have room for, 0 where nobody said.
     """
 
     external: bool = False
@@ -33,3 +35,5 @@ class Controller:
     least_blend: float = 0.0
     arc_moves: bool = False
     linear_triggers: bool = False
+    point_bytes: int = 100
+    memory_mb: float = 0.0

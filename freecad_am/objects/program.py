@@ -221,9 +221,12 @@ def _written(job: Job, label: str) -> Outcome:
             "reading the program back does not give the planned path; do not use it",
             issues=tuple(checked.issues),
         )
-    return Outcome(
-        Written(made.files, checked), tuple(checked.issues), (("Files", sorted(made.files)),)
+    issues = (
+        *controllers.size_issues(made.toolpath, job.parameters),
+        *controllers.base_issues(made.cell.machine, job.parameters),
+        *checked.issues,
     )
+    return Outcome(Written(made.files, checked), issues, (("Files", sorted(made.files)),))
 
 
 def _run(motion: Motion, parameters: ProgramParameters) -> Motion:

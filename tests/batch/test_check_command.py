@@ -231,3 +231,19 @@ def test_programs_that_cannot_be_read_are_refused(workshop, sound):
     done = run(workshop)
     assert done.status == 2 and "error[NO_FILE]" in done.err
     assert not (workshop.folder / "out").exists()
+
+
+def test_a_job_file_without_a_part_tells_cell_and_program(workshop, sound):
+    folder, motion = sound
+    cell = (workshop.folder / "cell.yaml").read_text(encoding="utf-8")
+    inner = "".join(f"  {line}\n" for line in cell.splitlines() if not line.startswith("#"))
+    job = workshop.folder / "bay.yaml"
+    job.write_text(
+        f"version: 1\nname: bay\ncell:\n{inner}program: {{post: fanuc}}\n", encoding="utf-8"
+    )
+    done = workshop.run("check", str(folder), "--cell", "bay.yaml", "-o", "out")
+    assert done.status == 0, done.err
+    assert report(workshop)["counts"]["points"] == motion.deposit.sum()
+    job.write_text(f"version: 1\ncell:\n{inner}prgram: {{post: fanuc}}\n", encoding="utf-8")
+    done = workshop.run("check", str(folder), "--cell", "bay.yaml", "-o", "out")
+    assert done.status == 2 and "error[UNKNOWN_KEY]" in done.err and "prgram" in done.err, done.err

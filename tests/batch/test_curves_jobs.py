@@ -323,3 +323,50 @@ def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
     assert (on_lines | on_arc).all() and on_arc.sum() > 10
     ways = np.linalg.norm(np.diff(back, axis=0), axis=1).sum()
     assert ways == pytest.approx(60.0 + 10.0 * np.pi, abs=0.2)
+
+
+def test_a_program_counts_from_a_base_frame_that_is_not_known(workshop):
+    """Of a Cartesian program alone: joint values count from no frame."""
+    (workshop.folder / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n")
+    for motion, machine, warned in (
+        ("cartesian", "staubli-rx60b", True),
+        ("joint", "staubli-rx60b", False),
+        ("cartesian", "staubli-tx90", False),
+    ):
+        job = workshop.write_job(
+            JOB.format(file="beads.csv", part="", more="", mode="")
+            + f"cell: {{machine: {machine}, setup: tool-on-robot, branch: auto, nozzle: {{tool: [0, 0, 200, 0, 0, 0]}}}}\n"
+            f"program: {{post: staubli, motion: {motion}}}\n"
+        )
+        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        assert done.status == 0, done.err
+        assert ("warning[BASE_NOT_KNOWN]" in done.err) == warned, done.err
+        text = "".join(path.read_text() for path in (workshop.folder / "out").rglob("start.pgx"))
+        assert ("Base frame not known" in text) == warned
+
+
+def test_the_size_of_a_program_is_told_before_joints_are_planned():
+    from freecad_am.core.geometry.curves.bead_curves import BeadCurve, Curves
+    from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+    from freecad_am.core.parameters.process import ProcessParameters
+    from freecad_am.core.parameters.program import ProgramParameters
+    from freecad_am.core.parameters.strategy import CurvesParameters
+    from freecad_am.core.strategies import curves
+    from freecad_am.objects.checks import controllers
+
+    def told(points, post):
+        line = np.column_stack([np.linspace(0.0, 600.0, points), np.zeros((points, 2))])
+        given = Curves("line", (BeadCurve(line), BeadCurve(line + (0.0, 9.0, 0.0))))
+        toolpath = curves.plan(
+            given, CurvesParameters(), BuildDirectionParameters(), ProcessParameters()
+        )
+        return controllers.size_issues(toolpath, ProgramParameters(post=post, max_points=1800))
+
+    (issue,) = told(30_050, "kuka")
+    assert (issue.level, issue.code) == ("warning", "PROGRAM_SIZE")
+    assert "60,000 points in 35 files, 4.5 MB" in issue.message and "4 MB" in issue.message
+    (issue,) = told(20_000, "kuka")
+    assert issue.level == "note" and "3 MB" in issue.message
+    (issue,) = told(20_000, "linuxcnc")
+    assert issue.level == "note" and "not known here" in issue.message
+    assert told(2_000, "kuka") == [] and told(30_050, "none") == []

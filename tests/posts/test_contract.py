@@ -188,3 +188,13 @@ def test_straight_rapids_with_rounded_corners_are_found_by_the_drive_and_refused
     assert {"VERIFY_INTERPOLATION", "VERIFY_BLEND", "VERIFY_BETWEEN"} <= {
         i.code for i in result.issues if i.level == ERROR
     }
+
+
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: "-".join(way[:4]))
+def test_the_size_that_is_told_before_planning_is_about_that_of_the_program(way):
+    """Without the head, which is most of so short a program."""
+    _, _, program, files = written(way)
+    moves = sum(len(run) for run in program.moves)
+    size = sum(map(len, files.values()))
+    told = moves * catalogue.controller(way[0]).point_bytes
+    assert 0.4 * size < told < 1.3 * size

@@ -211,3 +211,57 @@ def test_joint_and_cartesian_positions_in_one_program_are_refused():
         )
     with pytest.raises(InputError, match=r"P\[7\] is not understood"):
         fanuc.read(by_hand(sub=SUB[: SUB.index("P[7]{")] + pose + record + "/END\n"))
+
+
+TWO_GROUPS = """\
+/PROG  HAND
+/ATTR
+DEFAULT_GROUP	= 1,1,*,*,*;
+/MN
+   1:  UFRAME_NUM=3 ;
+   2:  UTOOL_NUM=4 ;
+   3:J P[1] 20% FINE    ;
+   4:J P[2] 20% FINE    ;
+/POS
+P[1]{
+   GP1:
+	UF : 3, UT : 4,\t
+	J1=      .500 deg,	J2=     -.250 deg,	J3=     0.000 deg,
+	J4=  -190.125 deg,	J5=    45.000 deg,	J6=   180.000 deg
+   GP2:
+	UF : 3, UT : 4,\t
+	J1=     1.000 deg,	J2=     2.000 deg
+};
+P[2]{
+   GP1:
+	UF : 3, UT : 4,\t
+	J1=      .500 deg,	J2=     -.250 deg,	J3=     0.000 deg,
+	J4=  -190.125 deg,	J5=    45.000 deg,	J6=   180.000 deg
+   GP2:
+	UF : 3, UT : 4,\t
+	J1=     1.000 deg,	J2=     2.000 deg
+};
+/END
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "words"),
+    [
+        (
+            "   GP2:\n\tUF : 3, UT : 4,\t\n\tJ1=     1.000 deg,	J2=     2.000 deg\n};\n/END",
+            "};\n/END",
+            19,
+            "P[2]",
+        ),
+        ("J2=     2.000 deg\n};\n/END", "J2=  ****** deg\n};\n/END", 19, "P[2]"),
+        (",	J2=     2.000 deg\n};\nP[2]", "\n};\nP[2]", 19, "than P[1]"),
+        ("1,1,*", "1,*,1", 3, "groups 1, 3"),
+    ],
+)
+def test_mixed_motion_groups_are_refused_with_their_line(old, new, line, words):
+    assert old in TWO_GROUPS
+    assert len(fanuc.read({"HAND.LS": TWO_GROUPS.encode()}).joints) == 2
+    with pytest.raises(InputError) as raised:
+        fanuc.read({"HAND.LS": TWO_GROUPS.replace(old, new).encode()})
+    assert raised.value.where == f"HAND.LS line {line}" and words in raised.value.message

@@ -737,3 +737,13 @@ def test_what_is_not_understood_is_refused(old, new, why):
     with pytest.raises(InputError) as raised:
         kuka.read(by_hand(old, new))
     assert raised.value.code == "UNREADABLE_PROGRAM" and why in raised.value.message
+
+
+@pytest.mark.parametrize(
+    "line", ["$VEL.ORI1=200", "FOO()+1", "PTP_REL {A1 5}", "GOTO x", "CONTINUE"]
+)
+def test_an_unknown_instruction_is_named_as_such_wherever_it_stands(line):
+    with pytest.raises(InputError) as raised:
+        kuka.read(by_hand("LIN {X 20.5", f"{line}\nLIN {{X 20.5"))
+    assert f"the instruction {line!r} is not understood" in raised.value.message
+    assert re.search(r"line \d+$", raised.value.where)

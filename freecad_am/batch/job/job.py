@@ -97,6 +97,35 @@ def read_job(path: str) -> Job:
     return from_tree(tree.read(path), path)
 
 
+@dataclass(frozen=True)
+class WithoutPart:
+    """What a job file without a part tells: where and how a program runs."""
+
+    cell: CellParameters
+    joints: JointParameters
+    program: ProgramParameters | None
+
+
+def read_without_part(path: str) -> WithoutPart:
+    """The cell, joints and program of a job file that has no part yet; its other sections are checked by their keys alone.
+
+    Raises InputError that names file, key and what to do; NO_CELL without a cell.
+    """
+    saved = tree.read(path, "cell: {machine: ...}", "cell")
+    try:
+        folder = paths.folder_of(path)
+        values = paths.of_job(saved.values, folder)
+        fields.known_keys(values, SECTIONS, "")
+        cell = job_cell.read(values.get("cell"), folder)
+        if cell is None:
+            raise InputError("NO_CELL", "cell", "there is no cell to drive a program in; add one")
+        return WithoutPart(
+            cell, _joints(values.get("joints") or {}), _program(values.get("program"))
+        )
+    except InputError as error:
+        raise saved.placed(error) from None
+
+
 def from_tree(job: tree.Tree, path: str) -> Job:
     """The job of the values read from `path`, which may have been changed since (a row of a batch table)."""
     try:

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-from ...core.issues import InputError, Text, Word
+from ...core.geometry.formatting import count
+from ...core.issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.machines import machine as machines
 from ...core.kinematics.machines.machine import UNKNOWN_REMARK, Machine
@@ -15,6 +17,9 @@ from ...core.parameters.program import MOTIONS, ProgramParameters
 from ...core.toolpath import Toolpath
 from ...posts.catalogue import NAMES, controller, fitting
 
+MB = 1e6
+LARGE_MB, MANY_FILES = 2.0, 20  # from which the size of a program is noted
+MOVES_A_BEAD = 4  # of the ways to and from it
 APPROACH_POINTS = 50  # of the ways to a bead, which are counted with it, at most
 
 
@@ -73,6 +78,62 @@ def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
             points,
             points + APPROACH_POINTS,
         )
+
+
+def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue]:
+    """A warning where the program will be larger than what a controller of this kind was known to have room for, a note where
+    it is large or of many files. It is estimated from the points of the toolpath, before anything is planned."""
+    if parameters.post == "none":
+        return []
+    kind = controller(parameters.post)
+    beads = [len(bead) for _, _, bead in toolpath]
+    points = sum(beads) + MOVES_A_BEAD * len(beads)
+    files = 1 if points <= parameters.max_points else 1 + math.ceil(points / parameters.max_points)
+    megabytes = points * kind.point_bytes / MB
+    is_too_large = bool(kind.memory_mb) and megabytes > kind.memory_mb
+    if not is_too_large and megabytes < LARGE_MB and files < MANY_FILES:
+        return []
+    known = (
+        Text(
+            "a controller of this kind was known to have room for about {:g} MB in all",
+            kind.memory_mb,
+        )
+        if kind.memory_mb
+        else Text("how much the controller takes is not known here; look it up")
+    )
+    return [
+        Issue(
+            WARNING if is_too_large else NOTE,
+            "PROGRAM_SIZE",
+            Text(
+                "the program of {} will have about {} points in {} files, {:.2g} MB: {}. A larger strategy.chord_error or "
+                "strategy.layer_height makes it smaller; program.max_points sets the size of a file",
+                parameters.post,
+                count(points),
+                files,
+                megabytes,
+                known,
+            ),
+        )
+    ]
+
+
+def base_issues(machine: Machine, parameters: ProgramParameters) -> list[Issue]:
+    """A warning where positions of a Cartesian program count from a base frame that may not be the controller's."""
+    if machine.base_is_known or parameters.motion != "cartesian" or parameters.post == "none":
+        return []
+    return [
+        Issue(
+            WARNING,
+            "BASE_NOT_KNOWN",
+            Text(
+                "where the base frame of {} lies is not known: positions of the program count from its base_link. Compare "
+                "the pose of a known point on the controller before the program is run, set base in a copy of the machine "
+                "file, or use program.motion: joint",
+                machine.title,
+            ),
+        )
+    ]
 
 
 def check_external(cell: Cell, post: str) -> None:

@@ -55,7 +55,12 @@ __all__ = ["read", "write"]
 
 LAST_ANALOGUE = 4096
 CONTROLLER = Controller(
-    external=True, positioner="STN1", whole_beads=True, straight_in_part=True, linear_triggers=True
+    point_bytes=150,
+    external=True,
+    positioner="STN1",
+    whole_beads=True,
+    straight_in_part=True,
+    linear_triggers=True,
 )
 PENDANT = Pendant("ABB", ("q1", "q2", "q3", "q4"), QUATERNION, 7)
 NO_WIRE = NO_WEAVE = NO_TRIGGER = ""  # what of it is not told together: refuse_process

@@ -75,7 +75,10 @@ class Run:
                 records.group,
                 records.values.shape[1],
             ):
-                raise unreadable(listing.file, "it moves other groups than those before")
+                raise unreadable(
+                    f"{listing.file} line {listing.moves.line[0]}",
+                    "it moves other groups than the programs before",
+                )
             self.group, self.track = records.group, (self.track[0], records.track)
             self.values.append(records.values[rows])
             self.digits = max(self.digits, records.digits)

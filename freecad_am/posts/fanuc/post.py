@@ -59,7 +59,7 @@ __all__ = ["read", "write"]
 
 LAST_ANALOGUE = 25  # analogue inputs
 # why the speed of the wire cannot follow that of the torch
-CONTROLLER = Controller(external=True, positioner="2")
+CONTROLLER = Controller(point_bytes=205, external=True, positioner="2")
 PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_WEAVE = ""  # linear moves can be woven

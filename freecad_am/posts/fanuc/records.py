@@ -71,7 +71,7 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     )
     more = several or "E1" in text
     found = (
-        _with_more(file, text)
+        _with_more(file, text, positions)
         if more
         else _joint_records(text) or _any_records(file, text, positions)
     )
@@ -79,8 +79,13 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     if (np.diff(found.point) > 0).all():
         return found._replace(moved=_groups_of(lines))
     order = np.argsort(found.point, kind="stable")
-    if (np.diff(found.point[order]) == 0).any():
-        raise unreadable(file, "a position is recorded twice")
+    twice = np.flatnonzero(np.diff(found.point[order]) == 0)
+    if len(twice):
+        point = int(found.point[order][twice[0]])
+        line = _line(text, positions, point, 1)
+        raise unreadable(
+            file, Text("P[{}] is recorded twice, the second time in line {}", point, line)
+        )
     some = order.tolist()
     return found._replace(
         point=found.point[order],
@@ -106,12 +111,30 @@ def _check_groups(file: str, lines: list[str], found: Records) -> None:
     """The groups that a program moves are those that it has positions of."""
     moved = _groups_of(lines)
     if len(found.point) and moved != {"1", found.group or "1"}:
+        number = next((k for k, line in enumerate(lines, 1) if line.startswith("DEFAULT_GROUP")), 1)
         raise unreadable(
-            file, Text("it moves groups {}, and has positions of others", ", ".join(sorted(moved)))
+            f"{file} line {number}",
+            Text(
+                "its header moves groups {}, and its positions are of groups {}",
+                ", ".join(sorted(moved)),
+                ", ".join(sorted({"1", found.group or "1"})),
+            ),
         )
 
 
-def _with_more(file: str, text: str) -> Records:
+def _line(text: str, positions: int, point: int, again: int = 0) -> int:
+    """The line of the record of a position, or of the one that records it again."""
+    starts = [match.start() for match in re.finditer(rf"^P\[{point}\b", text, re.MULTILINE)]
+    before = text.count("\n", 0, starts[min(again, len(starts) - 1)])
+    return before + positions + 2
+
+
+def _place(file: str, text: str, positions: int, point: int) -> str:
+    """File and line of the record of a position."""
+    return f"{file} line {_line(text, positions, point)}"
+
+
+def _with_more(file: str, text: str, positions: int) -> Records:
     """The joint positions of a text with a track or two motion groups, all alike."""
     values, frames, groups, decimals, points = [], [], set(), 99, []
     for record in _MORE.finditer(text):
@@ -122,16 +145,32 @@ def _with_more(file: str, text: str) -> Records:
         if [(axis, comma) for axis, _, comma in external] != due or (
             group and (user, tool) != (other_user, other_tool)
         ):
-            raise unreadable(file, Text("the second group of P[{}] is not understood", point))
+            raise unreadable(
+                _place(file, text, positions, int(point)),
+                Text("the second group of P[{}] is not understood", point),
+            )
         texts = [*own, *([track] if track else []), *(value for _, value, _ in external)]
         points.append(int(point))
         values.append([float(value) for value in texts])
         frames.append((user, tool))
-        groups.add((group or "", count, bool(track)))
+        kind = (group or "", count, bool(track))
+        if groups and kind not in groups:
+            raise unreadable(
+                _place(file, text, positions, int(point)),
+                Text(
+                    "P[{}] has other motion groups, or axes of them, than P[{}]; record all positions alike",
+                    point,
+                    points[0],
+                ),
+            )
+        groups.add(kind)
         decimals = min(decimals, *(len(value.partition(".")[2]) for value in texts))
-    if len(points) != len(_RECORD_START.findall(text)) or len(groups) != 1:
+    starts = [int(point) for point in _RECORD_START.findall(text)]
+    if points != starts or not points:
+        bad = next((point for point in starts if point not in points), starts[-1] if starts else 0)
         raise unreadable(
-            file, "its positions are not all of the same motion groups, or one is not understood"
+            _place(file, text, positions, bad) if starts else file,
+            Text("the record of P[{}] is not understood", bad),
         )
     (number, _, track_values), half = groups.pop(), 0.5 * 10.0**-decimals
     return Records(

@@ -52,7 +52,9 @@ __all__ = ["read", "write"]
 
 NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found documented"
 # why the speed of the wire cannot follow that of the torch
-CONTROLLER = Controller(external=True, positioner="2", arc_moves=True)
+CONTROLLER = Controller(
+    point_bytes=75, memory_mb=4.0, external=True, positioner="2", arc_moves=True
+)
 PENDANT = Pendant("KUKA", ("A", "B", "C"), MOVING_ZYX)
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
 NO_WEAVE = "the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own"

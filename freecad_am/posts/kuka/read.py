@@ -229,6 +229,17 @@ def _one_output(number: str, run: Run, where: str) -> None:
 
 def _done(line: str, run: Run, where: str) -> None:
     """An instruction, neither move nor setting: it is read ahead but for waits, so outputs and calls come after one."""
+    if not any(form.match(line) for form in (_PAUSE, _AWAITED, _SWITCHED, _CALLED)):
+        if line.startswith("TRIGGER") and not run.standing:
+            raise not_read(
+                where,
+                Text(
+                    "the instruction {!r} is not understood: of a TRIGGER, which is read ahead of the motion, only one with "
+                    "DISTANCE=1 and a DELAY of at most 0 is",
+                    line,
+                ),
+            )
+        raise not_read(where, Text("the instruction {!r} is not understood", line))
     if run.arc.begun or run.trigger:
         raise not_read(where, Text("{!r} stands among the lines of another instruction", line))
     if pause := _PAUSE.match(line):
@@ -254,8 +265,6 @@ def _done(line: str, run: Run, where: str) -> None:
             raise not_read(where, Text("{} is run already, or called while depositing", call[1]))
         else:
             _go(call[1].lower(), run)
-    else:
-        raise not_read(where, Text("the instruction {!r} is not understood", line))
 
 
 def _stopped(run: Run, where: str) -> bool:

@@ -50,7 +50,7 @@ __all__ = ["read", "write"]
 
 NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_")
 _NO_END = 10**9
-CONTROLLER = Controller()
+CONTROLLER = Controller(point_bytes=67)
 PENDANT = None  # no robot's
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_WEAVE = "programs of five-axis machines have no weave"

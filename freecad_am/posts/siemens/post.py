@@ -51,7 +51,7 @@ __all__ = ["read", "write"]
 
 
 _NO_END = 10**9
-CONTROLLER = Controller()
+CONTROLLER = Controller(point_bytes=80)
 PENDANT = None  # no robot's
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_WEAVE = "programs of five-axis machines have no weave"

@@ -49,7 +49,7 @@ __all__ = ["read", "write"]
 
 NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
 # why the speed of the wire cannot follow that of the torch
-CONTROLLER = Controller(whole_beads=True)
+CONTROLLER = Controller(point_bytes=250, whole_beads=True)
 PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
 NO_WEAVE = "VAL 3 has no documented weave"

@@ -120,6 +120,8 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
                 run.steps[-1] = dataclasses.replace(run.steps[-1], stops=True)
         elif layer := _LAYER.match(line):
             run.happens("layer", float(layer[1]))
+        elif not any(form.match(line) for form in (_LOAD, _CALL, _OUTPUT, _DELAY, _WAIT)):
+            raise unreadable(where, Text("the instruction {!r} is not understood", line))
         elif run.moving:
             raise unreadable(where, Text("{!r} does not wait for the moves before it", line))
         elif load := _LOAD.match(line):
@@ -180,8 +182,6 @@ def _other(app: Application, line: str, run: _Run, where: str) -> None:
         run.happens("wait", float(delay[1]), digits=0.5 * 10.0 ** -len(delay[2] or ""))
     elif wait := _WAIT.match(line):
         run.happens("input", _number(_link(app, wait[1], "I", where), where))
-    else:
-        raise unreadable(where, Text("the instruction {!r} is not understood", line))
 
 
 def _link(app: Application, name: str, letter: str, where: str) -> str:

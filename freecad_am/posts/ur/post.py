@@ -55,7 +55,9 @@ __all__ = ["read", "write"]
 
 AXES = 6
 # why the speed of the wire cannot follow that of the torch
-CONTROLLER = Controller(configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3)
+CONTROLLER = Controller(
+    point_bytes=140, configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3
+)
 PENDANT = Pendant("Universal Robots", ("RX", "RY", "RZ"), ROTATION_VECTOR, 6)
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
 NO_WEAVE = "URScript has no documented weave of its own"

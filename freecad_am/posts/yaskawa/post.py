@@ -61,7 +61,7 @@ __all__ = ["read", "write"]
 
 NO_ANALOGUE = "how a job waits for an analogue input differs with the controller's options, and the post yaskawa knows none"
 # why the speed of the wire cannot follow that of the torch
-CONTROLLER = Controller(external=True, positioner="ST1", pulses=True)
+CONTROLLER = Controller(point_bytes=75, external=True, positioner="ST1", pulses=True)
 PENDANT = Pendant("Yaskawa", ("Rx", "Ry", "Rz"), FIXED_XYZ)
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
 NO_WEAVE = ""  # linear moves can be woven

@@ -38,6 +38,8 @@ from .file import Node, read
 
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
+# a remark of machine files
+BASE_NOT_KNOWN = "The maker's own base frame is not known: base_link is used in its place."
 UNKNOWN_REMARK = "a URDF does not say what the controller shows"
 REFUSED = (
     "BAD_MACHINE: "  # begins what stands in place of the title of a file that is not a machine file
@@ -129,6 +131,11 @@ class Machine:
             return self.axes
         own = len(self.axes) - self.external
         return (*(f"q{index + 1}" for index in range(own)), *self.axes[own:])
+
+    @property
+    def base_is_known(self) -> bool:
+        """Whether `base` is the manufacturer's own base frame; False where base_link stands for it."""
+        return BASE_NOT_KNOWN not in self.remarks
 
     @property
     def units(self) -> tuple[str, ...]:

@@ -55,6 +55,11 @@ def remarks_of(
         ),
         *_ranges(moves),
         *((cell.machine.controller_remark,) if cell.machine.controller_remark else ()),
+        *(
+            ("Base frame not known: positions count from base_link",)
+            if parameters.motion == "cartesian" and not cell.machine.base_is_known
+            else ()
+        ),
     )
 
 
