@@ -71,7 +71,7 @@ from .macro.suit import (
 )
 from .objects import user_machines
 from .objects.cell import Cell
-from .objects.checks.controllers import post_of
+from .objects.checks.controllers import post_of, usual_motion
 from .objects.fields.naming import proposed_name, taken_name
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath
@@ -197,7 +197,12 @@ def make_program(
     program: ProgramParameters | None = None,
     **values: Any,
 ) -> Any:
-    """The controller's files of a joint path, read back and checked: `am.make_program(doc, joint_path)`"""
+    """The controller's files of a joint path, read back and checked: `am.make_program(doc, joint_path)`
+
+    Without `motion` the program has the motion that its post writes: joint where it writes both.
+    """
+    if program is None and "motion" not in values:
+        values = {**values, **usual_motion(joint_path, values.get("post"))}
     links = {"JointPath": joint_path, "ProgramName": name or label}
     return make_stage(doc, Program, "Program", label, links, [program], values)
 

@@ -26,7 +26,9 @@ NAMES = (
     "yaskawa",
     "abb",
     "kuka",
-)  # of the modules beside this one
+)
+_MOTIONS = ("joint", "cartesian")  # the usual one first
+# of the modules beside this one
 
 
 class Post(Protocol):
@@ -96,6 +98,13 @@ def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
             load(name).refuse_setup(motion, setup)
             found.append(name)
     return tuple(found)
+
+
+def motion_written(post: str, setup: str) -> str:
+    """The motion of a program that names none: joint, where the post writes that of the set-up or neither, else cartesian.
+    InputError UNKNOWN_POST."""
+    load(post)
+    return next((motion for motion in _MOTIONS if fitting((post,), motion, setup)), _MOTIONS[0])
 
 
 def main_file(files: Iterable[str]) -> str:

@@ -17,6 +17,7 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.sequence import BY_FEATURE, BY_HEIGHT
+from freecad_am.posts.catalogue import motion_written
 from freecad_am.sections import cell as job_cell
 from freecad_am.sections import fields, paths, quantity, tree
 
@@ -159,7 +160,8 @@ def _checked(job: tree.Tree, path: str) -> Job:
     else:
         process = process_of(values.get("process") or {})
         features = several(values, job)
-    program = _program(values.get("program"))
+    cell = job_cell.read(values.get("cell"), folder)
+    program = _program(values.get("program"), cell)
     scan = next((one.scan for one in features if one.scan is not None), None)
     if scan is not None and len(features) > 1:
         raise InputError(
@@ -180,7 +182,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
         sequence=sequence,
         joints=_joints(values.get("joints") or {}),
         process=process,
-        cell=job_cell.read(values.get("cell"), folder),
+        cell=cell,
         program=program,
         tree=job,
         place=fields.build(PlaceParameters, values.get("place") or {}, "place"),
@@ -226,8 +228,13 @@ def _resumed(program: ProgramParameters, layer: int) -> ProgramParameters:
     return replace(program, start_at=replace(program.start_at, layer=layer))
 
 
-def _program(section: Any) -> ProgramParameters | None:
+def _program(section: Any, cell: CellParameters | None) -> ProgramParameters | None:
+    """The program of a section. Where it names no motion, one that its post writes of the set-up."""
     if section is None:
         return None
     program = fields.build(ProgramParameters, section, "program")
-    return None if program.post == "none" else program
+    if program.post == "none":
+        return None
+    if cell is None or fields.mapping(section, "program").get("motion") is not None:
+        return program
+    return replace(program, motion=motion_written(program.post, cell.setup))

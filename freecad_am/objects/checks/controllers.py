@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from ...core.geometry.formatting import count
 from ...core.issues import NOTE, WARNING, InputError, Issue, Text, Word
@@ -15,7 +16,7 @@ from ...core.parameters.cell import CellParameters
 from ...core.parameters.external import externals
 from ...core.parameters.program import MOTIONS, ProgramParameters
 from ...core.toolpath import Toolpath
-from ...posts.catalogue import NAMES, controller, fitting
+from ...posts.catalogue import NAMES, controller, fitting, motion_written
 
 MB = 1e6
 LARGE_MB, MANY_FILES = 2.0, 20  # from which the size of a program is noted
@@ -240,6 +241,19 @@ def post_of(settings: CellParameters, wanted: str, folders: Sequence[str]) -> tu
     if posts is None or wanted in posts:
         return next(iter(writers(machine, (wanted,), settings.setup)), (wanted, usual.motion))
     return next(iter(writers(machine, posts, settings.setup)), ("", ""))
+
+
+def usual_motion(joint_path: Any, post: Any) -> dict[str, str]:
+    """The motion, by its key, of a program of a joint path object that names none, where the post does not write the usual
+    one in its set-up; empty where it does, or not all is known."""
+    linked = getattr(joint_path, "Cell", None)
+    setup = getattr(linked, "Setup", "")
+    usual = ProgramParameters()
+    try:
+        motion = motion_written(str(post or usual.post), str(setup))
+    except InputError:  # told when the program is made
+        return {}
+    return {} if motion == usual.motion else {"motion": motion}
 
 
 def readers(cell: Cell) -> tuple[str, ...] | None:

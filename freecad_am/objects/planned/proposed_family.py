@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from FreeCAD import Vector
 
 from freecad_am.core.types import Array, Mask
 
@@ -36,6 +37,7 @@ from .on_bends import carried, on_bend
 
 COARSE = 0.3  # mm; of triangles that a look at solids is content with
 TOUCHING = 0.05  # mm from the surface of a hub
+LOOKED_AT = 60  # corners of a solid that are looked for in a hub
 LEAST = 3  # corners of a solid that lie on what it stands on
 OVER = 0.1  # of the surface; parts of which more hangs over get layers that need no support
 ROUNDED_OFF = 0.005  # of the surface; what rounds to nothing
@@ -115,14 +117,23 @@ def proposed(
             "surface", "", Text("{} is a thin wall that grows on {}", part.label, substrate.label)
         )
     if len(shape.Solids) > 1 and not names:
-        if _own_hub(part):
+        if clicked and substrate is None and _own_hub(part, clicked):
             why = Text(
-                "most solids of {} stand on a cylinder or cone of another of them", part.label
+                "{} of {} is chosen, which most solids of it stand on",
+                ", ".join(clicked),
+                part.label,
             )
             return Proposal("developable", "", why)
+        hint = "; to deposit on one of them, name it as the substrate" if _own_hub(part) else ""
         return _solid(
             part,
-            Text("{} holds {} solids{}", part.label, len(shape.Solids), carried(shape)),
+            Text(
+                "{} holds {} solids{}{}",
+                part.label,
+                len(shape.Solids),
+                carried(shape),
+                Word(hint),
+            ),
             tilts,
             planes,
         )
@@ -426,7 +437,8 @@ def _own_hub(part: Taken, faces: Sequence[str] = ()) -> bool:
 
 
 def stands_on_hub(part: Taken, substrate: Taken, faces: Sequence[str] = ()) -> bool:
-    """Whether a solid or mesh has corners on a cylinder or cone of the substrate, on the faces chosen of it or any."""
+    """Whether a solid or mesh has corners on a cylinder or cone of the substrate, on the faces chosen of it or any, or reaches
+    through one into the substrate, as the root of a blade does."""
     if substrate.shape is None or (part.shape is not None and not part.shape.Solids):
         return False  # a surface is not a solid to be filled
     corners = (
@@ -436,7 +448,20 @@ def stands_on_hub(part: Taken, substrate: Taken, faces: Sequence[str] = ()) -> b
     )
     named = [(f"Face{number}", face) for number, face in enumerate(substrate.shape.Faces, start=1)]
     seats = hubs.seats([(name, face) for name, face in named if not faces or name in faces], False)
-    near = [
-        np.abs(seat.base.surface.distance(seat.base.inside(corners))) < TOUCHING for seat in seats
-    ]
-    return any(int(some.sum()) >= LEAST for some in near)
+    heights = [seat.base.surface.distance(seat.base.inside(corners)) for seat in seats]
+    return any(
+        int((np.abs(height) < TOUCHING).sum()) >= LEAST
+        or _reaches_into(substrate, corners, np.asarray(height))
+        for height in heights
+    )
+
+
+def _reaches_into(substrate: Taken, corners: Array, heights: Array) -> bool:
+    """Whether corners (n, 3) above a cylinder or cone, by their heights (n,) mm, have others below it that are in the
+    substrate."""
+    below = np.flatnonzero(heights < -TOUCHING)
+    if (heights > TOUCHING).sum() < LEAST or len(below) < LEAST:
+        return False
+    some = below[:: max(1, len(below) // LOOKED_AT)]
+    inside = [substrate.shape.isInside(Vector(*corner), TOUCHING, True) for corner in corners[some]]
+    return sum(inside) >= LEAST
