@@ -91,7 +91,11 @@ def test_a_part_on_another():
     assert of(Part.makeBox(9, 9, 9), Part.makeBox(40, 40, 10, Vector(0, 0, -10))).kind == "solid"
     assert of(Part.makeCylinder(12, 40).Faces[0], edges=True).kind == "surface"
     whole = of(Part.makeCompound([hub, fin, fin.rotated(Vector(), UP, 180.0)]))
-    assert whole.kind == "developable" and "another of them" in whole.reason
+    assert whole.kind == "solid" and "name it as the substrate" in whole.reason
+    rooted = Part.makeBox(24, 6, 30, Vector(20, -3, 20))  # 5 mm of it are in the hub
+    assert rooted.common(hub).Volume > 0 and of(rooted, hub).kind == "developable"
+    above = Part.makeBox(20, 20, 30, Vector(-10, -10, 75))  # through its end face
+    assert above.common(hub).Volume > 0 and of(above, hub).kind == "solid"
 
 
 def test_what_stands_on_something_bent_gets_layers_of_its_shape():

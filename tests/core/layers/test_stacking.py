@@ -46,3 +46,45 @@ def test_meshes_of_one_part_are_stacked_alike(seed):
         assert few.way == pytest.approx(many.way, abs=2e-4) and few.height == pytest.approx(
             10.0, abs=0.02
         )
+
+
+def square_tube(outer, inner, length):
+    """Triangles of a tube along X whose sections are squares that stand on a corner."""
+
+    def ring(half):
+        turn = np.sqrt(2.0) * half * np.array([[0, 1], [-1, 0], [0, -1], [1, 0]])
+        return [np.column_stack([np.full(4, x), turn]) for x in (0.0, length)]
+
+    (low, high), (inner_low, inner_high) = ring(0.5 * outer), ring(0.5 * inner)
+    sheets = []
+    for k in range(4):
+        n = (k + 1) % 4
+        sheets += [
+            (low[k], low[n], high[n], high[k]),
+            (inner_low[n], inner_low[k], inner_high[k], inner_high[n]),
+            (low[n], low[k], inner_low[k], inner_low[n]),
+            (high[k], high[n], inner_high[n], inner_high[k]),
+        ]
+    corners = np.array([tri for a, b, c, d in sheets for tri in ((a, b, c), (a, c, d))])
+    inwards = np.einsum("mk,mk->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0.0
+    return corners[:, ::-1] if inwards else corners
+
+
+def test_a_part_is_not_balanced_on_an_edge():
+    """On an edge nothing of it leans by more than 45 deg and it is lower than on its end, but it falls over."""
+    rng = np.random.default_rng(5)
+    for angle in (0.0, 30.0):
+        turn = Rotation.from_euler("z", angle, degrees=True).as_matrix()
+        part = square_tube(40.0, 30.0, 80.0) @ turn.T
+        found = best([body(part, rng)], SolidParameters())
+        way = found[0].way
+        assert abs(way @ turn[:, 0]) == pytest.approx(1.0, abs=1e-3) and found[0].area == 0.0
+        # what stands on the platform has an area, and the middle of the part is over it
+        heights = part @ way
+        standing = part[(heights < heights.min() + 0.1).all(axis=1)]
+        area = 0.5 * np.linalg.norm(
+            np.cross(standing[:, 1] - standing[:, 0], standing[:, 2] - standing[:, 0]), axis=1
+        )
+        assert area.sum() == pytest.approx(40.0**2 - 30.0**2, rel=1e-3)
+        on_edge = next(one for one in found if abs(one.way[2]) > 0.999)
+        assert on_edge.area == 0.0 and on_edge.height < found[0].height and on_edge.stable < 0.05

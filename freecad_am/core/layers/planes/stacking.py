@@ -24,6 +24,8 @@ AXES = np.array(
 LARGEST = 12  # flat faces that the part may be laid on, beside the axes
 PARALLEL = np.cos(np.radians(2.0))
 STANDING = 0.5  # layer heights above the lowest place; what is no higher stands there
+STABLE = float(np.radians(5.0))  # by which a part may lean without falling over
+LEANS = 72  # directions in which it may
 CLOSE = 0.01  # of the area of the part; areas nearer together are the same
 LEVEL = 1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
 PLACES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
@@ -31,11 +33,13 @@ MAX_PIECES = 64  # parts of an edge of a facet between such places
 
 
 class Stacked(NamedTuple):
-    """What a direction is judged by: unit vector (3,), area over nothing, mm2, and height, mm."""
+    """What a direction is judged by: unit vector (3,), area over nothing, mm2, height, mm, and by how many rad the part may
+    lean before it falls over, 0 or less where it falls over as it stands."""
 
     way: Array
     area: float
     height: float
+    stable: float = np.inf
 
 
 def stacked(
@@ -63,15 +67,28 @@ def stacked(
 
 
 def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
-    """The axes and the directions out of large flat faces, the best first: of those with the least area over nothing, but
-    for CLOSE, the one with the least height, but for LEVEL, and of these the first; then of the others likewise. Any mesh of
-    the same part has the same order."""
+    """The axes and the directions out of large flat faces, the best first: of those in which the part stands by STABLE, or of
+    all where it does in none, those with the least area over nothing, but for CLOSE, of these the one with the least height,
+    but for LEVEL, and of these the first; then of the others likewise. Any mesh of the same part has the same order."""
     vertices, normals, areas = facets(
         bodies, strategy.chord_error if strategy.fuse == "auto" else None
     )
     ways = _candidates(normals, areas)
     steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
-    found = [judged(way, vertices, normals, areas, steep, standing) for way in ways]
+    middle = _centre_of_mass(bodies)
+    found = [
+        judged(way, vertices, normals, areas, steep, standing)._replace(
+            stable=_stability(vertices, way, standing, middle)
+        )
+        for way in ways
+    ]
+    return _ranked([one for one in found if one.stable >= STABLE], areas) + _ranked(
+        [one for one in found if one.stable < STABLE], areas
+    )
+
+
+def _ranked(found: list[Stacked], areas: Array) -> list[Stacked]:
+    """Directions, the best first, whatever the part stands on."""
     ranked: list[Stacked] = []
     while found:
         least = min(one.area for one in found) + CLOSE * float(areas.sum())
@@ -80,6 +97,40 @@ def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
         ranked.append(next(one for one in few if one.height <= low * (1.0 + LEVEL)))
         found = [one for one in found if one is not ranked[-1]]
     return ranked
+
+
+def _centre_of_mass(bodies: Sequence[Body]) -> Array:
+    """(3,) of closed bodies; of their surfaces where these enclose nothing."""
+    corners = np.concatenate([body.corners() for body in bodies])
+    origin = corners.reshape(-1, 3).mean(axis=0)
+    seen = corners - origin
+    weights = np.einsum("mk,mk->m", seen[:, 0], np.cross(seen[:, 1], seen[:, 2]))
+    centres = seen.sum(axis=1) / 4.0
+    if abs(weights.sum()) <= 1e-9 * float(np.ptp(seen.reshape(-1, 3), axis=0).max()) ** 3:
+        weights, centres = np.linalg.norm(doubled_areas(corners), axis=1), seen.mean(axis=1)
+    whole = float(weights.sum())
+    middle: Array = origin + weights @ centres / (whole or 1e-300)
+    return middle
+
+
+def _stability(corners: Array, way: Array, standing: float, middle: Array) -> float:
+    """By how many rad a part of triangles (m, 3, 3) may lean, in any direction, before its centre of mass (3,) is no longer over
+    what lies no higher than `standing` mm above its lowest place along a direction (3,)."""
+    frame = upright(np.zeros(3), way)[:3, :3]
+    local = corners @ frame
+    foot = float(local[..., 2].min())
+    level = foot + standing
+    points = [local[local[..., 2] <= level][:, :2]]
+    for k in range(3):  # where edges cross that height
+        start, end = local[:, k], local[:, k - 1]
+        some = (start[:, 2] <= level) != (end[:, 2] <= level)
+        share = (level - start[some, 2]) / (end[some, 2] - start[some, 2])
+        points.append(start[some, :2] + share[:, None] * (end - start)[some, :2])
+    flat, centre = np.concatenate(points), middle @ frame
+    angle = np.linspace(0.0, 2.0 * np.pi, LEANS, endpoint=False)
+    towards = np.stack([np.cos(angle), np.sin(angle)])
+    reach = ((flat - centre[:2]) @ towards).max(axis=0)
+    return float(np.arctan2(reach.min(), max(float(centre[2]) - foot, 1e-9)))
 
 
 def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
