@@ -14,6 +14,7 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters
 from ..core.strategies import size
+from .checks.on_substrate import gap_issues
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
 from .shapes.chosen import FeatureStage, source_of
@@ -66,6 +67,10 @@ class CladdingFeature(FeatureStage):
                 found = clad_faces(part.shape.copy(False), faces, spacing, back, high, part.label)
             large = size.judged(size.of_cladding(found, strategy), strategy)
             made = dataclasses.replace(found, surroundings=bodies((*own, *ground, *fixtures)))
+            if ground and not own:
+                corners = part.body().vertices
+                apart = gap_issues(part.label, (), [corners], ground, strategy.layer_height)
+                made = dataclasses.replace(made, issues=(*made.issues, *apart))
             return Outcome(
                 made,
                 (*made.issues, *large),

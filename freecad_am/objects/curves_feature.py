@@ -10,6 +10,7 @@ from ..core.geometry.curves.bead_curves import Curves
 from ..core.issues import InputError, Issue
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CurvesParameters
+from .checks.on_substrate import gap_issues
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .shapes.chosen import FeatureStage, names_of
@@ -66,6 +67,12 @@ class CurvesFeature(FeatureStage):
             else:
                 refuse_gcode_keys(label, strategy.roles, strategy.rotary)
                 found = tuple(curves_of(shape, edges, faces, strategy.chord_error, label))
+            issues = (
+                *issues,
+                *gap_issues(
+                    label, (), [one.points for one in found], ground, strategy.layer_height
+                ),
+            )
             curves = Curves(
                 label,
                 found,

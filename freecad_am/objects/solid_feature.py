@@ -16,6 +16,7 @@ from ..core.layers.planes.stacking import stacked
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size
+from .checks.on_substrate import gap_issues
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .shapes.chosen import FeatureStage, names_of, source_of
@@ -139,6 +140,8 @@ class SolidFeature(FeatureStage):
             height = max(
                 float(base.surface.distance(base.inside(body.vertices)).max()) for body in solid
             )
+            apart = gap_issues(label, solid, (), ground, strategy.layer_height)
+            solids = dataclasses.replace(solids, issues=(*solids.issues, *apart))
             return Outcome(
                 solids, (*solids.issues, *large), (("Solids", len(solid)), ("Height", height))
             )

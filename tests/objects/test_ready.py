@@ -182,3 +182,23 @@ def test_a_cell_by_itself_is_placed_as_that_of_a_new_job(doc, machine):
     )
     assert given.deposition_point == (1000.0, 0.0, 700.0, 0.0, 0.0, 0.0)
     assert api.result(api.make_cell(doc)) == CellParameters()
+
+
+@pytest.mark.parametrize(("up", "apart"), [(0.0, False), (1.4, False), (30.0, True)])
+def test_a_named_substrate_far_below_is_reported(doc, up, apart):
+    """Of every family that takes a substrate without looking for where it begins on it; no cell is needed."""
+    slab = feature(doc, "Slab", Part.makeBox(60, 60, 10, V(-30, -30, -10)))
+    block = feature(doc, "Block", Part.makeBox(30, 30, 10, V(-15, -15, up)))
+    line = feature(doc, "Line", Part.makeLine(V(-10, 0, up), V(20, 0, up)))
+    corners = [V(x, y, up) for x, y in ((-10, -10), (10, -10), (10, 10), (-10, 10), (-10, -10))]
+    sheet = feature(doc, "Sheet", Part.Face(Part.makePolygon(corners)))
+    for made in (
+        api.make_solid_feature(doc, block, substrate=slab),
+        api.make_curves_feature(doc, line, substrate=slab),
+        api.make_cladding_feature(doc, sheet, substrate=slab),
+    ):
+        found = [issue for issue in api.issues(made) if issue.code == "ABOVE_SUBSTRATE"]
+        assert bool(found) == apart
+        assert all(one.level == "warning" and "30 mm away" in one.message for one in found)
+    toolpath = api.make_toolpath(doc, api.make_solid_feature(doc, block, substrate=slab))
+    assert ("ABOVE_SUBSTRATE" in codes(toolpath)) == apart

@@ -25,6 +25,7 @@ STEPS = 7  # places on the way down at which a body is looked for
 ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
 FLUSH = 1e-6  # mm
 OVER_PLATFORM, ABOVE_PLATFORM = "OVER_PLATFORM", "ABOVE_PLATFORM"
+ABOVE_SUBSTRATE = "ABOVE_SUBSTRATE"
 CURVES = "curves"
 BY_ITSELF = (
     "surface",

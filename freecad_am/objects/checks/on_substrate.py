@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether what is deposited touches the substrate that is named for it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...core.geometry.mesh.solid import SolidMesh
+from ...core.geometry.obstacles import Body
+from ...core.issues import WARNING, Issue, Text
+from ...core.strategies.support import ABOVE_SUBSTRATE
+from ...core.types import Array
+from ..shapes.bodies import Taken
+
+REACH = 1.5  # layer heights; what is no farther from a body lies on it, as of `support`
+
+
+def gap_issues(
+    label: str,
+    deposited: Sequence[Body],
+    points: Sequence[Array],
+    ground: Sequence[Taken],
+    layer_height: float,
+) -> tuple[Issue, ...]:
+    """A warning where nothing of bodies, or of points (n, 3) of curves, is near the substrate that is named, with how far it
+    is and where it comes nearest."""
+    found = []
+    for one in ground:
+        under = one.body()
+        seen = np.vstack([*(body.vertices for body in deposited), *points])
+        distance = SolidMesh(under.vertices, under.triangles).searched(layer_height).signed(seen)[0]
+        nearest = int(distance.argmin())
+        gap, place = float(distance[nearest]), seen[nearest]
+        for body in deposited if gap > REACH * layer_height else ():
+            search = SolidMesh(body.vertices, body.triangles).searched(layer_height)
+            back = search.signed(under.vertices)[0]
+            if float(back.min()) < gap:
+                gap, place = float(back.min()), under.vertices[int(back.argmin())]
+        if gap > REACH * layer_height:
+            x, y, z = (float(value) for value in place)
+            found.append(
+                Issue(
+                    WARNING,
+                    ABOVE_SUBSTRATE,
+                    Text(
+                        "{} does not touch its substrate {}: it is {:.4g} mm away at ({:.4g}, {:.4g}, {:.4g}), where it comes "
+                        "nearest; move it onto the substrate, or leave the substrate out",
+                        label,
+                        one.label,
+                        gap,
+                        x,
+                        y,
+                        z,
+                    ),
+                )
+            )
+    return tuple(found)
