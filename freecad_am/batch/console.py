@@ -12,6 +12,7 @@ import time
 from collections.abc import Iterable
 from typing import Any
 
+from freecad_am.batch.supervised import tell_stopping
 from freecad_am.core.issues import ERROR, Issue, summarised
 
 DEBOUNCE_S = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
@@ -123,6 +124,7 @@ class Session:
         if self.interrupted and now - self._when < DEBOUNCE_S:
             return
         self.interrupted, self._when = True, now
+        tell_stopping()
         raise KeyboardInterrupt
 
 

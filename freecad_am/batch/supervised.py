@@ -21,6 +21,8 @@ from freecad_am.core.issues import AmError, InputError
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 INTERRUPTED = 130
 DONE = "done"  # told at the end by a copy that came to it
+STOPPING = "stopping"  # told by a copy that has noticed a signal
+GRACE = 0.7  # s that a copy has to notice one; the geometry kernel lets nothing through while it is at work
 
 _channel = -1  # where a copy tells
 
@@ -38,8 +40,14 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
         with contextlib.suppress(ProcessLookupError):
             if child[0]:
                 os.kill(child[0], number)
+        signal.setitimer(signal.ITIMER_REAL, GRACE)
+
+    def kill(*_: Any) -> None:
+        if child[0] and passed:
+            os.kill(child[0], signal.SIGKILL)
 
     before = {number: signal.signal(number, pass_on) for number in SIGNALS}
+    before[signal.SIGALRM] = signal.signal(signal.SIGALRM, kill)
     sys.stdout.flush()
     sys.stderr.flush()
     child[0] = os.fork()
@@ -53,7 +61,12 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
                 os.kill(child[0], number)
         messages = []
         with open(ours, encoding="utf-8") as stream:
-            messages = [json.loads(line) for line in stream if line.endswith("\n")]
+            for line in stream:
+                if line.endswith("\n"):
+                    messages.append(json.loads(line))
+                    if messages[-1] in (STOPPING, DONE):
+                        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
         status = os.waitstatus_to_exitcode(os.waitpid(child[0], 0)[1])
     finally:
         for number, handler in before.items():
@@ -61,13 +74,19 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
     if DONE in messages:
         return status
     for entry in messages:
-        _tidied(*entry)
+        if entry != STOPPING:
+            _tidied(*entry)
     if passed:
         say("interrupted: nothing was written")
         return INTERRUPTED
     error = crash(where, status)
     say(error.line())
     return error.exit_status
+
+
+def tell_stopping() -> None:
+    """From a copy: it has noticed that it is to stop, and does."""
+    _tell(STOPPING)
 
 
 def tell_outputs(folder: str, made: list[str]) -> None:
@@ -94,6 +113,7 @@ def _carry_out(work: Callable[[], int], channel: int, passed: list[int], parent:
     """In the copy: do the work and end."""
     global _channel
     _channel = channel
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
     os.set_inheritable(channel, False)
     status = 1
     try:
@@ -120,6 +140,7 @@ def _interrupted(*_: Any) -> None:
     """Once: the keys of a terminal reach the copy by itself and through the process that waits for it."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
+    tell_stopping()
     raise KeyboardInterrupt
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +23,7 @@ from ..core.planning.beads.speeds import SLOWED
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
-from ..core.planning.remedies import most_points, remedies
+from ..core.planning.remedies import LONGEST_SEARCH, most_points, remedies
 from ..core.planning.tried import Fixed, Tried
 from ..core.process.model import bead_table, predicted
 from ..core.simulation import payload
@@ -158,6 +159,7 @@ class JointPath(Stage):
             toolpath, process = job.toolpath(), job.process
             cell = cell_obstacles.resolved(job.settings, toolpath, job.folders)
             cylinders = () if cell.arm_clearance is None else cylinders_of(cell)
+            started = time.monotonic()
             joint_path = plan_joints(
                 toolpath,
                 cell,
@@ -165,6 +167,7 @@ class JointPath(Stage):
                 lambda fraction, text: progress.report(JOINTS * fraction, text),
                 cylinders,
             )
+            each = (time.monotonic() - started) / max(toolpath.point_count, 1)
             progress.report(JOINTS, "joining the beads by rapid moves")
             motion, rapid_issues = assemble(
                 joint_path,
@@ -210,7 +213,7 @@ class JointPath(Stage):
                 external_links=cell.external_links,
                 look=look,
             )
-            _tell_remedies(cell, toolpath, issues)
+            _tell_remedies(toolpath, issues, each)
             issues = (
                 *remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)),
                 *issues,
@@ -227,14 +230,11 @@ class JointPath(Stage):
         return work
 
 
-def _tell_remedies(cell: cells.Cell, toolpath: Toolpath, issues: Sequence[Issue]) -> None:
-    """Tell it where looking for what makes a job feasible takes long: each pose of an offset wrist is solved by a search."""
-    arm = cell.machine.arm
-    if arm is None or not arm.followed:
-        return
+def _tell_remedies(toolpath: Toolpath, issues: Sequence[Issue], each: float) -> None:
+    """Tell how long looking for what makes a job feasible takes, where that is long; each: s that a point took to plan."""
     from ..core.strategies import size
 
-    for issue in size.of_remedies(most_points(toolpath, issues)):
+    for issue in size.of_remedies(most_points(toolpath, issues), each, LONGEST_SEARCH):
         progress.tell(issue)
 
 

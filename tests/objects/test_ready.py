@@ -4,6 +4,7 @@ the frames of PyKDL chains; another placement is proposed where the usual one do
 
 import dataclasses
 import math
+import time
 
 import FreeCAD as App
 import numpy as np
@@ -14,7 +15,9 @@ from freecad_am import api
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.objects.checks.collisions import margin_issues
+from freecad_am.core.planning.remedies import remedies
+from freecad_am.core.planning.tried import Tried
+from freecad_am.objects.checks.collisions import look, margin_issues
 from freecad_am.objects.joint_path import planned_of
 from freecad_am.objects.shapes import cell_obstacles
 from tests.kdl_links import KdlLinks
@@ -202,3 +205,39 @@ def test_a_named_substrate_far_below_is_reported(doc, up, apart):
         assert all(one.level == "warning" and "30 mm away" in one.message for one in found)
     toolpath = api.make_toolpath(doc, api.make_solid_feature(doc, block, substrate=slab))
     assert ("ABOVE_SUBSTRATE" in codes(toolpath)) == apart
+
+
+def test_a_search_for_remedies_stops_in_time(doc):
+    """Out of reach; what was tried by then is told."""
+    ring = doc.addObject("Part::Cylinder", "Ring")
+    ring.Radius, ring.Height = 60, 4
+    doc.recompute()
+    skin = feature(
+        doc, "Skin", next(f for f in ring.Shape.Faces if f.Surface.TypeId.endswith("Cylinder"))
+    )
+    cell = api.make_cell(doc, platform_diameter=0, deposition_point=(5000, 0, 900, 0, 0, 0))
+    made = api.make_feature(doc, skin, layer_height=2, chord_error=1)
+    toolpath = api.make_toolpath(doc, made, cell)
+    path = api.make_joint_path(doc, toolpath, cell)
+    assert path.Status == "infeasible"
+    job = path.Proxy.job(path)
+    asked = Tried(
+        job.toolpath,
+        job.settings,
+        job.folders,
+        job.process,
+        job.parameters,
+        cylinders=(),
+        look=look,
+    )
+    planned = api.result(path).joint_path
+    calls = []
+
+    def slow(share, text):
+        calls.append(text)
+        time.sleep(0.2)
+
+    started = time.monotonic()
+    (note,) = remedies(asked, planned, planned.issues, slow, longest=0.5)
+    assert note.code == "NO_REMEDY" and "stopped after" in note.message
+    assert len(calls) <= 4 and time.monotonic() - started < 30.0

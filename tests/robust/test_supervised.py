@@ -68,6 +68,32 @@ def test_signals_are_passed_on(root, number, group):
     assert out == "status 130\n" and "Traceback" not in err
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_copy_that_lets_no_signal_through_is_ended(root, number):
+    """As in one long call of the geometry kernel no handler of its own runs."""
+    told = []
+
+    def kill(process):
+        told.append(time.monotonic())
+        os.kill(process.pid, number)
+
+    work = "signal.pthread_sigmask(signal.SIG_BLOCK, {2, 15}); time.sleep(60)"
+    out, err = ended(root, work, (2.0, kill))
+    assert out == "status 130\n" and err == "interrupted: nothing was written\n"
+    assert time.monotonic() - told[0] < 10.0  # of the minute that the call takes
+
+
+def test_a_copy_that_tidies_up_is_waited_for(root, tmp_path):
+    """One that has noticed the signal may take longer than it has to notice it."""
+    left = tmp_path / "left"
+    work = (
+        "\n    try: time.sleep(60)"
+        f"\n    finally: time.sleep(2.0); open({str(left)!r}, 'w').write('tidied')"
+    )
+    out, _ = ended(root, work, (2.0, lambda process: os.kill(process.pid, signal.SIGINT)))
+    assert out == "status 130\n" and left.read_text() == "tidied"
+
+
 def test_a_copy_ends_with_the_process_that_waits_for_it(root, tmp_path):
     told = tmp_path / "pid"
     work = f"open({str(told)!r}, 'w').write(str(os.getpid())); time.sleep(60)"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import signal
@@ -19,7 +20,9 @@ from .. import run as planning
 from .. import supervised
 from ..console import Session
 from ..job import job
+from ..outputs import staging
 
+GRACE = 1.0  # s that a process has to end by itself
 CHECKED = "checked"  # status of a row that was not planned
 
 
@@ -42,6 +45,7 @@ def started(order: Order) -> tuple[Any, Any]:
     )
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_carry_out, args=(order, sender))
+    process.outputs = order.folder
     process.start()
     sender.close()
     return receiver, process
@@ -70,14 +74,22 @@ def left_by(receiver: Any) -> dict[str, Any] | None:
         receiver.close()
 
 
-def stop(process: Any) -> None:
-    """End a process; it removes what is unfinished."""
+def ask_to_stop(process: Any) -> None:
+    """Tell a process to end, without waiting for that."""
     if process.is_alive():
         os.kill(process.pid, signal.SIGINT)
-        process.join(10.0)
+
+
+def stop(process: Any) -> None:
+    """End a process; it removes what is unfinished, and where the geometry kernel keeps it from that this does."""
+    ask_to_stop(process)
+    process.join(GRACE)
     if process.is_alive():
         process.kill()
         process.join()
+        if os.path.isdir(process.outputs):
+            with contextlib.suppress(OSError):
+                staging.clear(process.outputs)
 
 
 def _carry_out(order: Order, sender: Any) -> None:

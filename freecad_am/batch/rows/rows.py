@@ -130,6 +130,8 @@ def _planned_here(
                 yield row, result
             session.check()
     finally:
+        for _, process in running.values():
+            row_process.ask_to_stop(process)
         for receiver, (row, process) in running.items():
             row_process.stop(process)
             if (last := row_process.left_by(receiver)) is not None:  # it was done in this moment

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import time
 from collections.abc import Iterator, Sequence
 
 from ..issues import ERROR, NOTE, AmError, Issue, Text, has_errors
@@ -28,6 +29,7 @@ REMEDY, NO_REMEDY = "REMEDY", "NO_REMEDY"
 CHANGES = 16  # that are tried, about
 LONGEST = 20_000  # points of a job that is planned anew as a whole
 WHOLE = 3  # times that it is
+LONGEST_SEARCH = 60.0  # s on the clock, of a search
 RETRACTS = (50.0, 100.0, 5.0)  # mm
 FULL_TURN = (-math.pi, math.pi)
 
@@ -40,15 +42,56 @@ def most_points(toolpath: Toolpath, issues: Sequence[Issue]) -> int:
     return some + (WHOLE * toolpath.point_count if toolpath.point_count <= LONGEST else 0)
 
 
+class _Late(Exception):
+    """The search has taken as long as it may."""
+
+
 def remedies(
-    job: Tried, path: JointPath, issues: Sequence[Issue], progress: Progress
+    job: Tried,
+    path: JointPath,
+    issues: Sequence[Issue],
+    progress: Progress,
+    longest: float = LONGEST_SEARCH,
 ) -> list[Issue]:
     """A note with the first change found that makes an infeasible job feasible, or with all that were tried; none of a
-    feasible one. path: its joint path. progress may raise to cancel."""
+    feasible one. path: its joint path. progress may raise to cancel. longest: s on the clock, after which the search stops,
+    which is told."""
     if not has_errors(list(issues)):
         return []
+    until, tried = time.monotonic() + longest, []
+
+    def in_time(share: float, text: str) -> None:
+        progress(share, text)
+        if time.monotonic() > until:
+            raise _Late
+
+    try:
+        return _searched(job, path, issues, in_time, tried)
+    except _Late:
+        done = Text.joined("; ", tried[:-1]) if len(tried) > 1 else Text("none")
+        return [
+            Issue(
+                NOTE,
+                NO_REMEDY,
+                Text(
+                    "the search for what makes the job feasible stopped after {:.0f} s; tried in vain by then: {}",
+                    longest,
+                    done,
+                ),
+            )
+        ]
+
+
+def _searched(
+    job: Tried,
+    path: JointPath,
+    issues: Sequence[Issue],
+    progress: Progress,
+    tried: list[str],
+) -> list[Issue]:
+    """The note on what helps; changes are added to those tried as they are."""
     failed = _failed(issues)
-    points, whole, tried = POINTS, WHOLE, []
+    points, whole = POINTS, WHOLE
     for change in _changes(job, path, issues):
         progress(1.0, Text("looking for what would make it feasible: {}", change.remedy))
         try:

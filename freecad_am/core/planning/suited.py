@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+import time
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,6 +18,7 @@ from ..toolpath import Toolpath
 from . import other_cells
 from .external.remedies import NOT_LEVEL
 from .plan import Progress
+from .remedies import LONGEST_SEARCH
 from .tried import LAYERS, POINTS, Tried
 
 
@@ -25,13 +27,13 @@ def suited(job: Tried, progress: Progress) -> CellParameters:
     none was found. The layers are the first, the middle and the last one, and that which leans most. progress may raise to
     cancel. Raises what reading the toolpath and resolving the cell raise."""
     toolpath = job.toolpath()
-    some, left = _layers(toolpath), POINTS
+    some, left, until = _layers(toolpath), POINTS, time.monotonic() + LONGEST_SEARCH
     errors = _errors(job, some, progress)
     if not errors or not of_setup(job.settings.setup).free:
         return job.settings
     for change in _changes(job, errors):
         left -= some.point_count
-        if left < 0:
+        if left < 0 or time.monotonic() > until:
             break
         progress(1.0, Text("looking for a cell in which it can be done: {}", change.remedy))
         try:

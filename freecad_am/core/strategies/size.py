@@ -343,10 +343,13 @@ def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:
     )
 
 
-def of_remedies(points: int) -> tuple[Issue, ...]:
-    """A note LARGE where a job on an arm with an offset wrist cannot be carried out, and planning so many points at most
-    anew, to find what would make it feasible, takes long."""
-    seconds = points * SECONDS_A_REMEDY
+def of_remedies(
+    points: int, each: float = SECONDS_A_REMEDY, longest: float = math.inf
+) -> tuple[Issue, ...]:
+    """A note LARGE where a job cannot be carried out, and planning so many points at most anew, to find what would make it
+    feasible, takes long. each: s that a point takes, that of an arm with an offset wrist by default; longest: s, after which
+    the search stops."""
+    seconds = min(points * each, longest)
     if seconds < LARGE_SECONDS:
         return ()
     return (
