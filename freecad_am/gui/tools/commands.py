@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-import FreeCADGui as Gui
-
 from ..texts.translation import marked
 from . import needs, openers
+from .freecad_am import add_command
 from .tool import PREFIX, Tool
 
 # In the order of the work; between groups stands a separator. A tool that is in none comes last.
@@ -185,7 +184,7 @@ def register() -> list[str]:
     """Add all commands to FreeCAD; their names in the order of the toolbar, with separators."""
     for name, tool in TOOLS.items():
         tool.name = name
-        Gui.addCommand(PREFIX + name, tool)
+        add_command(PREFIX + name, tool)
     return _in_order(list(TOOLS))
 
 

@@ -17,6 +17,7 @@ from PySide import QtCore, QtGui
 from .. import icons
 from ..signals import connect
 from ..texts.translation import tr
+from .freecad_am import add_command
 
 PAGES = Path(__file__).resolve().parents[3] / "docs" / "tools"
 NAME, INDEX, PREFIX = "RoboticAM_Help", "README.md", "RoboticAM_"
@@ -188,5 +189,5 @@ def show(page: str, note: str = "") -> None:
 def install() -> None:
     """Register the command and watch the main window; once or more often."""
     if not _watches:
-        Gui.addCommand(NAME, Help())
+        add_command(NAME, Help())
         _watches.append(Watch(Gui.getMainWindow()))
