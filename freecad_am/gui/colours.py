@@ -1,19 +1,33 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A perceptual colour ramp: lightness rises evenly and the hue runs from blue to yellow, so that order can be seen."""
+"""The colours of the window: of texts on the theme's ground, light or dark, and a perceptual ramp.
+
+The lightness of the ramp rises evenly and its hue runs from blue to yellow, so that order can be seen.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+import FreeCADGui as Gui
 import numpy as np
+from PySide import QtCore, QtGui
 
 from freecad_am.core.types import Array
 
 from ..objects.fields import preferences
+from .widgets.present import present
 
 STEPS = 256
-WRONG = "#c0182b"  # of text that tells what is wrong
+# roles of texts; PLAIN is whatever the theme gives a text
+PLAIN, WRONG, GOOD, FAINT = "plain", "wrong", "good", "faint"
+# at least 4.5:1 on the grounds of FreeCAD's themes
+_ON_LIGHT = {WRONG: "#b3121f", GOOD: "#14693d", FAINT: "#5c6370"}
+_ON_DARK = {WRONG: "#ff8a80", GOOD: "#5fd39b", FAINT: "#aab3c0"}
+_ROLE = "RoboticAM_colour"  # property of widgets whose text has a role
+_PROBE = "RoboticAM_ThemeProbe"
+_MIDDLE = 128  # lightness of 255
 
 # first hue and how far it turns, deg, and how strong the colours are
 _HUES = dict(
@@ -56,3 +70,79 @@ def _table(name: str) -> Array:
     linear = (lab @ np.linalg.inv(_LAB).T) ** 3 @ np.linalg.inv(_LMS).T
     linear = np.clip(linear, 0.0, 1.0)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+# ---- the theme of the window
+
+
+class _Probe(QtGui.QLabel):
+    """A hidden label: the theme gives it the colour of its texts, by palette or by stylesheet."""
+
+    def __init__(self) -> None:
+        super().__init__(Gui.getMainWindow())
+        self.setObjectName(_PROBE)
+        self.hide()
+        self.ensurePolished()
+        self.dark: bool | None = None
+
+    def changeEvent(self, event: Any) -> None:
+        """Called by Qt, among others when the window gets another theme."""
+        super().changeEvent(event)
+        if event.type() in (QtCore.QEvent.PaletteChange, QtCore.QEvent.StyleChange):
+            QtCore.QTimer.singleShot(0, _renew)
+
+
+_probe: list[_Probe] = []
+_listeners: list[Callable[[], None]] = []
+
+
+def ink() -> Any:
+    """The colour of plain texts, as the theme of the window has it."""
+    if not _probe:
+        _probe.append(_Probe())
+        _probe[0].dark = is_dark()
+    return _probe[0].palette().color(QtGui.QPalette.WindowText)
+
+
+def is_dark() -> bool:
+    """Whether the theme has light texts on a dark ground."""
+    return bool(ink().lightness() > _MIDDLE)
+
+
+def of(role: str) -> Any:
+    """The colour of texts of a role, on the ground of the present theme."""
+    table = _ON_DARK if is_dark() else _ON_LIGHT
+    return QtGui.QColor(table[role]) if role in table else ink()
+
+
+def set_role(widget: Any, role: str) -> None:
+    """Give the text of a widget the colour of a role; it follows the theme of the window."""
+    widget.setProperty(_ROLE, role)
+    kind = "QLabel" if isinstance(widget, QtGui.QLabel) else widget.metaObject().className()
+    sheet = "" if role == PLAIN else f"{kind} {{ color: {of(role).name()}; }}"
+    if widget.styleSheet() != sheet:
+        widget.setStyleSheet(sheet)
+
+
+def listen(listener: Callable[[], None]) -> None:
+    """Call this whenever the window has become light or dark."""
+    _listeners.append(listener)
+
+
+def forget(listener: Callable[[], None]) -> None:
+    """Call it no more."""
+    if listener in _listeners:
+        _listeners.remove(listener)
+
+
+def _renew() -> None:
+    """Give all texts with a role the colour they have in the present theme."""
+    if not _probe or _probe[0].dark == is_dark():
+        return
+    _probe[0].dark = is_dark()
+    for widget in present(Gui.getMainWindow(), QtGui.QWidget):
+        role = widget.property(_ROLE)
+        if role:
+            set_role(widget, role)
+    for listener in _listeners:
+        listener()

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import os
 import tempfile
+from typing import Any
 
 import FreeCAD as App
+from PySide import QtCore, QtGui
 
 import freecad_am
 
@@ -15,12 +17,48 @@ FOLDER = os.path.join(
 )
 BADGES = {"stale": "#f5a623", "failed": "#e5243b", "infeasible": "#e5243b"}
 
+# of players: polygons in a square of 16, and bars by left edge and width
+_TRIANGLE_ON, _TRIANGLE_BACK = ((0, 2), (6, 8), (0, 14)), ((6, 2), (0, 8), (6, 14))
+_MARKS = {
+    "play": (((3, 2), (14, 8), (3, 14)),),
+    "pause": (((3, 2), (6, 2), (6, 14), (3, 14)), ((10, 2), (13, 2), (13, 14), (10, 14))),
+    "point_on": tuple(tuple((x + at, y) for x, y in _TRIANGLE_ON) for at in (2, 8)),
+    "point_back": tuple(tuple((x + at, y) for x, y in _TRIANGLE_BACK) for at in (2, 8)),
+    "layer_on": (
+        *(tuple((x + at, y) for x, y in _TRIANGLE_ON) for at in (1, 7)),
+        ((13, 2), (15, 2), (15, 14), (13, 14)),
+    ),
+    "layer_back": (
+        *(tuple((x + at, y) for x, y in _TRIANGLE_BACK) for at in (3, 9)),
+        ((1, 2), (3, 2), (3, 14), (1, 14)),
+    ),
+}
+_SIZES = (16, 24, 32, 64)  # pixels
+
 _made: dict[tuple[str, str], str] = {}
 
 
 def path(name: str) -> str:
     """The path of an icon of ours."""
     return os.path.join(FOLDER, f"{name}.svg")
+
+
+def of_player(name: str, colour: Any) -> Any:
+    """The icon of a button of a player, such as "play", in a colour."""
+    icon = QtGui.QIcon()
+    for size in _SIZES:
+        pixmap = QtGui.QPixmap(size, size)
+        pixmap.fill(QtCore.Qt.transparent)
+        painter = QtGui.QPainter(pixmap)
+        painter.setRenderHint(QtGui.QPainter.Antialiasing)
+        painter.scale(size / 16.0, size / 16.0)
+        painter.setPen(QtCore.Qt.NoPen)
+        painter.setBrush(QtGui.QBrush(colour))
+        for corners in _MARKS[name]:
+            painter.drawPolygon(QtGui.QPolygonF([QtCore.QPointF(x, y) for x, y in corners]))
+        painter.end()
+        icon.addPixmap(pixmap)
+    return icon
 
 
 def with_badge(name: str, status: str) -> str:

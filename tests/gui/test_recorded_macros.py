@@ -42,21 +42,19 @@ class Recorder:
         self.person.watch.awaited = (widgets.QDialog,)
 
         def fill():
-            lines = [
-                line
-                for window in widgets.QApplication.topLevelWidgets()
-                for line in window.findChildren(widgets.QLineEdit, "lineEditPath")
-                if line.isVisible()
-            ]
-            if not lines:
-                self.person.core.QTimer.singleShot(100, fill)
+            dialog = widgets.QApplication.activeModalWidget()
+            lines = [] if dialog is None else dialog.findChildren(widgets.QLineEdit, "lineEditPath")
+            if not lines:  # a busy machine takes its time to show it
+                timer.start(100)
                 return
             lines[0].setText(name)
-            dialog = lines[0].window()
             dialog.findChild(widgets.QLineEdit, "lineEditMacroPath").setText(f"{self.folder}/")
             dialog.findChild(widgets.QPushButton, "buttonStart").click()
 
-        self.person.core.QTimer.singleShot(100, fill)
+        timer = self.person.core.QTimer()
+        timer.setSingleShot(True)
+        timer.timeout.connect(fill)
+        timer.start(100)
         self.person.gui.runCommand("Std_DlgMacroRecord")
         self.person.watch.awaited = ()
         self.person.idle(0.2)
@@ -122,9 +120,7 @@ def test_a_recorded_job_runs_again(person, recorder, tmp_path, window):
     macro = recorder.stop()
     text = macro.read_text(encoding="utf-8")
     assert "am.make_all(" in text and "am.change(" in text
-    expected = repr(
-        [(obj.Name, obj.Status) for obj in document.Objects if hasattr(obj, "Status")]
-    )
+    expected = repr([(obj.Name, obj.Status) for obj in document.Objects if hasattr(obj, "Status")])
     made, output = _play(macro, tmp_path, window)
     assert made == expected, output[-2000:]
 

@@ -13,6 +13,7 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
+from ..texts.labels import without_key
 from .dock_area import DockArea
 
 BELOW, RIGHT = QtCore.Qt.BottomDockWidgetArea, QtCore.Qt.RightDockWidgetArea
@@ -33,6 +34,10 @@ class Dock(QtGui.QDockWidget):
         self.closed: Callable[[], None] | None = None
         self.seen: Callable[[], None] | None = None
         self.visibilityChanged.connect(self._visible)
+
+    def setWindowTitle(self, title: str) -> None:
+        """Show a title as it is: an `&` in it marks no key."""
+        super().setWindowTitle(without_key(title))
 
     def hold(self, title: str, content: Any) -> None:
         """Show this, under this title; what it held goes."""

@@ -11,6 +11,7 @@ from PySide import QtCore, QtGui
 from ...core.inspection.bands import band_of, bands
 from ...core.inspection.figures import Spread
 from ...objects.fields.shown_units import scale_of
+from .. import colours
 from ..path.colouring import round_numbers
 from ..texts.translation import tr
 
@@ -63,7 +64,7 @@ class Histogram(QtGui.QWidget):
         painter.end()
 
     def _axis(self, painter: Any, area: Any, across: Any, low: float, high: float) -> None:
-        ink = self.palette().color(QtGui.QPalette.WindowText)
+        ink = colours.ink()
         faint = QtGui.QColor(ink)
         faint.setAlpha(_FAINT)
         painter.setPen(QtGui.QPen(faint, 1.0, QtCore.Qt.DashLine))
@@ -79,6 +80,11 @@ class Histogram(QtGui.QWidget):
         for number in np.asarray(round_numbers(factor * low, factor * high, 0.0)).tolist():
             box = QtCore.QRectF(across(number / factor) - 30.0, area.bottom() + 2.0, 60.0, line)
             painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
-        text = tr("deviation, {} (most: {} points)").format(unit, int(self.spread.counts.max()))
+        most = int(self.spread.counts.max())
+        text = (
+            tr("deviation, {} (most: 1 point)").format(unit)
+            if most == 1
+            else tr("deviation, {} (most: {} points)").format(unit, most)
+        )
         box = QtCore.QRectF(0.0, self.height() - line - 1.0, self.width(), line)
         painter.drawText(box, QtCore.Qt.AlignHCenter, text)

@@ -86,8 +86,9 @@ class FileChoice(Input):
     def __init__(self, path: str) -> None:
         self.label = tr("File")
         self.widget = QtGui.QWidget()
-        row = QtGui.QHBoxLayout(self.widget)
-        row.setContentsMargins(0, 0, 0, 0)
+        grid = QtGui.QGridLayout(self.widget)  # the path has the whole width, buttons are below
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setVerticalSpacing(2)
         self.line = QtGui.QLineEdit(path)
         self.line.setObjectName("FilePath")
         kinds = ", ".join((*TABLES, *MESHES))
@@ -107,8 +108,9 @@ class FileChoice(Input):
         )
         self.predict.setWhatsThis(self.predict.toolTip())
         self.predict.clicked.connect(lambda *_: self.line.setText(PREDICTED))
-        for widget in (self.line, self.button, self.predict):
-            row.addWidget(widget)
+        grid.addWidget(self.line, 0, 0, 1, 2)
+        for column, widget in enumerate((self.button, self.predict)):
+            grid.addWidget(widget, 1, column)
         self.widget.setObjectName("File")
 
     def stored(self, obj: Any) -> Any:

@@ -13,6 +13,7 @@ from PySide import QtCore, QtGui
 from freecad_am.core.types import Array
 
 from ...core.issues import InputError
+from ..colours import of
 from ..texts.translation import tr
 
 CELL_PADDING = 12  # pixels in a cell beside its text
@@ -95,7 +96,7 @@ class FigureTable:
         """Show a text in a cell."""
         item = self.widget.item(row, column)
         item.setText(text)
-        item.setForeground(QtGui.QBrush() if colour is None else QtGui.QBrush(QtGui.QColor(colour)))
+        item.setForeground(QtGui.QBrush() if colour is None else QtGui.QBrush(of(colour)))
 
     def row(self, row: int, count: int | None = None, blank: bool = False) -> Array:
         """The figures of a row, of the first `count` columns. InputError BAD_VALUE names the cell."""

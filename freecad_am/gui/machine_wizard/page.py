@@ -8,7 +8,7 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ..colours import WRONG
+from ..colours import WRONG, set_role
 from ..texts.translation import sentence, tr, translated_error
 
 
@@ -26,7 +26,7 @@ class Page(QtGui.QWizardPage):
         self.add_text(explanation)
         self.error = self.add_text("")
         self.error.setObjectName("error")
-        self.error.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        set_role(self.error, WRONG)
         self.error.hide()
 
     def add_text(self, text: str) -> Any:

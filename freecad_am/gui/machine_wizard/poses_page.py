@@ -18,13 +18,12 @@ from ...core.kinematics.chain import Chain
 from ...core.kinematics.machines import pendant, pose_figures
 from ...core.kinematics.machines.pendant import Deviation, Suspect
 from ..background.later import Later
-from ..colours import WRONG
+from ..colours import GOOD, PLAIN, WRONG, set_role
 from ..texts.translation import tr
 from .figure_table import FigureTable, shown
 from .page import Page, axis_names, choice, error_text, heading
 
 LEAST, FIRST = 3, 5  # poses that a machine needs, rows that are there at first
-RIGHT = "#1d7d32"
 
 
 class PosesPage(Page):
@@ -241,7 +240,7 @@ class PosesPage(Page):
             )
             if draft.shown.coupling == pendant.HORIZONTAL and draft.horizontal is None:
                 text += " " + tr("The limits of J3 as it is shown can be given on the page before.")
-            self._tell(text, RIGHT)
+            self._tell(text, GOOD)
         else:
             self.suspects = pendant.suspects(draft.chain, draft.shown, values, poses)
             self._tell(self._reason(len(rows)), WRONG)
@@ -264,11 +263,11 @@ class PosesPage(Page):
             (self.width, deviation.position, pendant.TOLERANCE_MM),
             (self.width + 1, deviation.angle, pendant.TOLERANCE_DEG),
         ):
-            self.table.show(row, column, f"{value:.3f}", RIGHT if value <= most else WRONG)
+            self.table.show(row, column, f"{value:.3f}", GOOD if value <= most else WRONG)
 
     def _tell(self, text: str, colour: str | None) -> None:
         self.verdict.setText(text)
-        self.verdict.setStyleSheet("" if colour is None else f"QLabel {{ color: {colour}; }}")
+        set_role(self.verdict, colour or PLAIN)
 
     def _clear_offers(self) -> None:
         self.suspects = []

@@ -19,7 +19,7 @@ from .. import icons, recorded
 from ..background.busy import carry_out
 from ..background.later import Background
 from ..background.worker import Worker
-from ..colours import WRONG
+from ..colours import PLAIN, WRONG, set_role
 from ..panels.stage import CLOSED
 from ..picking import picking
 from ..picking.picking import Pick
@@ -74,7 +74,7 @@ class JobPanel:
         self.error, self.reason, self.left_out, self.no_post = (
             label(name) for name in ("error", "reason", "left_out", "no_post")
         )
-        self.error.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        set_role(self.error, WRONG)
         self.kind = self._kinds()
         self.part = shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
         self.ground = shown(
@@ -241,9 +241,7 @@ class JobPanel:
             reason = tr("{}: {}.").format(self.kinds[found.choice], found.reason)
         whole = proposal.taken_whole(found, self.picks)
         self.reason.setText("\n".join(filter(None, (reason, whole, missing))))
-        self.reason.setStyleSheet(
-            f"QLabel {{ color: {WRONG if missing and self.picks else 'palette(text)'}; }}"
-        )
+        set_role(self.reason, WRONG if missing and self.picks else PLAIN)
         self.reason.setVisible(bool(self.reason.text()))
         if found.parts:
             self.name.of(found.parts[0].obj.Label)

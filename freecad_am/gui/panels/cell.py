@@ -153,7 +153,9 @@ class CellPanel(ProposingPanel):
 
     def _draw(self, made: Outcome, drawing: Scenery) -> str:
         self.nodes.set(drawing)
-        without = suggestions.no_post(self.places[MACHINE][0].value)
+        without = suggestions.no_post(
+            self.places[MACHINE][0].value, str(self._widget(SETUP).currentData())
+        )
         return "\n".join(
             filter(None, ("" if drawing.rest is None else at_rest.stands(drawing.rest), without))
         )

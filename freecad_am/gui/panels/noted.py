@@ -13,7 +13,7 @@ from ...core.issues import AmError, InputError, values_in
 from ...core.parameters.field import check_value
 from ...objects.fields import expressions
 from ...objects.stage import Stage
-from ..colours import WRONG
+from ..colours import PLAIN, WRONG, set_role
 from ..picking.an_input import Input
 from ..texts.translation import translated, translated_error
 from ..widgets import fields
@@ -51,7 +51,7 @@ class Noted:
     def tell(self, place: str, text: str, wrong: bool = True) -> None:
         """Something about a field, under it; '' for nothing any more."""
         note = self.notes[place]
-        note.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
+        set_role(note, WRONG if wrong else PLAIN)
         note.setText(text)
         note.setVisible(bool(text))
 

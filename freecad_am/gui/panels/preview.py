@@ -18,7 +18,7 @@ from ...objects.staleness import STALE
 from ...objects.work import hooks
 from ..background.later import Background
 from ..background.worker import Worker
-from ..colours import WRONG
+from ..colours import PLAIN, WRONG, set_role
 from ..picking.an_input import Input
 from ..picking.inputs import StageChoice
 from ..texts.translation import tr, translated_error
@@ -44,7 +44,7 @@ class PreviewPanel(StagePanel):
         self.seen: Any = None  # the entries at the last look
         self.shown: Any = None  # those that are previewed
         self.blamed: set[str] = set()  # the places that the last preview was refused for
-        self.state = self.messages.add("preview", "palette(text)")
+        self.state = self.messages.add("preview", PLAIN)
         self.preview = None if nodes is None else Preview(self.document, nodes.switch)
         self._show_own(False)
         self.timer = QtCore.QTimer(self.form)
@@ -188,7 +188,7 @@ class PreviewPanel(StagePanel):
 
     def _say(self, text: str, wrong: bool) -> None:
         """Tell about the preview."""
-        self.state.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
+        set_role(self.state, WRONG if wrong else PLAIN)
         self.state.setText(text)
         self.state.setVisible(bool(text))
 

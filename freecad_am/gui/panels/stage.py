@@ -22,9 +22,10 @@ from ...objects.stage import Stage
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.later import Later
-from ..colours import WRONG
+from ..colours import PLAIN, WRONG
 from ..picking.an_input import Input
 from ..signals import connect
+from ..texts.labels import without_key
 from ..texts.translation import marked, tr, translated
 from ..widgets import fields, suggestions
 from ..widgets.fold import Fold
@@ -56,7 +57,7 @@ class StagePanel(Noted):
         self.document = App.ActiveDocument if obj is None else obj.Document
         self.form = QtGui.QWidget()
         self.form.setObjectName(f"RoboticAM_{proxy.__name__}")
-        self.form.setWindowTitle(title)
+        self.form.setWindowTitle(without_key(title))
         self.form.setWindowIcon(QtGui.QIcon(icons.path(self.icon or proxy.kind.replace(" ", "_"))))
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
@@ -65,7 +66,7 @@ class StagePanel(Noted):
         self.error = self.messages.add("error", WRONG)
         self.following = self.messages.add("following", WRONG)
         self.findings = self.messages.add(
-            "findings", "palette(text)"
+            "findings", PLAIN
         )  # above all fields: some change what is deposited
         self.marked: dict[
             str, str
@@ -223,7 +224,7 @@ class StagePanel(Noted):
                 if obj.Name not in before and type(obj.Proxy) is self.proxy
             ]
             self.obj = made[-1]
-            self.form.setWindowTitle(self.obj.Label)
+            self.form.setWindowTitle(without_key(self.obj.Label))
         for field, _, _ in self.places.values():
             field.applied()
         for choice in self.choices:

@@ -12,6 +12,7 @@ import numpy as np
 from ..background import redraw
 from ..docks import places
 from ..docks.follower import Follower
+from ..picking.selection import meant
 from ..preferences import watch
 from ..texts.translation import tr, translated
 from . import path_view
@@ -247,8 +248,8 @@ _dock: PathDock | None = None
 
 
 def show(obj: Any = None) -> None:
-    """Open the dock, of a path or of what is to be seen."""
-    _made().open(obj)
+    """Open the dock, of a path, of the selected one or that of the selected job or stage, or else of what is to be seen."""
+    _made().open(obj or next(filter(_is_path, meant()), None))
 
 
 def go_to(obj: Any, layer: int, bead: int | None, point: int | None) -> None:

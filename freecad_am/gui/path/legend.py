@@ -18,6 +18,7 @@ from pivy import coin
 from PySide import QtCore, QtGui
 
 from ...objects.fields import preferences
+from .. import colours
 from ..colours import ramp
 from ..nodes.lines import unshaded
 from ..preferences import watch
@@ -26,11 +27,15 @@ from .colouring import DISTANCE, TOO_FAR, TOO_NEAR, Scale
 
 _FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
 _MARGIN, _PAD, _BAR_WIDTH, _BAR_HEIGHT, _STEPS = 10, 9, 16, 150, 150
-_GROUND, _EDGE, _INK = (
-    QtGui.QColor(255, 255, 255, 225),
-    QtGui.QColor(150, 155, 165),
-    QtGui.QColor(29, 36, 48),
-)
+# ground, edge and texts by whether the theme is dark
+_COLOURS = {
+    False: (
+        QtGui.QColor(255, 255, 255, 225),
+        QtGui.QColor(150, 155, 165),
+        QtGui.QColor(29, 36, 48),
+    ),
+    True: (QtGui.QColor(26, 32, 43, 235), QtGui.QColor(98, 106, 122), QtGui.QColor(230, 233, 239)),
+}
 Entry = tuple[tuple[str, ...], Scale]  # the lines above, and the scale
 
 
@@ -39,7 +44,8 @@ class Legend:
 
     def __init__(self) -> None:
         self.entry: Entry | None = None
-        self.left, self.look = 0, ("", "")  # px from the edge; ramp and language
+        self.left = 0  # px from the edge
+        self.look = ("", "", False)  # ramp, language, and whether the theme is dark
         # all of the view is from -1 to 1
         self.camera = coin.SoOrthographicCamera()
         self.camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
@@ -76,7 +82,7 @@ class Legend:
     def show(self, entry: Entry, left: int) -> int:
         """Show this, `left` px from the edge; its width with the margin, px."""
         width = _width(*entry)
-        look = preferences.ramp(), tr("en")
+        look = preferences.ramp(), tr("en"), colours.is_dark()
         if (entry, left, look) != (self.entry, self.left, self.look):
             self.entry, self.left, self.look = entry, left, look
             pixels = _picture(entry, left)
@@ -110,8 +116,9 @@ def _picture(entry: Entry, left: int) -> Any:
     painter.setFont(QtGui.QApplication.font())
     painter.setRenderHint(QtGui.QPainter.Antialiasing)
     painter.translate(left + _MARGIN, _MARGIN)
-    painter.setPen(_EDGE)
-    painter.setBrush(_GROUND)
+    ground, edge, _ = _COLOURS[colours.is_dark()]
+    painter.setPen(edge)
+    painter.setBrush(ground)
     painter.drawRoundedRect(0, 0, _width(*entry) - 1, _height(*entry) - 1, 5, 5)
     _draw(painter, *entry)
     painter.end()
@@ -185,7 +192,7 @@ def _draw(painter: Any, names: tuple[str, ...], scale: Scale) -> None:
     painter.setRenderHint(QtGui.QPainter.Antialiasing, False)
     for row, colour in enumerate(ramp(shares)):
         painter.fillRect(left, top + row * _BAR_HEIGHT // _STEPS, _BAR_WIDTH, 1, _colour(colour))
-    painter.setPen(_INK)
+    painter.setPen(_COLOURS[colours.is_dark()][2])
     for number, text in scale.ticks:
         down = top + round((1.0 - float(scale.share(np.array(number)))) * (_BAR_HEIGHT - 1))
         painter.drawLine(left + _BAR_WIDTH, down, left + _BAR_WIDTH + 4, down)
@@ -205,7 +212,7 @@ def _swatch(painter: Any, left: int, top: int, colour: Any, text: str) -> None:
 
 
 def _text(painter: Any, left: int, top: int, text: str) -> None:
-    painter.setPen(_INK)
+    painter.setPen(_COLOURS[colours.is_dark()][2])
     painter.drawText(left, top + painter.fontMetrics().ascent(), text)
 
 
@@ -226,6 +233,7 @@ def renew_soon() -> None:
         _watching.append(_Observer())
         App.addDocumentObserver(_watching[0])
         watch.listen_to_language(renew_soon)
+        colours.listen(renew_soon)
     if not _due:
         _due = True
         QtCore.QTimer.singleShot(0, _renew)

@@ -11,8 +11,8 @@ from ...core.parameters.place import SIDES, PlaceParameters
 from ...core.placement.place import Placed
 from ...objects.checks.placed import given
 from ...objects.fields.rows import flat, rows
-from ..colours import WRONG
-from ..texts.translation import tr
+from ..colours import PLAIN, WRONG, set_role
+from ..texts.translation import tr, translated
 from ..widgets import fields
 from ..widgets.fold import Fold
 from . import figures
@@ -74,7 +74,7 @@ class Form(QtGui.QWidget):
     def tell(self, text: str, wrong: bool = False) -> None:
         """Say what goes on, or what came of it."""
         self.summary.setText(text)
-        self.summary.setStyleSheet(f"QLabel {{ color: {WRONG}; }}" if wrong else "")
+        set_role(self.summary, WRONG if wrong else PLAIN)
 
     def tell_colours(self, shown: figures.Coloured | None) -> None:
         """What the colours mean."""

@@ -13,6 +13,7 @@ from PySide import QtCore, QtGui
 
 from ...plots.chart import Chart, Picture
 from ...plots.look import DARK, LIGHT, Look
+from .. import colours
 from ..background.worker import Worker
 from ..texts.translation import tr
 from .reading import Range, moved, text_at, zoomed
@@ -127,7 +128,7 @@ class Canvas(QtGui.QWidget):
             return
         ratio, look, size = (
             float(self.devicePixelRatioF()),
-            look_of(self.palette()),
+            look_of(),
             (self.width(), self.height()),
         )
         charts, across, up = self.picture.charts, dict(self.across), dict(self.up)
@@ -170,14 +171,19 @@ class Canvas(QtGui.QWidget):
         """Called by Qt, among others when the colours of the window change."""
         super().changeEvent(event)
         if event.type() in (QtCore.QEvent.PaletteChange, QtCore.QEvent.StyleChange):
+            QtCore.QTimer.singleShot(0, self._follow_theme)  # once all of the window has them
+
+    def _follow_theme(self) -> None:
+        with contextlib.suppress(RuntimeError):  # the canvas is gone
+            self.update()
             self.draw()
 
     def paintEvent(self, event: Any) -> None:
         """Called by Qt."""
         painter = QtGui.QPainter(self)
-        painter.fillRect(self.rect(), QtGui.QColor(look_of(self.palette()).paper))
+        painter.fillRect(self.rect(), QtGui.QColor(look_of().paper))
         if self.drawn is None:
-            painter.setPen(self.palette().color(QtGui.QPalette.Text))
+            painter.setPen(colours.ink())
             text = self.text if self.picture is None else tr("Drawing…")
             painter.drawText(
                 self.rect().adjusted(20, 10, -20, -10),
@@ -192,7 +198,7 @@ class Canvas(QtGui.QWidget):
     def _overlay(self, painter: Any) -> None:
         """Where the pointer is, and the rectangle that is drawn up."""
         assert self.drawn is not None
-        pen = QtGui.QPen(self.palette().color(QtGui.QPalette.Text))
+        pen = QtGui.QPen(colours.ink())
         pen.setStyle(QtCore.Qt.DashLine)
         painter.setPen(pen)
         if self._drag is not None and self.by_rectangle:
@@ -314,12 +320,9 @@ class Canvas(QtGui.QWidget):
         )
 
 
-def look_of(palette: Any) -> Look:
-    """The look on the ground that fields of the window have."""
-    ground = palette.color(QtGui.QPalette.Base)
-    return dataclasses.replace(
-        LIGHT if ground.lightness() > 128 else DARK, paper=ground.name(), words=of_frames()
-    )
+def look_of() -> Look:
+    """The look of plots in the present theme of the window, and in its language."""
+    return dataclasses.replace(DARK if colours.is_dark() else LIGHT, words=of_frames())
 
 
 def _drawn(

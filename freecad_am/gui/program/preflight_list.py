@@ -10,10 +10,9 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import NOTE, Issue
 from ...core.preflight.promise import Place, Promise
-from ..colours import WRONG
+from ..colours import FAINT, GOOD, WRONG, of
 from ..texts.translation import sentence, tr, translated
 
-GOOD, UNKNOWN = "#1a7f4b", "#808080"
 HIGH = 16  # lines that are seen at once, about
 PLACE_ROLE = QtCore.Qt.UserRole
 
@@ -56,7 +55,7 @@ def summary(promises: Sequence[Promise]) -> str:
 
 def _row(one: Promise) -> Any:
     """Two lines: what is promised, and how far it is kept and where. How it was checked is the tip."""
-    mark, colour = {True: ("✓", GOOD), False: ("✗", WRONG), None: ("?", UNKNOWN)}[one.ok]
+    mark, colour = {True: ("✓", GOOD), False: ("✗", WRONG), None: ("?", FAINT)}[one.ok]
     further = [translated(one.figure), "" if one.place is None else _where(one.place)]
     item = QtGui.QListWidgetItem(
         "\n".join(
@@ -69,7 +68,7 @@ def _row(one: Promise) -> Any:
             )
         )
     )
-    item.setForeground(QtGui.QBrush(QtGui.QColor(colour)))
+    item.setForeground(QtGui.QBrush(of(colour)))
     item.setToolTip(sentence(one.how))
     item.setData(PLACE_ROLE, None if one.place is None else list(one.place))
     return item

@@ -19,7 +19,7 @@ from ...objects.program import files_of
 from ...objects.results.findings import message_of
 from ...objects.staleness import UP_TO_DATE
 from .. import icons
-from ..colours import WRONG
+from ..colours import FAINT, PLAIN, WRONG, set_role
 from ..path import path_view
 from ..simulation import wording
 from ..simulation.run import run_of
@@ -107,8 +107,8 @@ class ProgramWindow:
             AttributeError,
         ):  # its joint path is gone, or undo has not yet brought all of it back
             self.sums.setText("")
-        self.state.setStyleSheet("" if fits else f"QLabel {{ color: {WRONG}; }}")
-        self.text.setStyleSheet("" if fits else "QPlainTextEdit { color: gray; }")
+        set_role(self.state, PLAIN if fits else WRONG)
+        set_role(self.text, PLAIN if fits else FAINT)
         self._show()
 
     def _lay_out(self) -> None:

@@ -55,7 +55,7 @@ class Controls(QtGui.QWidget):
         help = tr(
             "RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across"
         )
-        self.axis = self._combo("axis", tr("Upwards"), help, chosen)
+        self.axis = self._combo("axis", tr("Vertical axis"), help, chosen)
         self.across = self._add_across()
         self.type = self._combo(
             "curve", tr("Curve"), tr("One polynomial per bead, or one RZ for the whole job"), curve
@@ -111,7 +111,7 @@ class Controls(QtGui.QWidget):
         help = tr(
             "The path, or an external axis at the point that was clicked last, the other axes as planned there"
         )
-        return self._combo("across", tr("Across"), help, self.chosen)
+        return self._combo("across", tr("Horizontal axis"), help, self.chosen)
 
     def _add(self, widget: Any, name: str, text: str, help: str) -> Any:
         widget.setObjectName(name)
@@ -170,7 +170,7 @@ class Controls(QtGui.QWidget):
             there = number < len(values)
             name.setVisible(there)
             box.setVisible(there)
-            name.setText("RZ" if constant else f"c{number}")
+            name.setText("RZ" if constant else _coefficient(number))
             if there and not (
                 box.hasFocus() and abs(box.value() - np.degrees(values[number])) < 6e-4
             ):
@@ -205,6 +205,12 @@ class Controls(QtGui.QWidget):
             self.branch.clear()
             self.branch.addItems(texts)
         self.branch.setCurrentIndex(branch)
+
+
+def _coefficient(number: int) -> str:
+    """What the panel calls a coefficient of a polynomial over the turns of a bead."""
+    words = {0: tr("RZ at the start"), 1: tr("Linear"), 2: tr("Quadratic"), 3: tr("Cubic")}
+    return words.get(number) or tr("Degree {}").format(number)
 
 
 def scrolled(widget: Any) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.planning.redundancy.curve import Sums
-from ..colours import WRONG
+from ..colours import PLAIN, WRONG, of
 from ..texts.translation import tr
 
 COLUMNS = 6
@@ -26,7 +26,7 @@ class Figures(QtGui.QTableWidget):
         self.changed = changed
         self.filling = False
         self.setHorizontalHeaderLabels(
-            [tr("Curve"), tr("Lost"), tr("Margin"), tr("Condition"), tr("Speed"), tr("Eq. 17")]
+            [tr("Curve"), tr("Lost"), tr("Margin"), tr("Condition"), tr("Speed"), tr("Criterion")]
         )
         helps = (
             tr("Shown on the map"),
@@ -96,7 +96,7 @@ class Figures(QtGui.QTableWidget):
         ).format(sums.wound)
         self.item(row, 1).setToolTip(wound if sums.wound else "")
         for column, wrong in ((1, sums.lost > 0), (4, sums.ratio > 1.0)):
-            ink = QtGui.QColor(WRONG) if wrong else self.palette().color(QtGui.QPalette.Text)
+            ink = of(WRONG if wrong else PLAIN)
             self.item(row, column).setForeground(QtGui.QBrush(ink))
         self.resizeColumnsToContents()
         self.filling = False

@@ -7,7 +7,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
-from ..colours import WRONG
+from ..colours import PLAIN, WRONG, of, set_role
 from ..texts.translation import tr
 from .controls import scrolled
 
@@ -75,12 +75,15 @@ class Form(QtGui.QWidget):
     def tell(self, text: str, wrong: bool = False) -> None:
         """Say how the curve stands, or what goes on."""
         self.verdict.setText(text)
-        self.verdict.setStyleSheet(f"QLabel {{ color: {WRONG}; }}" if wrong else "")
+        set_role(self.verdict, WRONG if wrong else PLAIN)
 
     def show_joints(self, ranges: list[tuple[str, bool]]) -> None:
         """What each joint does, and whether it goes past a limit."""
         whole = [(text.replace(" ", "&nbsp;"), wrong) for text, wrong in ranges]
-        parts = [f'<font color="{WRONG}">{text}</font>' if wrong else text for text, wrong in whole]
+        parts = [
+            f'<font color="{of(WRONG).name()}">{text}</font>' if wrong else text
+            for text, wrong in whole
+        ]
         self.joints.setText(" &nbsp; ".join(parts))
 
 

@@ -11,8 +11,10 @@ from PySide import QtCore, QtGui
 
 from freecad_am.core.types import Array, Mask
 
+from .. import colours
 from ..texts.translation import tr
 
+GROOVE = 60  # of 255, how strong the ground of a bar is
 GOOD, BAD = QtGui.QColor(59, 111, 212), QtGui.QColor(206, 34, 44)
 _PAD, _GAP = 4, 6
 
@@ -73,11 +75,9 @@ class JointBars(QtGui.QWidget):
             (right, margin, tr("margin")),
             (right + margin, speed, tr("speed")),
         )
-        ink, faint = (
-            self.palette().color(QtGui.QPalette.WindowText),
-            self.palette().color(QtGui.QPalette.Mid),
-        )
-        painter.setPen(faint.darker(130))
+        ink, faint = colours.ink(), QtGui.QColor(colours.ink())
+        faint.setAlpha(GROOVE)
+        painter.setPen(colours.of(colours.FAINT))
         for at, width, text in heads:
             flags = QtCore.Qt.AlignVCenter | (
                 QtCore.Qt.AlignHCenter if text == heads[0][2] else QtCore.Qt.AlignRight
@@ -85,7 +85,7 @@ class JointBars(QtGui.QWidget):
             painter.drawText(QtCore.QRect(at, 0, width, self.row), int(flags), text)
         for axis, label in enumerate(self.names):
             top = (axis + 1) * self.row
-            colour = BAD if self.bad[axis] else ink
+            colour = colours.of(colours.WRONG) if self.bad[axis] else ink
             painter.setPen(colour)
             shown = self.texts(axis)
             self._text(painter, _PAD, top, name, label, False)
@@ -101,7 +101,7 @@ class JointBars(QtGui.QWidget):
             left + _GAP, top + 0.36 * high, max(width - 2 * _GAP, 8), 0.28 * high
         )
         painter.setPen(QtCore.Qt.NoPen)
-        painter.setBrush(faint.lighter(125))
+        painter.setBrush(faint)
         painter.drawRoundedRect(groove, 2, 2)
         value = self.values[axis]
         if not np.isfinite(value):

@@ -11,6 +11,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
+from .. import colours
 from ..background import redraw
 from ..docks import places
 from ..docks.lookout import Lookout
@@ -48,6 +49,7 @@ class Simulation:
         self.lookout = Lookout(lambda: self.run, self._changed_object, self.end, self.timer.stop)
         watch.listen(self._preferences_changed)
         watch.listen_to_language(self._speak)
+        colours.listen(self._follow_theme)
         self.show()
         QtCore.QTimer.singleShot(
             FIT, self._fit
@@ -70,6 +72,11 @@ class Simulation:
         self.dock.setWindowTitle(self._title())
         self.fields.mark_play()
         self._preferences_changed()
+
+    def _follow_theme(self) -> None:
+        """The window is light or dark now."""
+        self.fields.show_icons()
+        self.fields.update()
 
     def _build(self) -> None:
         """The fields, in the language of the window."""
@@ -175,6 +182,7 @@ class Simulation:
         self.lookout.stop()
         for listener in (self._preferences_changed, self._speak):
             watch.forget(listener)
+        colours.forget(self._follow_theme)
         scene.remove(document_goes)
         self.dock.empty()
         if self in _open:

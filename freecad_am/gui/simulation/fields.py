@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
-from ..colours import WRONG
+from .. import colours, icons
+from ..colours import PLAIN, WRONG, set_role
 from ..texts.translation import tr
 from ..widgets.steady import SteadyLabel
 from . import wording
@@ -19,7 +20,6 @@ from .run import Run
 
 STEPS = 10_000  # of the slider
 FACTORS = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0, 100.0, 500.0)
-_WRONG = f"QLabel {{ color: {WRONG}; }}"
 
 
 class Fields(QtGui.QWidget):
@@ -56,7 +56,7 @@ class Fields(QtGui.QWidget):
                 "stale", tr("This is an earlier plan; recompute the document for the present one.")
             )
             stale.setWordWrap(True)
-            stale.setStyleSheet(_WRONG)
+            set_role(stale, WRONG)
             column.addWidget(stale)
         column.addWidget(self.slider)
         column.addLayout(self._moment())
@@ -84,24 +84,24 @@ class Fields(QtGui.QWidget):
         return line
 
     def _buttons(self, acts: dict[str, Callable[[], None]]) -> Any:
-        line, style = QtGui.QHBoxLayout(), QtGui.QStyle
+        line = QtGui.QHBoxLayout()
         line.setSpacing(2)
         marks = (
-            ("layer_back", style.SP_MediaSkipBackward, tr("Back to the start of the layer")),
-            ("point_back", style.SP_MediaSeekBackward, tr("One point back")),
-            ("play", style.SP_MediaPlay, tr("Play or pause")),
-            ("point_on", style.SP_MediaSeekForward, tr("One point on")),
-            ("layer_on", style.SP_MediaSkipForward, tr("On to the next layer")),
+            ("layer_back", tr("Back to the start of the layer")),
+            ("point_back", tr("One point back")),
+            ("play", tr("Play or pause")),
+            ("point_on", tr("One point on")),
+            ("layer_on", tr("On to the next layer")),
         )
         self.buttons = {}
-        for name, mark, help in marks:
+        for name, help in marks:
             button = QtGui.QToolButton()
             button.setObjectName(name)
-            button.setIcon(self.style().standardIcon(mark))
             button.setToolTip(help)
             button.clicked.connect(lambda *_, act=acts[name]: act())
             line.addWidget(button)
             self.buttons[name] = button
+        self.show_icons()
         self.factor = QtGui.QComboBox()
         self.factor.setObjectName("factor")
         self.factor.setToolTip(tr("How many seconds of the job pass in one"))
@@ -141,8 +141,14 @@ class Fields(QtGui.QWidget):
 
     def mark_play(self) -> None:
         """The button that plays pauses while it does."""
-        mark = QtGui.QStyle.SP_MediaPause if self.player.playing else QtGui.QStyle.SP_MediaPlay
-        self.buttons["play"].setIcon(self.style().standardIcon(mark))
+        mark = "pause" if self.player.playing else "play"
+        self.buttons["play"].setIcon(icons.of_player(mark, colours.ink()))
+
+    def show_icons(self) -> None:
+        """The icons of all buttons, in the colour that texts have in the present theme."""
+        for name, button in self.buttons.items():
+            button.setIcon(icons.of_player(name, colours.ink()))
+        self.mark_play()
 
     def tell(self, moment: Moment) -> None:
         """Tell of a moment."""
@@ -164,17 +170,13 @@ class Fields(QtGui.QWidget):
         ):
             label = self.labels[name]
             label.tell(text)
-            sheet = "" if good else _WRONG
-            if label.styleSheet() != sheet:
-                label.setStyleSheet(sheet)
+            set_role(label, PLAIN if good else WRONG)
 
     def tell_finding(self, found: Any) -> None:
         """Tell of a finding, or how many there are."""
         count = len(self.run.watch.findings)
         if found is None:
-            text = (
-                tr("{count} findings").format(count=count) if count else wording.nothing(self.run)
-            )
+            text = wording.count_of_findings(count) if count else wording.nothing(self.run)
         else:
             limit = found.label in self.run.cell.machine.axes
             unit = (
@@ -184,7 +186,7 @@ class Fields(QtGui.QWidget):
             )
             text = f"{(self.player.finding or 0) + 1}/{count}: {wording.finding(found, unit)}"
         self.finding.setText(text)
-        self.finding.setStyleSheet(_WRONG if found is not None else "")
+        set_role(self.finding, WRONG if found is not None else PLAIN)
 
 
 def _label(name: str, text: str = "") -> Any:

@@ -55,6 +55,11 @@ def finding(found: Finding, unit: str = "deg") -> str:
     return texts[found.kind].format(label=label, value=value, than=found.than, unit=unit)
 
 
+def count_of_findings(count: int) -> str:
+    """How many findings there are."""
+    return tr("1 finding") if count == 1 else tr("{count} findings").format(count=count)
+
+
 def nothing(run: Run) -> str:
     """That there are no findings, and among what."""
     if run.watch.arm_known:

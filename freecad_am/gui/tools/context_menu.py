@@ -20,6 +20,7 @@ from ...objects.stage import stage_of
 from ...objects.staleness import UP_TO_DATE
 from ...objects.work.progress import Cancelled
 from .. import recorded, registry
+from ..texts.labels import without_key
 from ..texts.translation import error_line, tr
 
 Act = Callable[[], Any]
@@ -126,7 +127,7 @@ def _renew_all(stages: list[Any]) -> None:
 
 
 def _add(menu: Any, name: str, text: str, act: Act, on: bool = True) -> None:
-    action = menu.addAction(text)
+    action = menu.addAction(without_key(text))
     action.setObjectName(f"{_NAME}{name}")
     action.setEnabled(on)
     action.triggered.connect(lambda *_: act())

@@ -15,7 +15,7 @@ from ...core.issues import AmError
 from ...objects.stage import stage_of
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
-from ..colours import WRONG
+from ..colours import WRONG, set_role
 from ..panels.stage import CLOSED
 from ..picking.selection import meant
 from ..signals import connect
@@ -46,7 +46,7 @@ class ExportPanel:
         self.error = QtGui.QLabel()
         self.error.setObjectName("error")
         self.error.setWordWrap(True)
-        self.error.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        set_role(self.error, WRONG)
         self.error.hide()
         self.path = self._combo("Path", tr("The toolpath, joint path or program to export"))
         self.path.addItems([obj.Label for obj in self.paths])
@@ -133,7 +133,7 @@ class ExportPanel:
         self.file_note = QtGui.QLabel()
         self.file_note.setObjectName("FileNote")
         self.file_note.setWordWrap(True)
-        self.file_note.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        set_role(self.file_note, WRONG)
         self.grid.insertRow(self.grid.getWidgetPosition(self.file_row)[0] + 1, "", self.file_note)
         self._tell_file("")
         connect(self.file, "textChanged(QString)", self._file_anew)

@@ -50,7 +50,9 @@ def feature(doc: Any) -> str:
     """What is to be deposited."""
     if document(doc) or _some(doc, "feature"):
         return document(doc)
-    return tr("First make a feature: Feature…, Wall on Part…, Solid… and Solids on Hub… do so.")
+    return tr(
+        "First make a feature: Feature…, Wall on Part…, Solid…, Solids on Hub…, Curves… and Cladding… do so."
+    )
 
 
 def toolpath_and_cell(doc: Any) -> str:

@@ -78,7 +78,10 @@ class Tool:
         command = Gui.Command.get(PREFIX + self.name)
         actions = [] if command is None else command.getAction()
         name, help = html.escape(tr(self.text).rstrip("…")), html.escape(text, quote=False)
+        bar = Gui.getMainWindow().statusBar()
         for action in actions:
+            if action.statusTip() != text and bar.currentMessage() == action.statusTip():
+                bar.clearMessage()  # it is no longer true
             action.setToolTip(f"<p><b>{name}</b></p><p>{help}</p>")
             action.setStatusTip(text)
         return bool(actions)
@@ -89,4 +92,6 @@ class Tool:
         if lacking:
             App.Console.PrintWarning(tr("{}: {}").format(tr(self.text), lacking) + "\n")
         else:
+            # what the tool needed, told while the pointer was on it, is out of date
+            Gui.getMainWindow().statusBar().clearMessage()
             self.action()

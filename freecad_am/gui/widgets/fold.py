@@ -8,7 +8,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
-from ..colours import WRONG
+from ..colours import WRONG, set_role
 from .present import present
 
 WIDEST_LABEL = 96  # pixels; longer ones go on below
@@ -98,7 +98,7 @@ class Fold:
                 one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
         note = Note()
         note.setObjectName(f"{widget.objectName()}Note")
-        note.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        set_role(note, WRONG)
         note.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         note.hide()
         both = QtGui.QWidget()

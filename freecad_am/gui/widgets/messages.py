@@ -7,6 +7,8 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
+from ..colours import set_role
+
 MARGIN = 2  # pixels
 NARROW, MAX_LINES = (
     30,
@@ -33,13 +35,13 @@ class Messages(QtGui.QScrollArea):
         self.viewport().setAutoFillBackground(False)
         self._hold(lines)
 
-    def add(self, name: str, colour: str) -> Any:
+    def add(self, name: str, role: str) -> Any:
         """A label below those that are there, hidden."""
         label = QtGui.QLabel()
         label.setObjectName(name)
         label.setWordWrap(True)
         label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
-        label.setStyleSheet(f"QLabel {{ color: {colour}; }}")
+        set_role(label, role)
         label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         label.hide()
         self.column.insertWidget(self.column.count() - 1, label)

@@ -12,7 +12,7 @@ from PySide import QtGui
 
 from ...core.issues import InputError
 from ...objects.fields import pendants
-from ..colours import WRONG
+from ..colours import PLAIN, WRONG, set_role
 from ..texts.translation import tr, translated
 
 
@@ -81,4 +81,4 @@ class PendantLine:
 
     def _wrong(self, text: str) -> None:
         self.line.setToolTip(text)
-        self.line.setStyleSheet(f"QLineEdit {{ color: {WRONG}; }}" if text else "")
+        set_role(self.line, WRONG if text else PLAIN)

@@ -10,6 +10,7 @@ from PySide import QtCore, QtGui
 
 from freecad_am.core.geometry.angles import TURN
 
+from ... import colours
 from ...colours import ramp
 from ...path.colouring import round_numbers
 from ...texts.translation import tr
@@ -20,7 +21,7 @@ LEFT, RIGHT, TOP, BOTTOM = 52, 12, 30, 34  # pixels about the map
 HATCH = 7  # pixels between lines
 HANDLE = 5.0
 MOST_SEAMS = 120
-TO_TICKS = 6
+TO_TICKS, LEAST_TICKS = 6, 2
 ROW = 14.0  # pixels from one row of the legend to the next
 
 
@@ -134,7 +135,7 @@ class Painting:
             )
 
     def _draw_axes(self, painter: Any) -> None:
-        area, ink = self.canvas.area(), self.canvas.palette().color(QtGui.QPalette.WindowText)
+        area, ink = self.canvas.area(), colours.ink()
         painter.setPen(ink)
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.drawRect(area)
@@ -179,7 +180,7 @@ class Painting:
         assert self.canvas.painted is not None
         scale, ink = (
             self.canvas.painted.scale,
-            self.canvas.palette().color(QtGui.QPalette.WindowText),
+            colours.ink(),
         )
         line, across = painter.fontMetrics().height(), float(LEFT)
         painter.setPen(ink)
@@ -198,10 +199,13 @@ class Painting:
             if scale.high > scale.low
             else np.array([scale.low])
         )
-        for number in numbers[:: max(1, len(numbers) // TO_TICKS + 1)]:
+        numbers = numbers[:: max(1, len(numbers) // TO_TICKS + 1)]
+        if len(numbers) < LEAST_TICKS and scale.high > scale.low:
+            numbers = np.array([scale.low, scale.high])
+        for number in numbers:
             at = bar.left() + bar.width() * float(scale.share(np.array([number]))[0])
             box = QtCore.QRectF(at - 20.0, 14.0, 40.0, line)
-            painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
+            painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:.3g}")
         classes: list[tuple[str, Any]] = [
             (tr(text), QtGui.QColor.fromRgbF(*colour))
             for text, colour in self.canvas.painted.classes

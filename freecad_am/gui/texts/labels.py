@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Labels of objects as texts of the window."""
+
+from __future__ import annotations
+
+
+def without_key(label: str) -> str:
+    """A label for a menu, title, tab or button, where Qt would take an `&` for the mark of a key."""
+    return label.replace("&", "&&")
