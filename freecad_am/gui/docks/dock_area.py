@@ -11,6 +11,7 @@ from PySide import QtCore, QtGui
 
 from ..widgets.present import present
 
+MOST_SHARE = 0.38  # of the window that a dock asks for, so that the 3D view keeps its room
 _TOLERANCE_PX = 3  # pixels that layouts round away
 _STABLE_MS = 300  # ms in which docks that stand still do not change
 _SIDE_AREAS = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
@@ -50,9 +51,13 @@ class DockArea:
         self._look()
         if not self.parts:
             self.before = {one.objectName(): self._extent(one) for one in self._seen()}
-        hint = dock.sizeHint()
-        natural = hint.width() if self.across == QtCore.Qt.Horizontal else hint.height()
-        self.parts.append(_Part(dock, self.wishes.get(dock.objectName(), least or natural)))
+        hint, window = dock.sizeHint(), Gui.getMainWindow()
+        sideways = self.across == QtCore.Qt.Horizontal
+        natural = hint.width() if sideways else hint.height()
+        most = int(MOST_SHARE * (window.width() if sideways else window.height()))
+        self.parts.append(
+            _Part(dock, self.wishes.get(dock.objectName(), min(least or natural, most)))
+        )
 
     def fit_size(self) -> None:
         """Make it as large as it is to be."""

@@ -285,6 +285,8 @@ def _narrow(box: Any) -> None:
     with contextlib.suppress(RuntimeError):  # the panel is closed again
         for button in box.buttons():
             button.setIcon(QtGui.QIcon())
+            if QtGui.QApplication.instance().styleSheet():  # which may pad them beyond their width
+                button.setStyleSheet("QPushButton { padding: 2px; min-width: 0px; }")
             button.setFixedWidth(
                 button.fontMetrics().boundingRect(button.text()).width() + BUTTON_PADDING
             )

@@ -15,6 +15,7 @@ from ..docks.follower import Follower
 from ..picking.selection import meant
 from ..preferences import watch
 from ..texts.translation import tr, translated
+from ..widgets.scrolled import Scrolled
 from . import path_view
 from .colouring import LAYER
 from .facts import facts
@@ -46,7 +47,7 @@ class PathDock(Follower):
         """The fields, in the language of the window."""
         self.form = PathForm()
         self._connect()
-        self.dock.hold(tr("Path"), self.form)
+        self.dock.hold(tr("Path"), Scrolled(self.form))
 
     def _speak(self) -> None:
         """The window has another language."""

@@ -27,7 +27,7 @@ from .canvas import STEP, Canvas
 from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
 
 NAME = "RoboticAM_Plots"
-HEIGHT = 250
+HEIGHT, LEAST_HEIGHT = 330, 80  # pixels of the dock, and of a picture
 LABEL, NARROW, WIDE = (
     9,
     14,
@@ -51,7 +51,7 @@ class PlotsDock(Follower):
         self.layers_of: tuple[str, str] | None = (
             None  # whose layers are chosen: names are those of other documents too
         )
-        self.dock = places.dock(NAME, places.BELOW)
+        self.dock = places.dock(NAME, places.BELOW, high=HEIGHT)
         self.canvas = Canvas()
         self.canvas.setObjectName("canvas")
         self.canvas.say = self._said
@@ -59,7 +59,7 @@ class PlotsDock(Follower):
         self.scroll.setWidgetResizable(True)
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
         self.scroll.setWidget(self.canvas)
-        self.scroll.setMinimumHeight(HEIGHT)
+        self.scroll.setMinimumHeight(LEAST_HEIGHT)
         self._build()
         self.building = Background(self.dock)
         self.soon, self.changed = Later(self.dock, self.fill), Later(self.dock, self.fill)

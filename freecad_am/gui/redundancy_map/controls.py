@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from PySide import QtCore, QtGui
+from PySide import QtGui
 
 from ...core.kinematics.inverse import opw
 from ...core.parameters.joints import HIGHEST
@@ -211,16 +211,3 @@ def _coefficient(number: int) -> str:
     """What the panel calls a coefficient of a polynomial over the turns of a bead."""
     words = {0: tr("RZ at the start"), 1: tr("Linear"), 2: tr("Quadratic"), 3: tr("Cubic")}
     return words.get(number) or tr("Degree {}").format(number)
-
-
-def scrolled(widget: Any) -> Any:
-    """The widget in what lets it be higher than the room it gets."""
-    area = QtGui.QScrollArea()
-    area.setWidgetResizable(True)
-    area.setFrameShape(QtGui.QFrame.NoFrame)
-    area.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
-    area.setWidget(widget)
-    area.setMinimumWidth(
-        max(210, widget.minimumSizeHint().width() + area.verticalScrollBar().sizeHint().width())
-    )
-    return area

@@ -9,7 +9,9 @@ from PySide import QtCore, QtGui
 
 from ..colours import PLAIN, WRONG, of, set_role
 from ..texts.translation import tr
-from .controls import scrolled
+from ..widgets.scrolled import Scrolled
+
+NARROWEST = 190  # pixels of the controls
 
 
 class Form(QtGui.QWidget):
@@ -18,7 +20,10 @@ class Form(QtGui.QWidget):
     def __init__(self, canvas: Any, controls: Any, figures: Any) -> None:
         super().__init__()
         self.figures = figures
-        row, left, right = QtGui.QHBoxLayout(self), QtGui.QVBoxLayout(), QtGui.QVBoxLayout()
+        row, left = QtGui.QHBoxLayout(self), QtGui.QVBoxLayout()
+        beside = QtGui.QWidget()
+        right = QtGui.QVBoxLayout(beside)
+        right.setContentsMargins(0, 0, 0, 0)
         row.setContentsMargins(4, 2, 4, 4)
         row.setSpacing(4)
         self.readout = QtGui.QLabel()
@@ -69,8 +74,8 @@ class Form(QtGui.QWidget):
             grid.addWidget(button, number // 2, number % 2)
         right.addLayout(grid)
         row.addLayout(left, 7)
-        row.addWidget(scrolled(controls), 2)
-        row.addLayout(right, 4)
+        row.addWidget(Scrolled(controls, NARROWEST), 2)
+        row.addWidget(Scrolled(beside), 4)
 
     def tell(self, text: str, wrong: bool = False) -> None:
         """Say how the curve stands, or what goes on."""

@@ -33,7 +33,7 @@ class Canvas(QtGui.QWidget):
         super().__init__()
         self.setObjectName("map")
         self.setMouseTracking(True)
-        self.setMinimumSize(360, 200)
+        self.setMinimumSize(260, 110)
         self.setSizePolicy(QtGui.QSizePolicy.Expanding, QtGui.QSizePolicy.Expanding)
         self.painted: Painted | None = None
         self.count = 1

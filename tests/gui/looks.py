@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Run by FreeCAD's window: opens every panel and dock in a light and a dark theme and measures what is seen of it.
+
+LOOKS_FOLDER names the folder for the pictures and for `looks.json`, which holds what is wrong, one text each.
+"""
+
+import json
+import os
+import sys
+import time
+import traceback
+from pathlib import Path
+
+import FreeCAD as App
+import FreeCADGui as Gui
+import numpy as np
+from PySide import QtCore, QtGui
+
+FOLDER = Path(os.environ["LOOKS_FOLDER"])
+sys.path.insert(0, os.environ["LOOKS_ROOT"])
+LEAST_CONTRAST = 4.5
+DARK = ("Behave-dark.qss", "FreeCAD Dark.qss")
+PANELS = (
+    "NewJob",
+    "Cell",
+    "Feature",
+    "WallOnPart",
+    "Solid",
+    "SolidsOnHub",
+    "Curves",
+    "Cladding",
+    "Toolpath",
+    "JointPath",
+    "Program",
+    "Inspect",
+    "ExportPath",
+)
+PARTS = os.environ.get("LOOKS_PARTS", "panels docks")
+DOCKS = ("Path", "Simulate", "Plots", "SpinMap", "Placement")
+
+
+def idle(seconds):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        QtGui.QApplication.processEvents(QtCore.QEventLoop.AllEvents, 20)
+        QtCore.QCoreApplication.sendPostedEvents(None, QtCore.QEvent.DeferredDelete)
+        time.sleep(0.005)
+
+
+def present(kind, below):
+    from freecad_am.gui.widgets.present import present as there
+
+    return there(below, kind)
+
+
+def screen():
+    shown = QtGui.QApplication.primaryScreen()
+    grabbed = shown.grabWindow(0) if QtCore.qVersion().startswith("5") else shown.grabWindow()
+    return grabbed.toImage().convertToFormat(QtGui.QImage.Format_RGB32)
+
+
+def pixels(image):
+    rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+    return rows[:, : image.width(), 2::-1].astype(float) / 255.0
+
+
+def luminance(colours):
+    linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    return linear @ [0.2126, 0.7152, 0.0722]
+
+
+def contrast(area):
+    """The largest contrast of a pixel with the colour that most pixels of an area have."""
+    light = luminance(area).ravel()
+    values, counts = np.unique(np.round(light, 3), return_counts=True)
+    ground = values[counts.argmax()]
+    return float(
+        max((light.max() + 0.05) / (ground + 0.05), (ground + 0.05) / (light.min() + 0.05))
+    )
+
+
+def text_of(widget):
+    if isinstance(widget, (QtGui.QLabel, QtGui.QAbstractButton)):
+        return widget.text()
+    if isinstance(widget, QtGui.QComboBox):
+        return widget.currentText()
+    return ""
+
+
+def is_seen(widget):
+    """Whether all of a widget is on the screen, with nothing over it."""
+    return (
+        widget.isVisible()
+        and widget.isEnabled()
+        and widget.width() > 8
+        and widget.visibleRegion().boundingRect() == widget.rect()
+    )
+
+
+def judge(top, name, wrong):
+    """Contrast and room of every text below a widget, as the screen shows it."""
+    image = screen()
+    image.save(str(FOLDER / f"{name}.png"))
+    seen = pixels(image)
+    for widget in present(QtGui.QWidget, top):
+        icon = isinstance(widget, QtGui.QToolButton) and not widget.icon().isNull()
+        text = text_of(widget)
+        if not (text.strip() or icon) or not widget.isVisible():
+            continue
+        what = f"{name}: {widget.objectName() or type(widget).__name__} {text[:40]!r}"
+        if isinstance(widget, QtGui.QLabel) and not widget.pixmap():
+            if widget.wordWrap():
+                needed = widget.heightForWidth(widget.width())
+                if needed > widget.height() + 1:
+                    wrong.append(f"{what} is cut off: {widget.height()} of {needed} pixels high")
+            elif widget.sizeHint().width() > widget.width() + 1 and (
+                widget.sizePolicy().horizontalPolicy() != QtGui.QSizePolicy.Ignored
+            ):
+                wrong.append(f"{what} is cut off: {widget.width()} of {widget.sizeHint().width()}")
+        elif isinstance(widget, QtGui.QAbstractButton) and text:
+            needed = widget.fontMetrics().boundingRect(text).width()
+            if needed > widget.width() + 1:
+                wrong.append(f"{what} is cut off: {widget.width()} of {needed}")
+        if is_seen(widget):
+            at, ratio = widget.mapToGlobal(QtCore.QPoint(0, 0)), widget.devicePixelRatioF()
+            x, y, wide, high = (
+                round(ratio * length)
+                for length in (at.x(), at.y(), widget.width(), widget.height())
+            )
+            area = seen[y : y + high, x : x + wide]
+            # push buttons are the theme's own; a dash has too few pixels to be measured
+            own = not isinstance(widget, QtGui.QPushButton) and (icon or len(text.strip()) > 1)
+            if own and area.size and contrast(area) < LEAST_CONTRAST:
+                wrong.append(f"{what} has a contrast of {contrast(area):.1f}")
+
+
+def upright(panel, name, wrong):
+    for area in present(QtGui.QScrollArea, Gui.getMainWindow()):
+        if area.isAncestorOf(panel) and area.horizontalScrollBar().maximum() > 0:
+            over = area.horizontalScrollBar().maximum()
+            wrong.append(f"{name}: is {over} pixels wider than what is seen of it")
+
+
+def room(name, wrong, before):
+    """The window stays on the screen, and the 3D view keeps its room."""
+    window = Gui.getMainWindow()
+    whole = QtGui.QApplication.primaryScreen().geometry()
+    needed = window.minimumSizeHint()
+    if needed.width() > whole.width() or needed.height() > whole.height():
+        wrong.append(f"{name}: the window needs {needed.width()} x {needed.height()}")
+    if window.width() > whole.width() or window.height() > whole.height():
+        wrong.append(f"{name}: the window is {window.width()} x {window.height()}")
+    wide, high = view_size()
+    # FreeCAD's own bars and docks may leave less from the start
+    least_wide, least_high = (
+        min(0.25 * most, 0.9 * now)
+        for most, now in zip((whole.width(), whole.height()), before, strict=True)
+    )
+    if wide < least_wide or high < least_high:
+        wrong.append(f"{name}: the 3D view has {wide:.0f} x {high:.0f}, before {before}")
+
+
+def view_size():
+    """The size of the 3D view in the pixels that widgets are measured by."""
+    ratio = Gui.getMainWindow().devicePixelRatioF()
+    return tuple(length / ratio for length in Gui.activeDocument().activeView().getSize())
+
+
+def scrolled(panel):
+    """The offsets at which all of a panel is seen, page by page."""
+    areas = [a for a in present(QtGui.QScrollArea, Gui.getMainWindow()) if a.isAncestorOf(panel)]
+    bars = [area.verticalScrollBar() for area in areas if area.verticalScrollBar().maximum() > 0]
+    if not bars:
+        yield 0
+        return
+    bar, page = bars[-1], max(bars[-1].pageStep() - 40, 100)
+    for number, value in enumerate(range(0, bar.maximum() + page, page)):
+        bar.setValue(min(value, bar.maximum()))
+        idle(0.1)
+        yield number
+
+
+def look_at_panels(theme, wrong, most):
+    for command in PANELS:
+        Gui.runCommand(f"RoboticAM_{command}")
+        idle(0.5)
+        names = [
+            widget
+            for widget in present(QtGui.QWidget, Gui.getMainWindow())
+            if widget.isVisible()
+            and widget.objectName().startswith("RoboticAM_")
+            and not isinstance(widget, (QtGui.QDockWidget, QtGui.QAction))
+            and widget.layout() is not None
+        ]
+        if not Gui.Control.activeDialog() or not names:
+            wrong.append(f"{theme}: {command} opens no panel")
+            continue
+        panel = names[-1]
+        for page in scrolled(panel):
+            judge(panel, f"{theme}-{command}-{page}", wrong)
+            if page + 1 >= most:
+                break
+        upright(panel, f"{theme}-{command}", wrong)
+        Gui.Control.closeDialog()
+        idle(0.1)
+
+
+def look_at_docks(theme, wrong):
+    before = view_size()
+    for command in DOCKS:
+        Gui.runCommand(f"RoboticAM_{command}")
+        idle(1.2)
+        docks = [
+            dock
+            for dock in present(QtGui.QDockWidget, Gui.getMainWindow())
+            if dock.isVisible() and dock.objectName().startswith("RoboticAM_")
+        ]
+        if not docks:
+            wrong.append(f"{theme}: {command} opens no dock")
+            continue
+        for dock in docks:
+            judge(dock, f"{theme}-{command}", wrong)
+        room(f"{theme}-{command}", wrong, before)
+        for dock in docks:
+            dock.close()
+        idle(0.3)
+
+
+def themes():
+    yield "light", ""
+    folder = Path(App.getResourceDir()) / "Gui" / "Stylesheets"
+    yield "dark", next((folder / name).read_text() for name in DARK if (folder / name).exists())
+
+
+def job():
+    from freecad_am import api
+
+    document = App.newDocument("Looks")
+    part = document.addObject("Part::Sphere", "Sphere")
+    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
+    document.recompute()
+    cell = api.make_cell(document)
+    toolpath = api.make_toolpath(document, api.make_feature(document, part, layer_height=15), cell)
+    path = api.make_joint_path(document, toolpath, cell)
+    api.make_program(document, path)
+    Gui.Selection.addSelection(document.Name, part.Name)
+    idle(0.3)
+
+
+def run():
+    wrong = []
+    try:
+        Gui.activateWorkbench("RoboticAMWorkbench")
+        window = Gui.getMainWindow()
+        whole = QtGui.QApplication.primaryScreen().geometry()
+        window.showNormal()
+        window.setGeometry(whole)
+        job()
+        for theme, sheet in themes():
+            QtGui.QApplication.instance().setStyleSheet(sheet)
+            idle(0.5)
+            if "docks" in PARTS:
+                look_at_docks(theme, wrong)
+            if "panels" in PARTS:
+                look_at_panels(theme, wrong, 6)
+    except BaseException:
+        wrong.append(traceback.format_exc())
+    (FOLDER / "looks.json").write_text(json.dumps(wrong, indent=1), encoding="utf-8")
+    os._exit(0)
+
+
+QtCore.QTimer.singleShot(500, run)
