@@ -12,7 +12,7 @@ from ...core.placement.place import Placed
 from ...objects.checks.placed import given
 from ...objects.fields.rows import flat, rows
 from ..colours import PLAIN, WRONG, set_role
-from ..texts.translation import tr, translated
+from ..texts.translation import tr
 from ..widgets import fields
 from ..widgets.fold import Fold
 from . import figures
