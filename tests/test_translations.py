@@ -317,12 +317,20 @@ def test_a_message_that_begins_with_a_name_is_known():
             "my/process.bead_model.csv and strategy.nothing",
             "my/process.bead_model.csv and strategy.nothing",
         ),
+        ("use `motion: joint`", "use “Motion: joint”"),
+        ("use `kind: solid`", "use `kind: solid`"),  # no field of a panel
         ("cell.machine.json is not a file", "cell.machine.json is not a file"),
         ("C:\\cell.machine and cell.machine\\a", "C:\\cell.machine and cell.machine\\a"),
     ],
 )
 def test_messages_call_parameters_as_the_panels_do(text, told):
     assert as_in_panels(text, str) == told
+
+
+def test_messages_name_the_panel_that_has_the_field():
+    """Read in another panel, such as New Job, they would ask for a field that is not there."""
+    told = as_in_panels("give process.bead_width, or `motion: joint`", str, with_panel=True)
+    assert told == "give “Bead width” (Toolpath), or “Motion: joint” (Program)"
 
 
 def test_parameters_in_messages_are_those_of_a_panel(collected):

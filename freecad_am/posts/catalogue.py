@@ -30,6 +30,29 @@ NAMES = (
 _MOTIONS = ("joint", "cartesian")  # the usual one first
 # of the modules beside this one
 
+# what each post reads of the parameters below `program.nc`; the others read none of them
+NC_PARAMETERS: Mapping[str, tuple[str, ...]] = {
+    "siemens": (
+        "feed",
+        "compress",
+        "smooth",
+        "deposit_on",
+        "deposit_off",
+        "wire_output",
+        "wire_gain",
+    ),
+    "linuxcnc": (
+        "feed",
+        "tolerance",
+        "deposit_on",
+        "deposit_off",
+        "wire_output",
+        "wire_gain",
+        "switch_kinematics",
+    ),
+    "abb": ("wire_output", "wire_gain"),
+}
+
 
 class Post(Protocol):
     """What a post module offers. CONTROLLER: what planning must know of the controller. PENDANT: how its pendant shows
@@ -88,6 +111,11 @@ def load(name: str) -> Post:
 def controller(name: str) -> Controller:
     """What planning must know of the controller of a post; of `none` that it asks for nothing. InputError UNKNOWN_POST."""
     return Controller() if name == "none" else load(name).CONTROLLER
+
+
+def reads_nc(post: str, parameter: str) -> bool:
+    """Whether programs of a post depend on a parameter below `program.nc`; of an unknown post they may."""
+    return parameter in NC_PARAMETERS.get(post, ()) if post in NAMES or post == "none" else True
 
 
 def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:

@@ -24,3 +24,35 @@ def test_lightness_rises_evenly():
 def test_shares_outside_are_the_ends():
     ends = colours.ramp([0.0, 1.0])
     assert np.array_equal(colours.ramp([-1.0, 2.0]), ends)
+
+
+def contrast(first, second):
+    """Of two QColors, as WCAG 2 has it."""
+    lights = []
+    for colour in (first, second):
+        rgb = np.array([colour.redF(), colour.greenF(), colour.blueF()])
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        lights.append(float(linear @ [0.2126, 0.7152, 0.0722]))
+    return (max(lights) + 0.05) / (min(lights) + 0.05)
+
+
+def test_texts_follow_the_theme_of_the_window(person):
+    """Those of a panel that is open too, and back again."""
+    application = person.widgets.QApplication.instance()
+    label = person.widgets.QLabel("wrong", person.window)
+    dark = "QWidget { color: #d2d8e1; background-color: #232932; }"
+    try:
+        for sheet, ground, is_dark in (("", "#efefef", False), (dark, "#232932", True)) * 2:
+            application.setStyleSheet(sheet)
+            person.idle(0.2)
+            assert colours.is_dark() == is_dark
+            for role in (colours.PLAIN, colours.WRONG, colours.GOOD, colours.FAINT):
+                assert contrast(colours.of(role), person.widgets.QColor(ground)) >= 4.5, role
+            if not label.styleSheet():
+                colours.set_role(label, colours.WRONG)
+            person.idle(0.1)
+            assert colours.of(colours.WRONG).name() in label.styleSheet()
+    finally:
+        application.setStyleSheet("")
+        label.deleteLater()
+        person.idle(0.2)

@@ -174,8 +174,7 @@ def test_the_line_of_an_origin_deep_in_the_tree_is_the_axis(person, hand, scene)
     person.gui.Selection.addSelection(scene.Name, "Outer", path)  # as a click in the tree does
     use(person, hand, panel, "UseAxis")
     assert person.field(panel, "Axis").text() == origin.Label
-    person.gui.Selection.clearSelection()
-    use(person, hand, panel, "UseAxis")  # nothing selected: none
+    person.field(panel, "ClearAxis").click()
     assert person.field(panel, "Axis").text() == ""
     person.press("Cancel")
     person.panel_closed()
@@ -194,8 +193,7 @@ def test_an_axis_is_taken_away_again(person, hand, scene):
         )
     )
     assert person.field(panel, "Axis").text() == "Profile H_Axis"
-    person.gui.Selection.clearSelection()
-    use(person, hand, panel, "UseAxis")
+    person.field(panel, "ClearAxis").click()
     done(person, hand)
     assert not feature.Axis and feature.Status == "up to date"
     scene.undo()
@@ -217,10 +215,11 @@ def test_what_cannot_be_taken_is_told_and_what_was_taken_stays(person, hand, sce
         use(person, hand, panel, "UseSource")
         assert words in person.panel_error(panel) and person.field(panel, "Source").text() == "Body"
     person.gui.Selection.clearSelection()
-    use(person, hand, panel, "UseSource")
-    assert "Nothing is selected" in person.panel_error(panel)
+    person.field(panel, "UseSource").click()  # nothing is selected: the next click is taken
+    assert person.field(panel, "UseSource").isChecked()
     click_tree(person, hand, "Link")
-    use(person, hand, panel, "UseSource")
+    person.idle(0.2)
+    assert not person.field(panel, "UseSource").isChecked()
     assert person.panel_error(panel) == "" and person.field(panel, "Source").text() == "Link"
     click_tree(person, hand, "Scan")
     click_tree(person, hand, "Box", "ctrl")

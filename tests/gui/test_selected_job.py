@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Two jobs in a document: tools are for the one that is selected, not for the one that was made last."""
 
+import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from freecad_am.gui.path import dock as paths
 from freecad_am.gui.plots import dock as plots
 from freecad_am.gui.redundancy_map import tool as spin_map
 from freecad_am.gui.simulation import tool as simulation
@@ -240,3 +242,53 @@ def test_a_new_job_is_seen_alone(person, hemisphere, coarse):
         "joint path",
     }
     assert other.ViewObject.Visibility is False  # as of any job: the path lies in its surface
+
+
+@pytest.mark.parametrize("kind", [*KINDS, "job"])
+@pytest.mark.always("joint path", "job")
+def test_the_dock_of_paths_opens_with_the_path_of_what_is_selected(person, stages, jobs, kind):
+    """Whether it is opened for the first time in a session or again."""
+    person.select(jobs[0] if kind == "job" else stages[0][kind])
+    if paths._dock is not None:
+        paths._dock.target = None  # as in a new session
+    person.click("RoboticAM_Path")
+    choice = person.field(person.panel(paths.NAME), "path")
+    wanted = "toolpath" if kind == "toolpath" else "joint path"
+    assert choice.currentText() == f"First {wanted}"
+    assert stages[0][wanted].ViewObject.Visibility
+    paths._dock.dock.close()
+    person.select(jobs[1] if kind == "job" else stages[1][kind])
+    person.click("RoboticAM_Path")
+    assert choice.currentText() == f"Second {wanted}"
+
+
+def test_a_program_shows_its_joint_path(person, stages, jobs):
+    document = stages[0]["cell"].Document
+    program = api.make_program(document, stages[0]["joint path"], "ONE")
+    person.select(program)
+    if paths._dock is not None:
+        paths._dock.target = None
+    person.click("RoboticAM_Path")
+    choice = person.field(person.panel(paths.NAME), "path")
+    assert choice.currentText() == "First joint path"
+
+
+def test_the_dock_of_paths_follows_the_document(person, stages, jobs):
+    """The selection of another document counts for nothing."""
+    person.select(stages[0]["joint path"])
+    other = App.newDocument("Other")
+    toolpath = api.make_toolpath(
+        other, api.make_feature(other, _sphere(other), layer_height=20), api.make_cell(other)
+    )
+    toolpath.Label = "Third toolpath"
+    person.idle()
+    person.click("RoboticAM_Path")
+    choice = person.field(person.panel(paths.NAME), "path")
+    assert choice.currentText() == "Third toolpath"
+
+
+def _sphere(document):
+    part = document.addObject("Part::Sphere", "Sphere")
+    part.Radius, part.Angle1, part.Angle2 = 30, 0, 90
+    document.recompute()
+    return part

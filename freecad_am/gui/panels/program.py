@@ -34,6 +34,7 @@ from .preview import PreviewPanel, stale_lines
 FIRST = 40  # lines that are shown: controllers want a head of twenty
 HIGH = 14  # lines that are seen at once, about
 SMALLER, LEAST = 0.85, 6.0  # than the text of the panel, which is narrow, and points at least
+NC = "program_nc_"  # before the names of parameters of five-axis machines
 POST, MOTION, START, START_LAYER = (
     "program_post",
     "program_motion",
@@ -80,6 +81,19 @@ class ProgramPanel(PreviewPanel):
                 naming.name_for(_part_label(), found[0] or suggestions.usual_post())
             )
         self._add_text()
+        self.places[POST][0].widget.editTextChanged.connect(self._fit_post)
+        self._fit_post()
+
+    def _fit_post(self, *_: Any) -> None:
+        """Leave out what the post that is chosen does not read, unless something is entered there."""
+        post = str(self.places[POST][0].value)
+        self.leave_out(
+            [
+                place
+                for place in self.places
+                if place.startswith(NC) and not catalogue.reads_nc(post, place.removeprefix(NC))
+            ]
+        )
 
     def _add_text(self) -> None:
         self.text = listing("FirstLines")

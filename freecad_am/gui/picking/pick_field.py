@@ -6,12 +6,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from PySide import QtCore, QtGui
+from PySide import QtGui
 
 from ...objects.stage_parts import Link
 from .. import recorded
 from ..texts.translation import tr, translated
 from .an_input import Input
+from .pick_button import pick_button
 from .picking import EDGE, FACE, Pick, is_mesh
 
 _LIST = "App::PropertyLinkList"
@@ -47,14 +48,14 @@ class PickField(Input):
         self.text.setObjectName(link.name)
         self.text.setReadOnly(True)
         self.text.setMinimumWidth(40)
-        self.pick = _button(
+        self.pick = pick_button(
             tr("Pick"),
             f"Pick{link.name}",
             tr("Then click in the tree or the 3D view. {}").format(translated(link.help)),
         )
         self.pick.setCheckable(True)
         self.pick.toggled.connect(lambda on: toggled(self, on))
-        self.empty = _button("×", f"Clear{link.name}", tr("Clears it"))
+        self.empty = pick_button("×", f"Clear{link.name}", tr("Clears it"))
         self.empty.clicked.connect(self.clear)
         row = QtGui.QHBoxLayout(self.widget)
         row.setContentsMargins(0, 0, 0, 0)
@@ -156,12 +157,3 @@ class PickField(Input):
         return {
             self.link.key: repr(names) if self.element else references[0]
         }  # edges are the wall's own
-
-
-def _button(text: str, name: str, help: str) -> Any:
-    button = QtGui.QToolButton()
-    button.setText(text)
-    button.setObjectName(name)
-    button.setToolTip(help)
-    button.setFocusPolicy(QtCore.Qt.TabFocus)
-    return button

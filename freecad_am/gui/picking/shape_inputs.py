@@ -14,6 +14,7 @@ from .. import recorded
 from ..texts.translation import tr, translated
 from . import picking
 from .an_input import Input
+from .pick_button import NextClick, pick_button
 
 
 class ShapeChoice(Input):
@@ -32,16 +33,27 @@ class ShapeChoice(Input):
         self.widget.setToolTip(translated(link.help))
         row = QtGui.QHBoxLayout(self.widget)
         row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
         self.text = QtGui.QLineEdit()
         self.text.setObjectName(link.name)
         self.text.setReadOnly(True)
-        self.text.setPlaceholderText(tr("select") if link.required else tr("auto"))
-        button = QtGui.QPushButton(tr("Use selection"))
-        button.setObjectName(f"Use{link.name}")
-        button.setToolTip(tr("Takes what is selected now. {}").format(translated(link.help)))
-        button.clicked.connect(self._take_selected)
-        row.addWidget(self.text)
-        row.addWidget(button)
+        self.nothing = tr("auto")
+        self.text.setMinimumWidth(40)
+        self.pick = pick_button(
+            tr("Pick"),
+            f"Use{link.name}",
+            tr("Takes what is selected now, or else what is clicked next. {}").format(
+                translated(link.help)
+            ),
+        )
+        self.pick.setCheckable(True)
+        self.pick.clicked.connect(self._pressed)
+        self.empty = pick_button("×", f"Clear{link.name}", tr("Clears it"))
+        self.empty.clicked.connect(self.clear)
+        row.addWidget(self.text, 1)
+        for button in (self.pick, self.empty):
+            row.addWidget(button)
+        self.click = NextClick(self.widget, self._clicked)
         if take_now and present is None:
             self._propose_selected()
         self._show()
@@ -56,12 +68,42 @@ class ShapeChoice(Input):
         pick = found if found is None or self.link.name == "Axis" else picking.whole(found)
         self._take(pick)
         if found is not None and pick is not None and found.names and not pick.names:
-            self.note = tr(
-                "The whole of {} is taken; Use selection takes the selected faces only."
-            ).format(pick.obj.Label)
+            self.note = tr("The whole of {} is taken; Pick takes the selected faces only.").format(
+                pick.obj.Label
+            )
+
+    def _pressed(self, on: bool) -> None:
+        """The pick button was pressed: take what is selected, or wait for a click."""
+        if on and not self._is_selected():
+            self.click.wait()
+            self._show()
+        else:
+            self.click.stop()
+            self.pick.setChecked(False)
+            if on:
+                self._take_selected()
+            self._show()
+
+    def _is_selected(self) -> bool:
+        """Whether anything is selected; a document that is closed is told when it is taken from."""
+        try:
+            return bool(Gui.Selection.getSelection(self.document.Name))
+        except (ReferenceError, RuntimeError, NameError):
+            return True
+
+    def _clicked(self) -> None:
+        """Something was clicked that the input waits for."""
+        self.pick.setChecked(False)
+        self._take_selected()
+
+    def clear(self, *_: Any) -> None:
+        """Nothing is picked."""
+        self.present = None
+        self._show()
+        self.tell("")
 
     def _take_selected(self, *_: Any) -> None:
-        """The button was pressed, perhaps after the document was closed."""
+        """Take what is selected, perhaps after the document was closed."""
         try:
             self.take()
         except ReferenceError:
@@ -110,12 +152,19 @@ class ShapeChoice(Input):
         self.text.setText(text)
         self.text.setCursorPosition(0)
         self.text.setToolTip(text)
+        self._show_state(bool(text))
+
+    def _show_state(self, held: bool) -> None:
+        """Tell what to click while a click is awaited."""
+        idle = tr("select") if self.link.required else self.nothing
+        self.text.setPlaceholderText(tr("click an object") if self.pick.isChecked() else idle)
+        self.empty.setEnabled(held)
 
     @property
     def missing(self) -> str:
         if not self.link.required or self.present is not None:
             return ""
-        return tr("Select the shape to deposit, or its faces, and press Use selection.")
+        return tr("Select the shape to deposit, or its faces, and press Pick.")
 
     def applied(self) -> None:
         self.explicit = self.explicit or self.present is not None
@@ -140,7 +189,7 @@ class ObjectChoice(ShapeChoice):
 
     @property
     def missing(self) -> str:
-        text = tr("{} is missing: select it and press its Use selection.")
+        text = tr("{} is missing: select it and press its Pick.")
         return "" if self.present is not None else text.format(self.label)
 
     def value(self) -> Any:
@@ -159,7 +208,8 @@ class ObjectsChoice(ShapeChoice):
         self.objects = list(present or ())
         super().__init__(link, None, take_now=False)
         self.explicit = bool(present)
-        self.text.setPlaceholderText(tr("none"))
+        self.nothing = tr("none")
+        self._show()
 
     def show_stored(self, stored: Any) -> None:
         self.objects = list(stored)
@@ -175,6 +225,13 @@ class ObjectsChoice(ShapeChoice):
         text = ", ".join(obj.Label for obj in self.objects)
         self.text.setText(text)
         self.text.setToolTip(text)
+        self._show_state(bool(text))
+
+    def clear(self, *_: Any) -> None:
+        """Nothing is picked."""
+        self.objects = []
+        self._show()
+        self.tell("")
 
     def value(self) -> Any:
         return self.objects

@@ -25,6 +25,17 @@ _SECTIONS = (
     ("program", ProgramParameters),
     ("inspection", InspectionParameters),
 )
+# the panel that has the fields of a section, as its stage or tool is called
+_PANELS = {
+    "cell": "Cell",
+    "strategy": "Feature",
+    "build_direction": "Feature",
+    "process": "Toolpath",
+    "joints": "Joint path",
+    "program": "Program",
+    "inspection": "Inspection",
+}
+_PAIR = re.compile(r"`([a-z_]+): ([A-Za-z0-9+_-]+)`")  # a line of a job file
 _KEY = re.compile(
     rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])"
 )
@@ -48,14 +59,37 @@ def _known() -> dict[str, tuple[str, str]]:
     return found
 
 
-def as_in_panels(text: str, translate: Callable[[str], str], quoted: str = "“{}”") -> str:
-    """A message with the names that parameters have in panels, translated: “Bead width” for process.bead_width."""
+@lru_cache(maxsize=1)
+def _short_names() -> dict[str, str]:
+    """The whole name of each parameter whose last part no other section has, by that part."""
+    found: dict[str, list[str]] = {}
+    for name in _known():
+        found.setdefault(name.rpartition(".")[2], []).append(name)
+    return {
+        short: names[0]
+        for short, names in found.items()
+        if len({name.partition(".")[0] for name in names}) == 1 and names[0].count(".") == 1
+    }
+
+
+def as_in_panels(
+    text: str, translate: Callable[[str], str], quoted: str = "“{}”", with_panel: bool = False
+) -> str:
+    """A message with the names that parameters have in panels, translated: “Bead width” for process.bead_width, “Motion:
+    joint” for `motion: joint`. with_panel: tell whose panel has it, “Bead width” (Toolpath)."""
+
+    def shown(name: str, value: str = "") -> str:
+        group, label = _known()[name]
+        own = translate(label)
+        field = f"{translate(group)}, {own.lower()}" if group else own
+        panel = f" ({translate(_PANELS[name.partition('.')[0]])})" if with_panel else ""
+        return quoted.format(f"{field}: {translate(value)}" if value else field) + panel
 
     def named(match: re.Match[str]) -> str:
-        group, label = _known().get(match[0], ("", ""))
-        if not label:
-            return match[0]
-        own = translate(label)
-        return quoted.format(f"{translate(group)}, {own.lower()}" if group else own)
+        return shown(match[0]) if _known().get(match[0], ("", ""))[1] else match[0]
 
-    return _KEY.sub(named, text)
+    def paired(match: re.Match[str]) -> str:
+        name = _short_names().get(match[1])
+        return match[0] if name is None else shown(name, match[2])
+
+    return _PAIR.sub(paired, _KEY.sub(named, text))

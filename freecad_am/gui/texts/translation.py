@@ -40,7 +40,7 @@ def marked(text: str) -> str:
 def translated(text: str) -> str:
     """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
     the window, with parameters as its panels call them; itself where no translation is there."""
-    return as_in_panels(in_language(text, tr, in_user_units), translated, tr("“{}”"))
+    return as_in_panels(in_language(text, tr, in_user_units), translated, tr("“{}”"), True)
 
 
 def translated_error(error: BaseException) -> str:

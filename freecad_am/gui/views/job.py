@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
+
+from PySide import QtCore
 
 from ...objects.job_group import stages_in
 from ...objects.stage import stage_of
@@ -22,6 +25,11 @@ class JobView:
     def attach(self, vobj: Any) -> None:
         """Called when the view provider is set, and when a document opens."""
         self.obj = vobj.Object
+        QtCore.QTimer.singleShot(0, self._renew_icon)  # FreeCAD 1.1 asked before there was a proxy
+
+    def _renew_icon(self) -> None:
+        with contextlib.suppress(ReferenceError, RuntimeError, AttributeError):  # it is gone
+            self.obj.ViewObject.signalChangeIcon()
 
     def getIcon(self) -> str:
         """That of a job, with a badge unless all is well."""

@@ -11,6 +11,7 @@ from PySide import QtCore, QtGui
 from ..colours import WRONG, set_role
 from .present import present
 
+KEEP_MS = 2500  # ms that the place of a note stays once it has gone
 WIDEST_LABEL = 96  # pixels; longer ones go on below
 LONGEST_ROW = 2  # fields beside a label; more go below it
 WIDEST_CHOICE = 84  # pixels of the texts of a choice beside its label; longer ones go below it
@@ -18,7 +19,8 @@ WIDEST_CHOICE = 84  # pixels of the texts of a choice beside its label; longer o
 
 class Note(QtGui.QLabel):
     """A text that has room for all its lines; a form cuts off the last ones of other labels where it is narrow. Its place
-    stays once it was there: a field that is put right would else move those below it as the next one is being clicked."""
+    stays for a while once it was there: a field that is put right would else move those below it as the next one is being
+    clicked."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -40,6 +42,23 @@ class Note(QtGui.QLabel):
         policy = self.sizePolicy()
         policy.setRetainSizeWhenHidden(True)
         self.setSizePolicy(policy)
+
+    def hideEvent(self, event: Any) -> None:
+        """Called by Qt: a while later, once the next field is entered, its place goes too."""
+        super().hideEvent(event)
+        QtCore.QTimer.singleShot(KEEP_MS, self._close_gap)
+
+    def _close_gap(self) -> None:
+        with contextlib.suppress(RuntimeError):  # the panel is closed
+            if not self.isHidden():
+                return
+            if QtGui.QApplication.mouseButtons() != QtCore.Qt.NoButton:
+                QtCore.QTimer.singleShot(KEEP_MS, self._close_gap)
+                return
+            policy = self.sizePolicy()
+            policy.setRetainSizeWhenHidden(False)
+            self.setSizePolicy(policy)
+            self.tallest = 0
 
     def resizeEvent(self, event: Any) -> None:
         """Called by Qt: another width may take more lines, or fewer."""

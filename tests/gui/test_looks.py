@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Panels and docks can be read in light and dark themes and have their room on small screens and at 200 %.
+
+Each screen is one FreeCAD of its own, which opens all of them and measures what its screen shows (tests/gui/looks.py).
+"""
+
+import json
+import os
+import shutil
+import subprocess
+
+import pytest
+
+from tests import run
+
+TIMEOUT = 400  # s
+
+
+@pytest.mark.parametrize(
+    ("screen", "dpi"), [("1366x768", "96"), ("1920x1080", "192")], ids=["small", "200 %"]
+)
+@pytest.mark.always("small")
+def test_all_is_read_and_seen(tmp_path, screen, dpi):
+    home, seen = tmp_path / "home", tmp_path / "seen"
+    home.mkdir()
+    seen.mkdir()
+    env = {
+        **run.private_home(home),
+        "LOOKS_FOLDER": str(seen),
+        "LOOKS_ROOT": str(run.ROOT),
+        "QT_FONT_DPI": dpi,
+    }
+    options = f"-screen 0 {screen}x24 -dpi 96 -nolisten tcp"
+    program = shutil.which("freecad") or shutil.which("FreeCAD")
+    script = str(run.ROOT / "tests" / "gui" / "looks.py")
+    subprocess.run(
+        ["xvfb-run", "-a", "-f", str(home / "Xauthority"), "-s", options]
+        + ["timeout", str(TIMEOUT), program, script],
+        env=env,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        check=False,
+    )
+    pictures = os.environ.get("ROBOTIC_AM_PICTURES")
+    for picture in seen.glob("*.png") if pictures else ():
+        shutil.copy(picture, os.path.join(pictures, f"looks-{screen}-{picture.name}"))
+    result = seen / "looks.json"
+    assert result.exists(), "FreeCAD did not come to the end"
+    wrong = json.loads(result.read_text(encoding="utf-8"))
+    assert not wrong, "\n".join(wrong)
+    docks = {picture.stem.split("-")[1] for picture in seen.glob("dark-*.png")}
+    assert {"Path", "Simulate", "Plots", "SpinMap", "Placement", "NewJob", "Cell"} <= docks
