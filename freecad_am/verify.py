@@ -15,6 +15,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
+from .core.geometry.formatting import deviation
 from .core.issues import ERROR, Issue, Text
 from .core.kinematics.cell import Cell
 from .core.motion import Motion
@@ -30,7 +31,7 @@ from .read_back.ways import way_issues
 STRAYS = (
     "the path between two points leaves the straight line by {:.3g} mm, more than the chord error"
 )
-WANDERS = "the way between two beads leaves the one that was checked by up to {:.3g} mm"
+WANDERS = "the way between two beads leaves the one that was checked by up to {} mm and {:.3g} deg"
 
 
 @dataclass(frozen=True)
@@ -179,8 +180,8 @@ def _concluded(
     issues: list[Issue],
 ) -> Verification:
     """What is looked at whatever the text is told in, rapids and limits; what the second solver said, and who solved."""
-    wandered, off = between.rapids_between(cell, planned, text, path, read.linear)
-    issues += planned.issue("VERIFY_BETWEEN", off, Text(WANDERS, wandered))
+    wandered, turned, off = between.rapids_between(cell, planned, text, path, read.linear)
+    issues += planned.issue("VERIFY_BETWEEN", off, Text(WANDERS, deviation(wandered), turned))
     issues += points.limit_issues(cell, planned, text)
     solver_issues, solvers = second
     at_points = float(np.linalg.norm(path.position - planned.position, axis=1).max())

@@ -20,12 +20,12 @@ BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 def rapids_between(
     cell: Cell, planned: Planned, text: Joints, path: Path, linear: Mask
-) -> tuple[float, Mask]:
-    """Largest distance of the tip from where it was looked at on rapids, and the moves (n,) that leave that way by more than
+) -> tuple[float, float, Mask]:
+    """Largest distance of the tip, mm, and of its direction, deg, from where it was looked at on rapids, and the moves (n,) that leave that way by more than
     the digits explain: as the text says them, the joints straight or (linear) the tip."""
     off, ends = np.zeros(len(planned.deposit), dtype=bool), planned.rapids
     if not len(ends):
-        return 0.0, off
+        return 0.0, 0.0, off
     looked_at = _between(planned.joints, ends)
     tip, tool = _tips(cell, looked_at)
     driven_tip, driven_tool = _tips(cell, _between(text.serial, ends))
@@ -39,7 +39,7 @@ def rapids_between(
     most = np.where(along[:, 0], OFF_WAY_MM, np.minimum(bound, OFF_WAY_MM))
     wrong = ~((apart <= most) & (tilted <= np.maximum(tool_bound, OFF_WAY_RAD * along[:, 0])))
     off[ends] = wrong.reshape(len(ends), -1).any(axis=1)
-    return float(apart.max()), off
+    return float(apart.max()), float(np.degrees(tilted.max())), off
 
 
 def _between(rows: Array, ends: Index) -> Array:

@@ -183,10 +183,8 @@ def test_number_and_unit_are_seen_whole(person, window, scheme, number, size):
         text = field.line.text()
         digits = re.sub(r"\D", "", text.split()[0]).lstrip("0") if " " in text else ""
         assert len(digits) <= 8, text
-        room = field.line.width() - person.widgets.QApplication.style().pixelMetric(
-            person.widgets.QStyle.PM_SmallIconSize
-        )
-        assert field.line.fontMetrics().boundingRect(text).width() <= room, text
+        mark = field.line.findChild(person.widgets.QToolButton)  # of the expression, at its right
+        assert field.line.fontMetrics().boundingRect(text).width() + 4 <= mark.x(), text
         field.box.hide()
 
 

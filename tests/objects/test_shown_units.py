@@ -30,7 +30,7 @@ def shown(text):
         (US, "Plate 5 mm is 0.315 in high, 1.83 in³ at 14.2 in/min"),
         (EURO, "Plate 5 mm is 0.8 cm high, 30 cm3 at 360 mm/min"),
         (CNC, "Plate 5 mm is 8 mm high, 30 cm3 at 360 mm/min"),
-        (CIVIL, "Plate 5 mm is 0.0262 ft high, 0.00106 ft³ at 0.0134 mph"),
+        (CIVIL, "Plate 5 mm is 0.0262 ft high, 1.83 in³ at 0.0134 mph"),
         (FEM, "Plate 5 mm is 8 mm high, 30 cm3 at 6 mm/s"),
     ],
 )

@@ -15,7 +15,7 @@ from ...core.parameters import field as f
 from ...objects.fields import preferences
 from ...objects.fields.expressions import FOLLOW, is_expression
 from ...objects.fields.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
-from ...objects.fields.shown_units import field_text, typed_text
+from ...objects.fields.shown_units import field_text, in_user_units, typed_text
 from ..texts.translation import tr, translated
 from . import choices
 from .pendant import PendantLine
@@ -90,7 +90,7 @@ def make(
 
 def whats_this(row: Row, section: str) -> str:
     """The help of a field: what it is, what it may be, what it is by default, and its name in jobs and macros."""
-    spec, default = row.spec, row.text(row.default)
+    spec, default = row.spec, in_user_units(row.text(row.default))
     unit = row.unit if row.form in (f.RATIO, f.TURN_RATE) else ""
     lines = [translated(spec.help)]
     if spec.choices or spec.words:

@@ -29,6 +29,10 @@ from ..signals import connect
 from ..texts.translation import tr
 
 _LEAST_WIDTH, _MOST_LETTERS = 70, 16
+_LINE_MARGINS, _ARROWS = (
+    10,
+    20,
+)  # px: left and right of the text in a line, and arrows of a spin box
 _LEFT_OF_UNIT = re.compile(r"[-+]?[\d.,]+(?= \D)")
 _SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.svg"  # of FreeCAD
 
@@ -126,13 +130,13 @@ class QuantityField:
         advance = getattr(metrics, "horizontalAdvance", metrics.width)
         text = "" if isinstance(self.shown, str) else self.known_text
         letters = text if len(text) <= _MOST_LETTERS else text[-_MOST_LETTERS:]
-        mark = (
-            self.box.style().pixelMetric(QtGui.QStyle.PM_SmallIconSize)
-            + 2 * metrics.averageCharWidth()
-        )
-        buttons = self.box.buttonSymbols() != QtGui.QAbstractSpinBox.NoButtons
-        arrows = 2 * metrics.averageCharWidth() + 4 if buttons else 4
-        self.box.setMinimumWidth(max(_LEAST_WIDTH, advance(letters) + mark + arrows))
+        style = self.box.style()
+        icon = style.pixelMetric(QtGui.QStyle.PM_SmallIconSize) + 6  # as QLineEdit places an action
+        frame = 2 * style.pixelMetric(QtGui.QStyle.PM_DefaultFrameWidth) + _LINE_MARGINS
+        has_arrows = self.box.buttonSymbols() != QtGui.QAbstractSpinBox.NoButtons
+        arrows = max(_ARROWS, 2 * metrics.averageCharWidth()) if has_arrows else 0
+        wanted = advance(letters) + icon + icon // 4 + frame + arrows
+        self.box.setMinimumWidth(max(_LEAST_WIDTH, wanted))
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)

@@ -23,6 +23,7 @@ from .unit_scheme import is_metric, plain_name, scheme_unit
 
 ORDINARY = {"mm": 10.0, "mm/s": 6.0}  # what tells the unit of a field that has no number yet
 _BARE = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_LEAST_OF_FEET = 0.1  # square or cubic feet; less is in inches
 _METRIC = re.compile(r"(?:µ|n|m|c|k)?m(?:\^[23]|²|³)?(?:/.*)?|ml|l|k?g|t")
 
 
@@ -34,9 +35,17 @@ def conversion(value: float, unit: str) -> tuple[float, str] | None:
     if is_metric() or not math.isfinite(value):
         return None
     per_unit, name = scheme_unit(value, unit)
+    if plain_name(name).startswith("ft") and abs(value) < _LEAST_OF_FEET * per_unit:
+        per_unit, name = _in_inches(per_unit, plain_name(name))
     if name == unit or (_METRIC.fullmatch(name) and not _is_length(unit)):
         return None
     return 1.0 / per_unit, _with_powers(plain_name(name))
+
+
+def _in_inches(per_unit: float, name: str) -> tuple[float, str]:
+    """Square or cubic inches for square or cubic feet."""
+    power = {"ft^2": 2, "ft²": 2, "ft^3": 3, "ft³": 3}.get(name)
+    return (per_unit, name) if power is None else (per_unit / 12.0**power, f"in^{power}")
 
 
 def scale_of(most: float, unit: str) -> tuple[float, str]:
