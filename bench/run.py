@@ -130,13 +130,12 @@ def main(words: list[str]) -> int:
 def _run(name: str) -> int:
     """Print a line per comparison, and before them how busy and how fast the machine is: medians forgive some of that."""
     sys.path[:0] = [str(HERE.parent), str(HERE)]
-    from freecad_am.batch import allocation, host
+    from freecad_am.batch import host
 
     import sizes
     from pace import pace
 
     host.find_freecad()
-    allocation.keep_freed()  # as commands do
     busy = f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors"
     print(f"{name} ({busy}, a fixed piece of work in {pace():.2f} ms)", flush=True)
     short = False

@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from freecad_am.batch import allocation, host  # noqa: E402
+from freecad_am.batch import host  # noqa: E402
 
 host.find_freecad()
 
@@ -23,7 +23,6 @@ if (
     not FreeCAD.GuiUp
 ):  # as commands have it (freecad_am/batch/boot.py): a tenth of the time of what is computed here
     gc.set_threshold(300_000, 50, 50)
-    allocation.keep_freed()
 
 WHY, LONGEST = 6, 220  # lines of why a test failed, and characters of each
 

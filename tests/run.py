@@ -299,8 +299,6 @@ def private_home(folder: Path) -> dict[str, str]:
         "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
         # parts run at the same time, and threads of two would wait for one another's cores
         "OPENBLAS_NUM_THREADS": os.environ.get("OPENBLAS_NUM_THREADS", "1"),
-        # as commands have it (freecad_am/batch/boot.py): the same numbers, with less around each call
-        "NUMPY_EXPERIMENTAL_ARRAY_FUNCTION": "0",
         # hundreds of lines about another version's own modules
         **(
             {"PYTEST_ADDOPTS": "--disable-warnings"} if os.environ.get("FREECAD_AM_VERSION") else {}

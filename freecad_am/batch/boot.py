@@ -80,12 +80,8 @@ def run(words):
     if demo:
         example = os.path.join(ROOT, "resources", "examples", "hemisphere.yaml")
         words = ["plan", example, "-o", os.path.join("out", "hemisphere"), *words[1:]]
-    # numpy up to 1.24 looks in every call for array classes with functions of their own, which for a few numbers takes as
-    # long as the work on them; there are none here
-    os.environ.setdefault("NUMPY_EXPERIMENTAL_ARRAY_FUNCTION", "0")
-    from freecad_am.batch import allocation, cli
+    from freecad_am.batch import cli
 
-    allocation.keep_freed()
     status = cli.main(words)
     if demo and status == 0:
         folder = words[3]

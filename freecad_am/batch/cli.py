@@ -97,10 +97,6 @@ def _run(argv: list[str], session: Any) -> int:
         session.out(parser.format_help())
         return DONE
     options = parser.parse_args(words)
-    if command in SHAPES and os.path.isfile(getattr(options, SHAPES[command])):
-        from freecad_am.batch import paths
-
-        paths.load_meanwhile()
     status: int = getattr(sys.modules[__name__], f"_{command}")(options, session)
     return status
 

@@ -42,7 +42,6 @@ class Stages:
     toolpath: Any = None
     joint_path: Any = None
     program: Any = None
-    survey: Any = None  # what takes long of the preflight, made meanwhile
     issues: list[Issue] = field(default_factory=list)
     timing: dict[str, float] = field(default_factory=dict)
 
@@ -85,9 +84,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     paths.require_freecad()
     import FreeCAD
 
-    from freecad_am.brep.files.read import reading_shape
-
-    with named_by_keys(job), reading_shape(job.features[0].part.file):  # while the rest is checked
+    with named_by_keys(job):
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
             stages = otherwise.planned(
@@ -162,12 +159,9 @@ def _in_a_document(job: Job, session: Any, fails: str) -> Stages:
 def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`. fails: code
     of the error that what was chosen ends with, where the job leaves it open."""
-    import FreeCAD
 
     from freecad_am import api
-    from freecad_am.core.copies import meanwhile
     from freecad_am.core.process.model.predicted import HEIGHTS
-    from freecad_am.objects.checks import preflight
 
     stages = as_far_as_toolpath(job, document, session, fails)
     job = stages.job
@@ -191,15 +185,9 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     stages.issues += found
     if has_errors(stages.issues):
         return stages
-    survey = preflight.survey_of(stages.toolpath, stages.joint_path, job.program, at_once=True)
-    stages.survey = survey if FreeCAD.GuiUp else meanwhile(survey)
     if job.program is not None:
-        try:
-            with stages.timed("program", session):
-                _make_program(stages)
-        except BaseException:
-            stages.survey = None  # which ends its copy
-            raise
+        with stages.timed("program", session):
+            _make_program(stages)
     return stages
 
 

@@ -5,68 +5,11 @@ from __future__ import annotations
 
 import contextlib
 import os
-import pickle
 import signal
 import sys
-import weakref
 from collections.abc import Callable
-from typing import Generic, TypeVar
-
-T = TypeVar("T")
 
 FAILED = 1  # exit status of a copy whose work raised
-
-
-def meanwhile(work: Callable[[], T]) -> Callable[[], T]:
-    """What returns what `work` does, and raises what it raises: done by a copy of this process while this one goes on.
-
-    Its result has to pickle. Where there is no copy, with one processor, or where the copy ends without a result, the work
-    is done here when it is asked for. A copy whose result nobody can ask for any more is ended.
-    """
-    if not sys.platform.startswith("linux") or len(os.sched_getaffinity(0)) < 2:
-        return work
-    try:
-        return _Meanwhile(work)
-    except OSError:  # the system has no process or no pipe left
-        return work
-
-
-class _Meanwhile(Generic[T]):
-    """The work that a copy does, and its result."""
-
-    def __init__(self, work: Callable[[], T]) -> None:
-        self._work = work
-        self._ours, theirs = os.pipe()
-        try:
-            pid = begun(lambda: _tell(work, theirs))
-        except OSError:
-            os.close(self._ours)
-            raise
-        finally:
-            os.close(theirs)
-        self._end = weakref.finalize(self, _ended, pid, self._ours)
-
-    def __call__(self) -> T:
-        with contextlib.suppress(
-            EOFError, pickle.UnpicklingError
-        ):  # it has ended without, or was asked before
-            with os.fdopen(self._ours, "rb", closefd=False) as stream:
-                found: T = pickle.load(stream)
-            return found
-        return self._work()
-
-
-def _tell(work: Callable[[], object], channel: int) -> None:
-    with os.fdopen(channel, "wb") as stream:
-        stream.write(pickle.dumps(work(), pickle.HIGHEST_PROTOCOL))
-
-
-def _ended(pid: int, channel: int) -> None:
-    """Here: end the copy, whose result is known or not asked for."""
-    os.close(channel)
-    with contextlib.suppress(OSError):
-        os.kill(pid, signal.SIGKILL)
-        os.waitpid(pid, 0)
 
 
 def begun(work: Callable[[], object]) -> int:

@@ -22,7 +22,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import freecad_am
-from freecad_am.batch import allocation, cli, host
+from freecad_am.batch import cli, host
 
 # what a command imports beside our own modules; a part of it may not be there
 BESIDE = ("Part", "Mesh", "MeshPart", "PyKDL", "yaml", "shapely", "matplotlib.backends.backend_svg")
@@ -71,7 +71,6 @@ def main():
     import FreeCAD  # noqa: F401  before Part
 
     load_all()
-    allocation.keep_freed()  # as boot.py, and the next line
     gc.set_threshold(300_000, 50, 50)  # and no copy looks through what all of them have
     gc.freeze()
     answer = int(sys.argv[1])

@@ -17,9 +17,7 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
     from freecad_am.report.asked import Results
 
     path = stages.joint_path
-    survey = functools.cache(
-        stages.survey or preflight.survey_of(stages.toolpath, path, stages.job.program)
-    )
+    survey = functools.cache(preflight.survey_of(stages.toolpath, path, stages.job.program))
     return Results(
         api.result(stages.toolpath),
         None if path is None else api.result(path),

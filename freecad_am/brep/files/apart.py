@@ -39,7 +39,6 @@ MB = 1e6
 NO_MEMORY = 77  # exit status of a copy that has come to its limit
 
 _is_apart = False  # whether this is such a process
-_begun: dict[tuple[Any, ...], _Reading] = {}  # by `_name`
 
 
 def apart(
@@ -62,9 +61,7 @@ def apart(
         return read(path, *rest)
     limits = _limits(size, patience)
     if not FreeCAD.GuiUp:
-        with _begun.pop(_name(read, path, rest), None) or _Reading(
-            read, path, rest, *limits
-        ) as copy:
+        with _Reading(read, path, rest, *limits) as copy:
             ended, used = copy.wait()
             if ended:
                 raise _refused(where, ended, used, *limits)
@@ -79,39 +76,6 @@ def apart(
                 raise _refused(where, *how, *limits)
             found = answers.hear(*files)
     return read(path, *rest) if isinstance(found, str) and found == answers.AGAIN else found
-
-
-@contextlib.contextmanager
-def ahead(read: Callable[..., object], path: str | os.PathLike[str], *rest: Any) -> Iterator[None]:
-    """Within it a copy of this process is already reading what `apart` is asked for first with these arguments, unless the
-    file is another one by then. Beside a window, with one processor, or where no copy can be made, nothing happens."""
-    size, linux = _size(path) / MB, sys.platform.startswith("linux")
-    copy = None
-    if (
-        linux
-        and os.path.isfile(path)
-        and size <= LARGEST
-        and not FreeCAD.GuiUp
-        and len(os.sched_getaffinity(0)) > 1
-    ):
-        with contextlib.suppress(OSError):
-            copy = _begun[_name(read, path, rest)] = _Reading(read, path, rest, *_limits(size, 1.0))
-    try:
-        yield
-    finally:
-        if copy is not None:
-            _begun.clear()
-            copy.close()
-
-
-def _name(
-    read: Callable[..., object], path: str | os.PathLike[str], rest: tuple[Any, ...]
-) -> tuple[Any, ...]:
-    """What is read: the file as it is now, which may be replaced by another one while it is read."""
-    with contextlib.suppress(OSError, ValueError):
-        state = os.stat(path)
-        return read, path, rest, state.st_ino, state.st_size, state.st_mtime_ns
-    return read, path, rest
 
 
 def _limits(size: float, patience: float) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -77,14 +77,6 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
     return FileContent(*apart.apart(_shape, file, where))
-
-
-def reading_shape(path: str | os.PathLike[str]) -> AbstractContextManager[None]:
-    """Within it reading that shape has begun, and `read_shape` waits for the rest alone."""
-    file = located(path)
-    return (
-        apart.ahead(_shape, file, file.name) if file.suffix.lower() in READABLE else nullcontext()
-    )
 
 
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -126,13 +127,13 @@ def prepared(
     return preflight
 
 
-def survey_of(
-    toolpath: Any, path: Any, settings: ProgramParameters | None, at_once: bool = False
-) -> Survey:
-    """What finds of a toolpath and its joint path (document objects), run as a program with `settings`, what takes long,
-    without the document, from which all is read now. at_once: so are the files that the cell names, and FreeCAD is not
-    asked for anything later. Raises InputError 'NO_RESULT' where one has no result."""
-    return _survey(toolpath, None if path is None else _Run(path, settings, at_once))
+def survey_of(toolpath: Any, path: Any, settings: ProgramParameters | None) -> Survey:
+    """Return the function that finds the slow part of the preflight of a toolpath and its joint path.
+
+    The documents are read now; the returned function needs them no more. `settings` are those of the program that is
+    written of the joint path. Raises InputError 'NO_RESULT' if a stage has no result.
+    """
+    return _survey(toolpath, None if path is None else _Run(path, settings))
 
 
 def _survey(toolpath: Any, run: _Run | None) -> Survey:
@@ -213,9 +214,7 @@ def _of_motion(
 class _Run:
     """How a joint path (document object) is run, by a program with `settings` where there are any, without the document."""
 
-    def __init__(
-        self, path: Any, settings: ProgramParameters | None, at_once: bool = False
-    ) -> None:
+    def __init__(self, path: Any, settings: ProgramParameters | None) -> None:
         self._toolpath, self._planned = (
             path.Toolpath.Proxy.reader(path.Toolpath),
             path.Proxy.reader(path),
@@ -225,16 +224,10 @@ class _Run:
             tuple(user_machines.folders()),
         )
         self.settings = None if settings is None or settings.post == "none" else settings
-        self._kept = self._read() if at_once else None
 
-    @property
+    @functools.cached_property
     def what(self) -> What:
-        """The toolpath, what was planned, its cell, and the shapes of the machine's links."""
-        if self._kept is None:
-            self._kept = self._read()
-        return self._kept
-
-    def _read(self) -> What:
+        """The toolpath, the planned joint path, its cell, and the shapes of the machine's links."""
         toolpath = self._toolpath()
         cell = resolved(self._looks, toolpath, self._folders)
         return toolpath, self._planned(), cell, meshes_of(cell.machine)
