@@ -136,7 +136,8 @@ def _place(file: str, text: str, positions: int, point: int) -> str:
 
 def _with_more(file: str, text: str, positions: int) -> Records:
     """The joint positions of a text with a track or two motion groups, all alike."""
-    values, frames, groups, decimals, points = [], [], set(), 99, []
+    values, frames, decimals, points = [], [], 99, []
+    groups: set[tuple[str, int, bool]] = set()
     for record in _MORE.finditer(text):
         point, user, tool, *own, track, group, other_user, other_tool, rest = record.groups()
         external = _AXIS.findall(rest or "")

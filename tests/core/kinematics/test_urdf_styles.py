@@ -269,3 +269,47 @@ def test_angles_in_reasons_have_digits_that_differ(tmp_path):
     with pytest.raises(InputError) as refused:
         urdf_machine.described(Reference(str(path), None, None))
     assert "not 90 deg" in refused.value.message and "90 deg apart" not in refused.value.message
+
+
+@pytest.mark.parametrize(
+    ("pattern", "by", "words"),
+    [
+        ("<limit", '<xacro:if value="1"/><limit', "this is xacro"),
+        ('"link_1"', '"${prefix}link_1"', "this is xacro"),
+        ("<axis", '<offset xyz="0 0 1"/><axis', "<offset> in the joint"),
+        ("<axis", '<axis xyz="1 0 0"/><axis', "several <axis>"),
+        ("<axis", '<origin xyz="0 0 1"/><axis', "several <origin>"),
+        ("<origin xyz=", '<origin unit="mm" xyz=', "no attribute unit"),
+        ('rpy="[^"]*"', 'quat_xyzw="0 0 0.7 0.7"', "no attribute quat_xyzw"),
+        ('lower="[^"]+" upper="[^"]+"', 'lower="-180" upper="180"', "convert degrees"),
+        ('velocity="[^"]+"', 'velocity="-1"', "is negative"),
+        ('<origin xyz="[^"]+"', '<origin xyz="0 0 450"', "divide what is in mm"),
+    ],
+)
+def test_what_may_change_where_links_are_is_refused_with_its_line(pattern, by, words, tmp_path):
+    text = urdf_text.text(machine.load(WRISTS[0]))
+    changed = re.sub(pattern, by, text, count=0 if "prefix" in by else 1)
+    assert changed != text
+    path = tmp_path / "robot.urdf"
+    path.write_text(changed, encoding="utf-8")
+    with pytest.raises(InputError) as refused:
+        urdf_machine.described(Reference(str(path), None, None))
+    assert refused.value.code == "BAD_URDF" and words in refused.value.message, refused.value
+    assert re.search(r"line \d+$", refused.value.where)
+
+
+def test_limits_that_are_left_out_or_soft_are_noted(tmp_path):
+    text = urdf_text.text(machine.load(WRISTS[0]))
+    text = re.sub(r' upper="[^"]+"', "", text, count=1)
+    text = text.replace(
+        "<limit", '<safety_controller soft_lower_limit="-1" soft_upper_limit="1"/><limit', 1
+    )
+    path = tmp_path / "robot.urdf"
+    path.write_text(text, encoding="utf-8")
+    described, _ = urdf_machine.described(Reference(str(path), None, None))
+    notes = " / ".join(described.notes)
+    assert (
+        described.upper[0] == 0.0
+        and "no upper, which counts as 0" in notes
+        and "soft limits" in notes
+    )

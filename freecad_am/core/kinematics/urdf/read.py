@@ -33,6 +33,15 @@ STRAIGHT, BEHIND_MM = (
     1e-3,
 )  # of a tip: rad that its Z is off the axis, mm that it may lie behind
 DEGREE = math.radians(1.0)
+MOST_RAD, FARTHEST_M = 50.0, 50.0  # more are degrees, or mm
+# what a joint may hold, and of which it may hold one alone
+SINGLE_TAGS = ("parent", "child", "origin", "axis", "limit", "mimic")
+JOINT_TAGS = (*SINGLE_TAGS, "dynamics", "calibration", "safety_controller", "physics", "gazebo")
+ATTRIBUTES = {
+    "origin": {"xyz", "rpy"},
+    "axis": {"xyz", "rpy"},  # rpy of old exporters, of zeros
+    "limit": {"lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"},
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +86,9 @@ class Urdf:
                 )
             )
         # what xacro wrote may still name its namespace
-        if any(child.tag.startswith("xacro:") for child in self.top.children):
-            raise self.top.bad(
+        unexpanded = _xacro_in(self.top)
+        if unexpanded is not None:
+            raise unexpanded.bad(
                 "this is xacro; make a URDF of it first, with the program xacro of ROS"
             )
         self.name = self.top.attributes.get("name", self.path.stem)
@@ -184,7 +194,7 @@ class Urdf:
                 origins.append(rest)
                 rest = np.eye(4)
         limits = [_limits(joint) for joint in moving]
-        notes: list[str] = _rounded_angles(joints)
+        notes = [*_rounded_angles(joints), *_joint_notes(moving)]
         shapes = tuple(
             self._mesh(link, notes)
             for link in (base, *(joint.one("child").text("link") for joint in moving))
@@ -255,6 +265,7 @@ class Urdf:
                         joint.text("name"),
                     )
                 )
+            _check_joint(joint)
             yield joint
 
     def _makers(self, base: str) -> Array | None:
@@ -346,6 +357,74 @@ def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
     )
 
 
+def _xacro_in(element: Element) -> Element | None:
+    """The first element that only xacro understands: of its namespace, or with an expression in a name."""
+    expressions = ("${", "$(")
+    if element.tag.startswith("xacro:") or any(
+        mark in element.attributes.get(name, "")
+        for name in ("name", "link", "joint")
+        for mark in expressions
+    ):
+        return element
+    return next(
+        (inner for child in element.children if (inner := _xacro_in(child)) is not None), None
+    )
+
+
+def _check_joint(joint: Element) -> None:
+    """InputError BAD_URDF for what of a joint is not read and may change where its link is, and for lengths that are not in m."""
+    for child in joint.children:
+        if child.tag not in JOINT_TAGS:
+            raise child.bad(
+                Text(
+                    "<{}> in the joint {!r} is not known and may change where links are; remove it",
+                    child.tag,
+                    joint.text("name"),
+                )
+            )
+        if child.tag in SINGLE_TAGS and len(list(joint.all(child.tag))) > 1:
+            raise child.bad(
+                Text(
+                    "the joint {!r} has several <{}>; keep one of them",
+                    joint.text("name"),
+                    child.tag,
+                )
+            )
+        unknown = set(child.attributes) - ATTRIBUTES.get(child.tag, set(child.attributes))
+        if unknown:
+            raise child.bad(
+                Text("<{}> has no attribute {}; remove it", child.tag, sorted(unknown)[0])
+            )
+    axis = joint.first("axis")
+    if axis is not None and axis.numbers("rpy", 3, "0 0 0").any():
+        raise axis.bad("<axis> has no rpy; turn its xyz")
+    far = 0.001 * float(np.abs(joint.pose()[:3, 3]).max())
+    if far > FARTHEST_M:
+        raise joint.bad(
+            Text(
+                "the origin of the joint {!r} is {:g} m away; a URDF is in metres: divide what is in mm by 1000",
+                joint.text("name"),
+                far,
+            )
+        )
+
+
+def _joint_notes(joints: Sequence[Element]) -> list[str]:
+    """Notes on limits that are taken for something, or not used."""
+    notes: list[str] = []
+    for joint in joints:
+        limit, soft = joint.first("limit"), joint.first("safety_controller")
+        if limit is not None and joint.text("type") != "continuous":
+            missing = [name for name in ("lower", "upper") if name not in limit.attributes]
+            notes += [
+                Text("line {}: the limit has no {}, which counts as 0", limit.line, name)
+                for name in missing
+            ]
+        if soft is not None and {"soft_lower_limit", "soft_upper_limit"} & set(soft.attributes):
+            notes.append(Text("line {}: soft limits are not used", soft.line))
+    return notes
+
+
 def _rounded_angles(joints: Sequence[Element]) -> list[str]:
     """Notes on angles that are taken for right angles although their last digit is off by more than it is rounded."""
     notes: list[str] = []
@@ -391,6 +470,18 @@ def _limits(joint: Element) -> tuple[float, float, float]:
             else urdf_xml.nearest(limit.attributes.get(name, "0").strip(), DEGREE)
         )
     lower, upper, speed = values
+    if speed < 0.0:
+        raise limit.bad(Text("the velocity {:g} is negative; give a positive one", speed))
+    if kind == "revolute" and max(abs(lower), abs(upper)) > MOST_RAD:
+        raise limit.bad(
+            Text(
+                "the limits of {!r} run from {:g} to {:g} rad, which are many turns; a URDF is in radians: convert degrees, or "
+                "make the joint continuous",
+                joint.text("name"),
+                lower,
+                upper,
+            )
+        )
     if kind == "continuous":
         lower, upper = -math.inf, math.inf
     if not lower < upper:
