@@ -13,7 +13,7 @@ import FreeCAD as App
 import Part
 
 from ..core.geometry.curves import ada3dp, curve_table, gcode, gcode_roles
-from ..core.geometry.curves.bead_curves import POINT_FILES
+from ..core.geometry.curves.bead_curves import POINT_FILES, ReadCurves
 from ..core.geometry.file_content import content
 from ..core.issues import InputError, Word
 
@@ -30,7 +30,7 @@ class Points:
     form: str
     text: str
 
-    def read(self, label: str, chord_error: float, roles: str, rotary: str) -> gcode.ReadCurves:
+    def read(self, label: str, chord_error: float, roles: str, rotary: str) -> ReadCurves:
         """Its beads, arcs within the chord error (mm), and what of it is not read.
 
         roles, rotary: of G-code, as `gcode.read` has them. InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP; BAD_VALUE for roles
@@ -38,10 +38,11 @@ class Points:
         """
         if self.form == GCODE:
             return gcode.read(self.text, label, chord_error, roles, rotary)
-        refuse_gcode_keys(label, roles, rotary)
         if self.form == ADA:
-            return gcode.ReadCurves(ada3dp.curves_of(base64.b64decode(self.text), label))
-        return gcode.ReadCurves(curve_table.curves_of(self.text, label))
+            refuse_gcode_keys(label, gcode_roles.PART, rotary)
+            return ada3dp.read(base64.b64decode(self.text), label, roles)
+        refuse_gcode_keys(label, roles, rotary)
+        return ReadCurves(curve_table.curves_of(self.text, label))
 
 
 def open_points(document: Any, path: str) -> Any:

@@ -378,3 +378,32 @@ def test_a_toolpath_of_adaone():
         with pytest.raises(InputError) as told:
             ada3dp.curves_of(damaged, "part.ada3dp")
         assert told.value.code == "BAD_ADA3DP" and words in told.value.message, told.value
+
+
+def typed_toolpath(types, *more):
+    """One segment of 10 mm more than the one before for each type."""
+    segments = []
+    for k, kind in enumerate(types, 1):
+        rows = [(1, 2, message((1, 2, vector([x, k, 0])))) for x in (1.0, 1.0 + 10.0 * k)]
+        segments.append((2, 2, message(*rows, (2, 0, 1), (3, 0, kind))))
+    return message((1, 2, message((1, 0, 0), *segments)), *more)
+
+
+def test_segments_of_adaone_that_are_not_part_are_left_out():
+    data = typed_toolpath([1, 4, 6, 12, 3])  # wall, brim, raft, purge, infill
+    read = ada3dp.read(data, "p")
+    assert length(read.curves) == pytest.approx(60.0)
+    (note,) = read.issues
+    for words in ("BRIM 20 mm", "RAFT 30 mm", "PURGE 40 mm"):
+        assert words in note.message
+    assert length(ada3dp.curves_of(data, "p", "all")) == pytest.approx(150.0)
+    assert length(ada3dp.curves_of(data, "p", "part, BRIM")) == pytest.approx(80.0)
+
+
+def test_what_adaone_may_not_mean_as_a_deposit_is_told():
+    with pytest.raises(InputError) as told:
+        ada3dp.read(typed_toolpath([1], (2, 2, message((2, 0, 12)))), "p")
+    assert told.value.code == "BAD_ADA3DP" and "drilling" in told.value.message
+    read = ada3dp.read(typed_toolpath([1], (5, 0, 7), (2, 2, message((5, 0, 1)))), "p")
+    notes = " / ".join(issue.message for issue in read.issues)
+    assert "1 of a toolpath" in notes and "external axes" in notes

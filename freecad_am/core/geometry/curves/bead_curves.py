@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -51,3 +52,10 @@ class Curves:
     issues: tuple[Issue, ...] = ()
     depths: None = None
     edges: tuple[str, ...] | None = None
+
+
+class ReadCurves(NamedTuple):
+    """Beads of a file, and findings about what of it is no bead."""
+
+    curves: tuple[BeadCurve, ...]
+    issues: tuple[Issue, ...] = ()

@@ -12,18 +12,17 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
 from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array
 from . import gcode_roles as roles_of
-from .bead_curves import BeadCurve
+from .bead_curves import BeadCurve, ReadCurves
 from .gcode_words import BadWords, Command, commands_of, split_comments
 
 CODE = "BAD_GCODE"
-LEFT_OUT, NOT_READ = "ROLES_LEFT_OUT", "GCODE_NOT_READ"
+NOT_READ = roles_of.NOT_READ
 LAYER = re.compile(
     r"\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|CHANGE_LAYER|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)",
     re.IGNORECASE,
@@ -294,13 +293,6 @@ HARMLESS_MACROS = frozenset(
         "ECHO",
     }
 )
-
-
-class ReadCurves(NamedTuple):
-    """Beads of a file, and findings about what of it is no bead."""
-
-    curves: tuple[BeadCurve, ...]
-    issues: tuple[Issue, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -823,7 +815,7 @@ class _Reader:
                 _Run(run.points, run.directions, run.comments, run.role or roles_of.BEFORE)
                 for run in self.runs
             ]
-        runs, issues = self._laid(roles)
+        runs, issues = roles_of.chosen(self.runs, roles, self.where, CODE)
         curves = tuple(
             BeadCurve(
                 run.points,
@@ -833,52 +825,6 @@ class _Reader:
             for run, layer in zip(runs, _layers(runs, self.comments > 0))
         )
         return ReadCurves(curves, (*issues, *self._notes()))
-
-    def _laid(self, roles: str) -> tuple[list[_Run], list[Issue]]:
-        """The runs of roles, and a note about others."""
-        entries = roles_of.wanted(roles)
-        names = list(dict.fromkeys(run.role for run in self.runs if run.role is not None))
-        unknown = roles_of.unknown_entries(entries, names)
-        if unknown:
-            raise InputError(
-                "BAD_VALUE",
-                "strategy.roles",
-                "{!r} is neither a group ({}) nor a type of {} ({}); use one of them",
-                unknown[0],
-                ", ".join((roles_of.PART, roles_of.ALL, *(group for group, _ in roles_of.GROUPS))),
-                self.where,
-                ", ".join(names) or "it has no types",
-            )
-        runs = [run for run in self.runs if roles_of.is_laid(run.role, entries)]
-        others = [run for run in self.runs if not roles_of.is_laid(run.role, entries)]
-        lengths = _lengths(others)
-        if not runs:
-            raise InputError(
-                CODE,
-                self.where,
-                "its moves are {}, and strategy.roles is {}: nothing is left to deposit; name other roles",
-                lengths,
-                roles,
-            )
-        issues = []
-        if others:
-            message = Text(
-                "{}: {} left out, as strategy.roles is {}; name other roles to deposit more",
-                self.where,
-                lengths,
-                roles,
-            )
-            issues.append(Issue(NOTE, LEFT_OUT, message))
-        strange = [name for name in names if not roles_of.group_of(name)]
-        if strange and roles_of.PART in entries:
-            message = Text(
-                "{}: the types {} are not known and are deposited as the part; name roles in strategy.roles "
-                "to leave them out",
-                self.where,
-                ", ".join(strange),
-            )
-            issues.append(Issue(NOTE, NOT_READ, message))
-        return runs, issues
 
     def _notes(self) -> list[Issue]:
         issues = []
@@ -906,16 +852,6 @@ class _Reader:
             )
             issues.append(Issue(NOTE, NOT_READ, message))
         return issues
-
-
-def _lengths(runs: Sequence[_Run]) -> str:
-    """Types with their lengths."""
-    lengths: dict[str, float] = {}
-    for run in runs:
-        lengths[run.role or ""] = lengths.get(run.role or "", 0.0) + run.length
-    return Text.joined(
-        ", ", (Text("{} {:.5g} mm", role, length) for role, length in lengths.items())
-    )
 
 
 def _layers(runs: Sequence[_Run], has_comments: bool) -> list[int]:
