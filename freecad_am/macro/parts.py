@@ -36,21 +36,16 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
             table = open_points(doc, path)
             table.purgeTouched()
         return table
-    from ..objects.shapes.file_issues import keep_file_issues
-    from ..objects.shapes.part_file import part_content
+    from ..objects.shapes.part_file import add_part, part_content
 
     shape, label, issues = part_content(path, object, scale)
     with one_step(doc, "Open part"):
-        is_mesh = hasattr(shape, "Topology")
-        part = doc.addObject("Mesh::Feature" if is_mesh else "Part::Feature", "Part")
-        part.Label = label
-        setattr(part, "Mesh" if is_mesh else "Shape", shape)
-        if is_mesh:
+        part = add_part(doc, shape, label, issues)
+        if hasattr(shape, "Topology"):
             part.addProperty(
                 "App::PropertyLength", "FileScale", "Part", "How long one unit of the file is.", 1
             )
             part.FileScale = scale
-        keep_file_issues(part, issues)
         part.purgeTouched()
     return part
 

@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-import os
 import re
-import tempfile
 from typing import Any
 
 import FreeCAD as App
 
 from freecad_am import api
-from freecad_am.brep.files.apart import apart
 from freecad_am.brep.shapes.chosen import solids_of
 from freecad_am.core.geometry.mesh.file_unit import MESHES
 from freecad_am.core.issues import InputError, Text
-from freecad_am.objects.shapes import document_file
+from freecad_am.objects.shapes import linked_files
+from freecad_am.objects.shapes.part_file import add_part, changed_part
 
 from .part_source import PartSource
 
@@ -49,10 +47,14 @@ def _no_surfaces() -> InputError:
 def _opened(document: Any, part: PartSource, key: str) -> Any:
     if not part.settings:
         return api.open_part(document, part.file, part.object or "", part.scale)
-    with tempfile.TemporaryDirectory() as folder:
-        changed = os.path.join(folder, os.path.basename(part.file))
-        apart(lambda _: _save_changed(part, changed, key), part.file, patience=PATIENCE)
-        return api.open_part(document, changed, part.object or "")
+    shape, label, issues = changed_part(
+        part.file,
+        part.object or "",
+        lambda source: _change(source, part, key),
+        f"{key}.set",
+        PATIENCE,
+    )
+    return add_part(document, shape, label, issues)
 
 
 def _only_solids(obj: Any, part: PartSource, key: str) -> Any:
@@ -84,35 +86,35 @@ def _only_solids(obj: Any, part: PartSource, key: str) -> Any:
     return obj
 
 
-def _save_changed(part: PartSource, path: str, section: str) -> None:
-    active = App.ActiveDocument
-    source = document_file.open_here(part.file, part.file)
-    try:
-        for name, key, text in part.settings:
-            _set(source, name, key, text, section)
-        source.recompute()
-        invalid = [obj.Label for obj in source.Objects if "Invalid" in obj.State]
-        if invalid:
-            names = ", ".join(invalid)
-            raise InputError(
-                "BAD_PART",
-                f"{section}.set",
-                "with these values {} cannot be built; change them",
-                names,
-            )
-        source.saveAs(path)
-    finally:
-        App.closeDocument(source.Name)
-        if active is not None:
-            App.setActiveDocument(active.Name)
+def _change(source: Any, part: PartSource, section: str) -> list[Any]:
+    """Set the properties of an open document, and build it with them; the objects that were changed.
+
+    InputError BAD_PART, BAD_VALUE, NO_OBJECT.
+    """
+    changed = [_set(source, name, key, text, section) for name, key, text in part.settings]
+    failed = {obj for obj in source.Objects if "Invalid" in obj.State}
+    for one in linked_files.in_order(source):
+        one.recompute()
+    invalid = [obj.Label for obj in source.Objects if "Invalid" in obj.State and obj not in failed]
+    if invalid:
+        names = ", ".join(invalid)
+        raise InputError(
+            "BAD_PART",
+            f"{section}.set",
+            "with these values {} cannot be built; change them",
+            names,
+        )
+    return changed
 
 
-def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
+def _set(document: Any, name: str, key: str, text: str, section: str) -> Any:
+    """Set a property of an object of the document, or of one that it links to; the object."""
     place = f"{section}.set.{name}.{key}"
     name, constraints, _ = name.partition(".Constraints")
-    found = [obj for obj in document.Objects if obj.Name == name] or document.getObjectsByLabel(
-        name
-    )
+    found: list[Any] = []
+    for one in reversed(linked_files.in_order(document)):
+        found = found or [obj for obj in one.Objects if obj.Name == name]
+        found = found or one.getObjectsByLabel(name)
     if len(found) != 1:
         names = ", ".join(obj.Label for obj in document.Objects)
         raise InputError(
@@ -143,6 +145,7 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
     except AttributeError:
         message = Text("{} cannot be set here; set what it is computed from", key)
         raise InputError("BAD_VALUE", place, message) from None
+    return obj
 
 
 def _set_constraint(sketch: Any, name: str, text: str, place: str) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
@@ -13,13 +14,14 @@ from ...brep.files.read import READABLE, mesh_content, placed_mesh, shape_conten
 from ...core.geometry.curves.bead_curves import POINT_FILES
 from ...core.geometry.located import is_there, located
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
-from ...core.issues import InputError, Issue
+from ...core.issues import NOTE, InputError, Issue, Text
 from ..work import hooks
-from . import document_file
+from . import document_file, linked_files
 from .array_elements import ArrayElement, element_count
 from .bodies import global_shape, renumbers
+from .file_issues import keep_file_issues
 from .meshes import is_mesh, mesh_of, refuse_mixed
-from .places import GROUPS, elements_of
+from .places import GROUPS, Dependencies, dependencies_of, elements_of
 
 # what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
 ORIGIN = ("App::Line", "App::Plane", "App::Point")
@@ -50,7 +52,7 @@ def part_content(
         _refuse_other(path, extension)
         shape, issues = hooks.carry_out(lambda: shape_content(path), stem, READING)
         return shape, stem, issues
-    return (*_of_document(path, object_name, stem), ())
+    return _of_document(path, object_name, stem)
 
 
 def _refuse_other(path: str, extension: str) -> None:
@@ -65,7 +67,7 @@ def _refuse_other(path: str, extension: str) -> None:
         )
 
 
-def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str]:
+def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str, tuple[Issue, ...]]:
     if not is_there(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     for document in App.listDocuments().values():
@@ -78,19 +80,98 @@ def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str]:
     )
 
 
-def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:
-    active = App.ActiveDocument
+def changed_part(
+    path: str, object_name: str, change: Callable[[Any], list[Any]], where: str, patience: float
+) -> tuple[Any, str, tuple[Issue, ...]]:
+    """As `part_content` of an FCStd file, after `change(document)` changed the document; it returns the changed objects.
+
+    where: what errors about the change name. patience: how many times as long as reading a file this may take. The file
+    stays as it is. InputError NO_ADD_ON besides.
+    """
+    place = str(located(path))
+    return apart(
+        lambda _: _shape_of_file(place, object_name, change, where), place, patience=patience
+    )
+
+
+def add_part(document: Any, shape: Any, label: str, issues: tuple[Issue, ...] = ()) -> Any:
+    """An object of a document with a shape or a mesh, and notes on its file."""
+    is_triangles = hasattr(shape, "Topology")
+    part = document.addObject("Mesh::Feature" if is_triangles else "Part::Feature", "Part")
+    part.Label = label
+    setattr(part, "Mesh" if is_triangles else "Shape", shape)
+    keep_file_issues(part, issues)
+    part.purgeTouched()
+    return part
+
+
+def _shape_of_file(
+    path: str,
+    object_name: str,
+    change: Callable[[Any], list[Any]] | None = None,
+    where: str = "",
+) -> tuple[Any, str, tuple[Issue, ...]]:
+    active, before = App.ActiveDocument, set(App.listDocuments())
     document = document_file.open_here(path, path)
     try:
-        return _shape_in(document, path, object_name)
+        renewed = linked_files.renew_changed(document)
+        changed = [] if change is None else change(document)
+        source = _object_in(document, path, object_name)
+        needs = dependencies_of(source)
+        for obj in changed:
+            _refuse_without_add_on(obj, needs, where)
+        return (*_content_of(source, path), _notes(source, needs, renewed, changed))
     finally:
-        App.closeDocument(document.Name)
+        # those that it links to were opened with it
+        for name in set(App.listDocuments()) - before:
+            App.closeDocument(name)
         if active is not None:
             App.setActiveDocument(active.Name)
 
 
-def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
-    """The shape of the object asked for, or of the only one; of a document of meshes alone, or by its name, a mesh."""
+def _refuse_without_add_on(changed: Any, needs: Dependencies, where: str) -> None:
+    """Reject a change of what an add-on computes that is missing here: the shape would stay as it was saved."""
+    for obj in (changed, *changed.InListRecursive):
+        is_scripted = obj.TypeId.endswith("Python") and "Proxy" in obj.PropertiesList
+        if is_scripted and obj.Proxy is None and obj in needs.objects:
+            raise InputError(
+                "NO_ADD_ON",
+                where,
+                "{} cannot be computed: the add-on that made it is not there; install it, or leave the value out",
+                obj.Label,
+            )
+
+
+def _notes(
+    source: Any, needs: Dependencies, renewed: list[Any], changed: list[Any]
+) -> tuple[Issue, ...]:
+    notes = []
+    decisive = (*needs.objects, *needs.containers)
+    labels = ", ".join(dict.fromkeys(obj.Label for obj in renewed if obj in decisive))
+    if labels:
+        text = Text(
+            "{} was computed anew for {}: a document that it links to changed after this one was saved",
+            labels,
+            source.Label,
+        )
+        notes.append(Issue(NOTE, "LINKED_CHANGED", text))
+    for obj in dict.fromkeys(changed):
+        if obj not in decisive:
+            text = Text(
+                "a value of {} is set, but {} is not made from it; check the names",
+                obj.Label,
+                source.Label,
+            )
+            notes.append(Issue(NOTE, "SET_UNUSED", text))
+    return tuple(notes)
+
+
+def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str, tuple[Issue, ...]]:
+    return (*_content_of(_object_in(document, path, object_name), path), ())
+
+
+def _object_in(document: Any, path: str, object_name: str) -> Any:
+    """The object asked for, or of the only one; of a document of meshes alone, or by its name, a mesh."""
     placed = [obj for obj in document.Objects if obj.TypeId not in ORIGIN]
     shapes = [
         obj for obj in placed if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()
@@ -108,6 +189,9 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
             for obj in shapes or meshes
             if not any(other in known for other in obj.InListRecursive)
         ]
+    if not found and (missing := linked_files.missing_files(document)):
+        name, file = next(iter(missing.items()))
+        raise linked_files.no_linked_file(path, document.getObject(name).Label, file)
     if len(found) != 1:
         names = ", ".join(obj.Label for obj in known) or "none"
         asked = repr(object_name) if object_name else "one object that nothing else is made from"
@@ -118,20 +202,26 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
             asked,
             names,
         )
-    if found[0] not in meshes:
-        if renumbers(found[0]):
+    return found[0]
+
+
+def _content_of(source: Any, path: str) -> tuple[Any, str]:
+    """The shape or mesh of an object in the coordinates of its document, and its label."""
+    linked_files.refuse_missing(source, path)
+    if not is_mesh(source):
+        if renumbers(source):
             raise InputError(
                 "NO_OBJECT",
                 path,
                 "{} has what is in a group of it twice, so that numbers of its faces are "
                 "not certain; name an object in it, or take that out of the group",
-                found[0].Label,
+                source.Label,
             )
-        shape = global_shape(found[0]).copy()
-        refuse_mixed(found[0])
-        return shape, found[0].Label
-    mesh, frame = mesh_of(found[0])
-    return placed_mesh(mesh, App.Matrix(*frame.ravel().tolist())), found[0].Label
+        shape = global_shape(source).copy()
+        refuse_mixed(source)
+        return shape, source.Label
+    mesh, frame = mesh_of(source)
+    return placed_mesh(mesh, App.Matrix(*frame.ravel().tolist())), source.Label
 
 
 def _elements(document: Any, name: str) -> list[ArrayElement]:

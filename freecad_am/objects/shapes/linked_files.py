@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Other documents that a FreeCAD document links to: those that are missing, and those that changed since it was saved."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+import zlib
+from collections.abc import Iterable
+from typing import Any
+from xml.parsers import expat
+
+import FreeCAD as App
+
+from ...core.issues import InputError
+from ..stage import deferred
+from .places import dependencies_of
+
+SUFFIX = ".fcstd"
+
+
+def linked_files(path: str) -> dict[str, list[tuple[str, str]]]:
+    """The documents that each object of a document file links to, by the name of the object: their absolute paths, and
+    when they were last saved before this one was.
+
+    Links in expressions count too. Nothing of a file that cannot be read: opening it tells what is wrong.
+    """
+    files: dict[str, list[tuple[str, str]]] = {}
+    folder = os.path.dirname(os.path.abspath(path))
+    owner = ""
+    in_data = False
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal owner, in_data
+        in_data = in_data or tag == "ObjectData"
+        if in_data and tag == "Object":
+            owner = attributes.get("name", "")
+        file = attributes.get("file", "")
+        if owner and file.lower().endswith(SUFFIX):
+            target = os.path.normpath(os.path.join(folder, file))
+            files.setdefault(owner, []).append((target, attributes.get("stamp", "")))
+
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = start
+    try:
+        with zipfile.ZipFile(path) as archive, archive.open("Document.xml") as stream:
+            parser.ParseFile(stream)
+    except (OSError, KeyError, ValueError, zipfile.BadZipFile, zlib.error, expat.ExpatError):
+        return {}
+    return files
+
+
+def missing_files(document: Any) -> dict[str, str]:
+    """The first missing file that each object of an open document links to, by the name of the object."""
+    if not document.FileName:
+        return {}
+    missing = {}
+    for name, files in linked_files(document.FileName).items():
+        absent = [file for file, _ in files if not os.path.isfile(file)]
+        if absent:
+            missing[name] = absent[0]
+    return missing
+
+
+def refuse_missing(source: Any, where: str) -> None:
+    """Reject an object that is made from something in a file that is not there. InputError NO_LINKED_FILE."""
+    needs = dependencies_of(source)
+    for document in needs.documents:
+        missing = missing_files(document)
+        for obj in (*needs.objects, *needs.containers):
+            if obj.Document == document and obj.Name in missing:
+                raise no_linked_file(where, obj.Label, missing[obj.Name])
+
+
+def no_linked_file(where: str, label: str, file: str) -> InputError:
+    """The error about an object that links to a file that is not there."""
+    return InputError(
+        "NO_LINKED_FILE",
+        where,
+        "{} links to {}, which is not there; put the file there, or change the link in FreeCAD",
+        label,
+        file,
+    )
+
+
+def renew_changed(document: Any) -> list[Any]:
+    """Recompute what is made from documents that changed after this one was saved; the objects that link to those.
+
+    FreeCAD keeps the old shapes: it marks links as touched, and not what has an expression. Linked documents come first.
+    Stages of this workbench are left as they are.
+    """
+    renewed: dict[Any, None] = {}
+    linking = []
+    for one in in_order(document):
+        changed = [obj for obj in one.Objects if _is_outdated(obj, one, renewed)]
+        changed += [obj for obj in _of_changed_files(one) if obj not in changed]
+        for obj in changed:
+            obj.touch()
+        if changed:
+            with deferred():
+                one.recompute()
+            renewed[one] = None
+            linking += changed
+    return linking
+
+
+def _is_outdated(obj: Any, document: Any, renewed: Iterable[Any]) -> bool:
+    """Whether FreeCAD has marked what an object links to in another document as changed, or that was just computed."""
+    outside = [other for other in obj.OutList if other is not None and other.Document != document]
+    is_marked = "Touched" in obj.State and "Invalid" not in obj.State
+    return bool(outside) and (is_marked or any(other.Document in renewed for other in outside))
+
+
+def _of_changed_files(document: Any) -> list[Any]:
+    """The objects that link to a document that was saved again after this one was."""
+    if not document.FileName:
+        return []
+    saved = {
+        os.path.realpath(one.FileName): one.LastModifiedDate
+        for one in App.listDocuments().values()
+        if one.FileName
+    }
+    changed = []
+    for name, files in linked_files(document.FileName).items():
+        obj = document.getObject(name)
+        stamps = [(saved.get(os.path.realpath(file), stamp), stamp) for file, stamp in files]
+        if obj is not None and any(now != stamp for now, stamp in stamps if stamp):
+            changed.append(obj)
+    return changed
+
+
+def in_order(document: Any, known: Iterable[Any] = ()) -> list[Any]:
+    """A document and those that it links to, each after all that it links to."""
+    linked = dict.fromkeys(
+        other.Document for obj in document.Objects for other in obj.OutList if other is not None
+    )
+    order: list[Any] = []
+    for one in linked:
+        if one != document and one not in known:
+            order += [found for found in in_order(one, (*known, document)) if found not in order]
+    return [*order, document]

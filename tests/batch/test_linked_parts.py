@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parts of documents that link to other documents, with and without values set: the new shape, or a clear error."""
+
+import importlib
+import sys
+import time
+
+import FreeCAD as App
+import Part
+import pytest
+
+from freecad_am import api
+from freecad_am.batch.job.part import bring
+from freecad_am.batch.job.part_source import PartSource
+from freecad_am.core.issues import InputError
+from freecad_am.objects.shapes.file_issues import file_issues
+
+HOLE = 3.141592653589793 * 4 * 10  # of the cylinder in the box, 10 mm high
+
+
+def close_all():
+    for name in list(App.listDocuments()):
+        App.closeDocument(name)
+
+
+@pytest.fixture
+def documents(tmp_path):
+    """`hall.FCStd` cuts a hole into a box of `sub/store.FCStd`, at z 50 in a turned part, and sizes a box by its sheet."""
+    (tmp_path / "sub").mkdir()
+    store = App.newDocument("store")
+    sheet, box = store.addObject("Spreadsheet::Sheet", "Sheet"), store.addObject("Part::Box", "Box")
+    sheet.set("A1", "7")
+    sheet.setAlias("A1", "tall")
+    sheet.set("A2", "10")
+    sheet.setAlias("A2", "broad")
+    box.setExpression("Width", "Sheet.broad")
+    box.Length = 10
+    store.recompute()
+    store.saveAs(str(tmp_path / "sub" / "store.FCStd"))
+    hall = App.newDocument("hall")
+    hall.saveAs(str(tmp_path / "hall.FCStd"))
+    link, part = hall.addObject("App::Link", "Link"), hall.addObject("App::Part", "Asm")
+    link.LinkedObject = box
+    part.Placement = App.Placement(App.Vector(0, 0, 50), App.Rotation(App.Vector(0, 0, 1), 30))
+    cylinder = hall.addObject("Part::Cylinder", "Cylinder")
+    cylinder.Radius, cylinder.Height, cylinder.Placement.Base = 2, 30, App.Vector(5, 5, 0)
+    cut = hall.addObject("Part::Cut", "Cut")
+    cut.Base, cut.Tool = link, cylinder
+    part.addObject(cut)
+    sized = hall.addObject("Part::Box", "Sized")
+    sized.setExpression("Height", "store#Sheet.tall")
+    shown = hall.addObject("App::Link", "Shown")
+    shown.LinkedObject = box
+    hall.recompute()
+    hall.save()
+    close_all()
+    yield tmp_path
+    close_all()
+
+
+def volume(path, name, *settings):
+    """Of a part that is brought into a document, with the codes of the notes on its file."""
+    document = App.newDocument("Job")
+    try:
+        part = bring(document, PartSource(str(path), name, settings=settings))
+        part.addProperty("App::PropertyLink", "Probe")
+        holder = document.addObject("App::FeaturePython", "Holder")
+        holder.addProperty("App::PropertyLink", "Of")
+        holder.Of = part
+        return (
+            part.Shape.Volume,
+            part.Shape.BoundBox.ZMin,
+            [one.code for one in file_issues(holder)],
+        )
+    finally:
+        App.closeDocument(document.Name)
+
+
+def change_store(folder, **cells):
+    """Save the linked document with other values: FreeCAD knows the time of saving to a second."""
+    time.sleep(1.1)
+    store = App.openDocument(str(folder / "sub" / "store.FCStd"))
+    for cell, value in cells.items():
+        store.Sheet.set(cell, value)
+    store.recompute()
+    store.save()
+    close_all()
+
+
+def test_a_value_set_in_a_document_that_links_to_another(documents):
+    """It was saved elsewhere, from where its links lead nowhere: NO_OBJECT, naming a temporary path."""
+    hall = documents / "hall.FCStd"
+    whole = volume(hall, "Cut")
+    assert whole == (pytest.approx(1000 - HOLE), pytest.approx(50), [])
+    wide = volume(hall, "Cut", ("Cylinder", "Radius", "3 mm"))
+    assert wide == (pytest.approx(1000 - HOLE * 9 / 4), pytest.approx(50), [])
+    assert volume(hall, "Shown", ("Cylinder", "Radius", "3 mm")) == (
+        pytest.approx(1000),
+        pytest.approx(0),
+        ["SET_UNUSED"],
+    )
+    assert not App.listDocuments()
+
+
+def test_a_value_set_in_the_linked_document(documents):
+    hall = documents / "hall.FCStd"
+    for name, key in (("Sheet", "broad"), ("Sheet", "A2"), ("Box", "Width")):
+        found, z, codes = volume(hall, "Cut", (name, key, "20 mm" if name == "Box" else "20"))
+        assert (found, z, codes) == (pytest.approx(2000 - HOLE), pytest.approx(50), []), name
+    assert volume(hall, "Sized", ("Sheet", "tall", "9"))[0] == pytest.approx(900)
+
+
+def test_a_linked_document_that_changed_later(documents):
+    """FreeCAD marks what links to it as touched, and keeps the shapes of before."""
+    change_store(documents, A1="9", A2="20")
+    hall = documents / "hall.FCStd"
+    assert volume(hall, "Cut") == (
+        pytest.approx(2000 - HOLE),
+        pytest.approx(50),
+        ["LINKED_CHANGED"],
+    )
+    assert volume(hall, "Sized") == (pytest.approx(900), pytest.approx(0), ["LINKED_CHANGED"])
+    wide = volume(hall, "Cut", ("Cylinder", "Radius", "3 mm"))
+    assert wide[0] == pytest.approx(2000 - HOLE * 9 / 4) and wide[2] == ["LINKED_CHANGED"]
+
+
+def test_a_change_two_documents_away(documents):
+    top = App.newDocument("top")
+    top.saveAs(str(documents / "top.FCStd"))
+    hall = App.openDocument(str(documents / "hall.FCStd"))
+    link, box = top.addObject("App::Link", "Link"), top.addObject("Part::Box", "Cube")
+    link.LinkedObject, box.Length = hall.Cut, 1
+    common = top.addObject("Part::Fuse", "Fuse")
+    box.Placement.Base.x = 100
+    common.Base, common.Tool = link, box
+    top.recompute()
+    top.save()
+    close_all()
+    change_store(documents, A2="20")
+    assert volume(documents / "top.FCStd", "Fuse")[0] == pytest.approx(2000 - HOLE + 100)
+
+
+def test_a_missing_linked_file_is_named(documents):
+    (documents / "sub" / "store.FCStd").rename(documents / "sub" / "lost.FCStd")
+    hall = documents / "hall.FCStd"
+    for name in ("Cut", "Link", "Shown", "Sized"):
+        for settings in ((), (("Cylinder", "Radius", "3 mm"),)):
+            with pytest.raises(InputError) as caught:
+                volume(hall, name, *settings)
+            assert caught.value.code == "NO_LINKED_FILE", caught.value.line()
+            assert "store.FCStd" in caught.value.message and "hall.FCStd" in caught.value.where
+    assert volume(hall, "Cylinder", ("Cylinder", "Radius", "1 mm"))[0] == pytest.approx(
+        HOLE / 4 * 3
+    )
+
+
+ADD_ON = """
+import Part
+class Gear:
+    def __init__(self, obj):
+        obj.Proxy = self
+        obj.addProperty("App::PropertyLength", "Teeth").Teeth = 5
+    def execute(self, obj):
+        obj.Shape = Part.makeBox(3, 3, obj.Teeth.Value)
+    def dumps(self): return None
+    def loads(self, state): pass
+    __getstate__, __setstate__ = dumps, loads
+"""
+
+
+def test_a_value_of_an_object_whose_add_on_is_missing(tmp_path, monkeypatch):
+    """The shape stayed as it was saved, without a message."""
+    (tmp_path / "gear_add_on.py").write_text(ADD_ON)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    module = importlib.import_module("gear_add_on")
+    doc = App.newDocument("gears")
+    gear, sheet = (
+        doc.addObject("Part::FeaturePython", "Gear"),
+        doc.addObject("Spreadsheet::Sheet", "Sheet"),
+    )
+    module.Gear(gear)
+    sheet.set("A1", "6")
+    gear.setExpression("Teeth", "Sheet.A1")
+    plain = doc.addObject("Part::Box", "Plain")
+    doc.recompute()
+    path = tmp_path / "gears.FCStd"
+    doc.saveAs(str(path))
+    close_all()
+    assert plain is not None and volume(path, "Gear", ("Gear", "Teeth", "7 mm"))[
+        0
+    ] == pytest.approx(63)
+    (tmp_path / "gear_add_on.py").unlink()
+    del sys.modules["gear_add_on"]
+    importlib.invalidate_caches()
+    for setting in (("Gear", "Teeth", "7 mm"), ("Sheet", "A1", "7")):
+        with pytest.raises(InputError) as caught:
+            volume(path, "Gear", setting)
+        assert caught.value.code == "NO_ADD_ON" and caught.value.where == "part.set"
+        assert "Gear" in caught.value.message
+    assert volume(path, "Gear")[0] == pytest.approx(54)
+    assert volume(path, "Plain", ("Plain", "Length", "2 mm"))[0] == pytest.approx(200)
+
+
+def test_a_constraint_with_an_expression(tmp_path):
+    """What is set is meant, whatever it was computed from; the expression won, without a message."""
+    import Sketcher
+
+    doc = App.newDocument("sketched")
+    sketch = doc.addObject("Sketcher::SketchObject", "Sketch")
+    sketch.addGeometry(Part.Circle(App.Vector(), App.Vector(0, 0, 1), 5))
+    sketch.addConstraint(Sketcher.Constraint("Radius", 0, 5))
+    sketch.renameConstraint(0, "Round")
+    sketch.setExpression("Constraints.Round", "4 mm")
+    body = doc.addObject("Part::Extrusion", "Body")
+    body.Base, body.LengthFwd, body.Solid, body.Dir = sketch, 10, True, App.Vector(0, 0, 1)
+    doc.recompute()
+    doc.saveAs(str(tmp_path / "sketched.FCStd"))
+    close_all()
+    found = volume(tmp_path / "sketched.FCStd", "Body", ("Sketch.Constraints", "Round", "2 mm"))
+    assert found[0] == pytest.approx(HOLE)
+
+
+def test_the_place_in_an_opened_file(documents):
+    """`am.open_part` reads containers, links and array elements of a file as a document shows them."""
+    doc = App.openDocument(str(documents / "hall.FCStd"))
+    array = doc.addObject("App::Link", "Array")
+    array.LinkedObject, array.ElementCount = doc.Cylinder, 3
+    doc.recompute()
+    for k, element in enumerate(array.ElementList):
+        element.Placement.Base.x = 100 * k
+    array.ShowElement = False
+    array.Label = "Row"
+    doc.Asm.addObject(array)
+    doc.recompute()
+    doc.save()
+    close_all()
+    job = App.newDocument("Job")
+    for name in ("Array.2", "Row.2"):
+        part = api.open_part(job, str(documents / "hall.FCStd"), name)
+        centre = part.Shape.CenterOfMass
+        assert (centre.x, centre.y, centre.z) == pytest.approx((173.2050808, 100, 65))
+    assert len(api.open_part(job, str(documents / "hall.FCStd"), "Row").Shape.Solids) == 3
+    with pytest.raises(InputError, match=r"Array\.3"):
+        api.open_part(job, str(documents / "hall.FCStd"), "Array.3")
