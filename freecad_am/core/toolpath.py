@@ -293,7 +293,8 @@ class Layer:
     """What is deposited at one index of the slicing: one bead or more, in the order of deposit.
 
     wait: s that the machine stands before the layer, for what lies below to cool. first: nothing of the feature lies below,
-    as where another solid is begun. feature: number of the feature that it is of, where a toolpath has several.
+    as where another solid is begun. feature: number of the feature that it is of, where a toolpath has several. A layer in
+    which no bead finds room has none, and keeps its number.
     """
 
     beads: tuple[Bead, ...]
@@ -352,6 +353,15 @@ class Toolpath:
         for i, layer in enumerate(self.layers):
             for j, bead in enumerate(layer.beads):
                 yield i, j, bead
+
+    @property
+    def deposited(self) -> Toolpath:
+        """The toolpath without layers in which no bead lies, for what compares each layer with the one that carries it."""
+        if all(layer.beads for layer in self.layers):
+            return self
+        return dataclasses.replace(
+            self, layers=tuple(layer for layer in self.layers if layer.beads)
+        )
 
     @property
     def parts(self) -> tuple[tuple[Toolpath, Index], ...]:

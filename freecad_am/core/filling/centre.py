@@ -22,6 +22,8 @@ COARSE = 0.01  # of the gap; what is open is found no finer
 NETWORK = 12.0  # squares of half a bead's width: a region that large, without room for contours, is not a dot but ribs
 RIB = 0.6  # of a bead's width; what stands out thicker than that in the mean is a rib
 SLIVER = 1.0  # of the chord error; of what is narrower its border is as good as its middle, which takes long to find there
+HAIR = 0.01  # of the chord error
+DOT = 5.0  # of half a bead's width; round regions narrower than a bead are no larger than that
 ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 
 
@@ -93,6 +95,11 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
             )
         before = len(found)
         rest: Sequence[Region] = (region,)
+        if region.width >= beads.thinnest and region.extent < DOT * beads.inset:
+            points, closed = _spine(region, beads, 0.15 * region.width)
+            if len(points) < 2 or length(points, closed) < beads.shortest:
+                found.append(_dot(region, beads))
+                continue
         for _ in range(ROUNDS):
             parts, rest = rest, []
             for part in parts:
@@ -107,8 +114,46 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
                     rest += part.without(
                         along([(points, closed)], beads.inset, beads.chord_error), beads.gap
                     )
-            rest = wider(rest, beads.gap, beads.chord_error)
+            # what a bead has ended in, as it narrows, is narrower than the narrowest bead by far; a
+            # threshold that it may lie about would give equal sections different beads
+            rest = wider(rest, max(beads.gap, beads.thinnest), beads.chord_error)
     return found
+
+
+def _dot(region: Region, beads: Beads) -> PlaneCurve:
+    """A short bead in the middle of a region narrower than a bead and about as long as wide: its length, and its width where
+    it would be too short, are such that the region is filled."""
+    long = max(region.area / beads.spacing, beads.shortest)
+    share = region.area / (beads.spacing * long)
+    share = min(max(share, beads.narrowest), 1.0)
+    middle = region.middle if region.contains(region.middle[None])[0] else region.inside()
+    reach = 0.5 * long * region.axis()
+    points = np.stack([middle - reach, middle + reach])
+    return PlaneCurve(
+        points, False, "centre", 0, share=None if share == 1.0 else np.full(2, share), dot=True
+    )
+
+
+def bare_parts(
+    region: Region, curves: Sequence[PlaneCurve], beads: Beads
+) -> list[tuple[Region, float]]:
+    """Parts of a region in which no bead lies, as they are too narrow, and how far (mm) each reaches from the beads: more
+    than a bead is wide. All of a region without beads is one."""
+    if not curves:
+        return [(region, region.extent)]
+    lines = [(curve.points, curve.closed) for curve in curves]
+    if region.extent < 2.0 * beads.inset or curves[0].dot:
+        return []
+    reached = along(lines, beads.inset, max(beads.chord_error, COARSE * beads.inset))
+    parts = []
+    for part in region.without(reached):
+        if part.extent <= 2.0 * beads.inset:
+            continue
+        border = part.borders()[0]
+        out = float(np.min([near.nearest(border)[1] for near in reached], axis=0).max())
+        if out > 2.0 * beads.inset:
+            parts.append((part, out))
+    return parts
 
 
 def outermost(
@@ -123,20 +168,32 @@ def outermost(
     if not inner:
         return (), single_beads((region,), beads)
     reached = grown(inner, beads.inset, beads.chord_error)
-    return inner, single_beads(
-        [neck for neck in region.without(reached) if _is_neck(neck, reached, beads)], beads
-    )
+    parts, hair = region.without(reached), HAIR * beads.chord_error
+    if any(part.extent > beads.inset and len(part.grown(-hair, hair)) > 1 for part in parts):
+        # beads touch the border, where rounding leaves slits that join corners in one section and not
+        # in an equal one
+        reached = grown(inner, beads.inset + hair, beads.chord_error)
+        parts = region.without(reached)
+    return inner, single_beads([part for part in parts if _is_neck(part, reached, beads)], beads)
 
 
 def _is_neck(part: Region, reached: Sequence[Region], beads: Beads) -> bool:
-    """Whether a part that beads do not reach joins two places which they do reach, or stands out from one as ribs do: longer
-    than a bead is wide and nearly as thick all along, not a corner that runs to a point."""
+    """Whether a part that beads do not reach joins two places which they do reach, or stands out from one as ribs and blades
+    do: for longer than a bead is wide it is wider than the narrowest bead, or nearly as thick as a bead all along. A corner
+    is shorter."""
     adjacent = [other for other in reached if other.distance(part) < 2.0 * beads.chord_error]
     width = 2.0 * beads.inset
-    if len(adjacent) != 1 or part.area <= RIB * width**2:  # less than the least rib has
+    if len(adjacent) != 1:
         return len(adjacent) > 1
+    if part.extent <= width:
+        return False
     out = float(adjacent[0].nearest(part.borders()[0])[1].max())
-    return out > width and part.area > RIB * width * out
+    if out <= width:
+        return False
+    if part.area > RIB * width * max(out, width):
+        return True
+    wide = part.grown(-0.5 * beads.thinnest, beads.chord_error)
+    return any(float(adjacent[0].nearest(core.borders()[0])[1].max()) > width for core in wide)
 
 
 def _along_border(region: Region) -> tuple[Array, bool]:

@@ -18,6 +18,7 @@ from .curve import Beads, PlaneCurve
 from .strip_closing import near_windows
 
 COARSE = 0.01  # of half a bead; beads round a hub are looked at no finer
+DOT = 1e-6  # of a dot's length: of the line that its disc is laid about
 SHARES = 0.02  # of a bead's usual width; shares that differ by less are one
 
 Line = tuple[Array, bool]  # points (n, 2), and whether they close
@@ -66,7 +67,7 @@ def covered(
             ]
         )
     else:
-        cover = _of_regions((region,), [_widths(curve) for curve in curves], beads, ())
+        cover = _of_regions((region,), [_widths(curve, beads) for curve in curves], beads, ())
     return cover if density == 1.0 else cover._replace(left=0.0)
 
 
@@ -96,8 +97,17 @@ def _lines(curves: Sequence[PlaneCurve], chord_error: float) -> tuple[list[Line]
     return lines, [1.0] * len(lines)
 
 
-def _widths(curve: PlaneCurve) -> tuple[list[Line], list[float]]:
-    """A bead in lines along which its width is one, and the share of the usual width of each."""
+def _widths(curve: PlaneCurve, beads: Beads) -> tuple[list[Line], list[float]]:
+    """A bead in lines along which its width is one, and the share of the usual width of each. A dot is a disc as large as
+    what is fed along it covers."""
+    if curve.dot:
+        way, share = (
+            curve.points[-1] - curve.points[0],
+            1.0 if curve.share is None else curve.share[0],
+        )
+        disc = math.sqrt(beads.spacing * share * float(np.hypot(*way)) / math.pi)
+        middle = curve.points.mean(axis=0)
+        return [(middle + DOT * np.stack([-way, way]), False)], [disc / beads.inset]
     if curve.share is None:
         return [(curve.points, curve.closed)], [1.0]
     if np.ptp(curve.share) < SHARES:

@@ -17,6 +17,7 @@ NEXT, OVER = (
     0.7548776662,
     0.5698402910,
 )  # of a length: starts of the next contour, of the next layer (the sequence R2)
+THINNEST = 0.6  # of a bead's width; ribs that wide get a bead even where no bead is laid narrower than usual
 LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out
 
 
@@ -28,7 +29,8 @@ class PlaneCurve:
     0, inwards.
     turns: how often a closed one goes round the hub, so that behind its last point follows the first, moved on by the period
     as often. sheet: u (`strip.Period`), mm, about which it lies: on a wide cone it may be more than half a turn of the
-    plane from 0. share: (n,) of its usual width that the bead has at each point; None: all of it.
+    plane from 0. share: (n,) of its usual width that the bead has at each point; None: all of it. dot: whether it is a short
+    bead in a round place narrower than a bead: what is fed along it spreads to the size of that place.
     """
 
     points: Array
@@ -38,6 +40,7 @@ class PlaneCurve:
     turns: int = 0
     sheet: float = 0.0
     share: Array | None = None
+    dot: bool = False
 
     def reversed(self) -> PlaneCurve:
         """The same run the other way, a closed one from the same start."""
@@ -73,7 +76,8 @@ class Beads:
     bead where a region, or a neck of it, is narrower than a bead; 'refuse' refuses. clockwise: sense of closed beads. start:
     a point (x, y) that closed beads begin nearest to, or the direction (rad) in which they begin farthest out. chord_error:
     mm, of arcs; 0: 0.005 spacings. where: a place (2,) in words. spread: by what share of its length the outermost closed
-    bead begins behind `start`, those inside of it by ever other ones; None: none does.
+    bead begins behind `start`, those inside of it by ever other ones; None: none does. narrowest: share of the width that
+    no bead is laid below.
     """
 
     spacing: float
@@ -86,11 +90,17 @@ class Beads:
     where: Callable[[Array], str] = on_plane
     width: float = 0.0
     spread: float | None = None
+    narrowest: float = 0.3
 
     @property
     def inset(self) -> float:
         """How far (mm) inside the border the middle of the outermost bead lies."""
         return 0.5 * (self.width or self.spacing)
+
+    @property
+    def thinnest(self) -> float:
+        """How narrow (mm) ribs and round places may be for a bead to be laid in them."""
+        return 2.0 * self.inset * min(self.narrowest, THINNEST)
 
     def __post_init__(self) -> None:
         if (
@@ -127,11 +137,14 @@ class Beads:
 
 
 def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
-    """The curves without those below a length, mm; those round the hub, which may have a single point, are long enough."""
+    """The curves without those below a length, mm; those round the hub, which may have a single point, and dots, which have
+    been made as long as that, are long enough."""
     return [
         curve
         for curve in curves
-        if curve.turns or (length(curve.points, curve.closed) >= shortest and len(curve.points) > 1)
+        if curve.turns
+        or curve.dot
+        or (length(curve.points, curve.closed) >= shortest and len(curve.points) > 1)
     ]
 
 

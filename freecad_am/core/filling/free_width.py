@@ -82,9 +82,9 @@ def shared(
     middle what room their neighbours leave them. Between least and most."""
     others = [(curve.points, curve.closed) for curve in curves if curve.kind not in CENTRES]
     for curve in curves:
-        if least == most or (share == 1.0 and curve.kind not in CENTRES):
+        if least == most or (share == 1.0 and (curve.kind not in CENTRES or curve.dot)):
             yield curve
-        elif curve.kind in CENTRES:
+        elif curve.kind in CENTRES and not curve.dot:
             points = _places(curve, PLACES * beads.spacing)
             distances = nearest_among(others, points)[1]
             yield replace(

@@ -9,7 +9,8 @@ inside out in each.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -30,10 +31,16 @@ class RankedBead(NamedTuple):
 
 
 class Course(NamedTuple):
-    """Layers in the order of deposit, and for each the solid (group, solid) of each of its beads."""
+    """Layers in the order of deposit, and for each the solid (group, solid) of each of its beads. numbers: those of the
+    layers here, by group, solid (0 for all that are deposited together) and layer of that stack."""
 
     layers: tuple[Layer, ...]
     solids: tuple[tuple[tuple[int, int], ...], ...]
+    numbers: Mapping[tuple[int, int, int], int] = MappingProxyType({})
+
+    def number(self, group: int, solid: int, layer: int) -> int | None:
+        """The number here of a layer of a stack; None where nothing is deposited in it nor above it."""
+        return self.numbers.get((group, solid, layer), self.numbers.get((group, 0, layer)))
 
 
 @dataclasses.dataclass
@@ -78,7 +85,10 @@ class IslandOrder:
 
 
 def ordered(beads: Sequence[RankedBead], order: str) -> Course:
-    """Beads as layers: group by group, and in each around the axis layer by layer, or solid by solid ('feature')."""
+    """Beads as layers: group by group, and in each around the axis layer by layer, or solid by solid ('feature').
+
+    A layer of a group, or of a solid, in which no bead lies stays as a layer without beads, so that each keeps its number.
+    """
 
     def place(ranked: RankedBead) -> tuple[int, ...]:
         if order == "feature":
@@ -98,15 +108,22 @@ def ordered(beads: Sequence[RankedBead], order: str) -> Course:
         if not layers or layer_of(layers[-1][0]) != layer_of(ranked):
             layers.append([])
         layers[-1].append(ranked)
-    made, before = [], None
+    made: list[Layer] = []
+    solids: list[tuple[tuple[int, int], ...]] = []
+    numbers: dict[tuple[int, int, int], int] = {}
+    before, expected = None, 0
     for layer in layers:
-        one = layer_of(layer[0])[:2]
+        *one, number = layer_of(layer[0])
+        expected = expected if one == before else 0
+        for missing in range(expected, number):
+            numbers[one[0], one[1], missing] = len(made)
+            made.append(Layer(()))
+            solids.append(())
+        numbers[one[0], one[1], number] = len(made)
         made.append(Layer(tuple(ranked.bead for ranked in layer), first=one != before))
-        before = one
-    return Course(
-        tuple(made),
-        tuple(tuple((ranked.group, ranked.solid) for ranked in layer) for layer in layers),
-    )
+        solids.append(tuple((ranked.group, ranked.solid) for ranked in layer))
+        before, expected = one, number + 1
+    return Course(tuple(made), tuple(solids), numbers)
 
 
 def waited(

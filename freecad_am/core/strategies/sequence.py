@@ -29,7 +29,7 @@ def joined(
     """
     order = [(k, i) for k, one in enumerate(toolpaths) for i in range(len(one.layers))]
     if sequence == BY_HEIGHT:
-        order = _lowest_first([[_lowest(layer, up) for layer in one.layers] for one in toolpaths])
+        order = _lowest_first([_lowest(one.layers, up) for one in toolpaths])
     numbers = [np.zeros(len(one.layers), dtype=np.intp) for one in toolpaths]
     for number, (k, i) in enumerate(order):
         numbers[k][i] = number
@@ -117,9 +117,16 @@ def _lowest_first(heights: Sequence[Sequence[float]]) -> list[tuple[int, int]]:
     return order
 
 
-def _lowest(layer: Layer, up: Array) -> float:
-    """Rounded, so that layers of equal height stay in the order of the features."""
-    return round(min(float((bead.points @ up).min()) for bead in layer.beads), 6)
+def _lowest(layers: Sequence[Layer], up: Array) -> list[float]:
+    """The lowest point of each layer along up (3,), rounded, so that layers of equal height stay in the order of the
+    features. A layer without beads comes right before the next of its feature."""
+    lowest: list[float] = []
+    above = np.inf
+    for layer in reversed(layers):
+        if layer.beads:
+            above = round(min(float((bead.points @ up).min()) for bead in layer.beads), 6)
+        lowest.append(above)
+    return lowest[::-1]
 
 
 def _telling_widths(toolpath: Toolpath, first: Toolpath) -> Toolpath:

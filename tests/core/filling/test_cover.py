@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from freecad_am.core.filling.centre import bare_parts
+from freecad_am.core.filling.cover import covered
 from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill, open_places
 from freecad_am.core.geometry.regions.region import joined, regions
@@ -205,8 +207,8 @@ def test_beads_wider_than_their_spacing_cover_as_much_and_stay_inside(name, patt
 
 
 def test_slits_are_closed_and_wedges_beside_them_told():
-    """A slit across a rectangle at 25 deg: beads reach into neither of the sharp corners beside it."""
-    t = math.tan(math.radians(25.0))
+    """A slit across a rectangle at 40 deg: beads reach into neither of the sharp corners beside it."""
+    t = math.tan(math.radians(40.0))
 
     def halves(slit):
         a, b = 20.0 - 10.0 / t, 20.0 + 10.0 / t
@@ -349,7 +351,61 @@ def test_ribs_thinner_than_a_bead_are_filled_in_all_their_branches(loops, least,
     assert away[within].max() < math.sqrt(0.5) * S + 0.02  # in a corner of 90 deg
 
 
-def test_points_of_a_region_get_no_bead_of_their_own():
-    """What runs to a point is not a rib: beads there would stand out of it by half."""
-    (region,) = regions(shapes.polygon((0, 0), (20, 0), (20, 12), (0, 12), (-40, 6)))
-    assert min(curve.points[:, 0].min() for curve in fill(region, BEADS)) > -25.0
+def test_a_blade_that_runs_to_a_point_gets_a_bead_as_far_as_it_is_wider_than_the_narrowest():
+    """12 mm wide at x = 0, nothing at x = -40: narrower than the narrowest bead beyond x0."""
+    blade = np.array([(0, 0), (20, 0), (20, 12), (0, 12), (-40, 6)], dtype=float)
+    x0 = -40.0 + 40.0 * BEADS.narrowest * S / 12.0
+    for angle in (0.0, 0.3, 2.1, -1.2):
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        (region,) = regions([(blade + [13.0, -7.0]) @ turn])
+        curves = fill(region, BEADS)
+        reached = min((curve.points @ turn.T - [13.0, -7.0])[:, 0].min() for curve in curves)
+        assert -37.0 < reached < x0 + 0.1
+        assert not bare_parts(region, curves, BEADS)  # the rest is shorter than a bead is wide
+
+
+@pytest.mark.parametrize("corner", [90.0, 60.0, 40.0])
+def test_corners_get_no_bead_of_their_own(corner):
+    """They are no ribs: what is wider than the narrowest bead in them is shorter than a bead is wide."""
+    half = math.tan(math.radians(0.5 * corner))
+    (region,) = regions(shapes.polygon((0, 0), (60, -60 * half), (60, 60 * half)))
+    reach = S / 2 / math.sin(math.radians(0.5 * corner))
+    curves = fill(region, BEADS)
+    assert min(curve.points[:, 0].min() for curve in curves) == pytest.approx(reach, abs=1e-6)
+
+
+@pytest.mark.parametrize("size", [0.35, 0.6, 0.95])
+@pytest.mark.parametrize("sides", [12, 24, 240])
+def test_a_round_island_narrower_than_a_bead_gets_a_dot_of_its_volume(size, sides):
+    """What is fed along the dot, spacing x length x share, is the island's area."""
+    (region,) = regions([shapes.circle(0.5 * size * S, sides, (3.0, -2.0))])
+    (dot,) = fill(region, BEADS)
+    way = float(np.hypot(*np.diff(dot.points, axis=0).T).sum())
+    share = 1.0 if dot.share is None else float(dot.share[0])
+    if region.area / (S * BEADS.shortest) > BEADS.narrowest:
+        assert S * way * share == pytest.approx(region.area, rel=1e-9)
+    assert way >= BEADS.shortest - 1e-9 and share >= BEADS.narrowest
+    assert np.allclose(dot.points.mean(axis=0), [3.0, -2.0], atol=1e-6)
+    cover = covered(region, [dot], BEADS)
+    if share > BEADS.narrowest:
+        assert cover.left < 0.1 * region.area and cover.outside < 0.1 * region.area
+
+
+def test_a_round_island_narrower_than_the_narrowest_bead_is_named():
+    (region,) = regions([shapes.circle(0.4 * BEADS.narrowest * S)])
+    assert fill(region, BEADS) == ()
+    ((part, _),) = bare_parts(region, (), BEADS)
+    assert part.area == region.area
+
+
+def test_equal_sections_get_equal_beads_wherever_a_mesh_has_points_on_their_edges():
+    """The section of a prism has a point more where a triangle of its side ends, elsewhere in each layer."""
+    for share in (0.1, 0.3, 0.5, 0.7, 0.9):
+        extra = (12.0 * share, 4.0 - 4.0 * share)
+        loop = np.array([(0, -4), (12, 0), extra, (0, 4)], dtype=float)
+        for first in range(4):
+            (region,) = regions([np.roll(loop, first, axis=0)])
+            region = region.simple(1e-4)
+            assert len(region.borders()[0]) == 3
+            curves = fill(region, replace(BEADS, spacing=5.0, gap=1.0))
+            assert [curve.kind for curve in curves] == ["contour"]

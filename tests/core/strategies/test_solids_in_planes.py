@@ -688,3 +688,43 @@ def test_closed_beads_of_plane_layers_start_where_the_seam_says(angle, step):
         for bead in layer.beads:
             reach = bead.points[:, :2] @ way
             assert not bead.closed or reach[0] > reach.max() - 1e-6
+
+
+def pins(radius, names=("plate", "pin")):
+    """A plate on four round pins, 14 mm long, and how much of it is pins, mm2 a layer."""
+    plate = box((0, 0, 14), (60, 60, 20), names[0])
+    angle = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    ring = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    bodies = [plate]
+    for x, y in product((10.0, 50.0), repeat=2):
+        points = np.vstack([np.column_stack([ring + (x, y), np.full(48, z)]) for z in (0.0, 14.0)])
+        bodies.append(hull(points, names[1]))
+    return bodies
+
+
+def test_round_pins_narrower_than_a_bead_get_a_dot_in_every_layer():
+    made = planned(*pins(2.2), layer_height=2.0, bead_spacing=5.0, direction="0 0 1")
+    assert [len(layer.beads) for layer in made.layers[:7]] == [4] * 7 and len(made.layers) == 10
+    area = 24.0 * math.sin(math.pi / 24.0) * 2.2**2
+    for number, layer in enumerate(made.layers[:7]):
+        for bead in layer.beads:
+            assert bead.points[:, 2] == pytest.approx(2.0 * number)
+            wide = 5.0 if bead.width is None else bead.width[0]
+            assert wide * bead.length == pytest.approx(area, rel=0.01)
+    assert not [issue for issue in made.issues if issue.code in ("NO_BEAD", "LAYER_WITHOUT_BEAD")]
+
+
+def test_layers_without_beads_keep_their_number_and_are_named():
+    """Pins of 1 mm: seven layers without a bead under the plate, which is layer 7 in all messages."""
+    made = planned(*pins(0.5), layer_height=2.0, bead_spacing=5.0, direction="0 0 1")
+    assert [len(layer.beads) > 0 for layer in made.layers] == [False] * 7 + [True] * 3
+    assert [layer.first for layer in made.layers] == [False] * 7 + [True, False, False]
+    for number, _, bead in made:
+        assert bead.points[:, 2] == pytest.approx(2.0 * number)
+    named = {issue.code: issue for issue in made.issues}
+    assert named["OVERHANG"].layer == 7
+    told = named["LAYER_WITHOUT_BEAD"]
+    assert told.layer == 0 and "7 layer(s)" in told.message and " 0-6; " in told.message
+    area = 7 * 4 * 24.0 * math.sin(math.pi / 24.0) * 0.5**2
+    found = float(re.search(r"all of them are ([\d.]+) mm\^2", str(told.message))[1])
+    assert found == pytest.approx(area, rel=0.01)

@@ -25,6 +25,9 @@ SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no oth
 AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
 LEAST_ARC = 8  # segments of a full turn
 EIGHT = 2.8  # times the squared radius, a hair less than the area of a regular octagon in a circle
+STRAIGHT = 1e-6  # mm; a point that near to the line between its neighbours is on it
+SAME_TURN = 1e-6  # rad; corners whose turns differ by less turn as much
+ROUND_AREA = 0.02  # moments of area that differ by less, relatively, are the same
 WIDTH = 0.005  # relative tolerance of a region's width
 FINE_SLIT, LONG_SLIT = (
     0.1,
@@ -80,6 +83,29 @@ class Region:
     def area(self) -> float:
         """mm^2."""
         return float(self.shape.area)
+
+    @cached_property
+    def middle(self) -> Array:
+        """Centre (2,) of its area, which may lie in a hole or beside it."""
+        point = self.shape.centroid
+        return np.array([point.x, point.y])
+
+    def axis(self) -> Array:
+        """Unit direction (2,) in which its area extends most; X where it extends as far in all, as of a circle or a square."""
+        tensor = np.zeros((2, 2))
+        for border in self._borders:
+            ahead, here = np.roll(border, -1, axis=0) - self.middle, border - self.middle
+            cross = here[:, 0] * ahead[:, 1] - here[:, 1] * ahead[:, 0]
+            both = here + ahead
+            tensor += np.einsum("n,ni,nj->ij", cross, here, here) + np.einsum(
+                "n,ni,nj->ij", cross, ahead, ahead
+            )
+            tensor += np.einsum("n,ni,nj->ij", cross, both, both)
+        sizes, ways = np.linalg.eigh(tensor)
+        if sizes[1] - sizes[0] <= ROUND_AREA * sizes[1]:
+            return np.array([1.0, 0.0])
+        way: Array = ways[:, 1]
+        return way if tuple(np.round(way, 9)) > (0.0, 0.0) else -way
 
     @cached_property
     def extent(self) -> float:
@@ -164,9 +190,20 @@ class Region:
         return float(self.shape.distance(other.shape))
 
     def simple(self, tolerance: float) -> Region:
-        """The same with no more points than `tolerance` mm asks for."""
-        found = _parts(self.shape.simplify(tolerance), 0.0, self.sheet)
-        return found[0] if len(found) == 1 else self
+        """The same with no more points than `tolerance` mm asks for, wherever its rings begin."""
+        geometry = shapely().geometry
+        rings = [
+            _at_corner(np.asarray(ring.coords)[:-1])
+            for ring in (self.shape.exterior, *self.shape.interiors)
+        ]
+        found = _parts(geometry.Polygon(rings[0], rings[1:]).simplify(tolerance), 0.0, self.sheet)
+        if len(found) != 1:
+            return self
+        if all(len(ring) != 4 for ring in found[0].borders()):
+            return found[0]
+        # the library keeps four points of a ring at least
+        rings = [_without_straight(ring, tolerance) for ring in found[0].borders()]
+        return Region(geometry.Polygon(rings[0], rings[1:]), self.sheet)
 
     def inside(self) -> Array:
         """A place (2,) inside, away from the border."""
@@ -316,6 +353,34 @@ def _wound(loops: list[Array]) -> tuple[Any, float]:
     area = np.array([face.area for face in faces])
     kept = library.ops.unary_union([face for face, is_in in zip(faces, inside) if is_in])
     return kept, float((np.abs(count - inside) * area).sum())
+
+
+def _without_straight(ring: Array, tolerance: float) -> Array:
+    """A ring (n, 2) of four points without one that is within a tolerance (mm) of the line between its neighbours."""
+    if len(ring) != 4:
+        return ring
+    along = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
+    gap = ring - np.roll(ring, 1, axis=0)
+    off = np.abs(along[:, 0] * gap[:, 1] - along[:, 1] * gap[:, 0]) / np.hypot(*along.T)
+    straight = int(np.argmin(off))
+    return ring if off[straight] > tolerance else np.delete(ring, straight, axis=0)
+
+
+def _at_corner(ring: Array) -> Array:
+    """A ring (n, 2) that begins on a straight edge, where a mesh has a point that its section does not need, begun at the
+    corner that turns most instead: simplification keeps the point that a ring begins at. Any other ring as it is."""
+    edge = ring[1] - ring[-1]
+    gap = ring[0] - ring[-1]
+    if abs(edge[0] * gap[1] - edge[1] * gap[0]) > STRAIGHT * max(float(np.hypot(*edge)), 1e-300):
+        return ring
+    way = np.roll(ring, -1, axis=0) - ring
+    before = np.roll(way, 1, axis=0)
+    turn = np.abs(
+        np.arctan2(
+            before[:, 0] * way[:, 1] - before[:, 1] * way[:, 0], np.einsum("ni,ni->n", before, way)
+        )
+    )
+    return np.roll(ring, -int(np.argmax(turn >= turn.max() - SAME_TURN)), axis=0)
 
 
 def _ring(ring: Any, sense: float) -> Array:

@@ -23,6 +23,7 @@ def over_layers(toolpath: Toolpath) -> tuple[Array, ...]:
         return tuple(
             chain.from_iterable(over_layers(part) for part, _ in toolpath.parts if part.layers)
         )
+    toolpath = toolpath.deposited
     found = []
     for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
         points = [bead.points for bead in layer.beads if not bead.closing]

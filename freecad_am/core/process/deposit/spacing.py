@@ -27,6 +27,7 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
         return tuple(
             chain.from_iterable(between_layers(part) for part, _ in toolpath.parts if part.layers)
         )
+    toolpath = toolpath.deposited
     if _is_spiral(toolpath):
         return between_turns(toolpath.layers[0].beads[0])
     heights = _planes(toolpath)
@@ -68,6 +69,7 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
             ):
                 each[number].append(values)
         return tuple(chain.from_iterable(each))
+    toolpath = toolpath.deposited
     if _is_spiral(toolpath):
         bead = toolpath.layers[0].beads[0]
         found = np.full(len(bead), np.nan)
@@ -115,6 +117,7 @@ def is_plane(toolpath: Toolpath) -> bool:
 
 def _planes(toolpath: Toolpath) -> Array | None:
     """(layers,) mm along the Z of the frame, where layers are filled planes square to it; else None."""
+    toolpath = toolpath.deposited
     if toolpath.family != "solid":
         return None
     up = toolpath.frame[:3, 2]

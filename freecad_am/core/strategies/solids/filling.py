@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from ...filling.centre import bare_parts
 from ...filling.cover import Cover, covered, total
 from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import Gaps, fill, open_places
@@ -44,14 +45,23 @@ INSTEAD = {  # round a hub
 }
 
 
+class Bare(NamedTuple):
+    """A place in which no bead lies: its area, mm^2, its width, mm, and a point (2,) in it."""
+
+    area: float
+    width: float
+    point: Array
+
+
 class Filled(NamedTuple):
     """The beads of a layer on the plane, what to know about them, the numbers of those that fill each region, from inside
-    out, and how well all of them are covered."""
+    out, how well all of them are covered, and where no bead lies."""
 
     curves: list[PlaneCurve]
     issues: tuple[Issue, ...]
     islands: list[list[int]]
     cover: Cover
+    bare: list[Bare]
 
 
 class _Filling(NamedTuple):
@@ -70,6 +80,7 @@ class _Picture(NamedTuple):
     curves: Sequence[PlaneCurve]
     gaps: Gaps
     cover: Cover
+    bare: list[Bare]
 
 
 class Pictures:
@@ -93,6 +104,7 @@ class Pictures:
         gaps: Gaps = []
         islands: list[list[int]] = []
         covers: list[Cover] = []
+        bare: list[Bare] = []
         for region in layer.regions:
             try:
                 picture = self._picture(layer, region, filling)
@@ -126,7 +138,11 @@ class Pictures:
                 islands.append(sorted(island, key=lambda number: -curves[number].ring))
             gaps += picture.gaps
             covers.append(picture.cover)
-        return Filled(curves, self._issues(layer, curves, gaps, filling), islands, total(covers))
+            bare += picture.bare
+        issues = self._issues(layer, curves, gaps, filling)
+        if curves and bare:  # layers without any bead are named together
+            issues = (*issues, _no_bead(layer, bare))
+        return Filled(curves, issues, islands, total(covers), bare)
 
     def _issues(
         self, layer: Slice, curves: Sequence[PlaneCurve], gaps: Gaps, filling: _Filling
@@ -188,6 +204,7 @@ class Pictures:
             layer.where,
             self._width,
             layer.number * OVER if strategy.starts == "spread" else None,
+            strategy.narrowest,
         )
         infill = Infill()
         if strategy.fill_density < 1.0:
@@ -247,7 +264,28 @@ class Pictures:
             curves = narrowed(
                 curves, filling.beads, angle, strategy.narrowest
             )  # no wider than their room
-        return _Picture(region, filling, curves, gaps, cover)
+        bare = [] if sparse or not isinstance(region, Region) else bare_parts(region, curves, beads)
+        places = [Bare(part.area, part.width, part.inside()) for part, _ in bare]
+        return _Picture(region, filling, curves, gaps, cover, places)
+
+
+def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
+    """What is told of places of a layer in which no bead lies."""
+    largest = max(bare, key=lambda place: place.area)
+    return Issue(
+        WARNING,
+        "NO_BEAD",
+        Text(
+            "{} place(s) too narrow for a bead get none, {:.3g} mm^2 in all; the largest, {:.3g} mm^2 and "
+            "{:.3g} mm wide, is at {}; use narrower beads, lower strategy.narrowest, or make the part thicker there",
+            len(bare),
+            math.fsum(place.area for place in bare),
+            largest.area,
+            largest.width,
+            layer.where(largest.point),
+        ),
+        layer.number,
+    )
 
 
 def _weighed(curve: PlaneCurve) -> float:
@@ -290,7 +328,9 @@ def bead_width(
 
 def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
     """What is told of single beads in regions narrower than they are."""
-    curves = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]
+    curves = [
+        curve for curve in curves if curve.kind == "centre" and curve.ring == 0 and not curve.dot
+    ]
     if not curves:
         return []
     points = np.vstack([curve.points for curve in curves])

@@ -12,11 +12,12 @@ from ...geometry.beyond_hub import solids_beyond
 from ...geometry.on_hub import SolidsOnHub
 from ...issues import InputError, Issue
 from ...layers import field
+from ...layers.field import Stack
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
-from ...process.order import IslandOrder, RankedBead, ordered, waited
+from ...process.order import Course, IslandOrder, RankedBead, ordered, waited
 from ...toolpath import Bead, Toolpath
 from .. import size
 from ..progress import Progress, silent
@@ -24,6 +25,7 @@ from .beads import MadeBead, bead_of
 from .filling import Pictures, bead_width, spaced
 from .notes import notes
 from .volumes import twice, volumes
+from .without_bead import BareLayer, without_bead
 
 LEVEL = 1e-6  # mm, and of the cosine of an angle
 
@@ -52,7 +54,8 @@ def plan(
     pictures = Pictures(strategy, process, width)
     ranked: list[RankedBead] = []
     made: list[MadeBead] = []
-    issues: list[Issue] = []
+    issues: list[tuple[Stack, Issue]] = []
+    bare: list[BareLayer] = []
     covers: list[Cover] = []
     heights: dict[
         int, list[float]
@@ -64,7 +67,9 @@ def plan(
         for layer in stack.layers:
             progress((done + layer.before) / len(stacks), f"{stack.name} layer {layer.number}")
             picture = pictures.filled(layer, stack.name)
-            issues += [*layer.issues, *picture.issues]
+            issues += [(stack, issue) for issue in (*layer.issues, *picture.issues)]
+            if picture.bare and not picture.curves:
+                bare.append(BareLayer(stack, layer, picture.bare))
             if layer.heights is not None:
                 heights.setdefault(layer.number, []).extend(layer.heights[::2])
             covers.append(
@@ -94,12 +99,12 @@ def plan(
             "spacing, or thin = single",
             strategy.least_bead,
         )
-    layers = waited(
-        ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time
-    )
-    issues = [
+    course = ordered(ranked, strategy.order)
+    layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    told = [
         *solids.issues,
-        *issues,
+        *[_numbered(issue, stack, course) for stack, issue in issues],
+        *without_bead(bare, course),
         *notes(made, layers, strategy, build, process, model),
     ]
     return Toolpath(
@@ -107,7 +112,7 @@ def plan(
         solids.frame,
         strategy.layer_height,
         strategy.chord_error,
-        tuple(issues),
+        tuple(told),
         process.overlap,
         "solid" if solids.on_planes() else "developable",
         solids.surroundings,
@@ -121,6 +126,13 @@ def plan(
         if heights
         else None,
     )
+
+
+def _numbered(issue: Issue, stack: Stack, course: Course) -> Issue:
+    """An issue of a layer of a stack with the number that this layer has in the toolpath; without one where it is not in it."""
+    if issue.layer is None:
+        return issue
+    return replace(issue, layer=course.number(stack.group, stack.solid, issue.layer))
 
 
 def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
