@@ -336,3 +336,18 @@ def test_a_container_of_shapes_and_meshes_is_rejected(doc, box):
     mesh.Visibility = False
     assert is_at(global_shape(part), moved(CORNERS, IN, INNER))
     body_of(part)
+
+
+def test_an_assembly_of_freecad_1(doc, box):
+    """Components of assemblies are links; sub-assemblies are turned too."""
+    if int(App.Version()[0]) < 1:
+        pytest.skip("assemblies came with FreeCAD 1.0")
+    assembly = doc.addObject("Assembly::AssemblyObject", "Assembly")
+    link, inner = link_to(doc, box), doc.addObject("Assembly::AssemblyObject", "Inner")
+    inner.Placement, assembly.Placement = placement(*INNER), placement(*OUTER)
+    inner.addObject(link)
+    assembly.addObject(inner)
+    doc.recompute()
+    assert is_at(global_shape(link), moved(CORNERS, LINK, INNER, OUTER))
+    assert is_at(global_shape(assembly), moved(CORNERS, LINK, INNER, OUTER))
+    assert [one.Name for one in containers_of(link)] == ["Inner", "Assembly"]
