@@ -447,7 +447,7 @@ def test_a_new_job_of_another_robot_can_be_carried_out(doc, monkeypatch, machine
         machine,
         5.0,
     )
-    like_default = api.make_cell(doc, machine=machine)
+    like_default = api.make_cell(doc, parameters=CellParameters(machine=machine))
     assert api.make_joint_path(doc, toolpath, like_default).Status == "infeasible"
 
 

@@ -133,3 +133,21 @@ def test_points_stay_where_axes_turn_far():
         < len(one)
         == len(steps.programmed(turned, UR, CHORD, 50.0)[1])
     )
+
+
+@pytest.mark.parametrize("lead", np.linspace(3.0, 3.0026, 9))
+def test_a_bead_that_turns_round_within_a_blend_has_no_point_too_near_another(lead):
+    """As where lines of a filling are joined: the way along the bead is long enough, the way between two points is not."""
+    turn = [[lead, 0.0], [lead, 0.0016], [lead + 0.0006, 0.0], [8.0, 0.5], [8.0, 3.0]]
+    one = motion(bead(0, [[0.0, 0.0], *turn], speed=1.0))
+    told, rows = steps.programmed(one, UR, CHORD, 100.0)
+    inside = told.deposit[1:] & (told.point[1:] > 0)
+    way = np.linalg.norm(np.diff(told.position, axis=0), axis=1)
+    assert way[inside].min() >= steps.NEAREST * UR.least_blend
+    # all that is left out lies near the way that stays
+    for row in sorted(set(range(2, len(one))) - set(rows.tolist())):
+        start, end = rows[rows < row][-1], rows[rows > row][0]
+        line = one.position[end] - one.position[start]
+        share = np.clip((one.position[row] - one.position[start]) @ line / (line @ line), 0, 1)
+        off = np.linalg.norm(one.position[row] - one.position[start] - share * line)
+        assert off <= steps.OFF * CHORD + 1e-12

@@ -15,6 +15,7 @@ from ...controller import Controller
 from ...motion import Motion
 from ...types import Array, Index, Mask
 
+NEAREST = 0.96  # of the least way, below which a post rejects two points
 OFF = 0.4  # of the chord error, that points left out may lie off
 REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
 
@@ -63,7 +64,37 @@ def _kept(motion: Motion, seconds: float, least: float, chord_error: float) -> M
         rows = slice(start, start + int(np.argmax(last[start:])) + 1)
         kept[rows] = _sparse(np.r_[0.0, np.cumsum(steps[rows][1:])])
     kept |= motion.halt
-    return _with_needed(motion, kept, OFF * chord_error)
+    kept = _with_needed(motion, kept, OFF * chord_error)
+    return _without_returns(motion, kept, least, OFF * chord_error) if least else kept
+
+
+def _without_returns(motion: Motion, kept: Mask, least: float, off: float) -> Mask:
+    """The rows that stay, without those that come back to within `least` mm of the one before, as where a bead turns round in
+    less than a blend: the way between two points counts there, not the way along the bead. All rows left out lie within
+    `off` mm of the way between those that stay; where that cannot be, the row stays."""
+    kept, tried = kept.copy(), np.zeros(len(kept), dtype=bool)
+    inside = motion.deposit & (motion.point > 0) & motion.reachable
+    last = inside & np.append(~inside[1:], True)
+    while True:
+        rows = np.flatnonzero(kept)
+        way = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
+        # to the start of a bead there is a rapid, which has no blend of its own
+        near = 1 + np.flatnonzero((way < NEAREST * least) & inside[rows[1:]])
+        pairs = [(rows[k], rows[k - 1]) for k in near.tolist()]
+        pair = next((pair for pair in pairs if not tried[pair[0]]), None)
+        if pair is None:
+            return kept
+        tried[pair[0]] = True
+        for row in pair:
+            if motion.halt[row] or last[row] or not inside[row]:
+                continue
+            place = int(np.searchsorted(rows, row))
+            start, end = int(rows[place - 1]), int(rows[place + 1])
+            gone = np.arange(start + 1, end)
+            ends = np.full(len(gone), start), np.full(len(gone), end)
+            if (_off_way(motion, *ends, gone) <= off).all():
+                kept[row] = False
+                break
 
 
 def _sparse(clock: Array) -> Mask:
@@ -86,14 +117,7 @@ def _with_needed(motion: Motion, kept: Mask, off: float) -> Mask:
         rows = np.flatnonzero(kept)
         after = np.searchsorted(rows, gone)
         start, end = rows[after - 1], rows[after]
-        way = motion.position[end] - motion.position[start]
-        offset = motion.position[gone] - motion.position[start]
-        share = np.einsum("nk,nk->n", offset, way) / np.maximum(
-            np.einsum("nk,nk->n", way, way), 1e-300
-        )
-        away = np.linalg.norm(offset - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
-        turn = np.linalg.norm(motion.joints[end] - motion.joints[start], axis=1)
-        away = np.maximum(away, 0.125 * REACH * turn * turn)
+        away = _off_way(motion, start, end, gone)
         far = away > off
         if not far.any():
             return kept
@@ -101,3 +125,15 @@ def _with_needed(motion: Motion, kept: Mask, off: float) -> Mask:
         order = np.lexsort((away[far], start[far]))
         last = np.flatnonzero(np.diff(start[far][order], append=-1))
         kept[gone[far][order[last]]] = True
+
+
+def _off_way(motion: Motion, start: Index, end: Index, gone: Index) -> Array:
+    """How far (k,) mm rows left out lie off the straight way between two rows, or as far as axes that turn between these would
+    leave it."""
+    way = motion.position[end] - motion.position[start]
+    offset = motion.position[gone] - motion.position[start]
+    share = np.einsum("nk,nk->n", offset, way) / np.maximum(np.einsum("nk,nk->n", way, way), 1e-300)
+    away = np.linalg.norm(offset - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
+    turn = np.linalg.norm(motion.joints[end] - motion.joints[start], axis=1)
+    found: Array = np.maximum(away, 0.125 * REACH * turn * turn)
+    return found
