@@ -82,7 +82,6 @@ REFUSED = {
     "M97": "it calls a subprogram; write its moves out",
     "M99": "it returns from a subprogram, or repeats the program; leave it out",
     "M206": "it shifts the origin; leave it out, or use G92",
-    "M290": "it shifts Z while the program runs; leave it out",
     "M428": "it shifts the origin; leave it out, or use G92",
     "M579": "it scales axes; leave it out",
     "SET_GCODE_OFFSET": "it shifts the origin; leave it out, or use G92",
@@ -90,6 +89,8 @@ REFUSED = {
     "FORCE_MOVE": "it moves a motor alone; leave it out",
     "EXCLUDE_OBJECT": "it drops an object while the program runs; let the slicer leave the object out",
 }
+# codes that makers of printers give a meaning of their own: probing, levelling, states of the machine
+VENDOR = re.compile(r"G39(?:\.\d+)?|G\d{3}(?:\.\d+)?")
 WORK_OFFSETS = re.compile(r"G5[5-9](?:\.[123])?")
 # M codes and macros that are known to leave the path as it is
 HARMLESS_M = frozenset(
@@ -297,11 +298,11 @@ HARMLESS_MACROS = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """Points (n, 3) and directions (n, 3) of a run of moves that extrude, the number of layer comments before it, and the
-    slicer's type."""
+    """Points (n, 3) and directions (n, 3), None without rotary words, of a run of moves that extrude, the number of layer
+    comments before it, and the slicer's type."""
 
     points: Array
-    directions: Array
+    directions: Array | None
     comments: int
     role: str | None
 
@@ -463,7 +464,7 @@ class _Reader:
             self._set_mode(command)
         elif name in ("G92", "G92.1"):
             self._reset_origin(command)
-        elif name in OWN_MOTION:
+        elif name in OWN_MOTION or VENDOR.fullmatch(name):
             self._home(command)
         elif name in ("G10", "G11", "G22", "G23"):
             self._retract(command)
@@ -527,6 +528,8 @@ class _Reader:
         self._end()
         axes = {letter for letter, _ in command.words if letter in "XYZ"} or set("XYZ")
         self.known -= axes
+        if VENDOR.fullmatch(command.name):
+            self.not_read.setdefault(command.name, []).append(self.line)
         if command.name == "G28":
             for k, axis in enumerate("XYZ"):
                 if axis in axes:
@@ -682,11 +685,14 @@ class _Reader:
             way = self._arc(name, start, end, words, extrudes)
         else:
             way = [end]
-        still = len(way) == 1 and float(np.linalg.norm(end - start)) < APART
+        still = len(way) == 1 and math.dist(start.tolist(), end.tolist()) < APART
         if not extrudes or still:
             self._end()
             return
         self._check_extruding()
+        if self.rotary in (NO_ROTARY, ANY_ROTARY):
+            self.points += way if self.points else [start, *way]
+            return
         after = [self.state.at[axis] for axis in "ABC"]
         angles = np.array([before, after])
         if len(way) == 1:
@@ -718,8 +724,6 @@ class _Reader:
     def _direction(self, angles: Array) -> Array:
         """The unit vector from the deposit towards the tool, for A, B and C in degrees."""
         a, b, c = np.radians(angles)
-        if self.rotary in (NO_ROTARY, ANY_ROTARY):
-            return np.array([0.0, 0.0, 1.0])
         if self.rotary.startswith("table"):  # the part turns by the angles, so the tool by less
             a, b, c = -a, -b, -c
         if self.rotary.endswith("ac"):
@@ -794,10 +798,12 @@ class _Reader:
     def _end(self) -> None:
         """The bead ends here."""
         if self.points:
-            points, directions = np.array(self.points), np.array(self.directions)
+            points = np.array(self.points)
+            directions = np.array(self.directions) if self.directions else None
             kept = np.r_[True, np.linalg.norm(np.diff(points, axis=0), axis=1) > APART]
             if kept.sum() > 1:
-                self.runs.append(_Run(points[kept], directions[kept], self.comments, self.role))
+                ways = None if directions is None else directions[kept]
+                self.runs.append(_Run(points[kept], ways, self.comments, self.role))
         self.points, self.directions = [], []
 
     def _error(self, message: str) -> InputError:
@@ -817,11 +823,7 @@ class _Reader:
             ]
         runs, issues = roles_of.chosen(self.runs, roles, self.where, CODE)
         curves = tuple(
-            BeadCurve(
-                run.points,
-                None if self.rotary in (NO_ROTARY, ANY_ROTARY) else run.directions,
-                layer,
-            )
+            BeadCurve(run.points, run.directions, layer)
             for run, layer in zip(runs, _layers(runs, self.comments > 0))
         )
         return ReadCurves(curves, (*issues, *self._notes()))

@@ -20,6 +20,7 @@ _NAME = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_]*[A-Za-z_][A-Za-z0-9_]*)")
 _COMMAND = re.compile(
     r"(?<![A-Za-z0-9_.])([GMT])[ \t]*(\d+(?:\.\d+)?)(?![\dA-Za-z_])|([GM])(\d+)", re.I
 )
+_PLAIN_MOVE = re.compile(rf"G[0-3](?:[ \t]+[XYZEFIJ]{NUMBER})+")
 _CHECKSUM = re.compile(r"\*\s*(\d+)\s*$")
 _LINE_NUMBER = re.compile(r"\s*[Nn]\s*\d+(?![.\d])")
 # M codes whose rest of the line is a text: messages and names of files
@@ -93,6 +94,9 @@ class Command:
 
 def split_comments(line: str) -> tuple[str, list[str]]:
     """The code of a line without its comments, and these. BadWords for a bracket that does not close."""
+    if "(" not in line and '"' not in line:  # most lines
+        plain, mark, comment = line.partition(";")
+        return plain.strip(), [comment] if mark else []
     code, comments, quoted, at = "", [], False, 0
     is_text = _TEXT_CODE.match(line) is not None  # brackets of a message are no comments
     closed = line.count('"') % 2 == 0  # an inch sign in a message does not begin a text
@@ -118,6 +122,11 @@ def split_comments(line: str) -> tuple[str, list[str]]:
 
 def commands_of(code: str) -> list[Command]:
     """The commands of a line without comments, in their order. BadWords names what of it is not understood."""
+    if _PLAIN_MOVE.fullmatch(code):  # most lines; the rest of this function gives the same
+        words = code.split()
+        values = tuple((word[0], float(word[1:])) for word in words[1:])
+        if len({letter for letter, _ in values}) == len(values):
+            return [Command(words[0], values)]
     code = _without_checksum(code)
     number = _LINE_NUMBER.match(code)
     if number is not None:
