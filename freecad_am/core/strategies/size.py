@@ -44,6 +44,12 @@ LARGE_SECONDS, LARGE_GIGABYTES = (
     1.0,
 )  # from which a job is told to be large; half of what anybody waits for untold
 GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
+GIGABYTES_A_VERTEX = (
+    9e-6  # at the peak, of the mesh of a wall; measured 8.7 to 9.6 on walls of 9,000 to 35,000
+)
+# of a bead on a wall that is a mesh, whatever the chord error; measured are 1.5 on smooth walls to 4.4 on one with folds
+POINTS_AN_EDGE = 2.5
+SECONDS_A_MESH_POINT = 7e-4  # s of the processor that a point of these takes; measured 0.41 to 0.56 ms for the toolpath
 FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
@@ -71,13 +77,19 @@ _SECONDS_A_POINT: dict[type, float] = {
 class Size:
     """About how many layers and points a toolpath would have. squares: with sides of the bead spacing, as many as there are
     in all layers, where each of these is filled by itself. nodes: of the grids on which curved layers are looked for. folds:
-    of the mesh of a wall, mm of their length."""
+    of the mesh of a wall, mm of their length. vertices: of that mesh, 0 for exact walls."""
 
     layers: float
     points: float
     squares: float = 0.0
     nodes: float = 0.0
     folds: float = 0.0
+    vertices: float = 0.0
+
+    @property
+    def gigabytes(self) -> float:
+        """Memory at the peak of all stages."""
+        return self.points * GIGABYTES_A_POINT + self.vertices * GIGABYTES_A_VERTEX
 
 
 def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
@@ -139,8 +151,13 @@ def of_fronts(wall: PatchWall, strategy: SurfaceParameters) -> Size:
         per_mm,
         1.0 / math.sqrt(4.0 * strategy.chord_error * np.linalg.norm(np.ptp(wall.vertices, axis=0))),
     )
+    if wall.mesh_vertices:  # its beads have a point wherever they cross an edge
+        per_mm = max(per_mm, POINTS_AN_EDGE / wall.mesh.typical_edge)
     return Size(
-        layers, max(FEWEST * layers, per_mm * area / strategy.layer_height), folds=wall.folds
+        layers,
+        max(FEWEST * layers, per_mm * area / strategy.layer_height),
+        folds=wall.folds,
+        vertices=wall.mesh_vertices,
     )
 
 
@@ -251,10 +268,11 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     a_point = next(
         seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind)
     )
+    a_point = SECONDS_A_MESH_POINT if size.vertices else a_point
     seconds = max(
         size.points * a_point, size.layers * SECONDS_A_LAYER, size.squares * SECONDS_A_SQUARE
     )
-    gigabytes = size.points * GIGABYTES_A_POINT
+    gigabytes = size.gigabytes
     shapes = _of_shape(size, max(seconds, LARGE_SECONDS))
     if gigabytes < LARGE_GIGABYTES and (shapes or seconds < LARGE_SECONDS):
         return shapes

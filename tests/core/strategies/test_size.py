@@ -2,7 +2,11 @@
 """How large toolpaths will be is told before they are made, about right, and absurd ones are refused at once."""
 
 import dataclasses
+import json
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -358,3 +362,51 @@ def test_folds_of_a_mesh_are_told_by_their_length(high, told):
     told_of = size.judged(found, strategy)
     assert [issue.code for issue in told_of] == ([] if told is None else ["LARGE"])
     assert told is None or (told in told_of[0].message and "rounded edges" in told_of[0].message)
+
+
+ROOT = Path(__file__).resolve().parents[3]
+VASE = """
+import dataclasses, json, re
+import numpy as np
+from freecad_am.core.geometry.walls.mesh_wall import mesh_wall
+from freecad_am.core.geometry.walls.patch_wall import FirstCurve
+from freecad_am.core.parameters.strategy import SurfaceParameters
+from freecad_am.core.strategies import size
+
+def peak():
+    return int(re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read()).group(1)) * 1024e-9
+
+count, rows, edge = {count}, {rows}, {edge}
+angle = 2.0 * np.pi * np.arange(count) / count
+rings = []
+for z in np.linspace(0.0, 120.0, rows + 1):
+    r = 60.0 + 10.0 * np.sin(z / 20.0) + {wave} * np.sin(7.0 * angle)
+    rings.append(np.column_stack([r * np.cos(angle), r * np.sin(angle), np.full(count, z)]))
+k = np.arange(count)
+on = np.roll(k, -1)
+band = np.vstack([np.column_stack([k, on, on + count]), np.column_stack([k, on + count, k + count])])
+before = peak()
+wall = mesh_wall(np.vstack(rings), np.vstack([band + count * k for k in range(rows)]), edge, "vase", 5.0)
+wall.project(wall.vertices)
+used = peak() - before
+first = FirstCurve(rings[0], *2 * (np.eye(3)[[0] * count],), True)
+wall = dataclasses.replace(wall, first=(first,))
+size = size.of_wall(wall, SurfaceParameters(layer_height=edge, chord_error=0.05))
+print(json.dumps([size.gigabytes, used, size.points, size.vertices]))
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the peak is read from /proc")
+@pytest.mark.parametrize(
+    ("count", "rows", "edge", "wave"),
+    [(180, 60, 3.0, 0.0), (48, 16, 1.5, 0.0), (240, 80, 2.0, 4.0)],
+)
+def test_the_memory_of_a_mesh_wall_is_announced_as_it_is_used(count, rows, edge, wave):
+    """Announced was a thirtieth of it, as points alone were counted. Measured in a process of its own, to a factor of 2.5."""
+    script = VASE.format(count=count, rows=rows, edge=edge, wave=wave)
+    made = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    announced, used, points, vertices = json.loads(made.stdout)
+    assert used / 2.5 < announced < 2.5 * used
+    assert 0 < points * size.GIGABYTES_A_POINT < announced and vertices > 5000

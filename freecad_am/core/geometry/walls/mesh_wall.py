@@ -66,6 +66,11 @@ class MeshWall(PatchWall):
         return max(at_vertices, self.between)
 
     @property
+    def mesh_vertices(self) -> int:
+        """How many vertices the mesh has."""
+        return len(self.vertices)
+
+    @property
     def folds(self) -> float:
         """Of what is deposited."""
         ahead = self.triangles[~self.behind[self.triangles].any(axis=1)]

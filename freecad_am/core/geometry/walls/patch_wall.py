@@ -112,6 +112,11 @@ class PatchWall:
         return np.array(self.patches[0].frame[:3, 2]) if whole else None
 
     @property
+    def mesh_vertices(self) -> int:
+        """How many vertices the mesh has that stands for it; 0 of exact pieces."""
+        return 0
+
+    @property
     def folds(self) -> float:
         """Length of places, mm, at which it bends more sharply than its mesh can follow; exact pieces have none."""
         return 0.0
