@@ -14,6 +14,7 @@ from freecad_am.core.types import Array
 
 from ..core.geometry.curves.bead_curves import BeadCurve
 from ..core.geometry.formatting import place
+from ..core.geometry.step_count import step_count
 from ..core.issues import InputError
 
 SHORTEST = 1e-4  # mm; shorter edges are none
@@ -63,7 +64,7 @@ def _polyline(chain: Sequence[Any], chord_error: float, dense: bool) -> Array:
         points = np.array([tuple(point) for point in edge.discretize(Deflection=chord_error)])
         if dense and len(points) < edge.Length / STEP + 1.0:
             points = np.array(
-                [tuple(point) for point in edge.discretize(int(np.ceil(edge.Length / STEP)) + 1)]
+                [tuple(point) for point in edge.discretize(step_count(edge.Length, STEP) + 1)]
             )
         rows.append(points)
     for k, points in enumerate(rows):

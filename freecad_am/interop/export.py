@@ -11,6 +11,7 @@ from typing import Any
 from ..core.issues import InputError
 from ..core.parameters.cell import CellParameters
 from ..core.simulation import waypoints
+from ..objects.current import check_recomputed
 from ..objects.work import hooks
 from . import cam_path, cell_file, dxf, robot_trajectory, step_wires
 from .lines import Line
@@ -75,7 +76,8 @@ def write_page(path: str, page: Callable[[], str], title: str) -> str:
 def write_cell(obj: Any, path: str) -> str:
     """Write a cell as the file that jobs name; the path. The file appears whole or not at all.
 
-    Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, and for what is not a cell.
+    Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, NO_RESULT where an expression of it waits for a recompute, and
+    for what is not a cell.
     """
     if os.path.splitext(path)[1].lower() not in CELL:
         raise InputError(
@@ -83,6 +85,7 @@ def write_cell(obj: Any, path: str) -> str:
         )
     if getattr(getattr(obj, "Proxy", None), "kind", "") != "cell":
         raise InputError("WRONG_KIND", obj.Label, "this is not a cell; choose one")
+    check_recomputed(obj)
     saved = cell_file.text(
         obj.Proxy.parameters(obj, CellParameters), os.path.dirname(os.path.abspath(path))
     )

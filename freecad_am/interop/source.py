@@ -10,6 +10,7 @@ from ..core.kinematics.machines import machine
 from ..core.motion import Motion
 from ..core.simulation import deposit
 from ..objects import user_machines
+from ..objects.current import check_current
 from ..objects.stage import stage_of
 from .lines import Line, of_motion, of_toolpath
 
@@ -19,7 +20,7 @@ KINDS = ("toolpath", "joint path", "program")
 def lines_of(obj: Any, rapids: bool = True) -> tuple[Line, ...]:
     """Beads, and where the stage knows them the rapid moves, of a toolpath, a joint path, or a program's joint path.
 
-    Raises InputError for any other object, and for one without a result.
+    Raises InputError for any other object, for one without a result, and for one whose result does not fit the document.
     """
     obj = _path_of(obj)
     value = obj.Proxy.value(obj)
@@ -41,15 +42,16 @@ def motion_of(obj: Any) -> tuple[Motion, tuple[str, ...], tuple[str, ...]]:
 
 
 def _path_of(obj: Any) -> Any:
-    """The toolpath or joint path that is meant."""
+    """The toolpath or joint path that is meant, whose result fits the document as it is now."""
     stage = stage_of(obj)
     if stage is None or stage.kind not in KINDS:
         label = getattr(obj, "Label", repr(obj))
         raise InputError(
             "BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program"
         )
-    if stage.kind != "program":
-        return obj
-    if obj.JointPath is None:
+    path = obj if stage.kind != "program" else obj.JointPath
+    if path is None:
         raise InputError("NO_INPUT", obj.Label, "its joint path is gone; choose a joint path")
-    return obj.JointPath
+    if path.Key:
+        check_current(path)
+    return path

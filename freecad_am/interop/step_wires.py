@@ -6,7 +6,8 @@ Each line is one spline of the first degree, which is the polyline itself and a 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -17,6 +18,10 @@ from ..core.issues import InputError
 from .lines import Line
 
 RAPID = "Rapid"
+UNITS = ("MM", "M", "INCH")  # by the number that FreeCAD's preference has
+SCHEMA = "AP214IS"
+_PREFERENCES = "User parameter:BaseApp/Preferences/Mod/Part/STEP"
+_UNIT_OF_FILES, _SCHEMA_OF_FILES = "write.step.unit", "write.step.schema"
 
 
 def write(lines: Sequence[Line], path: str, label: str) -> None:
@@ -30,13 +35,30 @@ def write(lines: Sequence[Line], path: str, label: str) -> None:
     active = App.ActiveDocument
     document = App.newDocument("RoboticAM_Export", label, True, True)
     try:
-        Import.export(
-            [_component(document, name, of) for name, of in _components(lines).items()], path
-        )
+        components = [_component(document, name, of) for name, of in _components(lines).items()]
+        with _millimetres():
+            Import.export(components, path)
     finally:
         App.closeDocument(document.Name)
         if active is not None:
             App.setActiveDocument(active.Name)
+
+
+@contextlib.contextmanager
+def _millimetres() -> Iterator[None]:
+    """Write STEP files in millimetres and the schema that all read, whatever the user prefers for files of his own.
+
+    The kernel keeps the unit for the whole process. FreeCAD 1.0 writes numbers in mm under the name of the preferred unit.
+    """
+    preferred = App.ParamGet(_PREFERENCES)
+    unit, schema = preferred.GetInt("Unit", 0), preferred.GetString("Scheme", SCHEMA)
+    Part.setStaticValue(_UNIT_OF_FILES, UNITS[0])
+    Part.setStaticValue(_SCHEMA_OF_FILES, SCHEMA)
+    try:
+        yield
+    finally:
+        Part.setStaticValue(_UNIT_OF_FILES, UNITS[unit] if 0 <= unit < len(UNITS) else UNITS[0])
+        Part.setStaticValue(_SCHEMA_OF_FILES, schema or SCHEMA)
 
 
 def edge(line: Line) -> Any:

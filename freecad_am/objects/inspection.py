@@ -18,6 +18,7 @@ from ..core.inspection.planned import Planned, of_triangles
 from ..core.issues import InputError, Text
 from ..core.parameters.inspection import InspectionParameters
 from ..core.parameters.process import ProcessParameters
+from .current import check_current
 from .fields.properties import HIDDEN, OUTPUT
 from .results.fingerprints import fingerprint
 from .shapes.bodies import taken
@@ -226,7 +227,10 @@ def _figures(found: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
 
 
 def files_of_figures(obj: Any) -> dict[str, bytes]:
-    """The figures of an inspection as a table and as JSON, and all points with their deviations. InputError NO_RESULT."""
+    """The figures of an inspection as a table and as JSON, and all points with their deviations. InputError NO_RESULT, also
+    where they do not fit the document as it is now."""
+    if obj.Key:
+        check_current(obj)
     found, name = obj.Proxy.value(obj), obj.Label
     figures = "figure,value,unit\n" + "".join(
         f'"{row.name}",{row.value:.6f},{row.unit}\n' for row in table.rows(found)

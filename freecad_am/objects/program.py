@@ -24,10 +24,12 @@ from ..core.toolpath import Toolpath
 from ..posts import catalogue, refusals
 from . import user_machines
 from .checks import controllers
+from .current import check_current
 from .joint_path import Planned
 from .results.findings import reason_of
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
+from .staleness import UP_TO_DATE
 from .work import progress
 
 
@@ -238,20 +240,13 @@ def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
 
 
 def files_of(obj: Any) -> dict[str, bytes]:
-    """The controller's files of a program object. InputError 'NO_PROGRAM' when there are none, saying why."""
-    if obj.Key and obj.Status == "up to date" and obj.Proxy.key(obj) != obj.Key:
-        raise InputError(
-            "NO_PROGRAM",
-            obj.Label,
-            "an earlier version wrote this program, whose rapids were not all checked; recompute "
-            "the job, and read Migrating in the changelog",
-        )
-    files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.Key else {}
-    if obj.Status != "up to date" or not files:
-        raise InputError(
-            "NO_PROGRAM",
-            obj.Label,
-            "no program fits its inputs ({}); mend that and recompute it",
-            reason_of(obj) or obj.Status,
-        )
+    """The controller's files of a program object. InputError 'NO_PROGRAM' when there are none, or when they do not fit the
+    document as it is now, saying why."""
+    template = "no program fits its inputs ({}); mend that and recompute it"
+    if not obj.Key or obj.Status != UP_TO_DATE:
+        raise InputError("NO_PROGRAM", obj.Label, template, reason_of(obj) or obj.Status)
+    check_current(obj, "NO_PROGRAM", template)
+    files: dict[str, bytes] = obj.Proxy.value(obj).files
+    if not files:
+        raise InputError("NO_PROGRAM", obj.Label, template, reason_of(obj) or obj.Status)
     return files

@@ -7,8 +7,9 @@ from typing import Any
 
 import FreeCAD as App
 
-from ..core.issues import Text
+from ..core.issues import AmError, Text
 from .results.findings import say
+from .shapes.containers import dependents_of
 
 UP_TO_DATE, STALE, FAILED, INFEASIBLE = "up to date", "stale", "failed", "infeasible"
 STATUSES = (UP_TO_DATE, STALE, FAILED, INFEASIBLE)
@@ -46,7 +47,9 @@ def changed(obj: Any, name: str) -> None:
     ):
         return
     _mark(obj, name)
-    _mark_followers(obj)
+    for follower in obj.InListRecursive:
+        if hasattr(follower, "ResultLayout"):
+            _mark(follower, obj.Label)
 
 
 def watch() -> None:
@@ -58,10 +61,10 @@ def watch() -> None:
 
 
 class _Observer:
-    """FreeCAD tells a stage nothing when an object it links to changes."""
+    """FreeCAD tells a stage nothing when an object it links to changes, nor when that is moved by what it is nested in."""
 
     def slotChangedObject(self, obj: Any, name: str) -> None:
-        if name in RESULTS or hasattr(obj, "ResultLayout") or not getattr(obj, "InList", None):
+        if name in RESULTS or hasattr(obj, "ResultLayout") or not hasattr(obj, "InList"):
             return
         document = obj.Document
         if (
@@ -70,17 +73,52 @@ class _Observer:
         ):
             _mark_followers(obj)
 
+    def slotBeforeRecomputeDocument(self, document: Any) -> None:
+        """What FreeCAD told nobody of, such as changes of frozen objects and files, counts in this recompute."""
+        _mark_outdated(document)
+
     def slotRecomputedDocument(self, document: Any) -> None:
-        """FreeCAD does not run what follows an object that failed, such as a link to nothing: tell what is missing."""
+        """FreeCAD does not run what follows an object that failed, such as a link to nothing: tell what is missing. Stages of
+        documents that link to this one wait for a recompute of their own."""
         for obj in document.Objects:
             if hasattr(obj, "ResultLayout") and obj.Status == STALE and obj.Proxy.missing(obj):
                 _mark(obj, "")
+        for follower in (document, *document.InList):
+            _mark_outdated(follower)
 
 
 def _mark_followers(obj: Any) -> None:
-    for follower in obj.InListRecursive:
+    """Mark what is made of an object, and of what it moves what stands elsewhere by now."""
+    followers, placed = dependents_of(obj)
+    for follower in followers:
         if hasattr(follower, "ResultLayout"):
             _mark(follower, obj.Label)
+    for follower in placed:
+        if hasattr(follower, "ResultLayout") and is_outdated(follower):
+            _mark(follower, obj.Label)
+            for later in follower.InListRecursive:
+                if hasattr(later, "ResultLayout"):
+                    _mark(later, obj.Label)
+
+
+def _mark_outdated(document: Any) -> None:
+    """Mark the stages of a document whose inputs are not those that their results were made from."""
+    for obj in document.Objects:
+        if hasattr(obj, "ResultLayout") and is_outdated(obj):
+            _mark(obj, obj.Label)
+            for later in obj.InListRecursive:
+                if hasattr(later, "ResultLayout"):
+                    _mark(later, obj.Label)
+
+
+def is_outdated(obj: Any) -> bool:
+    """Whether a stage that says that it is up to date was made from other inputs than those of now."""
+    if obj.Status != UP_TO_DATE or not obj.Key:
+        return False
+    try:
+        return bool(obj.Proxy.key(obj) != obj.Key)
+    except AmError:
+        return False  # what is wrong is told when it is recomputed
 
 
 def _mark(obj: Any, cause: str) -> None:

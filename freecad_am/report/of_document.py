@@ -19,11 +19,11 @@ from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.process.model.predicted import HEIGHTS
 from freecad_am.objects import user_machines
 from freecad_am.objects.checks import preflight
+from freecad_am.objects.current import check_current
 from freecad_am.objects.job_group import is_group
 from freecad_am.objects.joint_path import planned_of
-from freecad_am.objects.results.findings import issues_of, message_of
+from freecad_am.objects.results.findings import issues_of
 from freecad_am.objects.stage import stage_of
-from freecad_am.objects.staleness import FAILED, STALE
 from freecad_am.objects.toolpath import features_of, strategy_of
 from freecad_am.objects.work import progress
 
@@ -43,12 +43,7 @@ def reported(obj: Any) -> Callable[[], str]:
     toolpath, path, program = _stages(obj)
     features = features_of(toolpath)
     stages = [one for one in (*features, toolpath, path, program) if one is not None]
-    for one in stages:
-        if one.Status in (STALE, FAILED):
-            why = message_of(one) or one.Status
-            raise InputError(
-                "NO_RESULT", one.Label, "no result fits its inputs ({}); recompute it first", why
-            )
+    check_current(obj)
     settings = None if program is None else program.Proxy.parameters(program, ProgramParameters)
     read = None if program is None else preflight.read_back_of(program)
     survey = functools.cache(preflight.survey_of(toolpath, path, settings))

@@ -331,3 +331,31 @@ def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
         with pytest.raises(InputError):
             api.export_cell(wrong, str(tmp_path / where))
     App.closeDocument(doc.Name)
+
+
+@pytest.mark.parametrize("unit", [0, 1, 2])
+def test_a_step_file_has_the_same_size_whatever_unit_the_user_prefers(job, tmp_path, unit):
+    preferences = App.ParamGet("User parameter:BaseApp/Preferences/Mod/Part/STEP")
+    preferences.SetInt("Unit", unit)
+    Part.setStaticValue(
+        "write.step.unit", ("MM", "M", "INCH")[unit]
+    )  # as FreeCAD does at its start
+    try:
+        path = api.export_wires(job.Toolpath, str(tmp_path / "wires.step"))
+        text = (tmp_path / "wires.step").read_text(encoding="latin-1")
+        box, want = Part.read(path).BoundBox, np.vstack(beads(job))
+        # files of the user keep his unit
+        other = doc_wire(tmp_path / "own.step")
+    finally:
+        preferences.RemInt("Unit")
+        Part.setStaticValue("write.step.unit", "MM")
+    assert "SI_UNIT(.MILLI.,.METRE.)" in text and "INCH" not in text and "AUTOMOTIVE_DESIGN" in text
+    assert [box.XMin, box.YMin, box.ZMin] == pytest.approx(want.min(axis=0), abs=1e-6)
+    assert [box.XMax, box.YMax, box.ZMax] == pytest.approx(want.max(axis=0), abs=1e-6)
+    assert ("INCH" in other) == (unit == 2)
+
+
+def doc_wire(path):
+    """The text of a STEP file that FreeCAD writes as the user prefers."""
+    Part.makeLine(App.Vector(0, 0, 0), App.Vector(1, 0, 0)).exportStep(str(path))
+    return path.read_text(encoding="latin-1")

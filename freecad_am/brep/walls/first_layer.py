@@ -14,6 +14,7 @@ import Part
 from freecad_am.core.types import Array
 
 from ...core.geometry.formatting import deviation
+from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.surface import dot
 from ...core.geometry.walls.surface_wall import TABLE, TORUS, Placed, SurfaceWall
 from ...core.issues import NOTE, InputError, Issue, Text
@@ -181,7 +182,7 @@ def _chain(edges: list[Any], surface: Placed, solid: Any) -> tuple[Array, float,
     parts, error = [], 0.0
     last = None
     for edge in edges:
-        count = max(5, int(np.ceil(POINTS * edge.Length / length)) + 1)
+        count = step_count(POINTS * edge.Length, length, 4) + 1
         points = np.array([tuple(point) for point in edge.discretize(Number=count)])
         if last is not None and np.linalg.norm(points[-1] - last) < np.linalg.norm(
             points[0] - last

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.types import Array, Index, Mask
 
+from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.patch import SPLINE, Patch
 from ...core.geometry.walls.surface import dot
 
@@ -106,7 +107,7 @@ class _Curves:
             if curve.Degenerated or curve.Length < 1e-9:
                 continue
             low, high = curve.ParameterRange
-            count = int(np.clip(np.ceil(4.0 * curve.Length / edge), 32, 4000)) + 1
+            count = min(step_count(4.0 * curve.Length, edge, 32), 4000) + 1
             t = np.linspace(low, high, count)
             own = np.array([tuple(curve.valueAt(one)) for one in t.tolist()])
             which.append(np.full(count, len(self.splines)))

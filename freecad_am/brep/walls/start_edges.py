@@ -12,6 +12,7 @@ import Part
 from freecad_am.core.types import Array
 
 from ...core.geometry.formatting import place
+from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
 from ...core.issues import InputError
 
@@ -76,7 +77,7 @@ def sampled(edge: Any, step: float) -> tuple[Array, Array]:
     """Points and unit tangents (n, 3) of an edge the way it runs, so near together that the arcs between them keep within
     WITHIN; about `step` mm at most."""
     low, high = edge.ParameterRange
-    count = max(8, int(np.ceil(edge.Length / step))) + 1
+    count = step_count(edge.Length, step, 8) + 1
     t = np.linspace(low, high, count)
     if edge.Orientation == "Reversed":
         t = t[::-1]

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, dense, divided_by_step, nearest_among
-from ..geometry.regions.region import WIDTH, Region
+from ..geometry.regions.region import DIGITS, WIDTH, Region
 from ..geometry.regions.telling import telling
 from ..types import Array, Index, Mask
 from .curve import Beads, PlaneCurve
@@ -135,7 +135,7 @@ def narrowed(
     zigzags = np.array([curve.kind == "zigzag" for curve in curves])[edges.bead]
     turned = np.abs(edges.ways[:, 0] * np.sin(angle) - edges.ways[:, 1] * np.cos(angle)) > ALONG
     share = np.where(zigzags & turned, 2.0 * widths.min(axis=1) / beads.spacing, share)
-    share = np.clip(share, least, 1.0)
+    share = np.round(np.clip(share, least, 1.0), DIGITS)
     cuts = np.searchsorted(edges.bead, np.arange(1, len(curves)))
     return tuple(_with(*one) for one in zip(curves, lines, corners, np.split(share, cuts)))
 

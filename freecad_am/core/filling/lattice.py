@@ -13,11 +13,13 @@ import numpy as np
 
 from ..geometry.curves.plane_curve import turned
 from ..geometry.regions.region import Region, simplified
+from ..geometry.step_count import round_down, round_up
 from ..types import Array
 
 FAMILIES = {"lines": 1, "zigzag": 1, "grid": 2, "triangles": 3}  # of parallel lines, evenly turned
 GYROID_LENGTH = 15.449443  # of all sections of a unit gyroid (2 pi wide) in the mean, within its square of 4 pi^2
 SHARPEST = 6.0  # chords of a period of the gyroid: the root of so many periods by the chord error, before needless ones go
+ROUNDING = 3e-12  # of the largest coordinate
 
 
 def families(
@@ -34,7 +36,7 @@ def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
     borders = [turned(border, -angle) for border in region.borders()]
     low, high = float(borders[0][:, 1].min()), float(borders[0][:, 1].max())
     found = []
-    for k in range(math.ceil(low / period), math.floor(high / period) + 1):
+    for k in range(round_up(low / period), round_down(high / period) + 1):
         x = crossings(borders, k * period)
         ends = np.stack([x, np.full(len(x), k * period)], axis=1).reshape(-1, 2, 2)
         found.append([turned(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
@@ -42,13 +44,16 @@ def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
 
 
 def crossings(borders: list[Array], level: float) -> Array:
-    """Where borders (n, 2) cross a height, ascending; an even number."""
+    """Where borders (n, 2) cross a height, ascending; an even number. Points at that height but for rounding errors count as
+    below it, so that a border along it is on the same side whatever its last bits."""
     found = []
     for border in borders:
         following = np.roll(border, -1, axis=0)
-        k = np.flatnonzero((border[:, 1] <= level) != (following[:, 1] <= level))
+        below = border[:, 1] <= level + ROUNDING * float(np.abs(border).max())
+        k = np.flatnonzero(below != np.roll(below, -1))
         a, b = border[k], following[k]
-        found.append(a[:, 0] + (level - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]))
+        share = np.clip((level - a[:, 1]) / (b[:, 1] - a[:, 1]), 0.0, 1.0)
+        found.append(a[:, 0] + share * (b[:, 0] - a[:, 0]))
     return np.sort(np.concatenate(found))
 
 

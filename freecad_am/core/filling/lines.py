@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from ..geometry.curves.plane_curve import turned
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grown, longer
+from ..geometry.step_count import round_down, step_count
 from ..types import Array
 from .centre import outermost
 from .curve import Beads, PlaneCurve, contours_of
@@ -94,11 +94,11 @@ def levels_between(low: float, high: float, beads: Beads) -> Array:
     )  # lines along the border cross it for sure
     if breadth <= 4.0 * hair:
         return np.array([0.5 * (low + high)])
-    count = max(math.ceil(breadth / ((1.0 + APART) * spacing)), 1)
+    count = step_count(breadth, (1.0 + APART) * spacing)
     if breadth / count >= (1.0 - TOGETHER) * spacing:
         levels = np.linspace(low, high, count + 1)
     else:
-        whole = math.floor(breadth / spacing)
+        whole = round_down(breadth / spacing)
         below, above = (whole + 2) // 2, (whole + 1) // 2
         first, last = low + spacing * np.arange(below), high - spacing * np.arange(above)[::-1]
         levels = (

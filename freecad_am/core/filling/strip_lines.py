@@ -13,6 +13,7 @@ from ..geometry.curves.plane_curve import dense
 from ..geometry.regions.region import Region, regions
 from ..geometry.regions.several import grown
 from ..geometry.regions.strip import Strip
+from ..geometry.step_count import round_down, round_up, step_count
 from ..types import Array, Mask
 from .curve import Beads, PlaneCurve, contours_of, long_enough
 from .lines import levels_between
@@ -79,9 +80,9 @@ def lines_along(
     framed = _frame(inner, beads, walls)
     turn, interior = strip.period.around, _Inside(strip, framed.ends)
     apart = beads.spacing / density
-    count = max(1, math.ceil(turn * _stretch(strip) / apart - 0.01 * turn / apart))
+    count = step_count(turn * _stretch(strip) - 0.01 * turn, apart)
     low, high = strip.levels
-    v: Array = np.linspace(low, high, max(2, math.ceil((high - low) / (PROBE * beads.spacing))))
+    v: Array = np.linspace(low, high, step_count(high - low, PROBE * beads.spacing, 2))
     u: Array = np.asarray(-0.5 * turn + turn / count * (np.arange(count) + 0.5), dtype=np.float64)
     inside = interior.contains(
         np.stack(np.broadcast_arrays(u[:, None], v), axis=-1).reshape(-1, 2)
@@ -109,7 +110,7 @@ def _levels(low: float, high: float, beads: Beads, density: float) -> Array:
     if density == 1.0:
         return levels_between(low, high, beads)
     apart = beads.spacing / density
-    return np.asarray(apart * np.arange(math.ceil(low / apart), math.floor(high / apart) + 1))
+    return np.asarray(apart * np.arange(round_up(low / apart), round_down(high / apart) + 1))
 
 
 class _Inside:

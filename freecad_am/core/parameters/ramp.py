@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.step_count import round_down, round_up
 from ..types import Array
 
 SHARE, STEPS = (
@@ -20,5 +21,5 @@ def ramp(length: float, start: float, end: float) -> Array:
     if length <= 0.0 or start == end or not start or not end:
         return np.zeros(0)
     change = abs(end - start) / max(start, end)
-    count = max(1, min(int(np.ceil(change / SHARE)), STEPS, int(length / SHORTEST)))
+    count = max(1, min(round_up(change / SHARE), STEPS, round_down(length / SHORTEST)))
     return np.asarray(start + (end - start) * (np.arange(count) + 0.5) / count)

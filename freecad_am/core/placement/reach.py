@@ -10,6 +10,7 @@ import numpy as np
 
 from ..geometry import frames
 from ..geometry.angles import TURN
+from ..geometry.step_count import step_count
 from ..kinematics.cell import Cell
 from ..planning.limit_rows import LimitRows, limit_rows
 from ..planning.plan import Progress
@@ -43,7 +44,7 @@ def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None
     )
     size = ahead + arm.reach + held
     step = max(step, 2.0 * size / MOST_PLACES ** (1.0 / 3.0))
-    count = int(np.ceil(size / step))
+    count = step_count(size, step, 0)
     ticks = step * np.arange(-count, count + 1)
     grid = np.stack(np.meshgrid(ticks, ticks, ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     grid = grid[np.linalg.norm(grid, axis=1) <= size]

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from ..fields import properties
@@ -27,3 +28,25 @@ def of_inputs(stage: Any, obj: Any, input_key: Callable[[str, Any], str]) -> str
 def of_all(link: str, linked: Any) -> str:
     """The key of all that a linked stage gives to another one."""
     return str(linked.Key)
+
+
+def is_of_earlier_version(obj: Any) -> bool:
+    """Whether an earlier version of the properties computed a stage from the inputs that it has now."""
+    return any(_key_in(version, obj) == obj.Key for version in range(1, SCHEMA_VERSION))
+
+
+def _key_in(version: int, obj: Any) -> str:
+    with _counted_as(version):
+        return str(obj.Proxy.key(obj))
+
+
+@contextlib.contextmanager
+def _counted_as(version: int) -> Iterator[None]:
+    """Keys as an earlier version made them."""
+    global SCHEMA_VERSION
+    current = SCHEMA_VERSION
+    SCHEMA_VERSION = version
+    try:
+        yield
+    finally:
+        SCHEMA_VERSION = current

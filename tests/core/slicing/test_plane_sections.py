@@ -37,7 +37,11 @@ def inside_out(solid):
 
 def area(loops):
     """Enclosed, with the sense of each loop."""
-    return sum(0.5 * float(np.cross(loop, np.roll(loop, -1, axis=0)).sum()) for loop in loops)
+    doubled = 0.0
+    for loop in loops:
+        (x, y), (next_x, next_y) = loop.T, np.roll(loop, -1, axis=0).T
+        doubled += float((x * next_y - next_x * y).sum())
+    return 0.5 * doubled
 
 
 def volume(points, faces):

@@ -17,6 +17,7 @@ import numpy as np
 
 from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array
+from ..step_count import step_count
 from . import gcode_roles as roles_of
 from .bead_curves import BeadCurve, ReadCurves
 from .gcode_words import BadWords, Command, commands_of, split_comments
@@ -756,7 +757,7 @@ class _Reader:
         if abs(turn) < 1e-9:
             turn = -2.0 * math.pi if name == "G2" else 2.0 * math.pi
         step = 2.0 * math.acos(max(1.0 - self.chord_error / radius, 0.0))
-        count = max(1, math.ceil(abs(turn) / max(step, 1e-3)))
+        count = step_count(abs(turn), max(step, 1e-3))
         share = np.arange(1, count + 1) / count
         angle = math.atan2(one[1], one[0]) + share * turn
         reach = radius + share * (float(np.hypot(*other)) - radius)

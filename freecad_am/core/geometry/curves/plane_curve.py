@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...types import Array, Index, Mask
+from ..step_count import step_counts
 
 AT_ONCE = 4_000_000  # pairs of points and edges
 
@@ -157,7 +158,7 @@ def divided(points: Array, count: Index) -> tuple[Array, Mask]:
 def divided_by_step(points: Array, step: float) -> tuple[Array, Mask]:
     """An open polyline (n, 2) with points at most `step` mm apart, and which points (m,) it had before."""
     lengths = np.hypot(*np.diff(points, axis=0).T)
-    return divided(points, np.maximum(np.ceil(lengths / step), 1.0).astype(np.intp))
+    return divided(points, step_counts(lengths, step))
 
 
 def dense(ring: Array, step: float) -> Array:

@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 
+from ..step_count import step_count
+
 
 def turn_segments(radius: float, chord_error: float, turn: float, least: int) -> int:
     """Number of equal segments for a circular arc of `turn` rad that stay within the chord error (mm).
@@ -20,7 +22,7 @@ def turn_segments(radius: float, chord_error: float, turn: float, least: int) ->
         return fewest
     # acos(1 - x) = 2 asin(sqrt(x / 2)), exact also where x is small
     step = 4.0 * math.asin(math.sqrt(0.5 * chord_error / radius))
-    return max(fewest, math.ceil(turn / step))
+    return step_count(turn, step, fewest)
 
 
 def largest_step(acceleration: float, chord_error: float) -> float:

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from ...types import Array, Index
 from ..columns import lengths
+from ..step_count import step_counts
 from ..walls.surface import dot
 
 CORNER = 1e-5  # rad; smaller turns between two arcs are a smooth join
@@ -175,7 +176,7 @@ class SpaceCurve:
     def _samples(self) -> tuple[cKDTree, Index, Array]:
         """Samples in the middle of about equally long cells, with their arcs and places on them."""
         chord = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        cells = np.maximum(1, np.ceil(chord / (chord.sum() / len(chord)))).astype(np.intp)
+        cells = step_counts(chord, chord.sum() / len(chord))
         arc: Index = np.repeat(np.arange(len(cells)), cells)
         t = (np.arange(len(arc)) - np.repeat(np.cumsum(cells) - cells, cells) + 0.5) / cells[arc]
         return cKDTree(self.on_arcs(arc, t)[0]), arc, t

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...types import Array, Index
+from ..step_count import step_count
 from ..walls.surface import dot
 
 
@@ -43,7 +44,7 @@ def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
     """Triangles (m, 3, 3) cut so that no edge is longer than `longest` mm: the points (m, k, 3) in each, and the points
     (l, 3) that the parts of any have as corners."""
     edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
-    n = max(1, int(np.ceil(edge / longest)))
+    n = step_count(edge, longest)
     i, j = (k.ravel() for k in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
     i, j = i[i + j <= n], j[i + j <= n]
     number = np.full((n + 2, n + 2), -1)

@@ -21,8 +21,12 @@ from ..curves.plane_curve import doubled_area, nearest_of, winding
 from ..curves.polyline import turn_segments
 
 MERGED = 1e-12  # of the extent; points nearer together are one
+STRAIGHT = 1e-9  # of the extent; a border within that of a straight line is one, and what is thinner is none
 SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
 AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
+# the library's number for corners that stay corners, and up to how many times the distance these may stand out
+_MITRE, SHARPEST = 2, 1000.0
+DIGITS = 9  # of coordinates in mm where points are left out: last bits decide nothing
 LEAST_ARC = 8  # segments of a full turn
 EIGHT = 2.8  # times the squared radius, a hair less than the area of a regular octagon in a circle
 STRAIGHT = 1e-6  # mm; a point that near to the line between its neighbours is on it
@@ -157,9 +161,10 @@ class Region:
         """What is left when others are taken away. wide: mm; of pieces too small for a circle of that diameter, which may be
         very many, those are left out of which `grown` by minus half of it leaves nothing whatever its arcs."""
         away = shapely().ops.unary_union([other.shape for other in others])
-        return _parts(
-            self.shape.difference(away), max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2)
-        )
+        left = self.shape.difference(away)
+        if wide > 0.0:
+            left = _apart(left, STRAIGHT * self.extent)
+        return _parts(left, max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2), self.sheet)
 
     def common(self, others: Iterable[Region]) -> tuple[Region, ...]:
         """What it shares with others."""
@@ -302,8 +307,10 @@ def _bends(line: Array) -> list[Array]:
 def simplified(points: Array, tolerance: float, closed: bool = False) -> Array:
     """A curve (n, 2) with no more points than `tolerance` mm asks for; its first is kept, and the last of an open one."""
     whole = np.vstack([points, points[:1]]) if closed else points
-    line = shapely().geometry.LineString(whole).simplify(tolerance, preserve_topology=False)
-    found: Array = np.array(line.coords, dtype=float)
+    numbered = np.column_stack([np.round(whole, DIGITS), np.arange(len(whole))])
+    line = shapely().geometry.LineString(numbered).simplify(tolerance, preserve_topology=False)
+    kept = np.array(line.coords, dtype=float)[:, 2].astype(np.intp)
+    found: Array = whole[kept]
     return found[:-1] if closed else found
 
 
@@ -387,19 +394,62 @@ def _ring(ring: Any, sense: float) -> Array:
     points = np.asarray(ring.coords)
     x, y = points[:, 0] - points[0, 0], points[:, 1] - points[0, 1]
     points = points[:-1] if (x[:-1] @ y[1:] - x[1:] @ y[:-1]) * sense >= 0.0 else points[-2::-1]
-    leftmost = np.flatnonzero(points[:, 0] == points[:, 0].min())
+    leftmost = np.flatnonzero(points[:, 0] <= points[:, 0].min() + STRAIGHT * _extent(points))
     first = int(leftmost[np.argmin(points[leftmost, 1])])
     return np.concatenate([points[first:], points[:first]])
 
 
 def _parts(shape: Any, least_area: float, sheet: float = 0.0) -> tuple[Region, ...]:
     """The polygons of a shape in the order of their leftmost points."""
-    found = [Region(part, sheet) for part in _polygons(shape) if part.area > least_area]
+    found = [Region(_plain(part), sheet) for part in _polygons(shape) if part.area > least_area]
     if len(found) < 2:
         return tuple(found)
     return tuple(
         sorted(found, key=lambda region: (region.borders()[0][0, 0], region.borders()[0][0, 1]))
     )
+
+
+def _apart(shape: Any, hair: float) -> Any:
+    """A shape whose polygons are cut where they hang together by no more than a hair (mm), as rounding errors make them."""
+    corners = {"join_style": _MITRE, "mitre_limit": SHARPEST}
+    pieces = []
+    for polygon in _polygons(shape):
+        cores = _polygons(polygon.buffer(-hair, **corners))
+        pieces += [core.buffer(hair, **corners) for core in cores] if len(cores) > 1 else [polygon]
+    return shapely().geometry.MultiPolygon([part for each in pieces for part in _polygons(each)])
+
+
+def _plain(polygon: Any) -> Any:
+    """A polygon without the points and spikes that are there by rounding errors alone. Versions of the library leave others,
+    and what is found in the middle of a region would be different with each."""
+    rings = [np.asarray(ring.coords)[:-1] for ring in (polygon.exterior, *polygon.interiors)]
+    tolerance = STRAIGHT * _extent(rings[0])
+    plain = [_without_straight(ring, tolerance) for ring in rings]
+    if all(len(ring) == len(before) for ring, before in zip(plain, rings)):
+        return polygon
+    if len(plain[0]) < 3:
+        return polygon
+    made = shapely().geometry.Polygon(plain[0], [hole for hole in plain[1:] if len(hole) > 2])
+    return made if made.is_valid else polygon
+
+
+def _without_straight(ring: Array, tolerance: float) -> Array:
+    """A ring (n, 2) without points that lie on the straight line between their neighbours, or at the end of a spike."""
+    while len(ring) > 2:
+        into, out = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+        longer = np.sqrt(np.maximum((into**2).sum(axis=1), (out**2).sum(axis=1)))
+        aside = np.abs(into[:, 0] * out[:, 1] - into[:, 1] * out[:, 0])
+        needless = aside <= tolerance * longer
+        if not needless.any():
+            break
+        needless[1:] &= ~needless[:-1]
+        needless[0] &= not needless[-1]
+        ring = ring[~needless]
+    return ring
+
+
+def _extent(points: Array) -> float:
+    return float(np.hypot(*np.ptp(points, axis=0)))
 
 
 def _polygons(shape: Any) -> list[Any]:

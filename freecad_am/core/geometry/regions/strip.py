@@ -20,6 +20,7 @@ import numpy as np
 from ...types import Array
 from ..columns import columns
 from ..curves.plane_curve import doubled_area, winding
+from ..step_count import step_count
 from .chained import MEETING, chained
 from .region import Region, regions
 
@@ -84,7 +85,7 @@ class Period:
     def points_round(self, v: float, chord_error: float, least_radius: float) -> int:
         """So many points of a line once round the hub at a v keep within the chord error (mm) on the plane."""
         radius = 1e6 if math.isinf(self.apex) else max(abs(self.apex - v), least_radius)
-        return max(24, math.ceil(self.around / math.sqrt(8.0 * chord_error * radius)))
+        return step_count(self.around, math.sqrt(8.0 * chord_error * radius), 24)
 
     def distance_past(self, flat: Array, u: float) -> Array:
         """How far (n,) mm points of the plane lie past the generatrix at u, |u| below a quarter turn."""

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from ...geometry.step_count import step_counts
 from ...types import Array, Index
 from ..surface import Wrapped
 from .chart import Chart, Place
@@ -75,7 +76,7 @@ class Charted:
         """As many as what the edge bends by, looked at every so many mm, asks for."""
         edge = np.diff(flat, axis=0)
         length = np.linalg.norm(edge, axis=1)
-        looks = np.maximum(np.ceil(length / self.look), 2.0).astype(np.intp)
+        looks = step_counts(length, self.look, 2)
         of = np.repeat(np.arange(len(edge)), looks + 1)
         share = (
             np.arange(len(of)) - np.repeat(np.cumsum(looks + 1) - looks - 1, looks + 1)

@@ -11,6 +11,7 @@ import numpy as np
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import Region
+from ...geometry.step_count import round_up
 from ...issues import InputError, Issue
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
@@ -32,9 +33,7 @@ def count(top: float, strategy: SolidParameters) -> int:
     whole = (
         math.floor(levels + EXACT) + 1 if strategy.cut_at == "top" else math.ceil(levels - EXACT)
     )
-    return (
-        whole + max(math.ceil(strategy.margin / strategy.layer_height) - 1, 0) if whole > 0 else 0
-    )
+    return whole + max(round_up(strategy.margin / strategy.layer_height) - 1, 0) if whole > 0 else 0
 
 
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:

@@ -20,6 +20,7 @@ from ...collision.bodies import Bodies
 from ...collision.nozzle import Nozzle
 from ...collision.scene import scene
 from ...geometry.obstacles import Body, disc
+from ...geometry.step_count import step_counts
 from ...kinematics.cell import Cell
 from ...types import Array, Index, Mask
 
@@ -180,7 +181,7 @@ def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
     """Looks along all moves, between which no point of the nozzle goes farther than the largest way, mm."""
     chain = cell.machine.chain
     steps = np.where(chain.sliding, SLIDE, STEP)
-    count = 1 + np.ceil((np.abs(moves.end - moves.start) / steps).max(axis=1)).astype(np.intp)
+    count = 1 + step_counts((np.abs(moves.end - moves.start) / steps).max(axis=1), 1.0, 0)
     looks = _evenly(cell, moves, count)
     # an arm's tip goes far while its axes hardly turn
     same = looks.move[1:] == looks.move[:-1]
@@ -189,7 +190,7 @@ def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
     )
     longest = np.zeros(len(count))
     np.maximum.at(longest, looks.move[1:][same], way[same])
-    more = count * np.maximum(np.ceil(longest / largest).astype(np.intp), 1)
+    more = count * step_counts(longest, largest)
     return looks if (more == count).all() else _evenly(cell, moves, more)
 
 

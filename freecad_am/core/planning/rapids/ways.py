@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from ...collision.bead_ends import Beads
 from ...geometry.obstacles import Body
+from ...geometry.step_count import step_count
 from ...issues import Issue
 from ...kinematics.cell import Cell
 from ...motion import APPROACH, RETRACT, TRAVEL
@@ -128,7 +128,7 @@ class RapidWays:
         role: list[int] = []
         singular: float | None = None
         for start, end, kind, far in zip(whole[:-1], whole[1:], way.role.tolist(), turn.tolist()):
-            between, least = self._between(start, end, max(1, math.ceil(far / LARGEST_TURN)))
+            between, least = self._between(start, end, step_count(far, LARGEST_TURN))
             singular = least if singular is None else singular
             rows += [*between, end]
             role += [kind] * (len(between) + 1)

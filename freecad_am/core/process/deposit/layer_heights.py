@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots, lengths
+from ...geometry.step_count import step_counts
 from ...toolpath import Layer, Toolpath
 from ...types import Array
 
@@ -41,7 +42,7 @@ def _along(layer: Layer, step: float) -> tuple[Array, Array]:
     places: list[Array] = []
     directions: list[Array] = []
     for bead in layer.beads:
-        count = np.maximum(np.ceil(lengths(np.diff(bead.points, axis=0)) / step).astype(np.intp), 1)
+        count = step_counts(lengths(np.diff(bead.points, axis=0)), step)
         at = np.repeat(np.arange(len(count)), count)
         share = ((np.arange(len(at)) - np.repeat(np.cumsum(count) - count, count)) / count[at])[
             :, None

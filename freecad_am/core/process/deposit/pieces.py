@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry.columns import lengths
+from ...geometry.step_count import step_counts
 from ...toolpath import Toolpath
 from ...types import Array, Index, Mask
 
@@ -53,7 +54,7 @@ def cut(toolpath: Toolpath, share: float) -> Pieces:
     kept = length > 0.0
     start, way, length = start[kept], way[kept], length[kept]
     longest = np.maximum(share * 0.5 * (wide[start] + wide[start + 1]), toolpath.chord_error)
-    count = np.maximum(np.ceil(length / longest).astype(np.intp), 1)
+    count = step_counts(length, longest)
     row = np.repeat(np.arange(len(start)), count)
     number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
     middle = (number + 0.5) / count[row]

@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import LevelLine, Mesh, chains
 from ...geometry.mesh.triangles import cut_evenly
+from ...geometry.step_count import step_count
 from ...geometry.walls.surface import dot
 from ...types import Array, Index, Mask
 from .feet import Feet, feet
@@ -101,7 +102,7 @@ def _depth(
     """Distances of points (..., 3) to beads that are sampled, infinite beyond the farthest."""
     samples = []
     for bead in beads:
-        count = max(2, int(np.ceil(bead.length / (SAMPLED * height))))
+        count = step_count(bead.length, SAMPLED * height, 2)
         samples.append(
             bead.at(np.union1d(np.linspace(bead.w[0], bead.w[-1], count + 1), bead.w))[0]
         )

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.step_count import step_count
 from ...types import Array, Index, Mask
 
 
@@ -77,7 +78,7 @@ def within(tree: cKDTree, fronts: list[SpaceCurve], reach: float) -> Index:
     """The numbers (k,) of those of a tree's points that lie within `reach` mm of the fronts, and of some more."""
     samples = []
     for front in fronts:
-        count = max(4, int(np.ceil(front.length / (0.5 * reach))))
+        count = step_count(front.length, 0.5 * reach, 4)
         samples.append(front.at(np.linspace(front.w[0], front.w[-1], 2 * count))[0])
     found: Any = tree.query_ball_point(np.vstack(samples), 1.3 * reach)
     near: Index = np.unique(np.fromiter(chain.from_iterable(found), dtype=np.intp))

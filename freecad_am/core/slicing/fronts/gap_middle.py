@@ -8,6 +8,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.step_count import step_count
 from ...geometry.walls.surface import dot
 from ...types import Array
 from .curve import on_wall
@@ -53,7 +54,7 @@ def _through(slicing: Slicing, points: Array, closed: bool) -> SpaceCurve | None
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     points = points[np.r_[True, steps > 1e-9]]
     length = float(steps.sum())
-    count = max(2 if not closed else 6, int(np.ceil(length / (0.5 * height))))
+    count = step_count(length, 0.5 * height, 6 if closed else 2)
     if len(points) < 2:
         return None
     # the sides of a gap are known to the fine mesh alone, and its middle has hooks at the ends

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.step_count import step_count
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...types import Array, Mask
@@ -125,7 +126,7 @@ class _Datum:
     def of(cls, slicing: Slicing, front: SpaceCurve) -> _Datum:
         """The front, rounded, with equally spread points."""
         height = slicing.height
-        count = max(FEWEST, int(np.ceil(front.length * PLACES / height)))
+        count = step_count(front.length * PLACES, height, FEWEST)
         points = even(front.at(front.refined(FINER))[0], front.closed, count)
         wide = min(ROUND * height / (front.length / count), WIDEST * count)
         points = even(rounded(points, front.closed, wide), front.closed, count)

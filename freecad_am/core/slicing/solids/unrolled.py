@@ -18,6 +18,7 @@ import numpy as np
 from ...geometry.angles import TURN
 from ...geometry.curves.plane_curve import doubled_area, winding
 from ...geometry.developable import Developable
+from ...geometry.step_count import step_count
 from ...issues import InputError
 from ...types import Array
 from .equidistant import Facets, Loop
@@ -39,7 +40,7 @@ class Flat(NamedTuple):
 def count(facets: Facets, height: float, margin: float, chord_error: float) -> int:
     """How many layers there are, at 0, `height`, twice that ... mm from the base."""
     top = float(facets.distances.max()) + margin
-    return max(math.ceil((top - ASIDE * chord_error) / height), 0)
+    return step_count(top - ASIDE * chord_error, height, 0)
 
 
 def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...geometry.curves.polyline import largest_step
 from ...geometry.curves.profile import Meridian, RevolvedWall
+from ...geometry.step_count import step_count
 from ...issues import InputError, Issue
 from ...parameters.bead_classes import WALL
 from ...parameters.process import ProcessParameters
@@ -115,9 +116,7 @@ def _directions(
 ) -> tuple[Array, Array, list[Issue]]:
     """Build directions and tool axes (n, 3) at angles turned and arc lengths (n,). The tilt-back is settled at PER_TURN
     places to a turn; between them it is interpolated from the larger of neighbours, so that it is never too small."""
-    knots = np.linspace(
-        0.0, turns[-1], max(2, math.ceil(turns[-1] / (2.0 * math.pi) * PER_TURN) + 1)
-    )
+    knots = np.linspace(0.0, turns[-1], step_count(turns[-1] * PER_TURN, 2.0 * math.pi) + 1)
     at = np.interp(knots, turns, s)
     radius, height, tangent = meridian.at(at)
     sense = 1.0 if rising else -1.0

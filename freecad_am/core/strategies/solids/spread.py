@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.step_count import round_down
 from ...types import Array, Index
 
 SLOPE = 0.75  # of half a stretch: the wider of the two boxes that make the trapezoid; a jump's ramp is steepest over it
@@ -119,7 +120,7 @@ class Zones:
         wanted = []
         for low, high, half in zip(self.low.tolist(), self.high.tolist(), self.half.tolist()):
             ends = (0.5 * (low + high),) if high - low < 0.5 * half else (low, high)
-            count = max(1, min(PARTS, int(half / LEAST)))
+            count = max(1, min(PARTS, round_down(half / LEAST)))
             ramp = parts if count == PARTS else np.arange(-count, count + 1) / count
             reach = half + 0.5 * (high - low) if len(ends) == 1 else half
             wanted += [end + reach * ramp for end in ends]

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Into how many parts a length is cut.
+
+Lengths that are the same but for their last bits, as two versions of a geometry kernel compute them, have the same number of
+parts: without a tolerance a side of five steps would have five or six.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..types import Array, Index
+
+TOLERANCE = 1e-9  # of a part, and of the number of parts
+
+
+def step_count(length: float, step: float, least: int = 1) -> int:
+    """The number of equal parts, none longer than `step`, that a length is cut into; at least `least`."""
+    return max(least, round_up(length / step))
+
+
+def step_counts(lengths: Array, steps: Array | float, least: int = 1) -> Index:
+    """The same for many lengths."""
+    parts = np.asarray(lengths, dtype=np.float64) / steps
+    counts = np.ceil(parts - TOLERANCE * np.maximum(np.abs(parts), 1.0))
+    return np.asarray(np.maximum(counts, least), dtype=np.intp)
+
+
+def round_up(number: float) -> int:
+    """The least whole number that is not below `number` by more than a rounding error."""
+    return math.ceil(number - TOLERANCE * max(abs(number), 1.0))
+
+
+def round_down(number: float) -> int:
+    """The greatest whole number that is not above `number` by more than a rounding error."""
+    return math.floor(number + TOLERANCE * max(abs(number), 1.0))

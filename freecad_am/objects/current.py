@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether stored results fit the document and the files as they are now. All that writes a result asks here first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+
+from ..core.issues import AmError, InputError, Text
+from .results.findings import message_of
+from .results.keys import is_of_earlier_version
+from .shapes.containers import containers_of, members_of
+from .stage import stage_of
+from .staleness import FAILED, INFEASIBLE, STALE
+
+
+def check_current(obj: Any, code: str = "NO_RESULT", template: str = "") -> None:
+    """Check that the result of a stage, and those of all stages that it is made of, fit the inputs of now.
+
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        A stage with a result.
+    code : str
+        The code of the error.
+    template : str
+        The message of the error with one place for the reason, about `obj` itself; else it is about the first stage that
+        does not fit.
+
+    Raises
+    ------
+    InputError
+        Where an input was changed, was not recomputed, or is gone.
+    """
+    for stage_object in _chain(obj):
+        if reason := reason_outdated(stage_object):
+            if template:
+                raise InputError(code, obj.Label, template, reason)
+            raise InputError(
+                code,
+                stage_object.Label,
+                "no result fits its inputs ({}); recompute it first",
+                reason,
+            )
+    check_recomputed(obj, code)
+
+
+def reason_outdated(obj: Any) -> str:
+    """Why the stored result of a stage does not fit its inputs, '' where it does."""
+    if obj.Status in (STALE, FAILED):
+        return message_of(obj) or str(obj.Status)
+    try:
+        fits = obj.Proxy.key(obj) == obj.Key
+    except AmError as error:
+        return error.sentence
+    if fits:
+        return ""
+    if obj.Status == INFEASIBLE:
+        return message_of(obj)
+    if is_of_earlier_version(obj):
+        return Text("an earlier version computed it; read Migrating in the changelog")
+    return Text("{}: an input changed since it was computed", obj.Label)
+
+
+def check_recomputed(obj: Any, code: str = "NO_RESULT") -> None:
+    """Check that FreeCAD has recomputed all that a stage is made of. InputError `code` naming the object that it has not."""
+    for source in _sources(obj):
+        if "Touched" in source.State and not _is_from_another_version(source.Document):
+            raise InputError(
+                code,
+                obj.Label,
+                "{} was changed and is not recomputed yet; recompute the document first",
+                source.Label,
+            )
+
+
+def _chain(obj: Any) -> list[Any]:
+    """A stage and the stages that it is made of, inputs first."""
+    stages = [one for one in (obj, *obj.OutListRecursive) if stage_of(one) is not None]
+    return sorted(stages, key=lambda stage: len(stage.OutListRecursive))
+
+
+def _sources(obj: Any) -> list[Any]:
+    """The objects that a stage and its inputs are made of, which are not stages, and what these are nested in, with
+    what the expressions of that refer to."""
+    inputs = [one for one in obj.OutListRecursive if stage_of(one) is None]
+    around = [outer for one in inputs for outer in containers_of(one)]
+    placing = [one for outer in around for one in outer.OutList if one not in members_of(outer)]
+    return list(dict.fromkeys((*inputs, *around, *placing)))
+
+
+def _is_from_another_version(document: Any) -> bool:
+    """Whether another version of FreeCAD saved a document: objects whose properties are new count as touched in it."""
+    saved = str(document.getProgramVersion()) if document.FileName else ""
+    return bool(saved) and not saved.startswith(".".join(App.Version()[:2]))

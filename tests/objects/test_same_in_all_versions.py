@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One job gives the same program in every version of FreeCAD: run in 0.20 and, as all tests of this folder, in 1.0 and 1.1."""
+
+import hashlib
+import shutil
+
+from tests.batch.conftest import Workshop
+
+PROGRAMS = (  # of the bracket, the same in all versions
+    "c2ec1930829c9c12db9a3bec1676c4b90c7145c8051aa56a9014a23e7553a742"
+)
+
+
+def test_the_bracket_is_one_program(tmp_path, root):
+    for name in ("bracket.yaml", "bracket.step"):
+        shutil.copy(root / "resources" / "examples" / name, tmp_path)
+    done = Workshop(tmp_path, root / "freecad-am").run(
+        "plan", "bracket.yaml", "-o", "out", "--no-page"
+    )
+    assert done.status == 0, done.err
+    texts = hashlib.sha256()
+    for file in sorted((tmp_path / "out" / "program").iterdir()):
+        texts.update(file.name.encode() + file.read_bytes())
+    assert texts.hexdigest() == PROGRAMS
