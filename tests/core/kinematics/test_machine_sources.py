@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machines from URDF, tables and figures, and written so: every shipped machine there and back, random arms, mistakes."""
 
+import dataclasses
 import itertools
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.chain import Chain
-from freecad_am.core.kinematics.inverse import opw_recognition
+from freecad_am.core.kinematics.inverse import opw_recognition, recognition
 from freecad_am.core.kinematics.inverse.opw import OpwArm
 from freecad_am.core.kinematics.machines import denavit_hartenberg as dh
 from freecad_am.core.kinematics.machines import machine
@@ -470,3 +471,23 @@ def test_chains_that_cannot_be_are_refused(tmp_path):
     )
     with pytest.raises(InputError, match="carries itself"):
         read(tmp_path, loop, "arm", "hand")
+
+
+@pytest.mark.parametrize("name", ["abb-irb2400-12-155", "ur-ur10e", "kuka-kr16-2"])
+@pytest.mark.parametrize("off_deg", [1e-6, 4e-4, 0.01])
+def test_a_table_with_angles_that_are_nearly_right_is_solved_as_it_is(name, off_deg):
+    table = dh.table_of(machine.load(name).chain)
+    rows = tuple(
+        dataclasses.replace(row, alpha=row.alpha + np.radians(off_deg) * (1.0 + 0.1 * k))
+        for k, row in enumerate(table.rows)
+    )
+    chain = dh.chain_of(dataclasses.replace(table, rows=rows))
+    arm = recognition.arm_of(opw_recognition.rooted(chain)[0])
+    q = np.random.default_rng(0).uniform(-2.5, 2.5, (100, 6))
+    poses = arm.chain.forward(q)
+    solutions = arm.inverse(poses)
+    there = arm.chain.forward(np.nan_to_num(solutions))
+    known = np.isfinite(solutions[..., 0])
+    assert np.abs(there - poses)[known].max() < 1e-6
+    off = np.abs((solutions - q + np.pi) % (2.0 * np.pi) - np.pi).max(axis=2)
+    assert (np.nanmin(np.where(known, off, np.inf), axis=0) < 1e-6).mean() > 0.95

@@ -25,6 +25,12 @@ NEARLY_SQUARE = math.radians(
     0.25
 )  # a rounded or measured right angle; no maker leans an axis by so little
 EXACT = 1e-12  # rad; what rounding of a float leaves
+ROUNDING_MM = (
+    0.0,
+    0.001,
+    0.01,
+    0.1,
+)  # of lengths, tried in this order: leaning frames shift what should meet
 LOCKED = 0.02  # cosine of the pitch, below which roll and yaw are not told apart
 MOST_LOST = 0.1  # share of poses beside singularities that an arm and the closed form next to it do not both reach
 
@@ -37,10 +43,9 @@ def arm_of(chain: Chain) -> SerialArm:
     try:
         return _exact(chain)
     except InputError:
-        nominal = squared(chain)
-        if nominal is None:
+        if squared(chain) is None:
             raise
-    arm = CalibratedArm(_exact(nominal), chain)
+    arm = CalibratedArm(_nearest(chain), chain)
     if not _agrees(arm, chain, MOST_LOST):
         raise opw_recognition.refused(
             Text(
@@ -62,15 +67,32 @@ def off_square(chain: Chain) -> float:
     return max(*turns, *axes)
 
 
-def squared(chain: Chain) -> Chain | None:
-    """The chain whose frames and axes stand at right angles where those of the given one nearly do, seen from a base_link whose
-    Z is axis 1; None where nothing changes."""
+def _nearest(chain: Chain) -> SerialArm:
+    """The closed form next to a chain that is nearly square. InputError NO_CLOSED_FORM of the one with right angles alone."""
+    reason: InputError | None = None
+    for step in ROUNDING_MM:
+        nominal = squared(chain, step)
+        assert nominal is not None  # by the caller
+        try:
+            return _exact(nominal)
+        except InputError as error:
+            reason = reason or error
+    assert reason is not None
+    raise reason
+
+
+def squared(chain: Chain, step: float = 0.0) -> Chain | None:
+    """The chain whose frames and axes stand at right angles where those of the given one nearly do, and whose lengths are rounded
+    to a step (mm), seen from a base_link whose Z is axis 1; None where nothing changes."""
     if chain.axes != 6 or chain.sliding.any() or off_square(chain) < EXACT:
         return None
     origins, flange = chain.origins.copy(), chain.flange.copy()
     origins[:, :3, :3] = [_squared_rotation(rotation) for rotation in origins[:, :3, :3]]
     flange[:3, :3] = _squared_rotation(flange[:3, :3])
     axes = np.stack([_squared_axis(axis) for axis in chain.directions])
+    if step:
+        for pose in (*origins, flange):
+            pose[:3, 3] = np.round(pose[:3, 3] / step) * step
     return opw_recognition.rooted(Chain(origins, axes, flange, chain.sliding))[0]
 
 
