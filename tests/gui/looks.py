@@ -100,6 +100,7 @@ def is_seen(widget):
 
 def judge(top, name, wrong):
     """Contrast and room of every text below a widget, as the screen shows it."""
+    idle(0.3)  # previews and layouts come to rest
     image = screen()
     image.save(str(FOLDER / f"{name}.png"))
     seen = pixels(image)
@@ -182,6 +183,15 @@ def scrolled(panel):
         yield number
 
 
+def cancel():
+    """Close the task panel by its button, so that it takes its preview away."""
+    for box in present(QtGui.QDialogButtonBox, Gui.getMainWindow()):
+        button = box.button(QtGui.QDialogButtonBox.Cancel)
+        if box.isVisible() and button is not None:
+            button.click()
+            return
+
+
 def look_at_panels(theme, wrong, most):
     for command in PANELS:
         Gui.runCommand(f"RoboticAM_{command}")
@@ -203,7 +213,7 @@ def look_at_panels(theme, wrong, most):
             if page + 1 >= most:
                 break
         upright(panel, f"{theme}-{command}", wrong)
-        Gui.Control.closeDialog()
+        cancel()
         idle(0.1)
 
 
@@ -241,7 +251,7 @@ def job():
     part = document.addObject("Part::Sphere", "Sphere")
     part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
     document.recompute()
-    cell = api.make_cell(document)
+    cell = api.make_cell(document, limits="paper")
     toolpath = api.make_toolpath(document, api.make_feature(document, part, layer_height=15), cell)
     path = api.make_joint_path(document, toolpath, cell)
     api.make_program(document, path)

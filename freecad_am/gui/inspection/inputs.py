@@ -111,6 +111,7 @@ class FileChoice(Input):
         grid.addWidget(self.line, 0, 0, 1, 2)
         for column, widget in enumerate((self.button, self.predict)):
             grid.addWidget(widget, 1, column)
+            widget.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Fixed)
         self.widget.setObjectName("File")
 
     def stored(self, obj: Any) -> Any:

@@ -14,15 +14,15 @@ from ...objects.fields.rows import rows
 from ..picking import inputs
 from ..texts.translation import tr
 from ..widgets import choices, fields, suggestions
+from ..widgets.wrapped import WrappedLabel
 
 LEANING = "max_from_vertical"
 
 
 def label(name: str) -> Any:
     """A text that is hidden until there is something to tell."""
-    text = QtGui.QLabel()
+    text = WrappedLabel()
     text.setObjectName(name)
-    text.setWordWrap(True)
     text.hide()
     return text
 

@@ -32,7 +32,7 @@ from ..widgets.fold import Fold
 from ..widgets.messages import Messages
 from ..widgets.upright import upright
 from ..widgets.wheel import scrolls
-from . import closing, present, standing
+from . import closing, parts, present, standing
 from .noted import Noted, lines_of
 
 ADVANCED = marked("{}: advanced")
@@ -119,10 +119,11 @@ class StagePanel(Noted):
     def _add_section(self, section: Any) -> None:
         current = None if self.obj is None else present.values_of(self.obj, section)
         folds: dict[str, Fold] = {}
+        parted = parts.titles(rows(section.cls))
         for row in rows(section.cls):
             nested = isinstance(row.path[-1], str) and len(row.path) > 1
             title = group = group_of(row) if nested else section.group
-            title = ADVANCED if row.spec.advanced else title
+            title = ADVANCED if row.spec.advanced else parted.get(row.key, title)
             if title not in folds:
                 text = (
                     tr(ADVANCED).format(translated(section.group))
@@ -139,6 +140,8 @@ class StagePanel(Noted):
             )
             if current is None and value != row.default:
                 field.differs_from(row.default)
+            if row.key in parted and value != row.default:
+                folds[title].heading.setChecked(True)  # what is changed is seen
             self._mark_driven(field)
             own = group == section.group
             heading = field.heading if own or title == group else _in_group(group, field.heading)

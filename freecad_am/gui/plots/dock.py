@@ -22,6 +22,7 @@ from ..docks.follower import Follower
 from ..picking.selection import meant
 from ..preferences import watch
 from ..texts.translation import tr, translated_error
+from ..widgets.scrolled import Scrolled
 from . import saving, units, words
 from .canvas import STEP, Canvas
 from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
@@ -99,7 +100,7 @@ class PlotsDock(Follower):
         self.choice.activated.connect(self._chosen)
         for box in (self.first, self.last):
             box.valueChanged.connect(lambda *_: self.soon.ask())
-        self.dock.hold(tr("Plots"), form)
+        self.dock.hold(tr("Plots"), Scrolled(form))
 
     def _speak(self) -> None:
         """The window has another language: what is chosen stays."""

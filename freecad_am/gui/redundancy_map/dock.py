@@ -21,6 +21,7 @@ from ..docks.lookout import Lookout
 from ..plots.map_file import save
 from ..preferences import watch
 from ..texts.translation import tr, translated, translated_error
+from ..widgets.scrolled import Scrolled
 from .cells import Cells
 from .comparison import Comparison
 from .consequences import Consequences
@@ -58,7 +59,7 @@ class RedundancyMapDock:
         self.renewing = Later(self.holder, self.renew)
         self.canvas.hovered, self.canvas.clicked = self._hovered, self._clicked
         self.canvas.dragged, self.canvas.dropped = self._dragged, self.consequences.exactly
-        self.dock.hold("", self.holder)
+        self.dock.hold("", Scrolled(self.holder))
         self.dock.closed = self.close
         self._take(source_of(obj))
         self.dock.come()

@@ -8,6 +8,7 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 from ..colours import set_role
+from .wrapped import WrappedLabel
 
 MARGIN = 2  # pixels
 NARROW, MAX_LINES = (
@@ -37,9 +38,8 @@ class Messages(QtGui.QScrollArea):
 
     def add(self, name: str, role: str) -> Any:
         """A label below those that are there, hidden."""
-        label = QtGui.QLabel()
+        label = WrappedLabel()
         label.setObjectName(name)
-        label.setWordWrap(True)
         label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
         set_role(label, role)
         label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
