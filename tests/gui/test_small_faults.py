@@ -45,20 +45,20 @@ def test_the_status_bar_does_not_go_on_asking_for_what_is_there(person, hemisphe
 
 def test_an_ampersand_of_a_label_marks_no_key(person, joint_path):
     document = joint_path.Document
-    joint_path.Label = document.Toolpath.Label = LABEL
+    document.Toolpath.Label, joint_path.Label = LABEL, f"{LABEL}, planned"
     menu = person.widgets.QMenu()
     registry.fill_menu_of_stage(menu, joint_path)
     assert "Go to Cup && Co" in [action.text() for action in menu.actions()]
     person.double_click(joint_path)
     panel = person.panel("RoboticAM_JointPath")
-    assert panel.windowTitle() == "Cup && Co"
+    assert panel.windowTitle() == "Cup && Co, planned"
     person.press("Cancel")
     person.panel_closed()
     document.Label = LABEL
     person.select(joint_path)
     person.click("RoboticAM_Simulate")
     dock = person.panel("RoboticAM_Simulation")
-    assert "Cup && Co (Cup && Co)" in dock.windowTitle()
+    assert "Cup && Co, planned (Cup && Co)" in dock.windowTitle()
     dock.close()
     person.idle()
 
@@ -130,8 +130,12 @@ def test_a_note_that_has_gone_leaves_no_gap(person, hemisphere):
     person.panel_closed()
 
 
-def test_the_panel_and_the_properties_of_a_program_show_what_its_post_reads(person, joint_path):
-    program = api.make_program(joint_path.Document, joint_path, "CUP")
+def test_the_panel_and_the_properties_of_a_program_show_what_its_post_reads(person, hemisphere):
+    document = hemisphere.Document
+    cell = api.make_cell(document, limits="paper")
+    feature = api.make_feature(document, hemisphere, layer_height=15)
+    toolpath = api.make_toolpath(document, feature, cell)
+    program = api.make_program(document, api.make_joint_path(document, toolpath, cell), "CUP")
     person.idle(0.3)
     names = [name for name in program.PropertiesList if name.startswith("Nc")]
     assert len(names) == 9
