@@ -180,6 +180,7 @@ def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
     person.screenshot("plots_zoomed")
     hand.click(person.field(panel, "rectangle"))
     hand.click(person.field(panel, "whole"))
+    shown(person, lambda *ends: ends == whole)
     hand.click(person.field(panel, "in"))
     shown(person, lambda low, high: high - low == pytest.approx(width / 1.25**2))
 
