@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
+import Part
 
 from ...brep.files.apart import apart
 from ...brep.files.read import READABLE, mesh_content, placed_mesh, shape_content
@@ -75,8 +76,10 @@ def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str, tupl
             return _shape_in(
                 document, path, object_name
             )  # open already: it is the user's, and stays open
-    return hooks.carry_out(
-        lambda: apart(_shape_of_file, str(located(path)), object_name), stem, READING
+    return _decoded(
+        hooks.carry_out(
+            lambda: apart(_shape_of_file, str(located(path)), object_name), stem, READING
+        )
     )
 
 
@@ -89,8 +92,8 @@ def changed_part(
     stays as it is. InputError NO_ADD_ON besides.
     """
     place = str(located(path))
-    return apart(
-        lambda _: _shape_of_file(place, object_name, change, where), place, patience=patience
+    return _decoded(
+        apart(lambda _: _shape_of_file(place, object_name, change, where), place, patience=patience)
     )
 
 
@@ -120,13 +123,27 @@ def _shape_of_file(
         needs = dependencies_of(source)
         for obj in changed:
             _refuse_without_add_on(obj, needs, where)
-        return (*_content_of(source, path), _notes(source, needs, renewed, changed))
+        content, label = _content_of(source, path)
+        if (renewed or changed) and isinstance(content, Part.Shape):
+            # as a text, so that it is never computed again in the process that asked: FreeCAD 1.0 starts threads for
+            # that, and later copies of a process with threads wait for them without end
+            content = content.exportBrepToString()
+        return content, label, _notes(source, needs, renewed, changed)
     finally:
         # those that it links to were opened with it
         for name in set(App.listDocuments()) - before:
             App.closeDocument(name)
         if active is not None:
             App.setActiveDocument(active.Name)
+
+
+def _decoded(content: tuple[Any, str, tuple[Issue, ...]]) -> tuple[Any, str, tuple[Issue, ...]]:
+    """What `_shape_of_file` returned, with the shape in place of its text."""
+    shape, label, issues = content
+    if isinstance(shape, str):
+        text, shape = shape, Part.Shape()
+        shape.importBrepFromString(text)
+    return shape, label, issues
 
 
 def _refuse_without_add_on(changed: Any, needs: Dependencies, where: str) -> None:
