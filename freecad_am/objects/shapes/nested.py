@@ -145,7 +145,7 @@ def _found(obj: Any, name: str, where: str) -> tuple[Any, str]:
     """As `line_of`. InputError for what is not there."""
     if "." not in name:
         return obj, name
-    if obj.getSubObject(f"{name}.", retType=1) is not None:
+    if not name.endswith(".") and obj.getSubObject(f"{name}.", retType=1) is not None:
         name = f"{name}."  # an object, which FreeCAD would have the path end with a dot for
     element = name.rsplit(".", maxsplit=1)[-1]
     owner, own = (owner_of if element.startswith(FACE) else line_of)(obj, name)
