@@ -7,7 +7,7 @@ import shutil
 from tests.batch.conftest import Workshop
 
 PROGRAMS = (  # of the bracket, the same in all versions
-    "c2ec1930829c9c12db9a3bec1676c4b90c7145c8051aa56a9014a23e7553a742"
+    "e1335daa8eb89cb9c5d4ffc9e9496f2760808d0d3269ea055d41da3d8aa0ab96"
 )
 
 
