@@ -12,7 +12,7 @@ import os
 import shlex
 import sys
 
-TEST_TIMEOUT = 60  # s; a test that hangs ends FreeCAD, and where it hangs is printed
+TEST_TIMEOUT = 600  # s; a test that hangs ends FreeCAD, and where it hangs is printed
 
 
 class Notes:
