@@ -33,15 +33,17 @@ def export(
     paths.require_freecad()
     import FreeCAD
 
-    from freecad_am.objects.shapes import document_file
+    from freecad_am.objects.shapes import document_file, linked_files
 
     target = folder or os.path.join(
         os.path.dirname(os.path.abspath(path)), "out", os.path.splitext(label)[0]
     )
     with outputs.Outputs(target, session) as files:
         session.progress("opening ...")
+        before = set(FreeCAD.listDocuments())
         document = document_file.opened(path, label)
         try:
+            linked_files.renew_changed(document)
             if wires:
                 _write_wires(
                     _chosen(document, label, names, _PATHS, "NO_PATH"), wires, files, session
@@ -52,7 +54,9 @@ def export(
                 ).items():
                     files.write(f"{outputs.PROGRAMS}/{name}", content)
         finally:
-            FreeCAD.closeDocument(document.Name)
+            # those that it links to were opened with it
+            for name in set(FreeCAD.listDocuments()) - before:
+                FreeCAD.closeDocument(name)
         earlier = set() if names or wires else outputs.earlier_programs(files.folder)
         return [os.path.join(files.folder, name) for name in files.publish(earlier)]
 
@@ -62,6 +66,7 @@ def _chosen(
 ) -> list[Any]:
     """The objects called `names` among those of some kinds, else all of the first kind that there is."""
     from freecad_am import api
+    from freecad_am.objects.shapes import linked_files
 
     of_kinds = [api.stages_of(document, kind) for kind in kinds]
     every = [obj for objects in of_kinds for obj in objects]
@@ -86,7 +91,10 @@ def _chosen(
                 known,
             )
         chosen += found
-    return chosen or next(objects for objects in of_kinds if objects)
+    chosen = chosen or next(objects for objects in of_kinds if objects)
+    for obj in chosen:
+        linked_files.refuse_missing_of(obj, label)
+    return chosen
 
 
 def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: Any) -> None:

@@ -271,3 +271,37 @@ def test_the_place_in_an_opened_file(documents):
     assert len(api.open_part(job, str(documents / "hall.FCStd"), "Row").Shape.Solids) == 3
     with pytest.raises(InputError, match=r"Array\.3"):
         api.open_part(job, str(documents / "hall.FCStd"), "Array.3")
+
+
+def test_export_of_a_document_that_links_to_another(documents):
+    """What is exported is made from the linked document as it is now; a missing one is named."""
+    from freecad_am.batch.export import export
+    from tests import plans
+
+    def build():
+        hall = App.openDocument(str(documents / "hall.FCStd"))
+        with plans.kept():
+            cell = api.make_cell(hall, limits="paper")
+            feature = api.make_solid_feature(hall, hall.Shown, layer_height=5, chord_error=0.5)
+            api.make_toolpath(hall, feature, cell)
+        hall.save()
+
+    class Session:
+        issues = progress = check = lambda self, *_: None
+
+    def wires():
+        (path,) = export(
+            str(documents / "hall.FCStd"), str(documents / "out"), ("Toolpath",), Session(), "dxf"
+        )
+        with open(path, encoding="ascii") as stream:
+            lines = [line.strip() for line in stream]
+        return max(float(y) for code, y in zip(lines, lines[1:]) if code == "20")
+
+    elsewhere(build)
+    before = wires()
+    change_store(documents, A2="30")
+    assert wires() == pytest.approx(before + 20, abs=1.0)
+    (documents / "sub" / "store.FCStd").unlink()
+    with pytest.raises(InputError) as caught:
+        wires()
+    assert caught.value.code == "NO_LINKED_FILE" and "store.FCStd" in caught.value.message

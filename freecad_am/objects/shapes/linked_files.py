@@ -72,6 +72,16 @@ def refuse_missing(source: Any, where: str) -> None:
                 raise no_linked_file(where, obj.Label, missing[obj.Name])
 
 
+def refuse_missing_of(stage: Any, where: str) -> None:
+    """Reject a stage of which an input is made from something in a file that is not there. InputError NO_LINKED_FILE."""
+    inputs = stage.OutListRecursive
+    for document in dict.fromkeys(one.Document for one in inputs):
+        missing = missing_files(document)
+        for one in inputs:
+            if one.Document == document and one.Name in missing:
+                raise no_linked_file(where, one.Label, missing[one.Name])
+
+
 def no_linked_file(where: str, label: str, file: str) -> InputError:
     """The error about an object that links to a file that is not there."""
     return InputError(
