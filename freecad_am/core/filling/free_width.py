@@ -34,18 +34,22 @@ FIRST = {
     "zigzag": 1,
 }  # who keeps its room; all others come last
 LAST = 2
+MOVED = ("contour", "connected", "spiral", *CENTRES)
+ALIKE = 0.95  # cosine of a turn; where a bead turns less it is moved by the mean of its edges
+FARTHEST = 2.0  # times how far its edges move; no corner moves farther
 ALONG = 0.02  # sine of the angle to the lines of a zigzag; what is turned more is a link
 
 
 class _Edges(NamedTuple):
     """Short edges of all beads: their middles (n, 2), unit ways (n, 2), arc lengths (n,) mm, beads (n,) by their numbers;
-    lengths (m,) mm of the beads that are closed, infinite of the others."""
+    lengths (m,) mm of the beads that are closed, infinite of the others; half the length (n,) mm of each edge."""
 
     middles: Array
     ways: Array
     arcs: Array
     bead: Index
     around: Array
+    halves: Array
 
 
 def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Beads, float]:
@@ -122,6 +126,10 @@ def narrowed(
     """The curves with the share of their usual width that they have room for: halfway to others of their kind, and as far as
     those that come first reach, contours before lines before beads in the middle. Links of zigzags lay what their lines,
     which end before the contour, do not. angle: of the lines, rad. least: share that no bead is laid below."""
+    dots = [curve for curve in curves if curve.dot]
+    if dots:  # which are by themselves, as wide as they are to be
+        rest = [curve for curve in curves if not curve.dot]
+        return (*narrowed(rest, beads, angle, least), *dots) if rest else tuple(dots)
     lines, corners = zip(
         *(divided_by_step(curve.whole()[0], STEP * beads.spacing) for curve in curves)
     )
@@ -132,12 +140,27 @@ def narrowed(
         beads.spacing,
     )
     share = widths.sum(axis=1) / beads.spacing
+    aside = 0.5 * (widths[:, 0] - widths[:, 1])
     zigzags = np.array([curve.kind == "zigzag" for curve in curves])[edges.bead]
     turned = np.abs(edges.ways[:, 0] * np.sin(angle) - edges.ways[:, 1] * np.cos(angle)) > ALONG
     share = np.where(zigzags & turned, 2.0 * widths.min(axis=1) / beads.spacing, share)
     share = np.round(np.clip(share, least, 1.0), DIGITS)
+    outer = 2.0 * beads.inset / beads.spacing  # the outermost keep their outer edge on the border
+    factor = np.array(
+        [(outer if curve.ring == 0 else 1.0) if _may_move(curve) else 0.0 for curve in curves]
+    )
+    aside = np.round(factor[edges.bead] * aside, DIGITS)
     cuts = np.searchsorted(edges.bead, np.arange(1, len(curves)))
-    return tuple(_with(*one) for one in zip(curves, lines, corners, np.split(share, cuts)))
+    return tuple(
+        _with(*one, beads.spacing)
+        for one in zip(curves, lines, corners, np.split(share, cuts), np.split(aside, cuts))
+    )
+
+
+def _may_move(curve: PlaneCurve) -> bool:
+    """Whether a narrow bead is laid in the middle of its own room: not the lines of a zigzag, which its links join, nor
+    lines that end on contours."""
+    return curve.kind in MOVED or (curve.kind == "line" and curve.ring == 0)
 
 
 def _edges(lines: Sequence[Array], closed: Sequence[bool]) -> _Edges:
@@ -149,6 +172,7 @@ def _edges(lines: Sequence[Array], closed: Sequence[bool]) -> _Edges:
         np.concatenate([np.cumsum(size) - 0.5 * size for size in long]),
         np.repeat(np.arange(len(lines)), [len(way) for way in ways]),
         np.array([size.sum() if is_closed else np.inf for size, is_closed in zip(long, closed)]),
+        0.5 * np.concatenate(long),
     )
 
 
@@ -158,6 +182,10 @@ def _free_widths(edges: _Edges, rank: Index, spacing: float) -> Array:
     free = np.full((len(edges.middles), 2), half)
     one, other = _neighbours(edges, spacing).T
     gap = edges.middles[other] - edges.middles[one]
+    near = np.clip(
+        -np.einsum("ni,ni->n", gap, edges.ways[other]), -edges.halves[other], edges.halves[other]
+    )
+    gap += near[:, None] * edges.ways[other]  # the nearest place of the other edge
     aside = edges.ways[one, 0] * gap[:, 1] - edges.ways[one, 1] * gap[:, 0]
     side = (aside < 0.0).astype(np.intp)
     radius = (gap**2).sum(axis=1) / np.maximum(
@@ -187,9 +215,11 @@ def _neighbours(edges: _Edges, spacing: float) -> Index:
     return np.asarray(np.vstack([pairs, pairs[:, ::-1]]), dtype=np.intp)
 
 
-def _with(curve: PlaneCurve, line: Array, corners: Mask, share: Array) -> PlaneCurve:
-    """A curve with the shares (n - 1,) of the edges of its points (n, 2), and of these points no more than its corners (n,)
-    and what tells the shares."""
+def _with(
+    curve: PlaneCurve, line: Array, corners: Mask, share: Array, aside: Array, spacing: float
+) -> PlaneCurve:
+    """A curve with the shares (n - 1,) of the edges of its points (n, 2), moved to the left by `aside` (n - 1,) mm, and of
+    these points no more than its corners (n,) and what tells the shares and how far it moves."""
     if share.min() > 1.0 - SHARE_TOLERANCE:
         return replace(curve, share=None)
     ends = (
@@ -197,6 +227,32 @@ def _with(curve: PlaneCurve, line: Array, corners: Mask, share: Array) -> PlaneC
     )
     wide = 0.5 * (ends[1:] + ends[:-1])
     kept = corners | telling(arcs(line), wide, SHARE_TOLERANCE)
+    if aside.any():
+        ways = _moves(line, aside, curve.closed)
+        kept |= telling(arcs(line), np.hypot(*ways.T) / spacing, 0.25 * SHARE_TOLERANCE)
+        line = line + ways
     if curve.closed:
         line, wide, kept = line[:-1], wide[:-1], kept[:-1]
     return replace(curve, points=line[kept], share=wide[kept])
+
+
+def _moves(line: Array, aside: Array, closed: bool) -> Array:
+    """How (n, 2) mm the points of a line (n, 2) move, so that its edges move to the left by `aside` (n - 1,) mm."""
+    way = np.diff(line, axis=0)
+    way /= np.maximum(np.hypot(*way.T), 1e-300)[:, None]
+    left = np.stack([-way[:, 1], way[:, 0]], axis=1)
+    ends = (left[-1:], left[:1]) if closed else (left[:1], left[-1:])
+    before, after = np.vstack([ends[0], left]), np.vstack([left, ends[1]])
+    sides = (aside[-1:], aside[:1]) if closed else (aside[:1], aside[-1:])
+    first, second = np.r_[sides[0], aside], np.r_[aside, sides[1]]
+    cosine = np.einsum("ni,ni->n", before, after)
+    sine = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    both = before + after
+    mean = (0.5 * (first + second))[:, None] * both / np.maximum(1.0 + cosine, 0.1)[:, None]
+    # where both edges move square to themselves by their own amounts
+    turned = np.where(np.abs(sine) > 1e-9, sine, 1.0)
+    x = (first * after[:, 1] - second * before[:, 1]) / turned
+    y = (second * before[:, 0] - first * after[:, 0]) / turned
+    moves = np.where((cosine > ALIKE)[:, None], mean, np.stack([x, y], axis=1))
+    far, most = np.hypot(*moves.T), FARTHEST * np.maximum(np.abs(first), np.abs(second))
+    return np.asarray(moves * np.minimum(1.0, most / np.maximum(far, 1e-300))[:, None])

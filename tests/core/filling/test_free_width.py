@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from freecad_am.core.filling.cover import covered
 from freecad_am.core.filling.curve import OVER, Beads
 from freecad_am.core.filling.fill import fill
-from freecad_am.core.filling.free_width import fitted, shared
+from freecad_am.core.filling.free_width import fitted, narrowed, shared
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.filled import DevelopableParameters
@@ -206,3 +206,36 @@ def test_beads_cover_as_much_as_they_are_wide(thick):
     usual = covered(region, [replace(curve, share=None) for curve in curves], BEADS)
     if abs(share - 1.0) > 0.1:
         assert abs(usual.left - found.left) + abs(usual.outside - found.outside) > 2.0 * near
+
+
+def ring_loops(thickness, outer=40.0):
+    angle = 2.0 * np.pi * np.arange(400) / 400
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return [outer * circle, (outer - thickness) * circle[::-1]]
+
+
+@pytest.mark.parametrize("thickness", [4.4, 5.0, 6.0, 7.2])
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+def test_narrow_beads_lie_half_their_own_width_from_the_border(thickness, turn):
+    """A wall of 1.1 to 1.8 beads gets two beads, each of half its thickness, in the middle of its half."""
+    rotation = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    (region,) = regions([loop @ rotation + [11.0, -7.0] for loop in ring_loops(thickness)])
+    beads = Beads(4.0, 0.8, 2.0, chord_error=0.002, width=4.0)
+    curves = narrowed(fill(region, beads), beads, 0.0, 0.3)
+    assert len(curves) == 2
+    radii = sorted(float(np.hypot(*(c.points - [11.0, -7.0]).T).mean()) for c in curves)
+    assert radii == pytest.approx([40.0 - 0.75 * thickness, 40.0 - 0.25 * thickness], abs=0.02)
+    for curve in curves:
+        assert curve.share * 4.0 == pytest.approx(
+            np.full(len(curve.points), thickness / 2), rel=0.02
+        )
+    cover = covered(region, curves, beads)
+    assert cover.left < 0.01 * cover.area and cover.outside < 0.01 * cover.area
+
+
+def test_narrow_lines_lie_half_their_own_width_from_the_border():
+    (region,) = regions([np.array([(0, 0), (60, 0), (60, 6), (0, 6)], dtype=float)])
+    beads = Beads(4.0, 0.8, 2.0, chord_error=0.002, width=4.0)
+    curves = narrowed(fill(region, beads, "lines"), beads, 0.0, 0.3)
+    heights = sorted(float(curve.points[:, 1].mean()) for curve in curves)
+    assert heights == pytest.approx([1.5, 4.5], abs=0.02)

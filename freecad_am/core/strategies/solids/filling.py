@@ -263,7 +263,8 @@ class Pictures:
         ):
             curves = narrowed(
                 curves, filling.beads, angle, strategy.narrowest
-            )  # no wider than their room
+            )  # no wider than their room, and in the middle of it
+            cover = covered(region, curves, filling.beads)
         bare = [] if sparse or not isinstance(region, Region) else bare_parts(region, curves, beads)
         places = [Bare(part.area, part.width, part.inside()) for part, _ in bare]
         return _Picture(region, filling, curves, gaps, cover, places)
