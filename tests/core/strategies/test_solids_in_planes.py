@@ -728,3 +728,15 @@ def test_layers_without_beads_keep_their_number_and_are_named():
     area = 7 * 4 * 24.0 * math.sin(math.pi / 24.0) * 0.5**2
     found = float(re.search(r"all of them are ([\d.]+) mm\^2", str(told.message))[1])
     assert found == pytest.approx(area, rel=0.01)
+
+
+@pytest.mark.parametrize("fill", ["contours", "lines", "zigzag"])
+def test_open_beads_of_a_thin_plate_begin_at_alternate_ends(fill):
+    process = ProcessParameters(direction="alternate")
+    plate = box((0, 0, 0), (60, 5, 20))
+    made = planned(plate, fill=fill, bead_spacing=5.0, process=process, fill_angle_step=0.0)
+    starts = [float(layer.beads[0].points[0, 0]) for layer in made.layers]
+    assert len(starts) == 5 and not any(layer.beads[0].closed for layer in made.layers)
+    assert all((a > 30.0) != (b > 30.0) for a, b in zip(starts, starts[1:]))
+    usual = planned(plate, fill=fill, bead_spacing=5.0, fill_angle_step=0.0)
+    assert len({float(layer.beads[0].points[0, 0]) > 30.0 for layer in usual.layers}) == 1

@@ -121,10 +121,8 @@ class Pictures:
                 ) from None
             island = range(len(curves), len(curves) + len(picture.curves))
             for curve in picture.curves:
-                alternating = (
-                    self._process.direction == "alternate"
-                    if curve.closed
-                    else strategy.starts == "spread"
+                alternating = self._process.direction == "alternate" or (
+                    not curve.closed and strategy.starts == "spread"
                 )
                 if (
                     alternating
