@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 
 # units of our texts: as they are written, and as FreeCAD reads them
@@ -34,6 +34,12 @@ UNITS = {
         f"{unit}/min": f"{base}^3/min" for base in ("mm", "cm") for unit in (f"{base}3", f"{base}³")
     },
 }
+# examples of what may be typed, and the formula of bead models, whose figures are of mm
+_EXAMPLE = re.compile(r"such as|for instance|, as (?:in )?[\d{]|v\^\(-1/3\)")
+_ALONE = re.compile(r"[-+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?")
+# of `core.geometry.formatting.place`
+_PLACE = re.compile(r"\(-?[\d.]+(?:e-?\d+)?(?:, -?[\d.]+(?:e-?\d+)?){2}\)")
+_PRIVATE = 0xE000  # signs that stand for nothing in any language
 LARGEST_PLAIN, SMALLEST_PLAIN = 1e15, 1e-9  # beyond these an exponent is easier to read
 LEAST_DIGITS, MOST_DIGITS = 3, 7  # significant ones of a converted number
 
@@ -142,3 +148,40 @@ def in_other_units(text: str, convert: Convert) -> str:
 def _digits(number: str) -> int:
     written = re.sub(r"e.*|\D", "", number).lstrip("0")
     return min(max(len(written), LEAST_DIGITS), MOST_DIGITS)
+
+
+def is_example(template: str) -> bool:
+    """Whether a template tells what may be typed, whose quantities stay as they are."""
+    return _EXAMPLE.search(template) is not None
+
+
+def put_values(template: str, values: Sequence[str], in_units: Callable[[str], str]) -> str:
+    """A template with its values, whose quantities are in other units then.
+
+    Parameters
+    ----------
+    template : str
+        With places by number, as `core.issues.Text` has it.
+    values : sequence of str
+        Those that are no numbers, units or places are out of sight of `in_units`: they may be names such as 'Plate 5 mm'.
+    in_units : callable
+        Returns a text of numbers with its quantities in other units.
+
+    Returns
+    -------
+    str
+    """
+    if is_example(template):
+        return template.format(*values)
+    hidden: dict[str, str] = {}
+    seen = []
+    for number, value in enumerate(values):
+        if _ALONE.fullmatch(value) or value in UNITS:
+            seen.append(value)
+            continue
+        sign = chr(_PRIVATE + number)
+        is_place = _PLACE.fullmatch(value)
+        hidden[sign] = in_units(f"{value} mm").removesuffix(" mm") if is_place else value
+        seen.append(sign)
+    text = in_units(template.format(*seen))
+    return "".join(hidden.get(sign, sign) for sign in text)

@@ -13,5 +13,5 @@ def key_of(tolerance: float) -> str:
     return " ".join(
         f'<span style="white-space:nowrap"><span style="color:{css(band.colour)}">&#9632;</span> {escape(band.text)}&ensp;'
         "</span>"
-        for band in bands(tolerance)
+        for band in bands(float(f"{tolerance:.6g}"))
     )

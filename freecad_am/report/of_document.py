@@ -20,6 +20,7 @@ from freecad_am.core.process.model.predicted import HEIGHTS
 from freecad_am.objects import user_machines
 from freecad_am.objects.checks import preflight
 from freecad_am.objects.current import check_current
+from freecad_am.objects.fields.shown_units import in_user_units, scale_of, window_is_open
 from freecad_am.objects.job_group import is_group
 from freecad_am.objects.joint_path import planned_of
 from freecad_am.objects.results.findings import issues_of
@@ -27,6 +28,7 @@ from freecad_am.objects.stage import stage_of
 from freecad_am.objects.toolpath import features_of, strategy_of
 from freecad_am.objects.work import progress
 
+from . import units
 from .asked import Feature, Job, Results
 from .made import Made, made
 
@@ -62,12 +64,16 @@ def reported(obj: Any) -> Callable[[], str]:
     )
     spent = {one.Proxy.kind.replace(" ", "_"): one.Seconds for one in stages}
 
+    # read now: a scheme that is chosen while the page is drawn is that of the next one
+    page_units = units.ReportUnits(in_user_units, scale_of) if window_is_open() else units.METRIC
+
     def work() -> str:
         cell = None if job.cell is None else cells.resolve(job.cell, np.eye(4), folders=folders)
         report = _steps(job, results, cell)
         report.content["timing_s"] = spent
         progress.report(0.7, "drawing the page")
-        return report.page()
+        with units.shown_in(page_units):
+            return report.page()
 
     return work
 

@@ -14,7 +14,7 @@ from freecad_am.core.strategies.walls.comparison import Compared
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.source import Source
 
-from . import hub_figures, places, predicted_figures, scan_figures, view, wall_figures
+from . import hub_figures, places, predicted_figures, scan_figures, units, view, wall_figures
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
@@ -165,12 +165,15 @@ def _cards(report: dict[str, Any]) -> str:
     )
     if spacing["mean"] is not None:
         cards.append(
-            (f"{spacing['mean']:.4f} mm", f"spacing, {spacing['min']:.4f} to {spacing['max']:.4f}")
+            (
+                f"{spacing['mean']:.4f} mm",
+                f"spacing, {spacing['min']:.4f} to {spacing['max']:.4f} mm",
+            )
         )
     if report["joints"] is not None and report["joints"]["condition_min"] is not None:
         cards.append((figure_text(report["joints"]["condition_min"]), "smallest condition"))
     boxes = "".join(
-        f'<div class="card"><b>{escape(value)}</b><span>{escape(word)}</span></div>'
+        f'<div class="card"><b>{escape(units.text(value))}</b><span>{escape(units.text(word))}</span></div>'
         for value, word in cards
     )
     return f'<div class="cards">{boxes}</div>'
@@ -339,7 +342,8 @@ def _comparison(report: dict[str, Any]) -> str:
 
 def _programs(programs: list[str]) -> str:
     return (
-        pairs_of("Programs", {str(number): name for number, name in enumerate(programs, 1)})
+        "<h2>Programs</h2>"
+        + table_of([(str(number), [name]) for number, name in enumerate(programs, 1)])
         if programs
         else ""
     )

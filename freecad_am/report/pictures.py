@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from types import ModuleType
 
@@ -15,7 +16,9 @@ from freecad_am.plots.fit import fit
 from freecad_am.plots.look import PAGE
 from freecad_am.plots.rows import Rows, rows
 from freecad_am.plots.source import Source
+from freecad_am.plots.units import of_chart
 
+from . import units
 from .of_feature import OfFeature
 
 HALF, WHOLE, TALL, MAP = 460, 940, 230, 330  # pixels
@@ -45,7 +48,7 @@ class Pictures:
 
     def angles(self) -> list[str]:
         """Each axis against its limits."""
-        return self._half(joints.angles(self.source, self.rows))
+        return self._half(joints.angles(self.source, self.rows), travel=False)
 
     def rates(self) -> list[str]:
         """Joint speeds as shares of the limits; accelerations and jerks, all axes in one; the condition."""
@@ -92,14 +95,20 @@ class Pictures:
         tall = sum(chart.plane for chart in found)
         return [*self._drawn(found[:tall], HALF, MAP), *self._half(found[tall:])]
 
-    def _half(self, charts: Sequence[Chart]) -> list[str]:
-        return self._drawn(charts, HALF)
+    def _half(self, charts: Sequence[Chart], travel: bool = True) -> list[str]:
+        return self._drawn(charts, HALF, travel=travel)
 
-    def _drawn(self, charts: Sequence[Chart], width: int, height: int = TALL) -> list[str]:
+    def _drawn(
+        self, charts: Sequence[Chart], width: int, height: int = TALL, travel: bool = False
+    ) -> list[str]:
         if self.modules is None:
             return []
         draw, files = self.modules
+        shown = [
+            replace(of_chart(chart, units.scale, travel), title=units.message(chart.title))
+            for chart in charts
+        ]
         return [
             files.inline(draw.figure([chart], PAGE, width, height)[0], chart.title)
-            for chart in charts
+            for chart in shown
         ]

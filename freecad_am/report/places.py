@@ -7,6 +7,7 @@ from html import escape
 from typing import Any
 
 from ..core.preflight.promise import amount
+from . import units
 from .tables import figure_text
 from .turned.columns import Shown
 
@@ -26,7 +27,7 @@ def findings(issues: list[dict[str, Any]], shown: Shown) -> str:
         place = place_of(issue, shown)
         rows.append(
             f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
-            f'<td class="place">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
+            f'<td class="place">{place}</td><td class="text">{escape(units.message(issue["message"]))}</td></tr>'
         )
     more = (
         f"<p>{len(issues) - len(rows)} more stand in report.json.</p>"
@@ -63,8 +64,8 @@ def preflight(promises: list[dict[str, Any]], shown: Shown) -> str:
             else f"{sign} {amount(one['bound'], one['unit'], figure_text)}"
         )
         rows.append(
-            f'<tr><td class="{mark}">{word}</td><td class="text">{escape(one["promise"])}</td><td>{worst}</td>'
-            f'<td>{bound}</td><td class="place">{where}</td><td class="text">{escape(one["how"])}</td></tr>'
+            f'<tr><td class="{mark}">{word}</td><td class="text">{escape(units.message(one["promise"]))}</td><td>{units.text(worst)}</td>'
+            f'<td>{units.text(bound)}</td><td class="place">{where}</td><td class="text">{escape(units.message(one["how"]))}</td></tr>'
         )
     head = "".join(
         f"<th>{word}</th>"

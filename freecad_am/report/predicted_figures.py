@@ -13,6 +13,7 @@ from freecad_am.core.geometry.formatting import place
 from freecad_am.core.inspection.bands import step_of
 from freecad_am.core.process.shape.deviation import name_of
 
+from . import units
 from .colour_key import key_of
 from .places import place_of
 from .tables import grid_of, pairs_of
@@ -93,22 +94,28 @@ def section(found: PredictedShape, pictures: Sequence[str], shown: Shown) -> str
     if found.deviation is None:
         return figures
     key = (
-        f'<p class="sub">Deposit beyond the faces, mm: {key_of(step_of(found.deviation.beyond))}</p>'
+        f'<p class="sub">Deposit beyond the faces, {_unit(found)[1]}: '
+        f"{key_of(_unit(found)[0] * step_of(found.deviation.beyond))}</p>"
         if pictures
         else ""
     )
     return figures + grid_of(pictures) + key + _worst(found.deviation, shown)
 
 
+def _unit(found: PredictedShape) -> tuple[float, str]:
+    """The factor and the unit of deviations."""
+    return units.scale(max(abs(found.least), abs(found.most)), "mm")
+
+
 def _worst(found: DeviationMap, shown: Shown) -> str:
     """The worst places with their names in the maps; a click shows what of the path is nearest."""
     rows = "".join(
-        f"<tr><td>{one['name']}</td><td>{one['beyond_mm']:.3f}</td><td>{place(np.array(one['place']))}</td>"
+        f"<tr><td>{one['name']}</td><td>{units.text(format(one['beyond_mm'], '.3f') + ' mm')}</td>"
+        f"<td>{units.text(place(np.array(one['place'])) + ' mm')}</td>"
         f'<td class="place">{place_of(one, shown)}</td></tr>'
         for one in _deviation(found)["worst_places"]
     )
     head = "".join(
-        f"<th>{word}</th>"
-        for word in ("worst places", "beyond the faces, mm", "place", "of the path")
+        f"<th>{word}</th>" for word in ("worst places", "beyond the faces", "place", "of the path")
     )
     return f'<div class="table"><table><tr>{head}</tr>{rows}</table></div>'

@@ -13,6 +13,7 @@ from freecad_am.core.geometry.fitted import Fitted
 from freecad_am.core.inspection.bands import band_of, bands, css
 from freecad_am.core.types import Array
 
+from . import units
 from .colour_key import key_of
 from .svg import Plot
 from .tables import grid_of
@@ -44,11 +45,12 @@ def as_dict(fitted: Fitted) -> dict[str, Any]:
 
 def section(fitted: Fitted, frame: Array) -> str:
     """The section of the page: both pictures as seen along Z of the feature's frame (4, 4)."""
+    factor, unit = units.scale(TOLERANCE, "mm")
     before = _map(f"Layer {fitted.layer} as planned", fitted.places, fitted.off, frame)
     after = _map(f"Layer {fitted.layer} as laid", fitted.laid, fitted.left, frame)
     return (
         f"<h2>Fitted to {escape(fitted.file)}</h2>{grid_of([before, after])}"
-        f'<p class="sub">How far the scan lies above the layer, mm: {key_of(TOLERANCE)}</p>'
+        f'<p class="sub">How far the scan lies above the layer, {unit}: {key_of(factor * TOLERANCE)}</p>'
     )
 
 

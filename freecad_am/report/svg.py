@@ -12,6 +12,8 @@ import numpy as np
 from freecad_am.core.geometry.formatting import round_step
 from freecad_am.core.types import Array
 
+from . import units
+
 _MOST_COLUMNS = 700
 
 
@@ -96,13 +98,13 @@ class Plot:
                 f'<line class="asked" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>'
             )
             self.parts.append(
-                f'<text class="rule" x="{right - 4}" y="{at - 4:.1f}" text-anchor="end">{escape(name)}</text>'
+                f'<text class="rule" x="{right - 4}" y="{at - 4:.1f}" text-anchor="end">{escape(units.text(name))}</text>'
             )
 
     def legend(self, names: list[tuple[str, str]]) -> None:
         """Names of curves with their colours, in the top right corner."""
         at = float(self.width - self.right)
-        for name, stroke in reversed(names):
+        for name, stroke in reversed([(units.text(name), stroke) for name, stroke in names]):
             at -= 9 + 6.2 * len(name)
             self.parts.append(f'<text class="key" x="{at + 8:.1f}" y="19">{escape(name)}</text>')
             self.parts.append(f'<circle cx="{at + 2:.1f}" cy="15" r="3.5" fill="{stroke}"/>')
@@ -111,24 +113,26 @@ class Plot:
     def text(self) -> str:
         """The picture."""
         return (
-            f'<svg class="plot" viewBox="0 0 {self.width} {self.height}" role="img" aria-label="{escape(self.title)}">'
-            f'<text class="title" x="{self.left}" y="19">{escape(self.title)}</text>{self._grid()}{"".join(self.parts)}'
+            f'<svg class="plot" viewBox="0 0 {self.width} {self.height}" role="img" aria-label="{escape(units.text(self.title))}">'
+            f'<text class="title" x="{self.left}" y="19">{escape(units.text(self.title))}</text>{self._grid()}{"".join(self.parts)}'
             f'<rect class="frame" x="{self.left}" y="{self.top}" width="{self.width - self.left - self.right}" '
             f'height="{self.height - self.top - self.bottom}"/></svg>'
         )
 
     def _grid(self) -> str:
         parts = []
+        x_label, x_factor = units.label(self.x_label, max(map(abs, self.x)))
+        y_label, y_factor = units.label(self.y_label, max(map(abs, self.y)))
         down, up = self.height - self.bottom, self.top
         right, middle = self.width - self.right, (self.left + self.width - self.right) / 2
-        for value in ticks(*self.x):
-            at = float(self.to_x(np.array([value]))[0])
+        for value in ticks(*(x_factor * end for end in self.x)):
+            at = float(self.to_x(np.array([value / x_factor]))[0])
             parts.append(f'<line class="grid" x1="{at:.1f}" x2="{at:.1f}" y1="{up}" y2="{down}"/>')
             parts.append(
                 f'<text class="tick" x="{at:.1f}" y="{down + 14}" text-anchor="middle">{value:g}</text>'
             )
-        for value in ticks(*self.y, most=5):
-            at = float(self.to_y(np.array([value]))[0])
+        for value in ticks(*(y_factor * end for end in self.y), most=5):
+            at = float(self.to_y(np.array([value / y_factor]))[0])
             parts.append(
                 f'<line class="grid" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>'
             )
@@ -136,8 +140,8 @@ class Plot:
                 f'<text class="tick" x="{self.left - 6}" y="{at + 3.5:.1f}" text-anchor="end">{value:g}</text>'
             )
         parts.append(
-            f'<text class="label" x="{middle}" y="{self.height - 6}" text-anchor="middle">{escape(self.x_label)}</text>'
+            f'<text class="label" x="{middle}" y="{self.height - 6}" text-anchor="middle">{escape(x_label)}</text>'
             f'<text class="label" transform="translate(13 {(up + down) / 2}) rotate(-90)" text-anchor="middle">'
-            f"{escape(self.y_label)}</text>"
+            f"{escape(y_label)}</text>"
         )
         return "".join(parts)

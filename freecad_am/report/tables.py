@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from html import escape
 from typing import Any
 
+from . import units
+
 
 def clock(seconds: float) -> str:
     """Seconds as hours, minutes and seconds."""
@@ -34,9 +36,15 @@ def in_units(word: str, report: dict[str, Any]) -> str:
     return f"{name}, {unit} or {unit.replace('deg', 'mm')}" if mixed else word
 
 
+_NAMES = ("material",)  # rows that hold names of users
+
+
 def pairs_of(title: str, values: dict[str, str]) -> str:
     """A table of names and values under a title."""
-    return f"<h2>{title}</h2>{table_of([(word, [value]) for word, value in values.items()])}"
+    rows = [
+        (word, [value if word in _NAMES else units.text(value)]) for word, value in values.items()
+    ]
+    return f"<h2>{title}</h2>{table_of(rows)}"
 
 
 def material_row(report: dict[str, Any]) -> dict[str, str]:
@@ -51,8 +59,9 @@ def material_row(report: dict[str, Any]) -> dict[str, str]:
 
 def table_of(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
     """A table of rows with their names."""
+    rows = [units.row(word, [str(value) for value in values], figure_text) for word, values in rows]
     lines = "".join(
-        f"<tr><td>{escape(word)}</td>{''.join(f'<td>{escape(str(value))}</td>' for value in values)}</tr>"
+        f"<tr><td>{escape(word)}</td>{''.join(f'<td>{escape(value)}</td>' for value in values)}</tr>"
         for word, values in rows
     )
     return f'<div class="table" style="margin-top:10px"><table>{lines}</table></div>'
@@ -78,11 +87,15 @@ def classes_of(rows: list[dict[str, Any]]) -> str:
     if not rows:
         return ""
     woven = ["weave"] if any("weave" in row for row in rows) else []
-    lines = [("", ["beads", "length, mm", "deposit", "travel speed, mm/s", "schedule", *woven])]
+    length_head, per_mm = units.label("length, mm", max(row["length_mm"] for row in rows))
+    speed_head, per_mm_s = units.label("travel speed, mm/s", 1.0)
+    lines = [("", ["beads", length_head, "deposit", speed_head, "schedule", *woven])]
     for row in rows:
-        low, high = (figure_text(row["travel_speed_mm_s"][end]) for end in ("min", "max"))
+        low, high = (
+            figure_text(per_mm_s * row["travel_speed_mm_s"][end]) for end in ("min", "max")
+        )
         speed = low if low == high else f"{low} to {high}"
-        length = f"{row['length_mm']:,.0f}"
+        length = f"{per_mm * row['length_mm']:,.0f}"
         numbers = [
             str(row["beads"]),
             length,

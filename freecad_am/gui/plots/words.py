@@ -89,16 +89,19 @@ def of_frames() -> Words:
     )
 
 
-def in_words(picture: Picture) -> Picture:
-    """A picture in the language of the window; what is a name, such as that of an axis, stays."""
+def in_words(picture: Picture, user_units: bool = True) -> Picture:
+    """A picture in the language of the window; what is a name, such as that of an axis, stays. user_units: whether
+    quantities in its texts are in the user's units."""
 
     def of_chart(chart: Chart) -> Chart:
         return replace(
             chart,
-            title=translated(chart.title),
+            title=translated(chart.title, user_units),
             x=Quantity(translated(chart.x.name), chart.x.unit),
             y=Quantity(translated(chart.y.name), chart.y.unit),
-            curves=tuple(replace(curve, name=translated(curve.name)) for curve in chart.curves),
+            curves=tuple(
+                replace(curve, name=translated(curve.name, user_units)) for curve in chart.curves
+            ),
             marks=tuple((value, translated(name)) for value, name in chart.marks),
             unlimited=translated(chart.unlimited),
             upright=tuple((value, translated(name)) for value, name in chart.upright),

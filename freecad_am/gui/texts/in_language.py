@@ -3,19 +3,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 from ...core.issues import Text
-from ...core.quantities import UNITS
+from ...core.quantities import is_example, put_values
 
-# examples of what may be typed, and the formula of bead models, whose figures are of mm
-_EXAMPLE = re.compile(r"such as|for instance|, as (?:in )?[\d{]|v\^\(-1/3\)")
-_NUMBER = re.compile(r"[-+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?")
-_PLACE = re.compile(
-    r"\(-?[\d.]+(?:e-?\d+)?(?:, -?[\d.]+(?:e-?\d+)?){2}\)"
-)  # of `core.geometry.formatting.place`
-_PRIVATE = 0xE000  # signs that stand for nothing in any language
 KINDS = ("cell", "feature", "toolpath", "program", "inspection")  # stages, as messages call them
 
 
@@ -50,27 +42,9 @@ def in_language(
         else []
     )
     translation = template.replace(key, translate(key), 1)
-    if in_units is None or _EXAMPLE.search(key):
+    if in_units is None or is_example(key):
         return translation.format(*values)
-    return _with_values(translation, values, in_units)
-
-
-def _with_values(template: str, values: list[str], in_units: Callable[[str], str]) -> str:
-    """The values put into a template, whose quantities are in other units then. Values that are no numbers are out of sight
-    of `in_units`: they may be names such as 'Plate 5 mm'."""
-    hidden: dict[str, str] = {}
-    seen = []
-    for number, value in enumerate(values):
-        if _NUMBER.fullmatch(value) or value in UNITS:
-            seen.append(value)
-            continue
-        sign = chr(_PRIVATE + number)
-        hidden[sign] = (
-            in_units(f"{value} mm").removesuffix(" mm") if _PLACE.fullmatch(value) else value
-        )
-        seen.append(sign)
-    text = in_units(template.format(*seen))
-    return "".join(hidden.get(sign, sign) for sign in text)
+    return put_values(translation, values, in_units)
 
 
 def _value(

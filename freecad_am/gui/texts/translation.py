@@ -37,10 +37,13 @@ def marked(text: str) -> str:
     return text
 
 
-def translated(text: str) -> str:
+def translated(text: str, user_units: bool = True) -> str:
     """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
-    the window, with parameters as its panels call them; itself where no translation is there."""
-    return as_in_panels(in_language(text, tr, in_user_units), translated, tr("“{}”"), True)
+    the window, with parameters as its panels call them; itself where no translation is there. user_units: False
+    keeps quantities in mm, for files."""
+    return as_in_panels(
+        in_language(text, tr, in_user_units if user_units else None), translated, tr("“{}”"), True
+    )
 
 
 def translated_error(error: BaseException) -> str:

@@ -71,6 +71,11 @@ def _with_powers(name: str) -> str:
     return name.replace("^2", "²").replace("^3", "³")
 
 
+def window_is_open() -> bool:
+    """Whether this is FreeCAD with its window, and not a command."""
+    return bool(App.GuiUp)
+
+
 def in_user_units(text: str) -> str:
     """A text of numbers in mm, mm/s and so on, with these in the user's units and without exponents; no names of users may
     be in it."""
@@ -112,7 +117,7 @@ def _fraction(value: float, unit: str, name: str) -> str:
 
 _FEET = re.compile(
     r"\s*(?P<sign>[-+]?)\s*(?:(?P<feet>\d+(?:\.\d+)?)\s*')?\s*"
-    r"(?:(?P<inches>(?:\d+(?:\.\d+)?(?:\s*\+\s*|\s+))?\d+\s*/\s*\d+|\d+(?:\.\d+)?)\s*(?:\"|in))?\s*"
+    r"(?:(?P<inches>(?:\d+(?:\.\d+)?\"?(?:\s*\+\s*|\s+))?\d+\s*/\s*\d+|\d+(?:\.\d+)?)\s*(?:\"|in))?\s*"
 )
 
 
@@ -122,7 +127,7 @@ def feet_and_inches(text: str) -> float | None:
     if match is None or (match["feet"] is None and match["inches"] is None):
         return None
     inches = 12.0 * float(match["feet"] or 0.0)
-    for part in re.split(r"\s*\+\s*|(?<=\d)\s+(?=\d)", match["inches"] or "0"):
+    for part in re.split(r"\s*\+\s*|(?<=\d)\s+(?=\d)", (match["inches"] or "0").replace('"', "")):
         above, _, below = part.partition("/")
         if below and float(below) == 0.0:
             return None

@@ -15,6 +15,8 @@ from freecad_am.core.motion import Motion
 from freecad_am.core.simulation.margins import from_next, speed_ratios
 from freecad_am.core.types import Array, Integers, Mask, NDArray
 
+from .. import units
+
 if TYPE_CHECKING:
     from freecad_am.plots.source import Source  # slow to import, and not every report has a page
 
@@ -105,8 +107,8 @@ def _columns(source: Source) -> list[Column]:
     upright = np.degrees(np.arccos(np.clip(motion.tool @ source.toolpath.frame[:3, 2], -1.0, 1.0)))
     found = [
         Column("layer", "", motion.layer.astype(float)),
-        Column("speed", "mm/s", from_next(motion.deposit, motion.point, motion.speed)),
-        Column("width", "mm", motion.width),
+        _in_units("speed", "mm/s", from_next(motion.deposit, motion.point, motion.speed)),
+        _in_units("width", "mm", motion.width),
         Column("tilt", "deg", upright),
     ]
     if cell is not None:
@@ -118,6 +120,13 @@ def _columns(source: Source) -> list[Column]:
     if source.condition is not None:
         found.append(Column("condition", "", source.condition))
     return [one for one in found if np.isfinite(one.values).any()]
+
+
+def _in_units(name: str, unit: str, values: Array) -> Column:
+    """A column in the units of the page."""
+    finite = values[np.isfinite(values)]
+    factor, shown = units.scale(float(np.abs(finite).max(initial=0.0)), unit)
+    return Column(name, shown, factor * values)
 
 
 def _starts(motion: Motion) -> Integers:

@@ -17,6 +17,7 @@ from freecad_am.core.geometry.obstacles import Body, disc
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.look import shade
 
+from .. import units
 from .columns import Bytes, Shown, packed
 
 _HERE = Path(__file__).resolve().parent
@@ -57,6 +58,7 @@ def turned(of: Shown, toolpath: Toolpath, width: float, platform: float | None) 
     every = max(1, -(-sum(len(body.triangles) for body in bodies) // _MOST_TRIANGLES))
     facts["bodies"] = [_body(body, every, into) for body in bodies]
     facts["box"] = _box(of)
+    facts["length"] = units.scale(float(np.abs(facts["box"]).max()), "mm")
     facts["upright"] = toolpath.frame[:3, :3].T.tolist()
     facts["height"] = toolpath.layer_height
     facts["width"] = width

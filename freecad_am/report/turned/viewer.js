@@ -255,12 +255,12 @@ class Viewer {
 
   // the row in words, and what the colours mean
   tell() {
-    const { path, look } = this, row = look.row, block = path.blocks.filter((one) => one[2] <= row).pop();
+    const { path, look } = this, [perMm, lengthUnit] = path.length, row = look.row, block = path.blocks.filter((one) => one[2] <= row).pop();
     const number = (value, unit) => (Number.isNaN(value) ? "-" : `${value.toFixed(unit === "" ? 3 : 2)}${unit ? ` ${unit}` : ""}`);
     const minutes = Math.floor(path.time[row] / 60), seconds = (path.time[row] % 60).toFixed(1).padStart(4, "0");
     const words = [
       `layer ${block[0]} bead ${block[1]}${block[3] ? ` point ${path.point[row]}` : ", rapid"}`, `${minutes}:${seconds} min`,
-      `x y z ${path.at(row).map((value) => value.toFixed(2)).join(" ")} mm`,
+      `x y z ${path.at(row).map((value) => (perMm * value).toFixed(perMm === 1 ? 2 : 3)).join(" ")} ${lengthUnit}`,
       ...path.columns.slice(1).map((one) => `${one.name} ${number(path.value(one, row), one.unit)}`),
       path.axes.map((one) => `${one.name} ${number(path.value(one, row), one.unit)}`).join(" "),
     ];
