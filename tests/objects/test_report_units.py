@@ -20,6 +20,7 @@ def toolpath():
     part = document.addObject("Part::Feature", "Cup")
     part.Label = "Cup 5 mm"
     part.Shape = Part.makeCylinder(50.8, 60.0).cut(Part.makeCylinder(45.8, 60.0))
+    document.recompute()
     feature = api.make_feature(document, part, layer_height=5)
     yield api.make_toolpath(document, feature)
     App.Units.setSchema(0)
