@@ -27,6 +27,7 @@ from .results import keys, store
 from .results.findings import first_message, issues_of, reason_of, say, store_issues
 from .results.keys import SCHEMA_VERSION
 from .results.stored import Stored
+from .shapes.file_links import missing_files
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 from .work import faults, hooks, progress
@@ -235,11 +236,7 @@ class Stage(Stored):
             if link.required and not getattr(obj, link.name):
                 return Text("{} is missing; choose {}", link.name, link.wanted)
             if broken := broken_link(getattr(obj, link.name)):
-                return Text(
-                    "{} links to nothing, what it showed is gone or was not loaded; choose another {}",
-                    broken,
-                    link.name,
-                )
+                return _lost_link(obj, broken, link.name)
         return expressions.broken(obj)
 
     def _store(
@@ -324,6 +321,24 @@ def deferred() -> Iterator[None]:
         yield
     finally:
         _deferred -= 1
+
+
+def _lost_link(obj: Any, label: str, link: str) -> Text:
+    """What to do about an input that is a FreeCAD link which shows nothing; it names the missing file, if that is why."""
+    missing = missing_files(obj.Document)
+    for linked in obj.Document.getObjectsByLabel(label):
+        if linked.Name in missing:
+            return Text(
+                "{} links to {}, which is not there; put the file there and open the document again, or choose another {}",
+                label,
+                missing[linked.Name],
+                link,
+            )
+    return Text(
+        "{} links to nothing, what it showed is gone or was not loaded; choose another {}",
+        label,
+        link,
+    )
 
 
 def stage_of(obj: Any) -> Stage | None:

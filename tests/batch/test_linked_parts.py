@@ -305,3 +305,5 @@ def test_export_of_a_document_that_links_to_another(documents):
     with pytest.raises(InputError) as caught:
         wires()
     assert caught.value.code == "NO_LINKED_FILE" and "store.FCStd" in caught.value.message
+    doc = App.openDocument(str(documents / "hall.FCStd"))
+    assert "store.FCStd, which is not there" in doc.Feature.Message

@@ -21,6 +21,7 @@ from . import document_file, linked_files
 from .array_elements import ArrayElement, element_count
 from .bodies import global_shape, renumbers
 from .file_issues import keep_file_issues
+from .file_links import missing_files
 from .meshes import is_mesh, mesh_of, refuse_mixed
 from .places import GROUPS, Dependencies, dependencies_of, elements_of
 
@@ -206,7 +207,7 @@ def _object_in(document: Any, path: str, object_name: str) -> Any:
             for obj in shapes or meshes
             if not any(other in known for other in obj.InListRecursive)
         ]
-    if not found and (missing := linked_files.missing_files(document)):
+    if not found and (missing := missing_files(document)):
         name, file = next(iter(missing.items()))
         raise linked_files.no_linked_file(path, document.getObject(name).Label, file)
     if len(found) != 1:
