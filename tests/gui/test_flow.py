@@ -216,7 +216,7 @@ def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
         "Rod": "Solids in plane layers",
         "Tee": "Solids without support",
         "Wire": "Curves as beads",
-        "Rotor": "Solids on a hub",
+        "Rotor": "Solids in plane layers",
     }
     person.screenshot("new_job_kinds")
     person.press("Cancel")

@@ -55,6 +55,8 @@ def clear_of_arm(job: Tried, codes: set[str]) -> Iterator[Tried]:
             if one is held:
                 remedy = Text("{} and `cell.arm_clearance: {:g} mm`", Word(one.remedy), CLEARANCE)
             yield with_cell(one, remedy, arm_clearance=CLEARANCE)
+    if held is not None and job.settings.branch != "auto":
+        yield with_cell(held, Text("{} and `cell.branch: auto`", Word(held.remedy)), branch="auto")
 
 
 def held_by_clamp(job: Tried) -> Tried | None:
