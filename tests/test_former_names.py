@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from freecad_am.gui import former_names
-from freecad_am.objects.results import store
+from freecad_am.objects.results import schemas
+from freecad_am.objects.results.former_names import SCHEMA_NAMES
 
 ROOT = Path(__file__).resolve().parent.parent
 SAVED = {  # in `GuiDocument.xml` of documents saved before modules of the window moved into folders
@@ -26,70 +27,10 @@ SAVED = {  # in `GuiDocument.xml` of documents saved before modules of the windo
 }
 
 
-RESULTS = {  # in results of documents saved before modules of the geometry moved into folders
-    "clad_faces:CladFaces",
-    "curves:BeadCurve",
-    "curves:Curves",
-    "mesh:Mesh",
-    "mesh_wall:MeshWall",
-    "part_depths:PartDepths",
-    "part_depths:Surface",
-    "patch:Patch",
-    "patch_wall:FirstCurve",
-    "patch_wall:PatchWall",
-    "patch_wall:Rim",
-    "profile:Meridian",
-    "profile:RevolvedWall",
-    "solid_mesh:SolidMesh",
-    "surface:Cone",
-    "surface:Torus",
-    "surface_wall:Placed",
-    "surface_wall:SurfaceWall",
-    "on_hub:SolidsOnHub",
-    "guide:Guide",
-    "surroundings:Body",
-}
-
-
-@pytest.mark.parametrize("name", sorted(RESULTS))
-def test_results_that_documents_hold_are_of_the_classes_of_now(name):
-    kind = store._class(f".core.geometry.{name}")
-    assert kind.__name__ == name.split(":")[1] and kind.__module__.startswith(
-        "freecad_am.core.geometry."
-    )
-
-
-# in results of documents saved before the other rooms of core and objects: these never moved, and are not to
-HELD = (
-    ".core.geometry.curves.bead_curves:BeadCurve",
-    ".core.geometry.fitted:Fitted",
-    ".core.geometry.on_hub:Base",
-    ".core.geometry.on_hub:Group",
-    ".core.geometry.plane:Plane",
-    ".core.inspection.figures:Ball",
-    ".core.inspection.figures:Spread",
-    ".core.inspection.inspect:Inspected",
-    ".core.inspection.roundness:Round",
-    ".core.issues:Issue",
-    ".core.motion:Motion",
-    ".core.parameters.cell:CellParameters",
-    ".core.parameters.cell:NozzleParameters",
-    ".core.planning.joint_path:BeadPath",
-    ".core.planning.joint_path:JointPath",
-    ".core.toolpath:Bead",
-    ".core.toolpath:Layer",
-    ".core.toolpath:SpeedLaw",
-    ".core.toolpath:Toolpath",
-    ".objects.joint_path:Planned",
-    ".objects.program:Written",
-    ".verify:Verification",
-)
-
-
-@pytest.mark.parametrize("name", HELD)
-def test_results_name_classes_where_they_stay(name):
-    kind = store._class(name)
-    assert f"{kind.__module__}:{kind.__name__}" == f"freecad_am{name}"
+@pytest.mark.parametrize("name", sorted(SCHEMA_NAMES))
+def test_results_that_documents_name_by_module_have_a_schema(name):
+    kind = schemas.class_of(SCHEMA_NAMES[name])
+    assert kind.__name__ == name.partition(":")[2]
 
 
 @pytest.mark.parametrize("module", SAVED)

@@ -1,85 +1,83 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Results of the core as two values a document can hold: one list of floats and one text.
+"""Store results of the core in a document: one list of floats and one text.
 
-Dataclasses, tuples, arrays, bytes and plain values go in; the same come out. Arrays that stand at the same place of alike
-values, such as the points of all beads, are one table, which is kept column by column as numbers (whole numbers and truth
-values are exact in a float). Of these are left out runs of one number and stretches that are there before; the rest is kept
-as differences, packed. That, and bytes, which are compressed together, go into the floats, seven to each. The text is JSON
-that says what is where. A FloatList is kept as a compressed binary file in the FCStd, and unlike an included file it follows
-undo and copies of the object by value; FreeCAD reads it float by float: the fewer, the sooner a document is open.
+Dataclasses, tuples, dicts, arrays, bytes and plain values go in; the same come out. The text is JSON: the value as a tree, in
+which a dataclass is named by its schema (`schemas`) and an array by rows of a table. The tables and all bytes are the members
+of an npz archive, compressed by zlib. The archive goes into a FloatList, seven bytes a float, because FreeCAD keeps such a
+property as a binary file, and it follows undo and copies of the object by value; an included file does neither.
+
+Arrays at the same place of alike values, such as the points of all beads, share a table, so that an archive of thousands of
+beads has few members.
 """
 
 from __future__ import annotations
 
 import array
 import dataclasses
-import functools
-import importlib
+import io
 import json
-import lzma
-import math
+import zipfile
 import zlib
-from collections.abc import Callable, Sequence
-from typing import Any, Literal
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from freecad_am.core.types import Array, Integers, NDArray
+from freecad_am.core.types import Array, NDArray
 
 from ...core.issues import InputError
-from . import differences, repeats
-from .former_names import MOVED
-from .store_bytes import bytes_of, floats_of, older_bytes
+from . import schemas
 
-_PACKAGE = __name__.split(".", maxsplit=1)[0]
+FORMAT = 5  # of the text and the archive
+COMPRESSION_LEVEL = 1  # of zlib; higher ones take three times as long for a tenth of the size
+BYTES_PREFIX = "bytes-"  # of the member of each bytes value
+BYTES_PER_FLOAT = 7
+HIGHEST_BYTE = 0x40  # with it any seven bytes are an ordinary number
+DTYPES = (np.dtype("float64"), np.dtype("int64"), np.dtype("bool"))
 Place = tuple[str | int, ...]
-_DTYPES = (np.dtype("float64"), np.dtype("int64"), np.dtype("bool"))
-# of files that are much alike: hash chains of which but the first place is looked at find them in half the time that the
-# library's own presets take, and better
-_FILTERS = [
-    {
-        "id": lzma.FILTER_LZMA2,
-        "preset": 1,
-        "dict_size": 1 << 20,
-        "mode": lzma.MODE_FAST,
-        "mf": lzma.MF_HC3,
-        "depth": 1,
-        "nice_len": 32,
-    }
-]
-_WHOLE = 2**53  # up to here floats know all whole numbers
 
 
 def pack(value: Any, key: str) -> tuple[list[float], str]:
-    """The floats and the text of a value, both marked with the key. TypeError for what is not data."""
+    """Return the floats and the text of a value.
+
+    Parameters
+    ----------
+    value
+        Data: dataclasses with a schema, tuples, lists, dicts, arrays, bytes and plain values.
+    key
+        The fingerprint of the inputs of the value; floats and text are both marked with it.
+
+    Raises
+    ------
+    TypeError
+        If something in the value is not data.
+    """
     packer = _Packer()
     tree = packer.tree(value, ())
-    once, runs = repeats.without_runs(packer.columns())
-    rest, copies = repeats.folded(once)
-    sizes = [len(rest), len(once), len(copies), len(runs)]
-    del once  # as large as all that comes after it
-    indices = np.concatenate([copies.ravel(), runs.ravel()]).astype(np.float64)
-    pieces, where = differences.packed(rest), differences.packed(indices)
-    data = packer.bytes()
-    layout = {
-        "n": sizes,
-        "p": [len(data), [*map(len, pieces)], [*map(len, where)]],
-        "t": packer.table_shapes(),
-        "v": tree,
+    data = packer.archive()
+    header = {
+        "format": FORMAT,
+        "schemas": packer.versions,
+        "bytes": len(data),
+        "value": tree,
     }
-    floats = np.concatenate([[_mark(key)], floats_of(b"".join([data, *pieces, *where]))])
-    return floats.tolist(), f"{key} {json.dumps(layout, separators=(',', ':'))}"
+    floats = np.concatenate([[_mark(key)], _floats_of(data)])
+    return floats.tolist(), f"{key} {json.dumps(header, separators=(',', ':'))}"
 
 
 def numbers_of(floats: list[float]) -> Array:
-    """The floats of a document as an array. The list is best let go then: Python looks through it now and again."""
-    return np.frombuffer(array.array("d", floats))  # twice as fast as numpy by itself
+    """Return the floats of a document as an array (n,)."""
+    return np.frombuffer(array.array("d", floats))
 
 
 def unpack(floats: Sequence[float] | Array, text: str, key: str, where: str) -> Any:
-    """The value of `pack`; InputError 'BAD_RESULT' naming `where` for one that is damaged, unknown, or of another key.
+    """Return the value that was given to `pack`.
 
-    While a step is undone, floats, text and key come back one after the other: for a moment they do not belong together.
+    Raises
+    ------
+    InputError
+        'BAD_RESULT' at `where` if it is damaged, of another key, or of a later version. While a step is undone, floats, text
+        and key come back one after the other and do not belong together for a moment.
     """
     return picked(floats, text, key, where, ())[0]
 
@@ -87,15 +85,31 @@ def unpack(floats: Sequence[float] | Array, text: str, key: str, where: str) -> 
 def picked(
     floats: Sequence[float] | Array, text: str, key: str, where: str, *places: Place
 ) -> tuple[Any, ...]:
-    """Values within that of `pack`, nothing else of it read: by the field names and indices that lead to each. Errors as
-    `unpack`."""
+    """Return parts of the value that was given to `pack`, and read no other arrays.
+
+    Parameters
+    ----------
+    places
+        For each part the field names and indices that lead to it; () is all of the value.
+
+    Raises
+    ------
+    InputError
+        As `unpack`.
+    """
     try:
         if not text.startswith(f"{key} ") or not len(floats) or floats[0] != _mark(key):
             raise ValueError("it belongs to other inputs")
-        layout, numbers = json.loads(text[len(key) :]), np.asarray(floats)
-        newer = isinstance(layout, dict) and "n" in layout
-        tree, reader = _newer(layout, numbers, () in places) if newer else _older(layout, numbers)
-        return tuple(reader.value(_within(tree, place), not place) for place in places)
+        header, numbers = json.loads(text[len(key) :]), np.asarray(floats)
+        if not (isinstance(header, dict) and header.get("format")):
+            from . import legacy
+
+            return legacy.picked(header, numbers, places)
+        if header["format"] != FORMAT:
+            raise ValueError(f"format {header['format']} is of a later version")
+        with zipfile.ZipFile(io.BytesIO(_bytes_of(numbers[1:], header["bytes"]))) as archive:
+            reader = _Reader(archive, header["schemas"])
+            return tuple(reader.value(_within(header["value"], place)) for place in places)
     except (
         KeyError,
         ValueError,
@@ -103,8 +117,11 @@ def picked(
         AttributeError,
         ImportError,
         IndexError,
+        EOFError,
+        MemoryError,
+        OSError,
         zlib.error,
-        lzma.LZMAError,
+        zipfile.BadZipFile,
     ) as error:
         raise InputError(
             "BAD_RESULT", where, "the stored result cannot be read ({}); recompute it", error
@@ -112,118 +129,79 @@ def picked(
 
 
 def _within(tree: Any, place: Place) -> Any:
-    """What is at a place of a tree."""
+    """Return the part of a tree at a place."""
     for step in place:
-        tree = tree["t"][step] if isinstance(step, int) else tree["v"][step]
+        tree = tree["tuple"][step] if isinstance(step, int) else tree["fields"][step]
     return tree
-
-
-def _newer(layout: Any, floats: Array, all_of_it: bool) -> tuple[Any, _Reader]:
-    """The tree of a layout, and what reads it, or parts of it, from the floats."""
-    packed, *lengths = layout["p"]
-    ends = np.cumsum([packed, *lengths[0], *lengths[1]]).tolist()
-    data = bytes_of(floats[1:], ends[-1])
-    pieces = [data[begin:end] for begin, end in zip(ends, ends[1:])]
-    rest, once, copies, runs = layout["n"]
-    numbers = differences.Unpacked(pieces[: len(lengths[0])], rest)
-    indices = differences.Unpacked(pieces[len(lengths[0]) :], 3 * copies + 2 * runs)
-    where = _table(indices[: 3 * copies], 3), once, _table(indices[3 * copies :], 2)
-    unfolded = repeats.Unfolded(numbers[:] if all_of_it else numbers, *where)
-    return layout["v"], _Reader(unfolded, lambda: data[:packed], layout["t"])
-
-
-def _older(tree: Any, floats: Array) -> tuple[Any, _Reader]:
-    """As `_newer`, of a result that was stored before there were tables and differences."""
-    numbers = floats[:]
-    numbers.flags.writeable = False  # parts share it
-    runs, copies, data = np.zeros((0, 2), dtype=np.int64), np.zeros((0, 3), dtype=np.int64), (0, 0)
-    if isinstance(tree, dict) and "r" in tree:
-        numbers, runs = _split(numbers, tree["r"], 2)
-        tree = tree["v"]
-    size = len(numbers)
-    if isinstance(tree, dict) and "f" in tree:
-        (size, count), tree = tree["f"], tree["v"]
-        numbers, copies = _split(numbers, count, 3)
-    if isinstance(tree, dict) and "z" in tree:
-        data, tree = tuple(tree["z"]), tree["v"]
-    unfolded = repeats.Unfolded(numbers, copies, size, runs)
-    return tree, _Reader(unfolded, lambda: older_bytes(unfolded, *data), ())
-
-
-def _split(numbers: Array, count: int, columns: int) -> tuple[Array, Integers]:
-    """What comes before a table at the end, and the table."""
-    rest, table = np.split(numbers, [len(numbers) - columns * count])
-    return rest, _table(table, columns)
-
-
-def _table(numbers: Array, columns: int) -> Integers:
-    return numbers.astype(np.int64).reshape(-1, columns)
 
 
 def _mark(key: str) -> float:
     return float(zlib.crc32(key.encode()))
 
 
-@functools.cache
-def _kind_of(dataclass: type[Any]) -> tuple[str, tuple[str, ...]]:
-    """What a dataclass is called in the text, and the fields that it is made of."""
-    names = tuple(field.name for field in dataclasses.fields(dataclass) if field.init)
-    return f"{dataclass.__module__.removeprefix(_PACKAGE)}:{dataclass.__qualname__}", names
+def _floats_of(data: bytes) -> Array:
+    """Put bytes into floats (n,), seven each."""
+    padded = np.zeros(-(-len(data) // BYTES_PER_FLOAT) * BYTES_PER_FLOAT, dtype=np.uint8)
+    padded[: len(data)] = np.frombuffer(data, dtype=np.uint8)
+    words = np.full((len(padded) // BYTES_PER_FLOAT, 8), HIGHEST_BYTE, dtype=np.uint8)
+    words[:, :BYTES_PER_FLOAT] = padded.reshape(-1, BYTES_PER_FLOAT)
+    return words.view("<f8").ravel().astype(np.float64, copy=False)
+
+
+def _bytes_of(floats: Array, length: int) -> bytes:
+    """Take the bytes out of floats again."""
+    words = np.ascontiguousarray(floats, dtype="<f8").view(np.uint8).reshape(-1, 8)
+    data = np.ascontiguousarray(words[:, :BYTES_PER_FLOAT]).ravel()[:length].tobytes()
+    if len(data) != length:
+        raise ValueError("it is cut short")
+    return data
 
 
 class _Packer:
+    """Turn a value into a tree, and collect its arrays in tables, and its bytes."""
+
     def __init__(self) -> None:
-        self.kinds: dict[Any, int] = {}  # the table of arrays of each kind
+        self.numbers: dict[Any, int] = {}  # of the table for each kind of array
         self.tables: list[list[NDArray[Any]]] = []
         self.rows: list[int] = []  # of each table
-        # the files of a program are much alike, and far apart for zlib; one by one, for together they take much memory
-        self.compressor = lzma.LZMACompressor(filters=_FILTERS)
-        self.compressed: list[bytes] = []
-        self.size = 0  # of all bytes
-
-    def bytes(self) -> bytes:
-        """All bytes, compressed; none of none. Once, at the end."""
-        return b"".join([*self.compressed, self.compressor.flush()]) if self.size else b""
+        self.data: list[bytes | bytearray] = []
+        self.versions: dict[str, int] = {}  # of the schemas that occur
 
     def tree(self, value: Any, place: Place) -> Any:
-        """What stands for a value in the text; `place`: names that lead to it, where entries have none."""
+        """Return what stands for a value in the text; `place` tells alike arrays from others."""
         if value is None or isinstance(value, (bool, int, float, str)):
             return value
         if isinstance(value, np.generic):
             return value.item()
         if isinstance(value, np.ndarray):
-            return {"a": self.put(value, place)}
+            return {"array": self.put(value, place)}
         if isinstance(value, (bytes, bytearray)):
-            self.compressed.append(self.compressor.compress(value))
-            self.size += len(value)
-            return {"y": [self.size - len(value), len(value)]}
+            self.data.append(value)
+            return {"bytes": len(self.data) - 1}
         if isinstance(value, (tuple, list)):
-            return {"t": [self.tree(entry, (*place, "")) for entry in value]}
+            return {"tuple": [self.tree(entry, (*place, "")) for entry in value]}
         if isinstance(value, dict):
-            return {"d": [[key, self.tree(entry, (*place, ""))] for key, entry in value.items()]}
+            entries = [[key, self.tree(entry, (*place, ""))] for key, entry in value.items()]
+            return {"dict": entries}
         if dataclasses.is_dataclass(value) and not isinstance(value, type):
-            kind, names = _kind_of(type(value))
-            return {
-                "c": kind,
-                "v": {name: self.tree(getattr(value, name), (*place, name)) for name in names},
-            }
+            return self.record(value, place)
         raise TypeError(f"{type(value).__name__} cannot be stored")
 
+    def record(self, value: Any, place: Place) -> dict[str, Any]:
+        """Return what stands for a dataclass."""
+        name, schema = schemas.of_class(type(value))
+        self.versions[name] = schema.version
+        names = [field.name for field in dataclasses.fields(value) if field.init]
+        fields = {name: self.tree(getattr(value, name), (*place, name)) for name in names}
+        return {"schema": name, "fields": fields}
+
     def put(self, value: NDArray[Any], place: Place) -> list[int]:
-        """The table that an array becomes part of, from which row on, and how many rows. TypeError for what is none, and
-        for whole numbers that a float cannot tell apart."""
-        if not value.ndim or value.dtype not in _DTYPES:
-            raise TypeError(
-                f"an array of {value.dtype} with {value.ndim} dimensions cannot be stored"
-            )
-        if (
-            value.dtype == np.int64
-            and value.size
-            and not -_WHOLE <= value.min() <= value.max() <= _WHOLE
-        ):
-            raise TypeError(f"whole numbers beyond {_WHOLE} cannot be stored")
-        kind = (place, _DTYPES.index(value.dtype), value.shape[1:])
-        number = self.kinds.setdefault(kind, len(self.tables))
+        """Add an array to a table; return the table's number, the first row and the count of rows."""
+        if not value.ndim or value.dtype not in DTYPES:
+            message = f"an array of {value.dtype} with {value.ndim} dimensions cannot be stored"
+            raise TypeError(message)
+        kind = (place, value.dtype.str, value.shape[1:])
+        number = self.numbers.setdefault(kind, len(self.tables))
         if number == len(self.tables):
             self.tables.append([])
             self.rows.append(0)
@@ -232,108 +210,63 @@ class _Packer:
         self.rows[number] += len(value)
         return [number, first, len(value)]
 
-    def table_shapes(self) -> list[list[int]]:
-        """Of each table dtype, rows, and the shape of a row."""
-        return [
-            [dtype, rows, *shape]
-            for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)
-        ]
+    def archive(self) -> bytes:
+        """Return the npz archive of all tables and bytes."""
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(
+            buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION_LEVEL
+        ) as archive:
+            for number, arrays in enumerate(self.tables):
+                # column by column, which compresses better
+                _add(archive, str(number), np.asfortranarray(np.concatenate(arrays)))
+            for number, data in enumerate(self.data):
+                _add(archive, f"{BYTES_PREFIX}{number}", np.frombuffer(data, dtype=np.uint8))
+        return buffer.getvalue()
 
-    def columns(self) -> Array:
-        """All tables column by column."""
-        whole, start = np.empty(sum(value.size for arrays in self.tables for value in arrays)), 0
-        for arrays, rows in zip(self.tables, self.rows, strict=True):
-            size = sum(value.size for value in arrays)
-            table, row = whole[start : start + size].reshape(size // max(rows, 1), rows), 0
-            for value in arrays:
-                table[:, row : row + len(value)] = value.reshape(len(value), len(table)).T
-                row += len(value)
-            start += size
-        return whole
+
+def _add(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
+    """Add an array to an archive as numpy's own files have it, always with the same bytes."""
+    with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+        np.lib.format.write_array(member, values, allow_pickle=False)
 
 
 class _Reader:
-    def __init__(
-        self,
-        numbers: repeats.Unfolded,
-        packed: Callable[[], bytes],
-        tables: Sequence[Sequence[int]],
-    ) -> None:
-        self.numbers, self.packed, self.tables = numbers, packed, tables
-        sizes = [int(np.prod(rest)) for _, *rest in tables]
-        self.starts = [0, *np.cumsum(sizes, dtype=np.int64).tolist()]
-        self.whole: dict[int, NDArray[Any]] = {}  # tables that were read
+    """Turn a tree back into the value; tables are read when they are first needed."""
 
-    def value(self, tree: Any, all_of_it: bool) -> Any:
-        """What a part of the text stands for; tables are read at once where all is."""
+    def __init__(self, archive: zipfile.ZipFile, versions: Mapping[str, int]) -> None:
+        self.archive, self.versions = archive, versions
+        self.tables: dict[str, NDArray[Any]] = {}
+
+    def value(self, tree: Any) -> Any:
+        """Return what a part of the tree stands for."""
         if not isinstance(tree, dict):
             return tree
-        if "a" in tree:
-            return self.array(*tree["a"], all_of_it) if self.tables else self.older(*tree["a"])
-        if "s" in tree:
-            dtype, start, rows, sides, columns = tree["s"]
-            turned = self.older(dtype, start, sides, rows, columns)
-            return np.ascontiguousarray(turned.transpose(1, 0, 2))
-        if "y" in tree:
-            start, length = tree["y"]
-            if start + length > len(self.bytes):
-                raise ValueError("it is cut short")
-            return self.bytes[start : start + length]
-        if "b" in tree:  # as older documents have them
-            return zlib.decompress(older_bytes(self.numbers, *tree["b"]))
-        if "t" in tree:
-            return tuple(self.value(entry, all_of_it) for entry in tree["t"])
-        if "d" in tree:
-            return {key: self.value(entry, all_of_it) for key, entry in tree["d"]}
-        return _class(tree["c"])(
-            **{name: self.value(entry, all_of_it) for name, entry in tree["v"].items()}
-        )
+        if "array" in tree:
+            number, first, rows = tree["array"]
+            return self.rows(str(number), first, rows)
+        if "bytes" in tree:
+            return self.table(f"{BYTES_PREFIX}{tree['bytes']}").tobytes()
+        if "tuple" in tree:
+            return tuple(map(self.value, tree["tuple"]))
+        if "dict" in tree:
+            return {key: self.value(entry) for key, entry in tree["dict"]}
+        name = tree["schema"]
+        fields = {field: self.value(entry) for field, entry in tree["fields"].items()}
+        return schemas.record(name, self.versions[name], fields)
 
-    def array(self, number: int, first: int, rows: int, all_of_it: bool) -> NDArray[Any]:
-        """Rows of a table, which they share where it is read at once."""
-        if first < 0 or rows < 0 or first + rows > self.tables[number][1]:
+    def rows(self, name: str, first: int, count: int) -> NDArray[Any]:
+        """Return rows of a table, which share its memory."""
+        table = self.table(name)
+        if first < 0 or count < 0 or first + count > len(table):
             raise ValueError("it is cut short")
-        if not all_of_it:
-            return self.rows(number, first, rows, "F")
-        if number not in self.whole:
-            self.whole[number] = self.rows(number, 0, self.tables[number][1], "C")
-        return self.whole[number][first : first + rows]
+        return table[first : first + count]
 
-    def rows(self, number: int, first: int, rows: int, order: Literal["C", "F"]) -> NDArray[Any]:
-        """Rows of a table, and nothing else of it. What views draw, and compute with nothing, stands column by column, as it
-        is kept: that is filled sooner."""
-        dtype, count, *shape = self.tables[number]
-        if rows * math.prod(shape) > self.numbers.size:
-            raise ValueError("it is cut short")
-        columns = np.empty((rows, math.prod(shape)), dtype=_DTYPES[dtype], order=order)
-        for k in range(columns.shape[1]):
-            self.numbers.fill(self.starts[number] + k * count + first, columns[:, k])
-        columns.flags.writeable = False
-        table = columns.reshape(rows, *shape)
-        table.flags.writeable = False
-        return table
-
-    def older(self, dtype: int, start: int, *shape: int) -> NDArray[Any]:
-        """An array that stands row by row."""
-        size = int(np.prod(shape)) if shape else 1
-        return self.numbers.part(start, size).astype(_DTYPES[dtype], copy=False).reshape(shape)
-
-    @functools.cached_property
-    def bytes(self) -> bytes:
-        """All bytes, one value after the other."""
-        packed = self.packed()
-        return lzma.decompress(packed) if packed else b""
-
-
-def _class(name: str) -> Any:
-    # only our own dataclasses: a document must not name what is called when it is opened
-    module, _, qualified = name.partition(":")
-    ours = module.startswith((".core.", ".objects.", ".verify"))
-    kind = (
-        getattr(importlib.import_module(_PACKAGE + MOVED.get(module, module)), qualified)
-        if ours
-        else None
-    )
-    if not (isinstance(kind, type) and dataclasses.is_dataclass(kind)):
-        raise ValueError(f"{name} is not a result")
-    return kind
+    def table(self, name: str) -> NDArray[Any]:
+        """Return a member of the archive, read once."""
+        if name not in self.tables:
+            with self.archive.open(f"{name}.npy") as member:
+                values = np.lib.format.read_array(member, allow_pickle=False)
+            table = np.ascontiguousarray(values)
+            table.flags.writeable = False
+            self.tables[name] = table
+        return self.tables[name]

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Names and versions by which documents know the dataclasses of results; classes and modules may be renamed freely.
+
+A class that is renamed or moved changes its entry here and nothing else. A field that is renamed, added without a default or
+removed raises the version of the entry, and a function in UPGRADES turns the fields of the version before into those of now.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+Fields = dict[str, Any]
+
+
+class Schema(NamedTuple):
+    """Where a stored class is, below the package, as `module:class`, and the version of its fields."""
+
+    place: str
+    version: int = 1
+
+
+SCHEMAS: dict[str, Schema] = {
+    "bead": Schema("core.toolpath:Bead"),
+    "bead_curve": Schema("core.geometry.curves.bead_curves:BeadCurve"),
+    "bead_path": Schema("core.planning.joint_path:BeadPath"),
+    "cell_parameters": Schema("core.parameters.cell:CellParameters"),
+    "clad_faces": Schema("core.geometry.walls.clad_faces:CladFaces"),
+    "cone_surface": Schema("core.geometry.walls.surface:Cone"),
+    "curves": Schema("core.geometry.curves.bead_curves:Curves"),
+    "developable_surface": Schema("core.geometry.developable:Developable"),
+    "deviation_map": Schema("core.geometry.fitted:DeviationMap"),
+    "deviation_spread": Schema("core.inspection.figures:Spread"),
+    "first_curve": Schema("core.geometry.walls.patch_wall:FirstCurve"),
+    "fitted": Schema("core.geometry.fitted:Fitted"),
+    "fitted_ball": Schema("core.inspection.figures:Ball"),
+    "fitted_circle": Schema("core.inspection.figures:Circle"),
+    "guide": Schema("core.geometry.curves.guide:Guide"),
+    "hub_base": Schema("core.geometry.on_hub:Base"),
+    "inspection": Schema("core.inspection.inspect:Inspected"),
+    "issue": Schema("core.issues:Issue"),
+    "joint_path": Schema("core.planning.joint_path:JointPath"),
+    "layer": Schema("core.toolpath:Layer"),
+    "measured_thickness": Schema("core.inspection.figures:Thickness"),
+    "meridian": Schema("core.geometry.curves.profile:Meridian"),
+    "mesh": Schema("core.geometry.mesh.triangle_mesh:Mesh"),
+    "mesh_wall": Schema("core.geometry.walls.mesh_wall:MeshWall"),
+    "motion": Schema("core.motion:Motion"),
+    "nozzle_parameters": Schema("core.parameters.cell:NozzleParameters"),
+    "obstacle": Schema("core.geometry.obstacles:Body"),
+    "own_hub": Schema("core.geometry.on_hub:OwnHub"),
+    "part_depths": Schema("core.geometry.walls.part_depths:PartDepths"),
+    "part_surface": Schema("core.geometry.walls.part_depths:Surface"),
+    "patch_wall": Schema("core.geometry.walls.patch_wall:PatchWall"),
+    "placed_surface": Schema("core.geometry.walls.surface_wall:Placed"),
+    "plane": Schema("core.geometry.plane:Plane"),
+    "planned_path": Schema("objects.joint_path:Planned"),
+    "predicted_shape": Schema("core.geometry.fitted:PredictedShape"),
+    "program": Schema("objects.program:Written"),
+    "revolved_wall": Schema("core.geometry.curves.profile:RevolvedWall"),
+    "roundness": Schema("core.inspection.roundness:Round"),
+    "solid_group": Schema("core.geometry.on_hub:Group"),
+    "solid_mesh": Schema("core.geometry.mesh.solid:SolidMesh"),
+    "solids_on_hub": Schema("core.geometry.on_hub:SolidsOnHub"),
+    "speed_law": Schema("core.toolpath:SpeedLaw"),
+    "surface_patch": Schema("core.geometry.walls.patch:Patch"),
+    "surface_wall": Schema("core.geometry.walls.surface_wall:SurfaceWall"),
+    "toolpath": Schema("core.toolpath:Toolpath"),
+    "torus_surface": Schema("core.geometry.walls.surface:Torus"),
+    "verification": Schema("verify:Verification"),
+    "wall_rim": Schema("core.geometry.walls.patch_wall:Rim"),
+}
+
+# by name and version: turns the fields of that version into those of the next
+UPGRADES: dict[tuple[str, int], Callable[[Fields], Fields]] = {}
+
+_PACKAGE = __name__.split(".", maxsplit=1)[0]
+
+
+@functools.cache
+def _names() -> Mapping[str, str]:
+    """Return the schema names by the places of their classes."""
+    return {schema.place: name for name, schema in SCHEMAS.items()}
+
+
+@functools.cache
+def of_class(kind: type[Any]) -> tuple[str, Schema]:
+    """Return the name and schema of a dataclass. Raises TypeError if it has none."""
+    place = f"{kind.__module__.removeprefix(f'{_PACKAGE}.')}:{kind.__qualname__}"
+    name = _names().get(place)
+    if name is None:
+        raise TypeError(f"{kind.__name__} cannot be stored: it has no schema")
+    return name, SCHEMAS[name]
+
+
+@functools.cache
+def class_of(name: str) -> type[Any]:
+    """Return the class of a schema. Raises ValueError for an unknown name.
+
+    A document names schemas, never modules: opening one cannot call anything else.
+    """
+    if name not in SCHEMAS:
+        raise ValueError(f"{name!r} is not a result that this version knows")
+    module, _, qualified = SCHEMAS[name].place.partition(":")
+    kind: type[Any] = getattr(importlib.import_module(f"{_PACKAGE}.{module}"), qualified)
+    return kind
+
+
+def record(name: str, version: int, fields: Fields) -> Any:
+    """Return the dataclass of stored fields, brought up to the version of now.
+
+    Raises
+    ------
+    ValueError
+        If the name is unknown or the version is later than this one.
+    """
+    kind = class_of(name)
+    if version > SCHEMAS[name].version:
+        raise ValueError(f"{name} has version {version}, which is later than this one")
+    for earlier in range(version, SCHEMAS[name].version):
+        fields = UPGRADES[name, earlier](fields)
+    return kind(**fields)
