@@ -80,16 +80,12 @@ def _chosen(
         found = [obj for obj in every if obj.Name == name] or [
             obj for obj in every if obj.Label == name
         ]
-        if len(found) != 1:
-            raise InputError(
-                "NO_OBJECT",
-                label,
-                "{} {}s are called {!r}; name one of {}",
-                len(found),
-                kinds[0],
-                name,
-                known,
-            )
+        if not found:
+            message = "no {} is called {!r}; name one of {}"
+            raise InputError("NO_OBJECT", label, message, kinds[0], name, known)
+        if len(found) > 1:
+            message = "{!r} is the label of several {}s; use the name of one of them"
+            raise InputError("NO_OBJECT", label, message, name, kinds[0])
         chosen += found
     chosen = chosen or next(objects for objects in of_kinds if objects)
     for obj in chosen:

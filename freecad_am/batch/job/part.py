@@ -116,15 +116,12 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> Any:
         found = found or [obj for obj in one.Objects if obj.Name == name]
         found = found or one.getObjectsByLabel(name)
     if len(found) != 1:
-        names = ", ".join(obj.Label for obj in document.Objects)
-        raise InputError(
-            "NO_OBJECT",
-            place,
-            "{} objects are called {!r}; name one of {}",
-            len(found),
-            name,
-            names,
-        )
+        names = ", ".join(obj.Label for obj in found or document.Objects) or "none"
+        message = "no object is called {!r}; the document has {}"
+        if found:
+            message = "{!r} is the label of several objects ({}); use the name of one of them"
+            names = ", ".join(obj.Name for obj in found)
+        raise InputError("NO_OBJECT", place, message, name, names)
     obj = found[0]
     try:
         if constraints:

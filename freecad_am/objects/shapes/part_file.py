@@ -211,16 +211,28 @@ def _object_in(document: Any, path: str, object_name: str) -> Any:
         name, file = next(iter(missing.items()))
         raise linked_files.no_linked_file(path, document.getObject(name).Label, file)
     if len(found) != 1:
-        names = ", ".join(obj.Label for obj in known) or "none"
-        asked = repr(object_name) if object_name else "one object that nothing else is made from"
-        raise InputError(
-            "NO_OBJECT",
-            path,
-            "{} is not found among the objects with a shape ({}); name one",
-            asked,
-            names,
-        )
+        raise _no_single_object(path, object_name, known, found)
     return found[0]
+
+
+def _no_single_object(
+    path: str, object_name: str, known: list[Any], found: list[Any]
+) -> InputError:
+    """Return the error of a document in which no single object is meant."""
+    if not known:
+        message = (
+            "no object in it has a shape; recompute and save it in FreeCAD, or use another file"
+        )
+        return InputError("NO_OBJECT", path, message)
+    names = ", ".join(obj.Label for obj in found or known)
+    if not object_name:
+        message = "{} objects have a shape of their own ({}); name the part with part.object"
+        return InputError("NO_OBJECT", path, message, len(found), names)
+    if found:
+        message = "{} objects are called {!r}; give one of them another label"
+        return InputError("NO_OBJECT", path, message, len(found), object_name)
+    message = "no object with a shape is called {!r}; name one of {}"
+    return InputError("NO_OBJECT", path, message, object_name, names)
 
 
 def _content_of(source: Any, path: str) -> tuple[Any, str]:

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A document in which no single object is meant: the message says which case it is."""
+
+import FreeCAD as App
+import pytest
+
+JOB = """version: 1
+name: part
+part: {{file: model.FCStd{more}}}
+strategy: {{kind: solid, layer_height: 5 mm}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("boxes", "more", "message"),
+    [
+        ([], "", "no object in it has a shape; recompute and save it"),
+        (["Left", "Right"], "", "2 objects have a shape of their own (Left, Right)"),
+        (
+            ["Left"],
+            ", object: Middle",
+            "no object with a shape is called 'Middle'; name one of Left",
+        ),
+        (["Left", "Left"], ", object: Left", "2 objects are called 'Left'; give one of them"),
+        (["Left"], ", object: Left, set: {Right: {Length: 4}}", "no object is called 'Right'"),
+        (
+            ["Left", "Left"],
+            ", object: Box, set: {Left: {Length: 4}}",
+            "'Left' is the label of several objects (Box, Box001)",
+        ),
+    ],
+)
+def test_no_single_object(workshop, boxes, more, message):
+    document = App.newDocument("Model")
+    preference = App.ParamGet("User parameter:BaseApp/Preferences/Document")
+    before = preference.GetBool("DuplicateLabels")
+    preference.SetBool("DuplicateLabels", True)
+    try:
+        for label in boxes:
+            document.addObject("Part::Box", "Box").Label = label
+        document.recompute()
+        document.saveAs(str(workshop.folder / "model.FCStd"))
+    finally:
+        preference.SetBool("DuplicateLabels", before)
+        App.closeDocument(document.Name)
+    (workshop.folder / "part.yaml").write_text(JOB.format(more=more), encoding="utf-8")
+    done = workshop.run("plan", "part.yaml")
+    assert done.status == 2 and "error[NO_OBJECT]" in done.err
+    assert message in done.err
