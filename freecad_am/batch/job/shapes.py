@@ -123,6 +123,11 @@ class Shapes:
                 links=links,
                 parameters=[self.of.strategy, self.of.build_direction],
             )
+            chord_error = float(made.ChordError)
+            if chord_error != self.of.strategy.chord_error:
+                self.of = replace(
+                    self.of, strategy=replace(self.of.strategy, chord_error=chord_error)
+                )
             self.scan = None if self.of.scan is None else self._scan(self.of.scan)
             return made
         except InputError as error:

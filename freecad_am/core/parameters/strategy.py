@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from ..geometry.curves import gcode, gcode_roles
 from ..issues import InputError
 from . import field as f
+from .chord_error import LEAST, DefaultLength
 
 ISO = "iso-parameter"
 SPACINGS = ("constant-distance", "smooth", ISO)
@@ -28,9 +29,10 @@ class LayerParameters:
         1.0, f.LENGTH, "Distance between neighbouring layers.", low=0.0, open_low=True
     )
     chord_error: float = f.parameter(
-        0.01,
+        DefaultLength(LEAST),
         f.LENGTH,
-        "Largest distance between a bead and the straight segments that stand for it.",
+        "Largest distance between a bead and the straight segments that stand for it. A new feature begins with 0.01 mm "
+        "up to a size of 250 mm and with more beyond, at most a hundredth of the bead width.",
         low=1e-5,
         high=10.0,
     )

@@ -17,7 +17,7 @@ from ..stage import Stage
 from ..stage_parts import Outcome
 from ..staleness import UP_TO_DATE
 from ..work import faults
-from . import nested
+from . import chord_error, nested
 from .bodies import shape_of
 from .file_issues import file_issues
 from .marks import EDGE, FACE, LINE, PLANE, TOLERANCE, WHOLE, Mark, marks_of, read, whole_of
@@ -146,6 +146,7 @@ class FeatureStage(Stage):
                 self._keep(obj, {link: marks})
         known = set(outcome.issues)
         found += [issue for issue in file_issues(obj) if issue not in known]
+        found += chord_error.notes(obj)
         super()._store(obj, dataclasses.replace(outcome, issues=(*found, *outcome.issues)), *packed)
 
     def _others(self, obj: Any) -> list[Issue]:

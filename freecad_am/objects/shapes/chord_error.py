@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The chord error of features that name none, by the size of what they deposit."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from ...brep.kernel import limits as kernel
+from ...core.issues import NOTE, AmError, Issue, Text
+from ...core.parameters.chord_error import (
+    BEAD_TO_LAYER,
+    LEAST,
+    SMALL,
+    DefaultLength,
+    scaled,
+)
+from .bodies import global_shape
+from .meshes import is_mesh, mesh_of
+
+CODE = "CHORD_ERROR"
+KEY, PROPERTY = "chord_error", "ChordError"
+
+
+def fill_in(obj: Any, parameters: Sequence[Any], values: Mapping[str, Any]) -> None:
+    """Set the chord error of a new feature by its size, unless `parameters` or `values` give one."""
+    if PROPERTY in obj.PropertiesList and not _is_given(parameters, values):
+        chord_error = suited(obj)
+        if chord_error > LEAST:
+            setattr(obj, PROPERTY, f"{chord_error!r} mm")
+
+
+def suited(obj: Any) -> float:
+    """The chord error, mm, that suits the size and the beads of a feature."""
+    bead = getattr(obj, "BeadSpacing", None)
+    width = BEAD_TO_LAYER * float(obj.LayerHeight) if bead is None else float(bead)
+    return scaled(extent(obj), width)
+
+
+def extent(obj: Any) -> float:
+    """The largest extent, mm, of what a feature deposits along a coordinate axis; 0 where that is not known."""
+    sizes = [0.0]
+    with contextlib.suppress(AmError, *kernel.FAULTS):
+        for box in _boxes(obj):
+            sizes += [box.XLength, box.YLength, box.ZLength] if box.isValid() else []
+    return max(sizes)
+
+
+def notes(obj: Any) -> tuple[Issue, ...]:
+    """A note where the chord error of a feature is that of its size, not the one of small parts."""
+    chord_error = float(getattr(obj, PROPERTY, LEAST))
+    if chord_error <= LEAST or chord_error != suited(obj):
+        return ()
+    text = Text(
+        "beads are straight within {:g} mm, as suits a part {:.0f} mm large and its beads; set strategy.chord_error for "
+        "another value",
+        chord_error,
+        extent(obj),
+    )
+    return (Issue(NOTE, CODE, text),)
+
+
+def _is_given(parameters: Sequence[Any], values: Mapping[str, Any]) -> bool:
+    whole = [getattr(entry, KEY) for entry in parameters if hasattr(entry, KEY)]
+    return KEY in values or any(not isinstance(value, DefaultLength) for value in whole)
+
+
+def _boxes(obj: Any) -> Iterator[Any]:
+    """The boxes around the objects, or the faces, that a feature deposits."""
+    source, names = (obj.Source[0], obj.Source[1]) if obj.Source else (None, ())
+    for part in (source, *getattr(obj, "Further", ())):
+        if part is None:
+            continue
+        if is_mesh(part):
+            yield part.Mesh.BoundBox if "Mesh" in part.PropertiesList else mesh_of(part)[0].BoundBox
+            continue
+        shape = global_shape(part)
+        chosen = [shape.getElement(name) for name in names if name] if part is source else []
+        for piece in chosen or [shape]:
+            yield _box(piece)
+
+
+def _box(shape: Any) -> Any:
+    """The box around a shape. A quick box is never too small but depends on triangles that the shape may have, so it
+    decides about small shapes alone."""
+    box = shape.BoundBox
+    if box.isValid() and max(box.XLength, box.YLength, box.ZLength) > SMALL:
+        return shape.copy(True, False).optimalBoundingBox()  # without its triangles
+    return box

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The chord error of features that name none: by size and bead, kept where it is given or saved."""
+
+import FreeCAD as App
+import Part
+import pytest
+
+from freecad_am import api
+from freecad_am.core.parameters.chord_error import scaled
+from freecad_am.core.parameters.filled import SolidParameters
+
+
+@pytest.fixture
+def block():
+    document = App.newDocument()
+    part = document.addObject("Part::Feature", "Block")
+
+    def sized(length):
+        part.Shape = Part.makeBox(length, 20, 4)
+        return part
+
+    yield sized
+    App.closeDocument(document.Name)
+
+
+def codes(feature):
+    return [issue.code for issue in api.issues(feature)]
+
+
+@pytest.mark.parametrize(
+    ("extent", "bead", "chord_error"),
+    [
+        (0.0, 5.0, 0.01),
+        (250.0, 5.0, 0.01),
+        (388.0, 5.0, 0.04),
+        (610.0, 5.0, 0.05),
+        (610.0, 15.0, 0.08),
+        (610.0, 0.5, 0.01),
+        (float("inf"), float("inf"), 0.01),
+    ],
+)
+def test_it_grows_with_part_and_bead(extent, bead, chord_error):
+    assert scaled(extent, bead) == chord_error
+
+
+def test_small_parts_keep_it_and_large_ones_say_so(block):
+    part = block(250)
+    small = api.make_solid_feature(part.Document, part, layer_height=2)
+    assert float(small.ChordError) == 0.01 and "CHORD_ERROR" not in codes(small)
+    large = api.make_solid_feature(part.Document, block(500), layer_height=2)
+    assert float(large.ChordError) == pytest.approx(0.05) and "CHORD_ERROR" in codes(large)
+    assert api.result(api.make_toolpath(part.Document, large)).chord_error == pytest.approx(0.05)
+    wall = api.make_surface_feature(part.Document, part, ["Face1"], layer_height=1)
+    assert float(wall.ChordError) == 0.01, "the chosen face is 20 mm long"
+
+
+@pytest.mark.parametrize("given", ["keyword", "dataclass"])
+def test_a_given_value_stays(block, given):
+    part = block(500)
+    more = (
+        {"chord_error": 0.01}
+        if given == "keyword"
+        else {"strategy": SolidParameters(chord_error=0.01)}
+    )
+    feature = api.make_solid_feature(part.Document, part, **more)
+    assert float(feature.ChordError) == 0.01 and "CHORD_ERROR" not in codes(feature)
+    part.Shape = Part.makeBox(900, 20, 4)
+    api.recompute(feature)
+    assert float(feature.ChordError) == 0.01
+
+
+def test_a_default_dataclass_leaves_it_out(block):
+    part = block(500)
+    feature = api.make_solid_feature(part.Document, part, strategy=SolidParameters(layer_height=2))
+    assert float(feature.ChordError) == pytest.approx(0.05)
+
+
+def test_turning_triangles_into_view_changes_nothing(block):
+    part = block(10)
+    part.Shape = Part.makeCylinder(130, 4)
+    before = api.make_solid_feature(part.Document, part, layer_height=2)
+    shape = part.Shape.copy()
+    shape.tessellate(20.0)
+    part.Shape = shape
+    after = api.make_solid_feature(part.Document, part, layer_height=2)
+    assert float(before.ChordError) == float(after.ChordError) == 0.01
