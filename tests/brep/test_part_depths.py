@@ -205,3 +205,14 @@ def test_a_solid_left_aside_is_told_however_small():
     assert "1 solid(s) (Solid2)" in deposit_balance.issues(found)[0].message and codes(found) == [
         "NOT_DEPOSITED"
     ]
+
+
+@pytest.mark.parametrize("thick", [2.0, 5.09])
+def test_the_thickness_of_a_wall_is_that_of_its_shape_not_of_its_triangles(thick):
+    """Triangles lie within a curved outer face and within the hole; both made walls 0.05 mm thicker than they are."""
+    shell = Part.makeSphere(40, Vector(), Z, 0, 90, 360).cut(Part.makeSphere(40 - thick))
+    for shape in (tube(30, 30 - thick), shell):
+        found = balance(shape)
+        assert abs(found.thick - thick) < 0.01
+        (told,) = [issue for issue in deposit_balance.issues(found) if "mm thick" in issue.message]
+        assert f"which is {thick:.2g} mm thick there" in told.message

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Panels show words and full names where documents hold keys, and no field without a meaning for the machine."""
 
+import math
+
 import pytest
 from PySide import QtGui
 
@@ -155,7 +157,7 @@ def test_a_cell_has_the_fields_of_its_set_up(person, cells):
     person.panel_closed()
 
 
-def test_keys_are_words_and_short_lengths_are_in_mm(person, hemisphere):
+def test_keys_are_words_and_short_lengths_show_the_unit_that_is_typed(person, hemisphere):
     document = hemisphere.Document
     feature = api.make_feature(document, hemisphere, spacing="iso-height", layer_height=15)
     person.double_click(feature)
@@ -170,7 +172,9 @@ def test_keys_are_words_and_short_lengths_are_in_mm(person, hemisphere):
 
     tolerance = next(row for row in rows(SurfaceParameters) if row.key == "tolerance")
     field = fields.make(tolerance, tolerance.default)
-    assert field.widget.text() == "0.0001 mm" and field.value == 1e-4 and not field.changed
+    assert field.widget.text() == "100 nm" and field.value == 1e-4 and not field.changed
+    field.widget.lineEdit().setText("250")  # without a unit it is in the one that was shown
+    assert math.isclose(field.value, 2.5e-4, rel_tol=1e-12) and field.changed
 
 
 def test_the_first_entry_of_a_program_s_menu_reads_it(person, hemisphere, coarse):

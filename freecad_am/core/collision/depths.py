@@ -130,7 +130,21 @@ def _thickness(start: Array, way: Array, half: bool, inside: Inside, slack: floa
     """How far (m,) mm the part reaches under places (m, 3) of a surface along unit vectors (m, 3); with `half` twice as far
     as it does where it reaches less far, of both ways."""
     depth = _reach(start, way, inside, slack)
-    return 2.0 * np.minimum(depth, _reach(start, -way, inside, slack)) if half else depth
+    if half:
+        return 2.0 * np.minimum(depth, _reach(start, -way, inside, slack))
+    return np.maximum(depth - _entry(start, way, inside, slack), 0.0)
+
+
+def _entry(start: Array, way: Array, inside: Inside, slack: float) -> Array:
+    """How far (m,) mm from places of a body's surface, along unit vectors, (m, 3) each, its triangles begin, which are up to
+    `slack` off that surface to either side; 0 where no such place is."""
+    low, high = np.full(len(start), -slack), np.full(len(start), slack)
+    begins = ~inside.holds(start - slack * way) & inside.holds(start + slack * way)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        within = inside.holds(start + middle[:, None] * way)
+        low, high = np.where(within, low, middle), np.where(within, middle, high)
+    return np.where(begins, 0.5 * (low + high), 0.0)
 
 
 def _reach(start: Array, way: Array, inside: Inside, slack: float) -> Array:
