@@ -201,7 +201,7 @@ class Program:
     """All of a job, in order.
 
     name: as the user named the job; a post derives its own file names or refuses. machine: title of the machine.
-    endless: for each axis, whether it turns without end (continuous turn). remarks: lines a post writes as
+    continuous: for each axis, whether it turns without limits. remarks: lines a post writes as
     comments. motion: 'joint' or 'cartesian', whether places are told as joint values or as positions; rapids are joint moves
     in either. deposit points run at constant speed at the deposition point. blend: percent of the rounding of corners that
     the controller knows, where moves pass through.

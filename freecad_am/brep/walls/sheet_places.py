@@ -43,7 +43,7 @@ class Places:
     def middles(self, points: Array, adjacent: Index, ends: Index) -> Array:
         """The middles (n, 3) of the edges between the vertices `ends` (n, 2), moved; they become the next vertices.
 
-        beside: the faces (n, 2) on either side, -1 for none.
+        adjacent: the faces (n, 2) on either side, -1 for none.
         """
         inner = adjacent[:, 0] == adjacent[:, 1]
         placed = points.copy()

@@ -52,7 +52,7 @@ class Cell:
     chain is the face that carries the part, or the world where only the robot is carried.
     obstacles: what stands in the world, the maker's base frame, in its coordinates. up: (3,) against gravity, there.
     torch: what holds the nozzle, in the frame of its tip, Z into it. offset: where the part stands by points touched.
-    beside: the links of positioner and track that are known, each in its own frame.
+    external_links: the links of positioner and track that are known, each in its own frame.
     """
 
     machine: Machine

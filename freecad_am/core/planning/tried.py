@@ -43,7 +43,7 @@ class Fixed(NamedTuple):
 class Tried:
     """A job to plan: that which is infeasible, or it with a change, told as keys of a job file. fixed: the toolpath with the
     build direction of the part's axis; None where it has it, or cannot. own_speed: of several features, whether each has a
-    travel speed of its own. beside: links of its positioner and track as they were read. look: what finds the collisions of
+    travel speed of its own. external_links: links of its positioner and track as they were read. look: what finds the collisions of
     arm and platform; None where nobody looks."""
 
     toolpath: Callable[[], Toolpath]

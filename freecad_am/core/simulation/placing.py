@@ -24,7 +24,7 @@ _ROTATIONS = 24
 @dataclass(frozen=True, eq=False)
 class Placing:
     """Poses in the world, mm. links: (axes + 1, 4, 4), the robot's own. part: (4, 4), its own coordinates. nozzle: (4, 4),
-    the tip, its Z pointing into the nozzle. platform: (4, 4), what the part stands on. beside: (k, 4, 4), the links of
+    the tip, its Z pointing into the nozzle. platform: (4, 4), what the part stands on. external_links: (k, 4, 4), the links of
     positioner and track that are known."""
 
     links: Array

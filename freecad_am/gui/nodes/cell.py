@@ -43,7 +43,7 @@ PLATFORM, NOZZLE = ((0.55, 0.58, 0.62), 0.2), ((0.8, 0.82, 0.85), 0.0)
 @dataclass(frozen=True, eq=False)
 class Rest:
     """A machine at rest, in part coordinates: links (axes + 1, 4, 4), what they look like, and the meshes of files a user
-    gave them. reached: whether it gets there; else all axes are at 0. limits, joints (axes,): as it stands. beside: the
+    gave them. reached: whether it gets there; else all axes are at 0. limits, joints (axes,): as it stands. external_links: the
     links of positioner and track that are known, at `stands` (k, 4, 4)."""
 
     machine: Machine

@@ -33,8 +33,8 @@ from ...objects.staleness import STALE, UP_TO_DATE
 @dataclass(frozen=True, eq=False)
 class Run:
     """All of a simulation but its pictures. title: what is played. objects: names of the objects it was made from. stale:
-    whether these have changed since. laid: of the predicted deposit, as an inspection of the toolpath has it, where there
-    is one that fits; None else."""
+    whether these have changed since. deposit: the predicted deposit, as an inspection of the toolpath has it; None if
+    there is none that fits."""
 
     document: str
     title: str

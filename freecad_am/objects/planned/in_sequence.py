@@ -46,7 +46,7 @@ TOLERANCE_MM = 1e-9  # mm
 @dataclass(frozen=True)
 class Member:
     """A feature of a sequence. given: None of it needs the document. on: the substrate's own objects that are parts of other
-    features; beside: those that are not, where it has both. whole: it is all of its sources, not faces of one."""
+    features; neighbours: those that are not, where it has both. whole: it is all of its sources, not faces of one."""
 
     label: str
     given: Given

@@ -21,7 +21,7 @@ class Run:
     """What happened so far while the modules are followed, column by column.
 
     state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
-    the program has waited. signals: outputs, the first and the last, by the name they have in the module. beside: values of
+    the program has waited. signals: outputs, the first and the last, by the name they have in the module. external: values of
     the external axes at each move; unit: the mechanism that BASE is coupled to, and numbers of all these axes;
     slides: of the one that a remark calls the track. arc: the instruction of ArcTech that is being read. trigger: s
     before its end at which the next move switches an output, which one, and whether on.

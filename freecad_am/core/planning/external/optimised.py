@@ -50,7 +50,7 @@ def optimised(
     """The paths with better ones in the place of those there are: less objective, and no less margin.
 
     directions: tool axes (n, 3) of the part as seen from the face that carries it. allowed: rad from the vertical, by layer.
-    told: the share of the beads that is done; it may raise to cancel.
+    report: called with the share of the beads that is done; it may raise to cancel.
     """
     usable = [
         k

@@ -53,7 +53,7 @@ def refine(
     """Improve the coefficients of every bead, or of the wanted (B,); points are all points of the beads.
 
     starts: (S, B, degree + 1), the first the one to be preferred; NaN where a bead has no further one. Closed beads that
-    join up stay joined. told: the share of the beads that is done, before each; it may raise to cancel.
+    join up stay joined. report: called before each bead with the share that is done; it may raise to cancel.
     """
     first = state_of(task, points, thresholds, starts[0], slopes=False)
     tolerance = task.parameters.tolerance

@@ -56,7 +56,7 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class PredictedDeposit:
-    """A deposit. grid: what is filled. fed, laid: mm3 that the wire fed, and that found a place. pieces: all that was laid,
+    """A deposit. grid: what is filled. fed, deposited: mm3 that the wire fed, and that found a place. pieces: all strands,
     with level (n,): mm of the surface in their middle above the path, and bead_in_layer (n,). drift: (layers,) mm by which
     the surface of each layer, in the mean, ends above where the next one should begin, NaN where it has no beads."""
 
