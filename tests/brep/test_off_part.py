@@ -284,3 +284,34 @@ def test_distances_in_a_hollow_of_a_mesh(rng):
     places = rng.uniform(11.0, 29.0, (200, 3))
     found = off_mesh(np.array(vertices), np.array(triangles), places)
     assert (found > (10.0 - np.abs(places - 20.0)).min(axis=1) - 1e-9).all()
+
+
+def touching_boxes(inside_out=()):
+    """27 boxes of 40 mm that touch; those by number in `inside_out` have faces that look inwards."""
+    boxes = [
+        Part.makeBox(40, 40, 40, Vector(40 * i, 40 * j, 40 * k))
+        for i in range(3)
+        for j in range(3)
+        for k in range(3)
+    ]
+    return Part.makeCompound(
+        [box.reversed() if n in inside_out else box for n, box in enumerate(boxes)]
+    )
+
+
+@pytest.mark.parametrize("inside_out", [(), (13,), (0, 13, 26)])
+def test_touching_solids_that_are_inside_out(rng, inside_out):
+    """An assembly is a cube of 120 mm, whichever of its solids are inside out."""
+    points = rng.uniform(-30.0, 150.0, (300, 3))
+    outside = np.linalg.norm(np.maximum(np.maximum(-points, points - 120.0), 0.0), axis=1)
+    found = off_solids(touching_boxes(inside_out), points, 7.6)
+    over = outside > 7.7
+    assert found[over] == pytest.approx(outside[over], abs=0.11)
+    assert (found[outside == 0.0] == 0.0).all()
+
+
+def test_a_kernel_that_is_wrong_about_the_inside(rng, monkeypatch):
+    """The triangles that wind around a place are a second opinion; what is outside stays outside."""
+    points = np.vstack([rng.uniform(45.0, 75.0, (8, 3)), [[60.0, 60.0, 140.0]]])
+    monkeypatch.setattr(off_part, "_by_kernel", lambda *_: 20.0)
+    assert off_solids(touching_boxes(), points, 7.6).tolist() == [0.0] * 8 + [20.0]

@@ -13,9 +13,10 @@ import FreeCAD
 import numpy as np
 import Part
 
-from freecad_am.core.types import Array, Integers
+from freecad_am.core.types import Array, Integers, Mask
 
 from ...core.collision.inside import inside_of
+from ...core.geometry.columns import dots
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
@@ -66,10 +67,15 @@ def off_edges(shape: Any, names: Sequence[str], points: Array) -> Array:
 
 
 def off_solids(shape: Any, points: Array, allowed: float) -> Array:
-    """Distances (n,) mm of points (n, 3) outside of the solids of a shape, 0 inside; as `off_faces`."""
-    solids = shape.Solids or [shape]
+    """Distances (n,) mm of points (n, 3) outside of the solids of a shape, 0 inside; as `off_faces`.
+
+    Solids may touch, and be inside out. A place over `allowed` mm that the triangles of a solid wind around is inside,
+    whatever side its nearest triangle, or the kernel, puts it on.
+    """
+    solids = [_right_side_out(solid) for solid in shape.Solids or [shape]]
     found, nearest = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.intp)
     made: list[tuple[Any, _Triangles]] = []
+    meshes: list[tuple[_Triangles, Any]] = []  # of each solid, and the solid that it is of
     for number, solid in enumerate(solids):
         first = next((entry for entry in made if _differs_by_place(entry[0], solid)), None)
         if first is None:
@@ -77,6 +83,7 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
             made.append((solid, mesh))
         else:
             mesh, seen = first[1], _seen_from(first[0], solid, points)
+        meshes.append((mesh, solid if first is None else first[0]))
         mine = np.flatnonzero(mesh.box_off(seen) <= found)
         away = np.maximum(mesh.signed(seen[mine]), 0.0)
         closer = ~(away >= found[mine])  # NaN too: then nobody knows
@@ -86,7 +93,16 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
         found[mine] = _exact(
             solid.copy(False), points[mine], found[mine], allowed, _deflection(solid), True
         )
+    for (mesh, first), solid in zip(meshes, solids, strict=True):
+        over = np.flatnonzero(found > allowed)
+        if len(over):
+            found[over[mesh.winds_around(_seen_from(first, solid, points[over]))]] = 0.0
     return found
+
+
+def _right_side_out(solid: Any) -> Any:
+    """The solid with its faces looking outwards; some files have solids that are inside out."""
+    return solid.reversed() if solid.ShapeType == "Solid" and solid.Volume < 0.0 else solid
 
 
 def off_mesh(vertices: Array, triangles: Integers, points: Array) -> Array:
@@ -152,6 +168,7 @@ class _Triangles:
     def __init__(self, shape: Any, fine: bool = False) -> None:
         self.deflection = _deflection(shape) * (FINE / DEFLECTION if fine else 1.0)
         vertices, triangles = in_kernel_process(triangles_of, shape, self.deflection)
+        self.corners = vertices[np.asarray(triangles, dtype=np.intp)] if len(triangles) else None
         self.search = _searched(vertices, triangles) if len(triangles) else None
         self.box = (vertices.min(axis=0), vertices.max(axis=0)) if len(triangles) else None
 
@@ -172,6 +189,22 @@ class _Triangles:
     def signed(self, points: Array) -> Array:
         """Distances (n,) mm of points (n, 3), negative inside."""
         return np.full(len(points), np.nan) if self.search is None else _signed(self.search, points)
+
+    def winds_around(self, points: Array) -> Mask:
+        """Whether the triangles go round points (n, 3) once or more, by the sum of their solid angles."""
+        if self.corners is None:
+            return np.zeros(len(points), dtype=bool)
+        inside = [abs(_solid_angle(self.corners - point)) > 2.0 * np.pi for point in points]
+        return np.array(inside, dtype=bool)
+
+
+def _solid_angle(corners: Array) -> float:
+    """The solid angle, sr, under which triangles (n, 3, 3) are seen from the origin (van Oosterom and Strackee 1983)."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+    rest = la * lb * lc + dots(a, b) * lc + dots(b, c) * la + dots(c, a) * lb
+    return float(2.0 * np.arctan2(volume, rest).sum())
 
 
 def _searched(vertices: Array, triangles: Any) -> Search:
