@@ -318,6 +318,7 @@ def test_a_message_that_begins_with_a_name_is_known():
             "my/process.bead_model.csv and strategy.nothing",
         ),
         ("use `motion: joint`", "use “Motion: joint”"),
+        ("choose another joints.rotation_range", "choose another “Rotation range”"),  # two fields
         ("use `kind: solid`", "use `kind: solid`"),  # no field of a panel
         ("cell.machine.json is not a file", "cell.machine.json is not a file"),
         ("C:\\cell.machine and cell.machine\\a", "C:\\cell.machine and cell.machine\\a"),

@@ -187,6 +187,32 @@ def test_number_and_unit_are_seen_whole(person, window, scheme, number, size):
         field.box.hide()
 
 
+def test_number_and_unit_are_seen_whole_under_a_style_sheet(person, window, scheme):
+    """A theme sets a least width of its own, and wider arrows."""
+    scheme(IMPERIAL)
+    application = person.widgets.QApplication.instance()
+    sheet = (
+        "QAbstractSpinBox { min-width: 50px; padding: 3px; }"
+        "QAbstractSpinBox::up-button { width: 26px; }"
+    )
+    try:
+        application.setStyleSheet(sheet)
+        person.idle(0.2)
+        field = QuantityField(0.01, "mm", "Field")
+        window.addWidget(field.box)
+        field.box.show()
+        person.idle(0.1)
+        field.box.resize(field.box.minimumWidth(), field.box.height())
+        person.idle(0.02)
+        mark = field.line.findChild(person.widgets.QToolButton)
+        text = field.line.text()
+        assert text.endswith(" in")
+        assert field.line.fontMetrics().boundingRect(text).width() + 4 <= mark.x(), text
+    finally:
+        application.setStyleSheet("")
+        person.idle(0.2)
+
+
 @pytest.mark.parametrize(
     ("unit", "shown", "stored"),
     [("in/min", "14.173 in/min", 8.466666666666667), ("ft/min", "1.181 ft/min", 101.6)],

@@ -55,7 +55,7 @@ def tell_next(stages: list[Any], proposed: str = "") -> None:
         if issue.code in LOOK_AT and issue.level == NOTE
     ]
     if wrong is None and near:
-        text = f"{text} {' '.join(near)}"
+        text = " ".join([text, *(f"{note}." for note in near)])
     if proposed == GEODESIC and any(
         obj.Proxy.kind == "feature" and obj.Layers != GEODESIC for obj in stages
     ):

@@ -44,12 +44,14 @@ _KEY = re.compile(
 @lru_cache(maxsize=1)
 def _known() -> dict[str, tuple[str, str]]:
     """The group within its panel, '' for none, and the label of each parameter, by its name in job files; of each group
-    too. Ranges, which have two fields, are not among them."""
+    too, and of each range, which has two fields."""
     found: dict[str, tuple[str, str]] = {}
     for section, cls in _SECTIONS:
         for row in rows(cls):
             steps = [step for step in row.path if isinstance(step, str)]
-            if len(steps) == len(row.path):
+            if len(steps) < len(row.path):
+                found.setdefault(".".join([section, *steps]), ("", group_of(row)))
+            else:
                 nested = len(steps) > 1
                 found.setdefault(
                     ".".join([section, *steps]), (group_of(row) if nested else "", row.label)

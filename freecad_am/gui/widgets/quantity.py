@@ -29,10 +29,8 @@ from ..signals import connect
 from ..texts.translation import tr
 
 _LEAST_WIDTH, _MOST_LETTERS = 70, 16
-_LINE_MARGINS, _ARROWS = (
-    10,
-    20,
-)  # px: left and right of the text in a line, and arrows of a spin box
+_LINE_MARGINS = 10  # px, left and right of the text in a line
+_PROBE = QtCore.QSize(400, 40)  # of a box that the style is asked about
 _LEFT_OF_UNIT = re.compile(r"[-+]?[\d.,]+(?= \D)")
 _SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.svg"  # of FreeCAD
 
@@ -72,6 +70,23 @@ class UnitBox(QtGui.QAbstractSpinBox):
         """Called by Qt: room for the number with its unit."""
         size = super().sizeHint()
         return QtCore.QSize(self.minimumWidth(), size.height())
+
+    def showEvent(self, event: Any) -> None:
+        """Called by Qt. A style sheet sets its own least width once, just before a box is shown for the first time."""
+        super().showEvent(event)
+        if self.field is not None:
+            self.field.make_room()
+
+    def width_beside_line(self) -> int:
+        """Width of frame and arrows, px, as the style draws them."""
+        option = QtGui.QStyleOptionSpinBox()
+        self.initStyleOption(option)
+        option.rect = QtCore.QRect(QtCore.QPoint(0, 0), _PROBE)
+        style = self.style()
+        line = style.subControlRect(
+            QtGui.QStyle.CC_SpinBox, option, QtGui.QStyle.SC_SpinBoxEditField, self
+        )
+        return _PROBE.width() - line.width()
 
     def changeEvent(self, event: Any) -> None:
         """The font has another size."""
@@ -125,17 +140,14 @@ class QuantityField:
         self.make_room()
 
     def make_room(self) -> None:
-        """Make the field as wide as its text with the unit, for the font it has."""
+        """Make the field as wide as its text with the unit, for the font and the style it has."""
         metrics = self.line.fontMetrics()
-        advance = getattr(metrics, "horizontalAdvance", metrics.width)
         text = "" if isinstance(self.shown, str) else self.known_text
         letters = text if len(text) <= _MOST_LETTERS else text[-_MOST_LETTERS:]
         style = self.box.style()
         icon = style.pixelMetric(QtGui.QStyle.PM_SmallIconSize) + 6  # as QLineEdit places an action
-        frame = 2 * style.pixelMetric(QtGui.QStyle.PM_DefaultFrameWidth) + _LINE_MARGINS
-        has_arrows = self.box.buttonSymbols() != QtGui.QAbstractSpinBox.NoButtons
-        arrows = max(_ARROWS, 2 * metrics.averageCharWidth()) if has_arrows else 0
-        wanted = advance(letters) + icon + icon // 4 + frame + arrows
+        wanted = metrics.horizontalAdvance(letters) + icon + icon // 4 + _LINE_MARGINS
+        wanted += self.box.width_beside_line()
         self.box.setMinimumWidth(max(_LEAST_WIDTH, wanted))
 
     def _add_mark(self) -> None:
