@@ -35,6 +35,7 @@ from freecad_am.posts import catalogue
 from freecad_am.read_back import driven, switched
 from freecad_am.read_back.finding import Finding
 from freecad_am.read_back.into_platform import into_platform
+from freecad_am.read_back.selected import selection_findings
 from freecad_am.report import figures
 from freecad_am.sections import cell as job_cell
 from freecad_am.sections import tree
@@ -47,6 +48,7 @@ from .outputs import folder as outputs
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
 LARGEST_MB, MOST_FILES = 200, 2_000
 RAPID_PLACES = 20_000
+LONGEST_STATEMENT = 80  # characters of one that a message shows
 DIGITS = 0.5  # % of an axis's largest speed: by so much a move is quicker that a text has with few digits
 
 
@@ -103,6 +105,8 @@ def check(
         if one.ok is False
     ]
     findings += [*switched.switching_findings(motion, read), *into_platform(motion, cell)]
+    job_numbers = known.program and (known.program.user_frame, known.program.tool_frame)
+    findings += selection_findings(motion, read, job_numbers)
     if not motion.deposit.any():
         findings.append(
             Finding(Issue(NOTE, "NO_DEPOSIT", "the program never switches the deposit on"), None)
@@ -219,7 +223,7 @@ def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves
         try:
             return name, catalogue.load(name).read(files)
         except InputError as error:
-            refusals.append(error)
+            refusals.append(_with_statement(error, files))
     if not refusals:
         raise InputError(
             "UNKNOWN_POST",
@@ -227,6 +231,18 @@ def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves
             "no post reads programs of this machine; name one with --post",
         )
     raise refusals[0]
+
+
+def _with_statement(error: InputError, files: dict[str, bytes]) -> InputError:
+    """The error with the statement that stands on the line it names, where it does not show that itself."""
+    file, _, number = error.where.rpartition(" line ")
+    lines = files.get(file, b"").decode("latin-1").splitlines()
+    if not number.isdigit() or not 0 < int(number) <= len(lines):
+        return error
+    statement = lines[int(number) - 1].strip()[:LONGEST_STATEMENT]
+    if not statement or repr(statement) in error.message:
+        return error
+    return InputError(error.code, error.where, "{} ({!r})", error.message, statement)
 
 
 def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:

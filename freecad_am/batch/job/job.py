@@ -121,7 +121,7 @@ def read_without_part(path: str) -> WithoutPart:
         if cell is None:
             raise InputError("NO_CELL", "cell", "there is no cell to drive a program in; add one")
         return WithoutPart(
-            cell, _joints(values.get("joints") or {}), _program(values.get("program"))
+            cell, _joints(values.get("joints") or {}), _program(values.get("program"), cell)
         )
     except InputError as error:
         raise saved.placed(error) from None

@@ -50,6 +50,7 @@ from ..refusals import (
 )
 from . import numbers, process, text
 from .read import read
+from .words import INSTRUCTIONS
 
 __all__ = ["read", "write"]
 
@@ -80,7 +81,7 @@ AXES = 6
 SETUPS = ("part-on-robot", "tool-on-robot")
 FOLDER = "HOME:/"  # where parts are loaded from
 
-_RESERVED = frozenset(
+_RESERVED = INSTRUCTIONS | frozenset(
     (
         "ALIAS",
         "AND",

@@ -8,6 +8,7 @@ that no motion can hide in what was not understood.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 from ...core.issues import Text
 from ...core.read_moves import ARC, ReadMoves
@@ -15,6 +16,7 @@ from .columns import Move, Run, all_moves
 from .modules import Module, modules, unreadable
 from .process_data import ProcessData
 from .read_process import JOINTS, POSITION, process_move, straight
+from .words import INSTRUCTIONS
 
 _TAIL = r",(\w+)\\([TV]):=(\d+\.(\d+)),(\w+),(\w+)\\WObj:=(\w+);$"
 _JOINT = re.compile(rf"MoveAbsJ {JOINTS}{_TAIL}")
@@ -62,6 +64,7 @@ def _follow(module: Module, run: Run) -> None:
         "",
         ProcessData(),
     )  # each says it for itself: it may be run alone
+    activated = ("", -1)
     lines = iter(module.statements)
     for number, line in lines:
         where = f"{module.file} line {number}"
@@ -75,23 +78,32 @@ def _follow(module: Module, run: Run) -> None:
         elif line == r"ConfL\Off;":
             run.nearest = True
         elif (active := _ACTIVE.match(line)) and not run.moving and not run.active:
-            run.active = active[1]
+            run.active, activated = active[1], (where, len(run.time_or_speed))
         elif line.startswith("!") or line == r"SingArea\Off;":
             continue
         elif run.moving:
             raise unreadable(where, Text("{!r} is reached before the move before it ends", line))
         elif load := _LOAD.match(line):
-            (_, called), (_, gone) = next(lines, (0, "")), next(lines, (0, ""))
-            _load(module, load[1], called, gone, run, where)
+            _load(module, load[1], lines, run, where)
         elif not run.given.understood(line, module, where):
             _other(line, run, where)
+    if activated[1] == len(run.time_or_speed):
+        raise unreadable(activated[0], Text("{} is activated, and no move follows", run.active))
 
 
-def _load(module: Module, part: str, called: str, gone: str, run: Run, where: str) -> None:
-    """A part is loaded, run and removed; the robot must not deposit meanwhile."""
+def _load(
+    module: Module, part: str, lines: Iterator[tuple[int, str]], run: Run, where: str
+) -> None:
+    """A part is loaded, run and removed by the next lines; the robot must not deposit meanwhile."""
+    number, called = next(lines, (0, ""))
     name, loaded = _RUN.match(called), run.found.get(part.lower())
-    if name is None or gone != f'UnLoad "HOME:/{part}.mod";':
-        raise unreadable(where, Text("{} is loaded without being run and removed", part))
+    if name is None:
+        at = f"{module.file} line {number}"
+        raise unreadable(at, Text("{!r} where {} was loaded to be run", called, part))
+    number, gone = next(lines, (0, ""))
+    if gone != f'UnLoad "HOME:/{part}.mod";':
+        at = f"{module.file} line {number}"
+        raise unreadable(at, Text("{!r} where {} was to be removed", gone, part))
     if (
         loaded is None
         or loaded.routine.lower() != name[1].lower()
@@ -121,7 +133,7 @@ def _other(line: str, run: Run, where: str) -> None:
         run.happens("input", float(given[1]))
     elif cool := _COOL.match(line):
         run.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
-    elif call := _CALL.match(line):
+    elif (call := _CALL.match(line)) and call[1].upper() not in INSTRUCTIONS:
         if any(
             call[1].lower() in (module.routine.lower(), module.name)
             for module in run.found.values()

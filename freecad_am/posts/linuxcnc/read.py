@@ -34,7 +34,33 @@ _WIRE = re.compile(rf"M6([78]) E(\d+) Q({_NUMBER})$")
 _SCHEDULE = re.compile(r"M6([78]) E(\d+) Q(\d+)$")
 _OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 _FEEDS, _UNITS = {"G93", "G94"}, {"G21", "G90"}
-_PLAIN = {"G17", "G40", "G49", "G80"}
+_PLAIN = {"G17", "G40", "G80"}
+# M words that stop or end a program, change tools or modes, or move a spindle to an angle
+_TAKEN = {
+    *[
+        "0",
+        "1",
+        "2",
+        "6",
+        "19",
+        "30",
+        "47",
+        "48",
+        "49",
+        "50",
+        "51",
+        "52",
+        "53",
+        "60",
+        "61",
+        "70",
+        "71",
+        "72",
+        "73",
+        "98",
+        "99",
+    ]
+}
 _TIP_ON, _TIP_OFF = "M428", "M429"
 
 
@@ -52,6 +78,7 @@ class _State:
     kinematics: str = ""
     zeroed: set[str] = field(default_factory=set)
     output: str = ""
+    switched: str = ""  # where the output was switched last
     on_word: str = ""
     off_word: str = ""
     sampled: str = ""
@@ -71,7 +98,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         if not file.lower().endswith(".ngc") or not lines or lines[-1][1] != "M2":
             raise unreadable(file, "it is not a program that ends with M2")
         programs[name] = lines[:-1]
-        if not (lines[0][1] == f"O<{name}> SUB" and lines[-2][1] == f"O<{name}> ENDSUB"):
+        if not _is_sub(name, lines[:-1]):
             main.append(name)
     if len(main) != 1:
         raise unreadable(
@@ -82,6 +109,17 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     if state.track.on or state.loop[0]:
         raise unreadable("program", "it ends with the deposit on, or within a loop")
     return state.track.moves()
+
+
+def _is_sub(name: str, lines: list[tuple[str, str]]) -> bool:
+    """Whether the lines of a program are one sub of its name, from the first to the last."""
+    begin, end = f"O<{name}> SUB", f"O<{name}> ENDSUB"
+    if not any(text == begin for _, text in lines):
+        return False
+    for (where, text), expected in ((lines[0], begin), (lines[-1], end)):
+        if text != expected:
+            raise unreadable(where, Text("{!r} stands outside of the sub {}", text, name))
+    return True
 
 
 def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
@@ -233,6 +271,8 @@ def _line(where: str, text: str, state: _State) -> None:
         elif token in _OFFSETS:
             state.offset = token
             state.track.frame = _OFFSETS.index(token) + 1.0
+        elif token == "G49":
+            state.track.tool = 0.0  # none
         elif token not in _PLAIN:
             raise unreadable(where, Text("{!r} is not understood", token))
     if words:
@@ -270,14 +310,14 @@ def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None
         on = text == state.on_word
         if not on:
             state.off_word = state.off_word or text
-        name, wrong = (
-            "M",
-            text not in (state.on_word, state.off_word) or output[3] in ("0", "1", "2", "6", "30"),
-        )
-    if wrong or state.output not in ("", name):
+        name, wrong = "M", text not in (state.on_word, state.off_word) or output[3] in _TAKEN
+    if wrong:
+        raise unreadable(where, Text("{!r} is not understood", text))
+    if state.output not in ("", name):
         raise unreadable(
-            where, Text("{!r} is not understood, or a second output is switched", text)
+            where, Text("{!r} switches a second output, after {}", text, state.switched)
         )
+    state.switched = where
     state.output, state.track.on = name, on
     if output[1] not in ("62", "63"):  # these wait for the next move instead
         state.track.rests()

@@ -46,6 +46,7 @@ from ..refusals import (
     refuse_triggers,
 )
 from .read import read
+from .words import INSTRUCTIONS
 
 __all__ = ["read", "write"]
 
@@ -74,7 +75,7 @@ LAST_OUTPUT, LAST_INPUT, LAST_ANALOGUE = 99, 32, 8
 # M words that stop or end a program, change the tool or set the spindle
 _TAKEN = frozenset(f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 17, 19, 30, 40, 41, 42, 43, 44, 45, 70))
 # words of the language that begin like a name; what else it knows is found by trying it on the controller
-_RESERVED = frozenset(
+_RESERVED = INSTRUCTIONS | frozenset(
     (
         "AND",
         "ATRANS",

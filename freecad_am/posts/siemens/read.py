@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from ...core.issues import Text, Word
 from ...core.read_moves import ReadMoves
 from ..nc.read import SLIDES, TIME, TIP, Shape, Track, unreadable
+from .words import INSTRUCTIONS
 
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _WORD = re.compile(rf"([XYZABCF])=?({_NUMBER})$|([ABC]3)=({_NUMBER})$")
@@ -31,6 +32,10 @@ _HARMLESS = re.compile(r"(?:G17|G40|G9|ORIVECT|STOPRE|FGROUP\(X,Y,Z\))$")
 _CORNERS = re.compile(r"G60|G64\d?|SOFT|BRISK|FFWON|FFWOF")
 _SMOOTH, _HARD = {"SOFT", "FFWON"}, {"BRISK", "FFWOF"}
 _PAIRED = {"G642": _SMOOTH, "G64": _HARD}
+# M words that stop or end a program, change the tool or set the spindle
+_TAKEN = {
+    *["0", "1", "2", "3", "4", "5", "6", "17", "19", "30", "40", "41", "42", "43", "44", "45", "70"]
+}
 _TOOL = re.compile(r"D(\d+)$")
 _LAYER = re.compile(r"; ?LAYER (\d+)$")
 _WAIT = re.compile(r"WHILE \$A_IN\[(\d+)\]==0$")
@@ -58,6 +63,7 @@ class _State:
     waiting: bool = False
     shape: Shape | None = None
     output: str = ""
+    switched: str = ""  # where the output was switched last
     on_word: str = ""
     off_word: str = ""
 
@@ -241,14 +247,20 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
             raise unreadable(where, "a schedule is sent within a bead")
         state.track.happens("schedule", float(output[3]), float(output[4]))
     elif output:
-        if output[5] in ("0", "1", "2", "6", "17", "30"):
+        if output[5] in _TAKEN:
             raise unreadable(where, Text("{!r} is not understood", token))
         _switch(where, token, output, state)
     elif token in state.files:
         if state.track.on or state.tip:
             raise unreadable(where, "another program is called within a bead")
         _follow(token, state, callers)
-    elif not _NAME.match(token) or state.track.on or state.tip or state.compress:
+    elif (
+        token in INSTRUCTIONS
+        or not _NAME.match(token)
+        or state.track.on
+        or state.tip
+        or state.compress
+    ):
         raise unreadable(where, Text("{!r} is not understood", token))
     else:
         # a program of the controller; what it leaves set is not known
@@ -276,6 +288,9 @@ def _switch(where: str, token: str, output: re.Match[str], state: _State) -> Non
         name, on, wrong = token.partition("=")[0], (output[2] or output[4]) != "0", False
     number = float(output[1] or output[3] or 0)
     if wrong or state.output not in ("", name):
-        raise unreadable(where, "a second output is switched")
+        raise unreadable(
+            where, Text("{!r} switches a second output, after {}", token, state.switched)
+        )
+    state.switched = where
     state.output, state.track.on = name, on
     state.track.happens("on" if on else "off", number, token)

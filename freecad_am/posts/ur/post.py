@@ -49,6 +49,7 @@ from ..refusals import (
 )
 from . import numbers
 from .read import read
+from .words import INSTRUCTIONS
 
 __all__ = ["read", "write"]
 
@@ -76,7 +77,7 @@ LAST_PIN = 16  # digital inputs and outputs: 1 to 8 are the standard ones 0 to 7
 LAST_ANALOGUE = 2
 
 # words of the language, and functions of its library that programs here or beside them use
-_RESERVED = frozenset(
+_RESERVED = INSTRUCTIONS | frozenset(
     (
         "AND",
         "BREAK",

@@ -20,6 +20,7 @@ from freecad_am.core.types import Array
 from ...core.issues import InputError, Text
 from ...core.read_moves import Event, ReadMoves
 from ..packed import Lines
+from .words import INSTRUCTIONS
 
 _N = r"-?\d+\.\d+"
 _SIX = rf"\[({_N}), ({_N}), ({_N}), ({_N}), ({_N}), ({_N})\]"
@@ -168,7 +169,7 @@ def _follow(
             run.happens(
                 "below", 1.0 + float(below[1]), float(below[2]), digits=0.5 * 10.0 ** -len(below[3])
             )
-        elif call := _CALL.match(text):
+        elif (call := _CALL.match(text)) and call[1].upper() not in INSTRUCTIONS:
             if call[1] in (*callers, name):
                 raise unreadable(where, Text("{} calls itself", call[1]))
             if call[1] in known and line.number < known[call[1]].begins:

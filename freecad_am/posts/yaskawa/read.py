@@ -86,6 +86,7 @@ class _Run:
     external: tuple[bool, str] | None = None
     output: str = ""
     on: bool = False
+    weaves: str = ""  # where the weave began that has not ended
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
         """Something happens before the next move."""
@@ -121,6 +122,8 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     _follow(main[0], jobs, run, ())
     if not run.deposit:
         raise unreadable("program", "there are no moves")
+    if run.weaves:
+        raise unreadable(run.weaves, "the weave that begins here does not end")
     return _moves(run)
 
 
@@ -278,7 +281,7 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
         elif arc := _ARC.match(text):
             _arc(arc, run, where)
         elif weave := _WEAVE.match(text):
-            run.happens("weave", float(weave[1] or 0))
+            _weave(weave, run, where)
         elif timer := _TIMER.match(text):
             run.happens("wait", float(timer[1]), digits=0.5 * 10.0 ** -len(timer[2]))
         elif given := _INPUT.match(text):
@@ -300,6 +303,14 @@ def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
         raise unreadable(where, "an output is switched too, or the arc burns already, or not yet")
     run.output, run.on = ARC, arc[1].startswith("ON")
     run.happens("on" if run.on else "off", float(arc[2]), ARC)
+
+
+def _weave(weave: re.Match[str], run: _Run, where: str) -> None:
+    """The torch begins to weave, or ends."""
+    if bool(weave[1]) == bool(run.weaves):
+        raise unreadable(where, "the torch weaves already, or not yet")
+    run.weaves = where if weave[1] else ""
+    run.happens("weave", float(weave[1] or 0))
 
 
 def _remark(text: str, run: _Run, where: str) -> None:

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Instructions of RAPID that take no arguments: written like the call of a routine, they are none."""
+
+from __future__ import annotations
+
+INSTRUCTIONS = frozenset(
+    [
+        "ACTEVENTBUFFER",
+        "ARCKILL",
+        "ARCREFRESH",
+        "BREAK",
+        "CLEARPATH",
+        "CORNERPATH",
+        "CORRCLEAR",
+        "DEACTEVENTBUFFER",
+        "DITHERDEACT",
+        "EOFFSOFF",
+        "EXIT",
+        "EXITCYCLE",
+        "HOLLOWWRISTRESET",
+        "IDISABLE",
+        "IENABLE",
+        "MTOOLROTCALIB",
+        "PATHRECSTOP",
+        "PDISPOFF",
+        "PFRESTART",
+        "RAISE",
+        "RAISETOUSER",
+        "RESETRETRYCOUNT",
+        "RESTOPATH",
+        "RETRY",
+        "RETURN",
+        "SAVECFGDATA",
+        "SOFTDEACT",
+        "SPYSTOP",
+        "STARTMOVE",
+        "STARTMOVERETRY",
+        "STOP",
+        "STOPMOVE",
+        "STOPMOVERESET",
+        "STOREPATH",
+        "SYNCMOVERESUME",
+        "SYNCMOVESUSPEND",
+        "SYNCMOVEUNDO",
+        "TESTSIGNRESET",
+        "TPERASE",
+        "TRYNEXT",
+        "WAITROB",
+        "WARMSTART",
+    ]
+)

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a text counts on that it does not tell: frames and tools by their numbers, and programs of the controller."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from freecad_am.core.types import Array
+
+from ..core.issues import ERROR, WARNING, Issue, Text
+from ..core.motion import Motion
+from ..core.read_moves import ReadMoves
+from .finding import Finding
+
+
+def selection_findings(
+    motion: Motion, read: ReadMoves, expected: tuple[int, int] | None
+) -> list[Finding]:
+    """FRAME_NUMBER where a text selects several frames or tools, of which only one is known, or others than a job; and
+    OTHER_PROGRAM for each program that it calls and that was not given.
+
+    Parameters
+    ----------
+    motion
+        What the text drives.
+    read
+        The moves of the text.
+    expected
+        Numbers of the frame and of the tool of a job, None without one.
+    """
+    return [*_numbers(motion, read, expected), *_calls(motion, read)]
+
+
+def _numbers(
+    motion: Motion, read: ReadMoves, expected: tuple[int, int] | None
+) -> Iterator[Finding]:
+    frame, tool = expected or (None, None)
+    selections: list[tuple[Text, Array | None, int | None]] = [
+        (Text("work frame"), read.user_frame, frame),
+        (Text("tool"), read.tool_frame, tool),
+    ]
+    rows = np.flatnonzero(motion.moves)
+    for kind, numbers, number in selections:
+        known = np.flatnonzero(~np.isnan(numbers)) if numbers is not None else np.zeros(0, np.intp)
+        if numbers is None or not len(known):
+            continue
+        first = numbers[known[0]]
+        changed = known[numbers[known] != first]
+        if len(changed):
+            message = Text(
+                "{} {:.0f} is selected, moves before are in {:.0f}: only one of them is known here, and all moves are driven "
+                "in that; give a program of one alone",
+                kind,
+                numbers[changed[0]],
+                first,
+            )
+            yield _at(ERROR, "FRAME_NUMBER", message, motion, int(rows[changed[0]]))
+        elif number is not None and first != number:
+            message = Text(
+                "{} {:.0f} is selected, the job has {}: moves are driven in that of the cell; compare the two, and correct "
+                "the program's number or that of the job",
+                kind,
+                first,
+                number,
+            )
+            yield _at(WARNING, "FRAME_NUMBER", message, motion, int(rows[known[0]]))
+
+
+def _calls(motion: Motion, read: ReadMoves) -> Iterator[Finding]:
+    """One finding of each name, at the first move behind the call."""
+    rows = np.flatnonzero(motion.moves)
+    first: dict[str, int] = {}
+    for event in read.events:
+        if event.kind == "call":
+            first.setdefault(str(event.value[0]), event.row)
+    for name, row in first.items():
+        message = Text(
+            "{} is called, which is not among the files: what it moves, switches or sets is not driven; give its file too, or "
+            "look at it at the controller",
+            name,
+        )
+        yield _at(WARNING, "OTHER_PROGRAM", message, motion, int(rows[min(row, len(rows) - 1)]))
+
+
+def _at(level: str, code: str, message: Text, motion: Motion, row: int) -> Finding:
+    place = int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
+    return Finding(Issue(level, code, message, *place), row)
