@@ -248,6 +248,9 @@ def make_all(
     setup: str = "",
     max_from_vertical: Any = None,
     layers_otherwise: str = "",
+    layer_height: Any = None,
+    bead_spacing: Any = None,
+    platform_diameter: Any = None,
 ) -> tuple[Any, ...]:
     """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
 
@@ -259,7 +262,9 @@ def make_all(
     toolpath by key. A robot other than the default one gets a deposition point and a branch that suit it, another where the
     job cannot be done so, and with `setup="tool-on-robot"` a positioner where the torch would lean more than
     max_from_vertical. `cell`, the path of a saved cell, stands in place of the machine. `layers_otherwise`: those of the
-    feature where its `layers` cannot be carried out. `am.make_all(doc, doc.Pot)`
+    feature where its `layers` cannot be carried out. `layer_height` and, of solids and cladding, `bead_spacing` are those of
+    the feature, None for the usual ones; `platform_diameter` None: as large as the first layer needs it.
+    `am.make_all(doc, doc.Pot, layer_height="2 mm")`
 
     then: features that are deposited after it, in this order and one program, each by the keys of the first one
     (`source`, `kind`, `layers`, `faces` ...); they come after the feature in what is returned.
@@ -294,16 +299,19 @@ def make_all(
         "base_faces": base_faces,
         "mend": mend,
         "max_from_vertical": max_from_vertical,
+        "layer_height": layer_height,
+        "bead_spacing": bead_spacing,
     }
+    disc = {} if platform_diameter is None else {"platform_diameter": platform_diameter}
 
     def planned(layers: str) -> list[Any]:
-        own = make_cell(doc, parameters=chosen)
+        own = make_cell(doc, parameters=chosen, **disc)
         features = [_feature_of_job(doc, one) for one in ({**first, "layers": layers}, *then)]
         toolpath = on_platform(
             own,
             features,
             lambda: make_toolpath(doc, features, own, **process),
-            sized=not cell,
+            sized=not cell and not disc,
         )
         path = (
             []
@@ -363,6 +371,8 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
         "base_faces",
         "mend",
         "max_from_vertical",
+        "layer_height",
+        "bead_spacing",
     )
     wrong = [key for key in given_keys if key not in known]
     if wrong or "source" not in given_keys:
@@ -376,8 +386,9 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
         "BaseFaces": given_keys.get("base_faces", ()),
     }
     values = {key: given_keys[key] for key in ("layers", "mend") if given_keys.get(key)}
-    if given_keys.get("max_from_vertical") is not None:
-        values["max_from_vertical"] = given_keys["max_from_vertical"]
+    for key in ("max_from_vertical", "layer_height", "bead_spacing"):
+        if given_keys.get(key) is not None:
+            values[key] = given_keys[key]
     return make_feature_of(
         doc,
         given_keys.get("kind", "revolution"),

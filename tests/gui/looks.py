@@ -19,6 +19,8 @@ from PySide import QtCore, QtGui
 FOLDER = Path(os.environ["LOOKS_FOLDER"])
 sys.path.insert(0, os.environ["LOOKS_ROOT"])
 LEAST_CONTRAST = 4.5
+LOOKS = 6  # pictures of the same, at most
+PAGES = int(os.environ.get("LOOKS_PAGES", "6"))  # of a panel, at most
 MARGIN = 6  # pixels about a panel, which FreeCAD holds at 250 where its view has less
 DARK = ("Behave-dark.qss", "FreeCAD Dark.qss")
 PANELS = (
@@ -99,8 +101,19 @@ def is_seen(widget):
 
 
 def judge(top, name, wrong):
-    """Contrast and room of every text below a widget, as the screen shows it."""
-    idle(0.3)  # previews and layouts come to rest
+    """Contrast and room of every text below a widget, as the screen shows it once previews and layouts are at rest, which
+    takes longer on a busy machine: what is wrong is so in each of several pictures."""
+    for _ in range(LOOKS):
+        idle(0.3)
+        found = wrong_with(top, name)
+        if not found:
+            return
+    wrong.extend(found)
+
+
+def wrong_with(top, name):
+    """What is wrong with the texts below a widget in one picture of the screen."""
+    wrong = []
     image = screen()
     image.save(str(FOLDER / f"{name}.png"))
     seen = pixels(image)
@@ -134,6 +147,7 @@ def judge(top, name, wrong):
             own = not isinstance(widget, QtGui.QPushButton) and (icon or len(text.strip()) > 1)
             if own and area.size and contrast(area) < LEAST_CONTRAST:
                 wrong.append(f"{what} has a contrast of {contrast(area):.1f}")
+    return wrong
 
 
 def upright(panel, name, wrong):
@@ -274,7 +288,7 @@ def run():
             if "docks" in PARTS:
                 look_at_docks(theme, wrong)
             if "panels" in PARTS:
-                look_at_panels(theme, wrong, 6)
+                look_at_panels(theme, wrong, PAGES)
     except BaseException:
         wrong.append(traceback.format_exc())
     (FOLDER / "looks.json").write_text(json.dumps(wrong, indent=1), encoding="utf-8")

@@ -13,20 +13,27 @@ import pytest
 
 from tests import run
 
-TIMEOUT = 400  # s
+TIMEOUT = 500  # s, on a busy machine
+
+
+SMALL, LARGE = ("1366x768", "96"), ("1920x1080", "192")
+FEW, ALL = "2", "9"  # pages of a panel, at most
 
 
 @pytest.mark.parametrize(
-    ("screen", "dpi"), [("1366x768", "96"), ("1920x1080", "192")], ids=["small", "200 %"]
+    ("screen", "dpi", "pages"),
+    [(*SMALL, FEW), (*LARGE, FEW), (*SMALL, ALL), (*LARGE, ALL)],
+    ids=["small", "200 %", "small to the end", "200 % to the end"],
 )
-@pytest.mark.always("small")
-def test_all_is_read_and_seen(tmp_path, screen, dpi):
+@pytest.mark.always("small", "200 %")
+def test_all_is_read_and_seen(tmp_path, screen, dpi, pages):
     home, seen = tmp_path / "home", tmp_path / "seen"
     home.mkdir()
     seen.mkdir()
     env = {
         **run.private_home(home),
         "LOOKS_FOLDER": str(seen),
+        "LOOKS_PAGES": pages,
         "LOOKS_ROOT": str(run.ROOT),
         "QT_FONT_DPI": dpi,
     }

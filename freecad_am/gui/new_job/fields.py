@@ -7,13 +7,20 @@ from typing import Any
 
 from PySide import QtGui
 
+from ...core.issues import InputError
 from ...core.kinematics.arrangement import OF_ROBOTS
 from ...core.parameters.build_direction import BuildDirectionParameters
-from ...objects.fields import naming, saved_cells
-from ...objects.fields.rows import rows
+from ...core.parameters.cell import CellParameters
+from ...core.parameters.filled import FilledParameters
+from ...core.parameters.process import ProcessParameters
+from ...objects.checks import deposit
+from ...objects.fields import naming, preferences, saved_cells
+from ...objects.fields.expressions import is_expression
+from ...objects.fields.rows import Row, rows
 from ..picking import inputs
-from ..texts.translation import tr
+from ..texts.translation import tr, translated
 from ..widgets import choices, fields, suggestions
+from ..widgets.quantity import QuantityField
 from ..widgets.wrapped import WrappedLabel
 
 LEANING = "max_from_vertical"
@@ -98,7 +105,7 @@ class HowItStands:
             if one.planned:
                 self.setup.addItem(choices.worded(one.setup), one.setup)
         self.proposed = str(self.setup.currentData())
-        row = next(row for row in rows(BuildDirectionParameters) if row.key == LEANING)
+        row = _row(BuildDirectionParameters, LEANING)
         self.leaning = fields.make(row, row.default)
 
     def follow(self, is_robot: bool) -> None:
@@ -127,3 +134,70 @@ class HowItStands:
             return {}
         given, value = {"setup": repr(self.chosen())}, self.leaning.value
         return given if value == self.leaning.shown else {**given, LEANING: repr(value)}
+
+
+class FittedLength:
+    """A length that may be left empty, as which it is found out when the job is made."""
+
+    def __init__(self, row: Row, placeholder: str, more: str) -> None:
+        self.quantity = QuantityField(row.outer(row.default), row.unit, row.label)
+        self.widget = self.quantity.box
+        self.widget.setObjectName(row.name)
+        self.label = self.heading = translated(row.label)
+        self.widget.setToolTip(f"{translated(row.spec.help)} {more}")
+        self.widget.setWhatsThis(fields.whats_this(row, "cell"))
+        self.quantity.line.clear()
+        self.quantity.line.setPlaceholderText(placeholder)
+
+    @property
+    def value(self) -> Any:
+        """What is entered, in outer units, or an expression; None where the field is empty. InputError."""
+        return self.quantity.read() if self.quantity.line.text().strip() else None
+
+
+class Sizes:
+    """Layer height, width or spacing of beads, and the platform of a new job."""
+
+    def __init__(self) -> None:
+        layer, spacing = (_row(FilledParameters, key) for key in ("layer_height", "bead_spacing"))
+        width = _row(ProcessParameters, "bead_width")
+        self.layer = fields.make(layer, layer.default, section="strategy")
+        self.width = fields.make(width, deposit.bead_width(), section="process")
+        self.spacing = fields.make(spacing, spacing.default, section="strategy")
+        self.platform = FittedLength(
+            _row(CellParameters, "platform_diameter"),
+            tr("as the part needs it"),
+            tr("Left empty, it is as large as the first layer needs it."),
+        )
+        self.of_job = {
+            "strategy.layer_height": self.layer,
+            "process.bead_width": self.width,
+            "strategy.bead_spacing": self.spacing,
+            "cell.platform_diameter": self.platform,
+        }
+
+    def bead_width(self) -> float:
+        """What parts are judged by, mm; the usual one where an expression or nothing that is understood is entered."""
+        try:
+            value = self.width.value
+        except InputError:
+            return deposit.bead_width()
+        return deposit.bead_width() if is_expression(value) or value <= 0.0 else float(value)
+
+    def arguments(self, filled: bool, saved: bool) -> dict[str, str]:
+        """Keywords of `make_all` and their values as text, of what is entered. filled: beads have a spacing; saved: the cell
+        has a platform of its own. InputError for what cannot be read."""
+        given = {}
+        for field in (self.layer, *((self.spacing,) if filled else ())):
+            if field.changed:
+                given[field.row.key] = repr(field.value)
+        if not filled and self.width.changed:
+            values = {**preferences.process(), self.width.row.key: self.width.value}
+            given["process"] = repr(values)
+        if not saved and self.platform.value is not None:
+            given["platform_diameter"] = repr(self.platform.value)
+        return given
+
+
+def _row(section: type, key: str) -> Row:
+    return next(row for row in rows(section) if row.key == key)

@@ -14,6 +14,7 @@ from PySide import QtCore, QtGui
 from ... import api
 from ...core.issues import AmError, Issue
 from ...core.parameters.filled import GEODESIC
+from ...objects.fields import saved_cells
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.busy import carry_out
@@ -31,10 +32,11 @@ from ..widgets.upright import upright
 from ..widgets.wheel import scrolls
 from . import after, before, proposal
 from .as_macro import arguments
-from .fields import HowItStands, JobName, label, machines, shown
+from .fields import HowItStands, JobName, Sizes, label, machines, shown
 from .left_out import left_out
 from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
 
+FILLED = (SOLID, DEVELOPABLE, CLADDING)  # families whose beads have a spacing
 WIDEST_LABEL = (
     80  # pixels; with wider ones the choice of the set-up makes it wider than what is seen of it
 )
@@ -59,6 +61,7 @@ class JobPanel:
         self.picks: list[Pick] = []
         self.found = JobProposal("", "")
         self.asked = ""  # the family the user chose, '' for the one that is proposed
+        self.width = 0.0  # mm, of the bead that this was judged by
         self.followed = ""  # the machine that a set-up was proposed for
         self._lay_out()
         self.background = Background(self.form)
@@ -83,6 +86,7 @@ class JobPanel:
         self.machine = machines(before.machine(self.document), self.document)
         self.stands = HowItStands()
         self.name = JobName()
+        self.sizes = Sizes()
         self.fold = Fold(tr("Inputs"), True, WIDEST_LABEL)
         rows = (
             (tr("Deposit"), self.part),
@@ -92,6 +96,7 @@ class JobPanel:
             (tr("Setup"), self.stands.setup),
             (self.stands.leaning.heading, self.stands.leaning.widget),
             (tr("Name"), self.name.widget),
+            *((size.heading, size.widget) for size in self.sizes.of_job.values()),
         )
         notes = {widget: self.fold.add(text, widget) for text, widget in rows}
         # under the fields, by what errors call what is entered there
@@ -100,6 +105,10 @@ class JobPanel:
             self.name.place: notes[self.name.widget],
             self.stands.leaning.label: notes[self.stands.leaning.widget],
         }
+        for place, size in self.sizes.of_job.items():
+            self.notes[place] = self.notes[size.label] = notes[size.widget]
+            connect(size.widget.lineEdit(), "textChanged(QString)", self._entered_anew)
+        connect(self.sizes.width.widget, "editingFinished()", self._judge_anew)
         connect(self.machine, "editTextChanged(QString)", self._entered_anew)
         self.stands.setup.currentIndexChanged.connect(self._entered_anew)
         connect(self.name.widget, "textChanged(QString)", self._entered_anew)
@@ -172,14 +181,21 @@ class JobPanel:
             except ReferenceError:
                 self.say(tr(CLOSED))
 
+    def _judge_anew(self, *_: Any) -> None:
+        """Beads of another width may suit another family, and leave out something else."""
+        if self.is_open and self.picks and self.sizes.bead_width() != self.width:
+            with contextlib.suppress(ReferenceError):  # told when the job is made
+                self._understand()
+
     def _understand(self) -> None:
         """Find out what the picks mean, beside the window where it may take long."""
         self.background.cancel()
+        self.width = self.sizes.bead_width()
         try:
             if self.asked:
                 self._understood(proposal.as_kind(self.asked, self.picks, tr("as you chose")))
                 return
-            work = proposal.proposal(self.picks)
+            work = proposal.proposal(self.picks, self.sizes.bead_width())
         except AmError as error:
             self.found = JobProposal(self.asked, "", missing=translated_error(error))
             self._show()
@@ -202,7 +218,9 @@ class JobPanel:
         self._show()
         if found.parts and not found.missing:
             with contextlib.suppress(AmError):  # told when the job is made
-                self.background.start(left_out(found), self._look_at_left_out)
+                self.background.start(
+                    left_out(found, self.sizes.bead_width()), self._look_at_left_out
+                )
 
     def _look_at_left_out(self, worker: Worker) -> None:
         with contextlib.suppress(
@@ -229,6 +247,8 @@ class JobPanel:
             widget.setCursorPosition(0)
             widget.setToolTip(text or widget.whatsThis())
         self.fold.enable(self.ground, found.kind != REVOLUTION)
+        self.fold.enable(self.sizes.width.widget, found.kind not in FILLED)
+        self.fold.enable(self.sizes.spacing.widget, found.kind in FILLED)
         missing = (
             found.missing
             if self.picks
@@ -262,6 +282,7 @@ class JobPanel:
             self._tell(place, "")
         name = choices.entered(self.machine)
         self.stands.follow(suggestions.is_robot(name))
+        self.sizes.platform.widget.setEnabled(not saved_cells.is_file_of_cell(name))
         if name != self.followed:
             self.followed = name
             self.stands.propose(before.setup(self.document, name) or suggestions.setup_for(name))
@@ -315,7 +336,9 @@ class JobPanel:
 
     def _arguments(self) -> dict[str, str]:
         given = arguments(self.found, choices.entered(self.machine), bool(self.asked))
-        return {**given, **self.stands.arguments(), **self.name.choice.arguments()}
+        saved = saved_cells.is_file_of_cell(choices.entered(self.machine))
+        sizes = self.sizes.arguments(self.found.kind in FILLED, saved)
+        return {**given, **self.stands.arguments(), **self.name.choice.arguments(), **sizes}
 
     def reject(self) -> Any:
         """Nothing was done."""

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ...core.parameters.filled import GEODESIC, PLANES
-from ...objects.checks import deposit
 from ...objects.planned.proposed_family import Proposal, proposed, stands_on_hub
 from ...objects.shapes.bodies import Taken, global_shape, taken
 from ..picking import picking
@@ -44,11 +43,10 @@ class JobProposal:
         return self.layers if self.layers == GEODESIC else self.kind
 
 
-def proposal(picks: Sequence[Pick]) -> Callable[[], JobProposal]:
-    """The work, which touches no document, that finds out what picks mean. InputError NO_SHAPE; of the work FAULTY,
+def proposal(picks: Sequence[Pick], width: float) -> Callable[[], JobProposal]:
+    """The work, which touches no document, that finds out what picks mean, for beads of a width, mm. InputError NO_SHAPE; of the work FAULTY,
     NO_FACES."""
     known = [(pick, _looked_at(pick)) for pick in picks]
-    width = deposit.bead_width()
     if len(known) == 1:
         return lambda: _of_one(*known[0], width)
     return lambda: _of_several(known, width)

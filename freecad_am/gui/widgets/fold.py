@@ -78,6 +78,22 @@ class Note(QtGui.QLabel):
             self.updateGeometry()
 
 
+class Name(QtGui.QLabel):
+    """What a field is called. Of several lines it has room for all; a form cuts off the last ones of other labels where a
+    field beside them is lower."""
+
+    def minimumSizeHint(self) -> Any:
+        """Called by Qt."""
+        hint = super().minimumSizeHint()
+        high = self.heightForWidth(self.maximumWidth()) if self.wordWrap() else 0
+        return QtCore.QSize(hint.width(), max(hint.height(), high))
+
+    def sizeHint(self) -> Any:
+        """Called by Qt."""
+        hint = super().sizeHint()
+        return hint.expandedTo(self.minimumSizeHint()) if self.wordWrap() else hint
+
+
 class Fold:
     """A heading with an arrow, and under it a form that it folds and unfolds. widest_label: pixels."""
 
@@ -110,7 +126,7 @@ class Fold:
 
     def add(self, label: str, widget: Any) -> Any:
         """A row of the form. Returns the note under the widget, hidden, for what is wrong with it."""
-        name = QtGui.QLabel(label)
+        name = Name(label)
         name.setToolTip(widget.toolTip())
         for one in (widget, *present(widget, QtGui.QWidget), name):
             if not one.whatsThis():  # of one that is not, Qt asks its parent for help

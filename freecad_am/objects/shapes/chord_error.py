@@ -41,7 +41,8 @@ def suited(obj: Any) -> float:
 def extent(obj: Any) -> float:
     """The largest extent, mm, of what a feature deposits along a coordinate axis; 0 where that is not known."""
     sizes = [0.0]
-    with contextlib.suppress(AmError, *kernel.FAULTS):
+    # the feature tells of names that its source does not have, as which FreeCAD raises ValueError
+    with contextlib.suppress(AmError, ValueError, *kernel.FAULTS):
         for box in _boxes(obj):
             sizes += [box.XLength, box.YLength, box.ZLength] if box.isValid() else []
     return max(sizes)
