@@ -16,6 +16,7 @@ from ...core.inspection import figures
 from ...core.inspection.inspect import PREDICTED, Inspected
 from ...core.issues import WARNING, InputError, Issue, Text
 from ...core.parameters.process import ProcessParameters
+from ...core.process.deposit.spacing import is_spiral, turns_of
 from ...core.process.shape import compare
 from ...core.process.shape.compare import Compared
 from ...core.process.shape.deviation import deviation_map
@@ -81,7 +82,11 @@ def issues(
     for _, numbers in toolpath.parts:
         first[numbers[:1]] = True
     first |= [layer.first for layer in toolpath.layers]
-    return compare.issues(shape, toolpath.layer_heights, first, remedy(targets))
+    courses = np.ones(len(toolpath.layers))
+    for part, numbers in toolpath.parts:
+        if is_spiral(part):
+            courses[numbers[0]] = turns_of(part.layers[0].beads[0])[-1] + 1
+    return compare.issues(shape, toolpath.layer_heights, first, remedy(targets), courses)
 
 
 def predicted(

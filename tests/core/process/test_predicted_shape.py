@@ -378,3 +378,27 @@ def test_of_an_open_face_the_side_with_less_counts():
 def test_an_allowance_is_a_length_from_nothing_on():
     with pytest.raises(InputError, match="machining_allowance"):
         ProcessParameters(machining_allowance=-1.0)
+
+
+def helix(radius, turns, sides=120):
+    """A spiral as parts of revolution have them: a flat first turn, rising ones, a flat last one."""
+    angle = np.linspace(0.0, 2.0 * math.pi * (turns + 2), sides * (turns + 2) + 1)
+    height = HIGH * np.clip(angle / (2.0 * math.pi) - 1.0, 0.0, turns)
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+    up = np.broadcast_to([0.0, 0.0, 1.0], points.shape)
+    return Bead(points, up, up, angle, np.full(len(angle), SPEED), False)
+
+
+@pytest.mark.parametrize("feed", [1.0, 1.2])
+def test_turns_of_a_spiral_are_as_high_as_layers(feed):
+    """Turn by turn; with a fifth more wire the last of 10 rising turns is two layer heights too high."""
+    fed = WireParameters(1.2, SPEED * WIDE * HIGH * feed / (math.pi * 0.36))
+    process = ProcessParameters(wire=fed)
+    layers = toolpath([[ring(30.0, HIGH * k)] for k in range(11)], wire_feed=fed.feed)
+    spiral = toolpath([[helix(30.0, 11)]], wire_feed=fed.feed, family="revolution")
+    turns, rings = deposit(spiral, process), deposit(layers, process)
+    assert turns.fed == pytest.approx(13 / 11 * rings.fed, rel=2e-3)
+    assert turns.deposited == pytest.approx(turns.fed, rel=1e-6)
+    grown = rings.drift[-1] - rings.drift[0]
+    assert turns.drift == pytest.approx([grown], abs=0.2 * HIGH)
+    assert grown == pytest.approx((feed - 1.0) * 10 * HIGH, abs=0.2 * HIGH)

@@ -9,7 +9,7 @@ from itertools import chain
 import numpy as np
 
 from ...toolpath import Bead, Layer, Toolpath
-from ...types import Array, Mask
+from ...types import Array, Index, Mask
 from .layer_curve import Curve, columns_of, distance, distances
 
 LEVEL = 1e-6  # mm; a layer whose points differ no more in height is a plane
@@ -28,7 +28,7 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
             chain.from_iterable(between_layers(part) for part, _ in toolpath.parts if part.layers)
         )
     toolpath = toolpath.deposited
-    if _is_spiral(toolpath):
+    if is_spiral(toolpath):
         return between_turns(toolpath.layers[0].beads[0])
     heights = _planes(toolpath)
     if heights is not None:
@@ -70,7 +70,7 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
                 each[number].append(values)
         return tuple(chain.from_iterable(each))
     toolpath = toolpath.deposited
-    if _is_spiral(toolpath):
+    if is_spiral(toolpath):
         bead = toolpath.layers[0].beads[0]
         found = np.full(len(bead), np.nan)
         for mine, before in _quarters(bead):
@@ -100,7 +100,8 @@ def between_turns(bead: Bead) -> tuple[Array, ...]:
     return tuple(distance(bead.points[mine], before) for mine, before in _quarters(bead))
 
 
-def _is_spiral(toolpath: Toolpath) -> bool:
+def is_spiral(toolpath: Toolpath) -> bool:
+    """Whether a toolpath is a part of revolution laid as one rising bead."""
     beads = toolpath.layers[0].beads
     return (
         len(toolpath.layers) == 1
@@ -128,6 +129,14 @@ def _planes(toolpath: Toolpath) -> Array | None:
         ]
     )
     return ends.mean(axis=1) if (np.ptp(ends, axis=1) <= LEVEL).all() else None
+
+
+def turns_of(bead: Bead) -> Index:
+    """The number (n,) of the turn that each point of a spiral is in, from 0."""
+    turned = np.abs(bead.parameter - bead.parameter[0]) / (2.0 * np.pi)
+    last = max(int(np.ceil(turned[-1] - 1e-6)) - 1, 0)
+    turns: Index = np.minimum((turned + 1e-9).astype(np.intp), last)
+    return turns
 
 
 def _quarters(bead: Bead) -> Iterator[tuple[Mask, Curve]]:

@@ -157,12 +157,18 @@ def figures(of: PredictedDeposit, found: Compared, allowance: float) -> Predicte
 
 
 def issues(
-    found: PredictedShape, layer_heights: Array, first: Mask, remedy: str
+    found: PredictedShape,
+    layer_heights: Array,
+    first: Mask,
+    remedy: str,
+    courses: Array | None = None,
 ) -> tuple[Issue, ...]:
     """That layers come out higher or lower than they are planned, and that the part is not inside the predicted deposit by
     the allowance. layer_heights: (layers,) mm; first: (layers,) of those that nothing of their feature lies below. remedy:
-    what to do where the deposit is too small, with {} for by how much."""
-    drifts, low = _drift(found.drift, layer_heights, first)
+    what to do where the deposit is too small, with {} for by how much. courses: (layers,) turns that lie one over the other
+    within a layer, 1 of all but spirals."""
+    courses = np.ones(len(layer_heights)) if courses is None else courses
+    drifts, low = _drift(found.drift, layer_heights, first, courses)
     if found.short <= 0.0:
         return drifts
     lacks = found.allowance - found.least
@@ -196,7 +202,9 @@ def issues(
     )
 
 
-def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[tuple[Issue, ...], bool]:
+def _drift(
+    drift: Array, layer_heights: Array, first: Mask, courses: Array
+) -> tuple[tuple[Issue, ...], bool]:
     """That layers end farther above or below where the next should begin than MUCH of their height, at the worst one, and
     whether it is below."""
     off = np.nan_to_num(drift) / layer_heights
@@ -204,7 +212,7 @@ def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[tuple[Issue
     if not len(off) or abs(off[worst]) <= MUCH:
         return (), False
     lowest = int(np.flatnonzero(first[: worst + 1])[-1]) if first[: worst + 1].any() else 0
-    made = layer_heights[worst] + drift[worst] / (worst - lowest + 1)
+    made = layer_heights[worst] + drift[worst] / courses[lowest : worst + 1].sum()
     way = "below" if drift[worst] < 0.0 else "above"
     return (
         Issue(

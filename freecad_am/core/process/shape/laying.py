@@ -23,6 +23,7 @@ from ...issues import Text
 from ...parameters.process import ProcessParameters
 from ...toolpath import Toolpath
 from ...types import Array, Index
+from ..deposit.spacing import is_spiral, turns_of
 from .footprint import Footprint, footprint
 from .grid import Grid
 from .strands import Strands, strands, together
@@ -92,26 +93,30 @@ def predicted_deposit(
     pieces = together(each)
     grid = Grid(edge_of(pieces) if edge is None else edge)
     layers = sum(len(part.toolpath.layers) for part in parts)
-    drift, done, total = np.full(layers, np.nan), 0, 0.0
+    drift, total = np.full(layers, np.nan), 0.0
     levels, beads = [], []
     for part, own in zip(parts, each, strict=True):
         below: tuple[Strands, Array] | None = None
-        bounds = np.searchsorted(own.layer, np.arange(len(part.toolpath.layers) + 1))
-        for number, (start, end) in enumerate(
-            zip(bounds.tolist(), bounds[1:].tolist(), strict=False)
-        ):
-            done += 1
+        spiral = is_spiral(part.toolpath)
+        courses = turns_of(part.toolpath.layers[0].beads[0])[own.point] if spiral else own.layer
+        means: list[float] = []
+        bounds = np.searchsorted(courses, np.arange(courses.max(initial=-1) + 2))
+        for start, end in zip(bounds.tolist(), bounds[1:].tolist(), strict=False):
             if start == end:
                 continue
-            report(done / layers, Text("layer {} of {}", done, layers))
             some = own.rows(slice(start, end))
+            done = int(part.numbers[some.layer[0]]) + 1
+            report(done / layers, Text("layer {} of {}", done, layers))
             layer = _Layer(grid, some, _base(grid, some, below))
             total += layer.lay()
             over = layer.level - layer.rise - some.height
-            drift[part.numbers[number]] = float(np.average(over, weights=some.length))
+            means.append(float(np.average(over, weights=some.length)))
+            drift[part.numbers[some.layer[0]]] = means[-1]
             levels.append(layer.level)
             beads.append(some.bead - some.bead[0])
             below = some, over
+        if spiral:
+            drift[part.numbers[0]] = _spiral_drift(means)
     numbered = np.concatenate(
         [part.numbers[own.layer] for part, own in zip(parts, each, strict=True)]
     )
@@ -124,6 +129,16 @@ def predicted_deposit(
         total,
         drift,
     )
+
+
+def _spiral_drift(means: Sequence[float]) -> float:
+    """mm by which turns of a spiral end too high, at the worst one, from how much each does in the mean. The turn that
+    rises from the flat first one and the flat last one, which lie on what is rising, are reported as deposited twice."""
+    rising = np.array(means[1:-1])
+    if not len(rising):
+        return 0.0
+    off = rising - rising[0]
+    return float(off[np.abs(off).argmax()])
 
 
 def _base(grid: Grid, pieces: Strands, below: tuple[Strands, Array] | None) -> Array:

@@ -13,6 +13,7 @@ from ...parameters.process import ProcessParameters
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..deposit.pieces import cut, joined
+from ..deposit.spacing import is_spiral, turns_of
 
 PIECE = 0.25  # of a bead's width
 BEND = 0.25  # of a bead's width that its outer side gapes at most between two pieces that run into each other
@@ -100,6 +101,9 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
     whole = np.array([one.length for _, _, one in beads])
     layers = toolpath.layers
     first = np.array([number == 0 or layer.first for number, layer in enumerate(layers)])
+    on_ground = first[pieces.layer]
+    if is_spiral(toolpath):  # which lies on itself from its second turn on
+        on_ground &= turns_of(layers[0].beads[0])[pieces.point] == 0
     return Strands(
         pieces.middle,
         np.cross(side, build),
@@ -115,7 +119,7 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
         pieces.layer,
         bead,
         pieces.point,
-        first[pieces.layer],
+        on_ground,
         np.array([one.width is not None for _, _, one in beads])[bead],
     )
 
