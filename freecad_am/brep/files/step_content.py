@@ -130,7 +130,7 @@ class StepContent:
                 self.where,
                 "it has solids by constructive geometry ({}), which are not read; {}",
                 ", ".join(constructed),
-                Word(PLAIN),
+                PLAIN,
             )
         names = [name.decode("utf-8", "replace") for name in DOCUMENT_FILE.findall(self.data)]
         others = [name for name in names if name.lower().endswith(CAD_FILES)]
@@ -158,7 +158,7 @@ class StepContent:
                 self.where,
                 "{} have no surfaces: it holds triangles (AP242 tessellated geometry); {}",
                 Word(where),
-                Word(PLAIN),
+                PLAIN,
             )
 
     def compare(self, shape: Any) -> list[Issue]:
@@ -262,7 +262,7 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
             where,
             "it has solids by constructive geometry ({}), which are not read; {}",
             ", ".join(constructed),
-            Word(PLAIN),
+            PLAIN,
         )
     if kinds[IGES_EXTERNAL]:
         raise InputError(

@@ -183,7 +183,7 @@ class _Package:
                 "EMPTY_FILE",
                 self.where,
                 "it builds no triangles{}; export the part again",
-                Word(self._names_left_out()),
+                self._names_left_out(),
             )
         return Content(points, corners, tuple(self._notes()))
 
@@ -226,7 +226,7 @@ class _Package:
     def _names_left_out(self) -> str:
         if not self.left_out:
             return ""
-        return Text(", for what it holds is not part ({})", Word(_listed(self.left_out)))
+        return Text(", for what it holds is not part ({})", _listed(self.left_out))
 
     def _notes(self) -> list[Issue]:
         notes = []
@@ -234,13 +234,11 @@ class _Package:
             message = Text(
                 "{}: left out, as they are not part of the shape: {}",
                 self.where,
-                Word(_listed(self.left_out)),
+                _listed(self.left_out),
             )
             notes.append(Issue(NOTE, CONTENT, message))
         if self.subtracted:
-            message = Text(
-                "{}: subtracted from the part: {}", self.where, Word(_listed(self.subtracted))
-            )
+            message = Text("{}: subtracted from the part: {}", self.where, _listed(self.subtracted))
             notes.append(Issue(NOTE, CONTENT, message))
         if self.spaces:
             message = Text(

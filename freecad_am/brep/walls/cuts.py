@@ -14,7 +14,7 @@ from ...core.geometry.mesh.triangles import closest
 from ...core.geometry.walls.patch import SPLINE
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot
-from ...core.issues import InputError, Text, Word
+from ...core.issues import InputError, Text
 
 BENT, FOLDED = (
     0.3,
@@ -60,7 +60,7 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
                 f"{label} {wall.faces[k]}",
                 "the face folds back and cuts itself at {}; {}",
                 place(patch.at(start[:1])[0][0]),
-                Word(FOLDS_TUBE if any(patch.periods) else FOLDS),
+                FOLDS_TUBE if any(patch.periods) else FOLDS,
             )
 
 
@@ -146,7 +146,7 @@ def _refuse_cuts(
                 "the wall cuts itself at {} ({}); {}",
                 place(found),
                 Text.joined(" and ", names),
-                Word(_remedy(wall, faces)),
+                _remedy(wall, faces),
             )
 
 

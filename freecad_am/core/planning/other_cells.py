@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..geometry import frames
-from ..issues import Text, Word
+from ..issues import Text
 from ..kinematics import cell as cells
 from ..kinematics import proposed_cell
 from ..kinematics.arrangement import of_setup
@@ -53,10 +53,10 @@ def clear_of_arm(job: Tried, codes: set[str]) -> Iterator[Tried]:
         if one is not None and one.settings.arm_clearance is None:
             remedy = Text("`cell.arm_clearance: {:g} mm`", CLEARANCE)
             if one is held:
-                remedy = Text("{} and `cell.arm_clearance: {:g} mm`", Word(one.remedy), CLEARANCE)
+                remedy = Text("{} and `cell.arm_clearance: {:g} mm`", one.remedy, CLEARANCE)
             yield with_cell(one, remedy, arm_clearance=CLEARANCE)
     if held is not None and job.settings.branch != "auto":
-        yield with_cell(held, Text("{} and `cell.branch: auto`", Word(held.remedy)), branch="auto")
+        yield with_cell(held, Text("{} and `cell.branch: auto`", held.remedy), branch="auto")
 
 
 def held_by_clamp(job: Tried) -> Tried | None:

@@ -224,7 +224,7 @@ def _contradictions(
                         "{} and {} ({} {:g} and {:g} mm)",
                         row_name("", low, lines).strip(),
                         row_name("", high, lines).strip(),
-                        Word(name),
+                        Word("width" if name == "width" else "height"),
                         values[low],
                         values[high],
                     )
