@@ -226,6 +226,7 @@ def _written(job: Job, label: str) -> Outcome:
     issues = (
         *controllers.size_issues(made.toolpath, job.parameters),
         *controllers.base_issues(made.cell.machine, job.parameters),
+        *controllers.machine_issues(made.cell, job.parameters),
         *checked.issues,
     )
     return Outcome(Written(made.files, checked), issues, (("Files", sorted(made.files)),))

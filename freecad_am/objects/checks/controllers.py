@@ -137,6 +137,23 @@ def base_issues(machine: Machine, parameters: ProgramParameters) -> list[Issue]:
     ]
 
 
+def machine_issues(cell: Cell, parameters: ProgramParameters) -> list[Issue]:
+    """A note with the doubts of the machine file that concern a program: its joint values, limits and speeds."""
+    if parameters.post == "none":
+        return []
+    kinds = ["limits", f"limits.{cell.limits.name}", "speeds"]
+    kinds += ["joint"] if parameters.motion == "joint" else []
+    texts = [
+        text
+        for machine in dict.fromkeys((cell.robot, cell.machine))
+        for text in machine.warnings_of(*kinds)
+    ]
+    if not texts:
+        return []
+    message = Text("{}: {}", cell.robot.title, " ".join(dict.fromkeys(texts)))
+    return [Issue(NOTE, "MACHINE_NOT_VERIFIED", message)]
+
+
 def check_external(cell: Cell, post: str) -> None:
     """InputError UNSUPPORTED_AXES when a post of the robot does not write its external axes."""
     written = readers(cell)

@@ -265,6 +265,26 @@ BAD = {
         "shapes.base.colour",
         "from 0 to 1",
     ),
+    "warning of nothing known": (
+        changed("warnings", value=[{"applies_to": "speed", "text": "from memory"}]),
+        "warnings[0].applies_to",
+        "'speed' is not what a warning applies to; use base, joint, limits, speeds, limits.maker",
+    ),
+    "warning of a set that is not there": (
+        changed("warnings", value=[{"applies_to": "limits.papper", "text": "from memory"}]),
+        "warnings[0].applies_to",
+        "'limits.papper'",
+    ),
+    "warning without words": (
+        changed("warnings", value=[{"applies_to": "base"}]),
+        "warnings[0]",
+        "'text' is missing",
+    ),
+    "warning with more": (
+        changed("warnings", value=[{"applies_to": "base", "text": "a", "level": 3}]),
+        "warnings[0]",
+        "'level' is not known",
+    ),
     "no title": (changed("title", value=""), "title", "not a text"),
     "not an object": ([1, 2], "", "not an object"),
 }
@@ -280,6 +300,36 @@ def test_a_bad_file_is_named_with_key_and_reason(case, tmp_path):
     assert info.value.code == "BAD_MACHINE"
     assert info.value.where == (f"{path}: {key}" if key else str(path))
     assert reason in info.value.message
+
+
+def test_a_key_that_stands_twice_is_refused(tmp_path):
+    path = tmp_path / "arm.json"
+    path.write_text(json.dumps(GOOD)[:-1] + ', "title": "Another"}', encoding="utf-8")
+    with pytest.raises(InputError) as info:
+        machine.load(path)
+    assert info.value.code == "BAD_MACHINE" and "'title' stands there twice" in info.value.message
+
+
+def test_a_mark_of_byte_order_is_passed_over(tmp_path):
+    path = tmp_path / "arm.json"
+    path.write_bytes(b"\xef\xbb\xbf" + json.dumps(GOOD).encode("utf-8"))
+    assert machine.load(path).title == GOOD["title"]
+
+
+def test_every_doubt_in_a_remark_has_a_warning():
+    doubts = {
+        "base": "base frame is not known",
+        "joint": "unverified for LS files",
+        "limits": "not settled",
+        "speeds": "are from memory",
+    }
+    for path in sorted(machine.BUILT_IN.glob("*.json")):
+        content = json.loads(path.read_text(encoding="utf-8"))
+        words = " ".join([*content["remarks"], content["controller"]["remark"]])
+        has = {one["applies_to"] for one in content.get("warnings", [])}
+        if path.stem == "abb-irb1600-6-12":
+            continue  # has what the other source gives
+        assert {kind for kind, doubt in doubts.items() if doubt in words} <= has, path.name
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"\xff\xfe", b"NaN"])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,40 @@ from ..limits import Limits, Payload
 from .file import Node
 
 SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
+# what a warning may apply to: positions of Cartesian programs, joint values of joint programs, the limits of all sets or,
+# behind a dot, of one, and the speeds of the axes
+WARNED = ("base", "joint", "limits", "speeds")
+
+
+class MachineWarning(NamedTuple):
+    """A doubt about a machine file that may change a program: what it applies to, and in words."""
+
+    applies_to: str
+    text: str
+
+
+def warnings_of(top: Node) -> tuple[MachineWarning, ...]:
+    """The warnings of a machine file, none where it has no such key."""
+    return (
+        tuple(_warning(node, top) for node in top["warnings"].items())
+        if top.has("warnings")
+        else ()
+    )
+
+
+def _warning(node: Node, top: Node) -> MachineWarning:
+    node.only("applies_to", "text")
+    applies_to = node["applies_to"].text()
+    sets = [f"limits.{name}" for name, _ in top["limits"].pairs()]
+    if applies_to not in (*WARNED, *sets):
+        raise node["applies_to"].bad(
+            Text(
+                "{!r} is not what a warning applies to; use {}",
+                applies_to,
+                ", ".join([*WARNED, *sets]),
+            )
+        )
+    return MachineWarning(applies_to, node["text"].text())
 
 
 def pulses_of(controller: Node, count: int) -> tuple[float, ...]:

@@ -137,11 +137,27 @@ class Node:
         return frames.from_rpy(self["origin"].numbers(3), np.radians(self["rpy"].numbers(3)))
 
 
+def _once(pairs: list[tuple[str, Any]], path: Path) -> dict[str, Any]:
+    """An object, each key of which stands once."""
+    known: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in known:
+            raise InputError(
+                "BAD_MACHINE", str(path), "the key {!r} stands there twice; remove one", key
+            )
+        known[key] = value
+    return known
+
+
 def read(path: Path) -> Node:
     """The content of a machine file; InputError 'BAD_MACHINE' when it cannot be read as JSON."""
     try:
         return Node(
-            json.loads(content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8")), path
+            json.loads(
+                content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8-sig"),
+                object_pairs_hook=lambda pairs: _once(pairs, path),
+            ),
+            path,
         )
     except RecursionError:
         raise InputError(

@@ -38,7 +38,7 @@ from .file import Node, read
 
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
-# a remark of machine files
+# a remark of machine files that were written before they had warnings
 BASE_NOT_KNOWN = "The maker's own base frame is not known: base_link is used in its place."
 UNKNOWN_REMARK = "a URDF does not say what the controller shows"
 REFUSED = (
@@ -49,6 +49,7 @@ KEYS = (
     "title",
     "sources",
     "remarks",
+    "warnings",
     "joints",
     "flange",
     "base",
@@ -77,7 +78,7 @@ class Machine:
     `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
     `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first. `external`: how many of the axes,
     the last ones, are not the robot's own (`external.coupled`). `bodies` (axes + 1): what its links are made of. `of_urdf`:
-    whether that is the file that tells of it.
+    whether that is the file that tells of it. `warnings`: doubts that may change a program.
     """
 
     id: str
@@ -104,6 +105,7 @@ class Machine:
     payload: Payload = Payload()
     bodies: tuple[Pieces, ...] = ()
     of_urdf: bool = False
+    warnings: tuple[entry.MachineWarning, ...] = ()
 
     @property
     def opw(self) -> OpwArm | None:
@@ -135,7 +137,11 @@ class Machine:
     @property
     def base_is_known(self) -> bool:
         """Whether `base` is the manufacturer's own base frame; False where base_link stands for it."""
-        return BASE_NOT_KNOWN not in self.remarks
+        return BASE_NOT_KNOWN not in self.remarks and not self.warnings_of("base")
+
+    def warnings_of(self, *applies_to: str) -> tuple[str, ...]:
+        """The texts of the warnings that apply to these, see entries.WARNED."""
+        return tuple(one.text for one in self.warnings if one.applies_to in applies_to)
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -335,6 +341,7 @@ def _parse(top: Node) -> Machine:
         max_jerk=np.array([entry.most_of(joint, "max_jerk", "a jerk") for joint in joints]) * units,
         shapes=shapes,
         payload=entry.payload_of(top),
+        warnings=entry.warnings_of(top),
         bodies=link_bodies(top, links, shapes),
     )
     if MAKER not in machine.limit_sets:

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Doubts that machine files name become issues of the programs they may change."""
+
+import numpy as np
+
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.objects.checks import controllers
+
+
+def test_doubts_in_machine_files_become_issues_of_programs():
+    """Every file whose remarks doubt base, joints, limits or speeds has a warning; of other set-ups there is none."""
+    placed = {"deposition_point": (1000.0, 0.0, 0.0, 0.0, 0.0, 0.0)}
+
+    def codes(name, motion, **more):
+        cell = cells.resolve(CellParameters(machine=name, **placed, **more), np.eye(4))
+        post = cell.machine.posts[0]
+        settings = ProgramParameters(post=post, motion=motion)
+        issues = [
+            *controllers.base_issues(cell.machine, settings),
+            *controllers.machine_issues(cell, settings),
+        ]
+        return [(issue.level, issue.code) for issue in issues], " ".join(
+            str(issue.message) for issue in issues
+        )
+
+    doubted = [("note", "MACHINE_NOT_VERIFIED")]
+    unknown = [("warning", "BASE_NOT_KNOWN")]
+    found, words = codes("fanuc-arcmate120ic", "joint")
+    assert found == doubted and "q3 - q2" in words and "dress-out" not in words
+    found, words = codes("fanuc-arcmate120ic", "joint", limits="brochure_2018")
+    assert found == doubted and "q3 - q2" in words and "dress-out" in words
+    assert codes("fanuc-arcmate120ic", "cartesian")[0] == []
+    assert codes("abb-irb1600-8-145", "cartesian")[0] == doubted
+    assert codes("staubli-rx60b", "cartesian")[0] == unknown
+    assert codes("staubli-rx60b", "joint")[0] == []
+    assert codes("motoman-ar1440", "cartesian")[0] == unknown + doubted
+    assert codes("kuka-kr16-2", "cartesian")[0] == []
