@@ -386,6 +386,8 @@ def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere, n
     person.panel_closed()
     joint_path = hemisphere.Document.JointPath
     assert joint_path.Status == "infeasible"
+    # a larger one than the largest there is would be refused
+    assert hemisphere.Document.Cell.PlatformDiameter.Value == 10_000.0
     lines = [
         line
         for line in person.console()[said:].splitlines()

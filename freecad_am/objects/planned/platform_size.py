@@ -9,17 +9,23 @@ import math
 import numpy as np
 
 from ...core.kinematics.cell import mounted
+from ...core.parameters import field as f
 from ...core.parameters.cell import CellParameters
 from ...core.strategies.support import stands_on
 from ...core.toolpath import Toolpath
 from ...core.types import Array
 
 STEP = 5.0  # mm, to multiples of which diameters are rounded up
+LARGEST = next(
+    f.spec_of(field).high or math.inf
+    for field in dataclasses.fields(CellParameters)
+    if field.name == "platform_diameter"
+)  # mm; what lies beside it is warned about
 MIDDLE = 0.9  # of a diameter; a smaller one is worth another frame
 
 
 def fitted(toolpath: Toolpath, settings: CellParameters) -> CellParameters:
-    """The cell with a platform that all beads of the first layer lie on. The feature's own frame sits on it where the layer
+    """The cell with a platform that all beads of the first layer lie on, or the largest there is. The feature's own frame sits on it where the layer
     stands on that and needs a smaller platform so."""
     own = mounted(settings, toolpath.frame, toolpath.family)
     diameter, mount = needed(toolpath, own), settings.mount
@@ -30,9 +36,8 @@ def fitted(toolpath: Toolpath, settings: CellParameters) -> CellParameters:
         and stands_on(toolpath, toolpath.frame, toolpath.surroundings)
     ):
         diameter, mount = other, "feature"
-    return dataclasses.replace(
-        settings, platform_diameter=max(diameter, settings.platform_diameter), mount=mount
-    )
+    diameter = min(max(diameter, settings.platform_diameter), LARGEST)
+    return dataclasses.replace(settings, platform_diameter=diameter, mount=mount)
 
 
 def needed(toolpath: Toolpath, frame: Array) -> float:
