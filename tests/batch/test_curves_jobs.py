@@ -245,8 +245,9 @@ def test_a_turn_of_a_vase_may_end_where_it_turns_back(workshop, planned):
     assert done.status == 0, done.err
     assert report["length_mm"] == pytest.approx(20.0 + np.hypot(10.0, 0.4))
     assert np.isfinite(column(rows, "tx", "ty", "tz")).all()
-    done, _, _ = planned("up.gcode", "M83\nG0 X0 Y0 Z0.4\nG1 X10 E1\nG1 Z5 E1\nG1 Z9 E1\n")
-    assert done.status == 2 and "error[ALONG_DIRECTION]" in done.err, done.err
+    for moves in ("G1 Z5 E1\nG1 Z9 E1", "G1 Z5 E1\nG1 X0 E1", "G1 Z5 E1\nG1 X20 E1"):
+        done, _, _ = planned("up.gcode", f"M83\nG0 X0 Y0 Z0.4\nG1 X10 E1\n{moves}\n")
+        assert done.status == 2 and "error[ALONG_DIRECTION]" in done.err, done.err
 
 
 def test_roles_of_g_code_in_a_job_file(workshop):

@@ -444,6 +444,17 @@ def test_roles_that_cannot_be_understood_are_refused(tmp_path, config, code):
     assert caught.value.code == code
 
 
+@pytest.mark.parametrize("name", ["SuperSlicer_model", "Slic3r_pe_MODEL", "Other_model"])
+def test_files_of_roles_of_other_slicers_are_read(tmp_path, name):
+    """Two boxes, the second of which is left out."""
+    config = prusa((0, 11, {}), (12, 23, {"volume_type": "SupportBlocker"}))
+    text = model(mesh(1, BOTH, BOTH_FACES), placed("item", 1))
+    wanted, _ = volume_and_notes(written(tmp_path, text, more={PRUSA: config}))
+    other = written(tmp_path, text, more={f"Metadata/{name}.config": config})
+    volume, notes = volume_and_notes(other)
+    assert volume == pytest.approx(wanted) and any("support blocker" in str(n) for n in notes)
+
+
 @pytest.mark.parametrize("kind", ["model", "other"])
 @pytest.mark.parametrize("split", [False, True])
 @pytest.mark.parametrize(

@@ -280,10 +280,7 @@ class _Package:
 
     def _read_roles(self) -> None:
         """Give the objects the roles that a slicer's own files say."""
-        for config in roles.CONFIGS:
-            name = self._named(config)
-            if name is None:
-                continue
+        for name in filter(roles.is_config, self.archive.namelist()):
             reader = roles.ConfigReader()
             try:
                 self._parse(name, reader.start, None, reader.end)

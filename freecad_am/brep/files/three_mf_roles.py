@@ -8,6 +8,7 @@ metadata of an object in the model; Slic3r as `slic3r:volume` elements in the me
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 
 from ...core.issues import Text
@@ -50,10 +51,15 @@ CURA_ROLES = {
     "support_mesh": SUPPORT,
     "cutting_mesh": CUTTING,
 }
-CONFIGS = ("metadata/slic3r_pe_model.config", "metadata/model_settings.config")
+CONFIG = re.compile(r"metadata/(?:\w+_model|model_settings)\.config", re.IGNORECASE)
 DRAIN_HOLES = "metadata/slic3r_pe_sla_drain_holes.txt"
 TRUE = ("1", "true", "yes")
 LAST = 1 << 62  # of triangles, where a range has no end
+
+
+def is_config(name: str) -> bool:
+    """Whether a file of the zip is a slicer's file of roles: those of programs made from PrusaSlicer end in `_model.config`."""
+    return CONFIG.fullmatch(name) is not None
 
 
 @dataclass

@@ -25,6 +25,7 @@ ALONG = np.cos(
 )  # a bead runs along the direction in which it is laid if the angle between them is less
 
 
+STEP = 1.01  # layer heights that a bead may climb straight up, but for what slicers round
 TURNED_BACK = 0.05  # of the shorter segment: a mean of two segments that is less says nothing
 
 
@@ -47,7 +48,8 @@ def plan(
                 _classed(
                     curve,
                     fixed,
-                    again * strategy.layer_height,
+                    strategy.layer_height,
+                    again,
                     (len(layers), k),
                     build,
                     process,
@@ -73,7 +75,8 @@ def plan(
 def _classed(
     curve: BeadCurve,
     fixed: Array,
-    up: float,
+    height: float,
+    again: int,
     place: tuple[int, int],
     build: BuildDirectionParameters,
     process: ProcessParameters,
@@ -82,7 +85,7 @@ def _classed(
     """The bead at a place, layer and number in it, as its class is laid."""
     name = classes.of_wall(place[0])
     own = classes.leaning(build, process, name), process.for_class(name)
-    return replace(_bead(curve, fixed, up, sum(place), *own, label), bead_class=name)
+    return replace(_bead(curve, fixed, height, again, sum(place), *own, label), bead_class=name)
 
 
 def _tangents(points: Array, away: Array) -> Array:
@@ -102,10 +105,20 @@ def _tangents(points: Array, away: Array) -> Array:
     return np.asarray(forward)
 
 
+def _steps_along(points: Array, away: Array, height: float) -> Array:
+    """Cosine (n - 1,) between each segment and the direction in which it is laid; 0 of steps of up to a layer height, with which
+    a bead climbs onto itself."""
+    segments = np.diff(points, axis=0)
+    lengths = np.linalg.norm(segments, axis=1)
+    cosines = np.abs((segments * away[:-1]).sum(axis=1)) / lengths
+    return np.where(lengths > STEP * height, cosines, 0.0)
+
+
 def _bead(
     curve: BeadCurve,
     fixed: Array,
-    up: float,
+    height: float,
+    again: int,
     index: int,
     build: BuildDirectionParameters,
     process: ProcessParameters,
@@ -114,12 +127,14 @@ def _bead(
     away = np.tile(fixed, (len(curve.points), 1))
     if curve.directions is not None and build.mode == "local":
         away = curve.directions
-    points = curve.points + up * away
+    points = curve.points + again * height * away
     if process.direction == "alternate" and index % 2:
         points, away = points[::-1], away[::-1]
     forward = _tangents(points, away)
-    worst = int(np.abs((forward * away).sum(axis=1)).argmax())
-    if abs(float(forward[worst] @ away[worst])) > ALONG:
+    along = np.abs((forward * away).sum(axis=1))
+    along[:-1] = np.maximum(along[:-1], _steps_along(points, away, height))
+    worst = int(along.argmax())
+    if along[worst] > ALONG:
         raise InputError(
             "ALONG_DIRECTION",
             label,

@@ -142,6 +142,8 @@ HEAD = "G90\nM83\nG0 X0 Y0 Z1\n"
             + "SAVE_GCODE_STATE NAME=a\nG91\nM82\nRESTORE_GCODE_STATE NAME=a\nG1 X4 E1\nG1 X6 E1\n",
             6,
         ),
+        (HEAD + "M120\nG1 X4 E1\nM121\nG1 X6 E1\n", 6),
+        (HEAD + "M121\nG1 X6 E1\n", 6),
         (HEAD + 'M117 5" X=3 G91 (hm\nG1 X4 E1\n', 4),
         (HEAD + "G2 Z2 I1 J0 P1 F100\nG1 X4 E1\n", 4),
     ],
@@ -181,6 +183,8 @@ def test_numbers_modes_and_commands_are_those_of_the_firmware(text, wanted):
         "o100 sub",
         "/ G1 X10 E1",
         "G1 X10 E1*5",
+        "M120\nG91\nM121",
+        "M120\nM82\nM121",
         "G10 L2 P1 X5",
         "SET_GCODE_OFFSET Z=0.2",
     ]

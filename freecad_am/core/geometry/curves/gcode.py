@@ -141,8 +141,6 @@ HARMLESS_M = frozenset(
             117,
             118,
             119,
-            120,
-            121,
         )
     }
     | {
@@ -345,6 +343,11 @@ class _State:
         )
 
     @property
+    def modes(self) -> tuple[bool, str]:
+        """Whether moves are absolute, and the mode of the extruder."""
+        return self.absolute, self.extruder_mode
+
+    @property
     def place(self) -> Array:
         return np.array([self.at[axis] for axis in "XYZ"]) + self.shift
 
@@ -393,6 +396,7 @@ class _Reader:
     def __init__(self, where: str, chord_error: float, rotary: str) -> None:
         self.where, self.chord_error, self.rotary = where, chord_error, rotary
         self.state, self.stored = _State(), dict[str, _State]()
+        self.pushed: list[tuple[bool, str]] = []  # modes at each M120 without its M121
         self.known: set[str] = set()  # axes told so far
         self.motion = ""
         self.points: list[Array] = []
@@ -555,6 +559,8 @@ class _Reader:
             self.stored[self._state_name(command)] = self.state.copied()
         elif name == "RESTORE_GCODE_STATE":
             self._restore(command)
+        elif name in ("M120", "M121"):
+            self._push_or_pop(name)
         elif name[0] == "G" and name[1:2].isdigit():
             raise self._error(Text("{} is not known; {}", name, Text(FORM)))
         elif name in ("M98", "M32"):  # another file of the machine
@@ -585,6 +591,18 @@ class _Reader:
             for k, axis in enumerate("XYZ"):
                 state.at[axis] = float(here[k] - state.shift[k])
         self.state = state
+
+    def _push_or_pop(self, name: str) -> None:
+        """M120 and M121 store and restore modes on RepRapFirmware, and switch endstops on Marlin."""
+        if name == "M120":
+            self.pushed.append(self.state.modes)
+            return
+        stored = self.pushed.pop() if self.pushed else self.state.modes
+        if stored != self.state.modes:
+            raise self._error(
+                "M121 restores the modes before M120 on RepRapFirmware, and keeps those of now on Marlin; write G90 or G91, "
+                "M82 or M83 in its place"
+            )
 
     def _numbers(self, command: Command) -> dict[str, float]:
         """The words of a motion. InputError for words that it does not have, or without a number."""
