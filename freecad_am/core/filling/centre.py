@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry.curves.plane_curve import length
 from ..geometry.regions.medial import spine
 from ..geometry.regions.region import Region, along, simplified
-from ..geometry.regions.several import grown, longer, wider, without
+from ..geometry.regions.several import HAIR, grown, longer, wider, without
 from ..issues import InfeasibleError
 from ..types import Array
 from .curve import Beads, PlaneCurve
@@ -22,7 +22,6 @@ COARSE = 0.01  # of the gap; what is open is found no finer
 NETWORK = 12.0  # squares of half a bead's width: a region that large, without room for contours, is not a dot but ribs
 RIB = 0.6  # of a bead's width; what stands out thicker than that in the mean is a rib
 SLIVER = 1.0  # of the chord error; of what is narrower its border is as good as its middle, which takes long to find there
-HAIR = 0.01  # of the chord error
 DOT = 5.0  # of half a bead's width; round regions narrower than a bead are no larger than that
 ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import grown, longer, without
+from ..geometry.regions.several import grown, longer, shrunk, without
 from .centre import centre_beads, outermost
 from .curve import Beads, PlaneCurve, begun, contours_of
 
@@ -31,7 +31,7 @@ def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
     while inner:
         regions.append(inner)
         open_ = region.grown(-beads.inset - (2 * k + 1) * half, error)
-        inner = longer(region.grown(-beads.inset - (2 * k + 2) * half, error), beads.shortest)
+        inner = longer(shrunk(region, beads.inset + (2 * k + 2) * half, error), beads.shortest)
         gaps.append(without(open_, grown(inner, half, error), beads.gap))
         k += 1
     return Levels(tuple(regions), tuple(gaps), thin)

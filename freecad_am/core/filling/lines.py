@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.curves.plane_curve import turned
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import grown, longer
+from ..geometry.regions.several import grown, longer, shrunk
 from ..geometry.step_count import round_down, step_count
 from ..types import Array
 from .centre import outermost
@@ -44,7 +44,7 @@ def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -
     curves = []
     for k in range(walls):
         if k:
-            inner = longer(region.grown(-beads.inset - 2 * k * half, error), beads.shortest)
+            inner = longer(shrunk(region, beads.inset + 2 * k * half, error), beads.shortest)
         curves += contours_of(inner, beads, k)
         if not inner:
             break

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import grown, wider, without
+from ..geometry.regions.several import grown, shrunk, wider, without
 from .centre import closing
 from .curve import Beads, PlaneCurve, contours_of
 from .lattice import families, gyroid, honeycomb
@@ -127,7 +127,7 @@ def _rounds(
 ) -> list[PlaneCurve]:
     """Contours so far apart, the first so far inside of a region, mm."""
     curves, k = [], 0
-    while inner := region.grown(-first - k * apart, beads.chord_error):
+    while inner := shrunk(region, first + k * apart, beads.chord_error):
         curves += contours_of(inner, beads, ring + k)
         k += 1
     return curves

@@ -292,3 +292,34 @@ def test_slivers_thinner_than_the_chord_error_take_no_time(loops, closed):
     away = shapes.distance(shapes.tree([(loop, True) for loop in loops], 0.05), line, 1.0)
     assert away.max() < 0.03  # the beads run along it, from one end of it to the other
     assert shapes.distance(shapes.tree([(line, False)], 0.05), border, 10.0).max() < 2.6
+
+
+def _motions(count=6):
+    """Turns, moves and mirror images of the plane: (matrix (2, 2), shift (2,))."""
+    for k in range(count):
+        angle = np.radians(23.0) * k
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        yield turn @ np.diag([-1.0 if k % 2 else 1.0, 1.0]), np.array([37.3, -12.1]) * k
+
+
+@pytest.mark.parametrize("pattern", ["contours", "lines"])
+def test_a_moved_section_has_the_same_beads(pattern):
+    """The foot of a bracket, whose bar is exactly five beads wide: in its middle rounding left a bead there and back, or
+    none, as it was turned."""
+    legs = [[45, -25], [45, 25], [31, 25], [31, -25]]
+    left = [[-x, y] for x, y in legs[::-1]]
+    bar = np.array([[-75, -45], [75, -45], [75, -25], *legs, *left, [-75, -25]], float)
+    wanted = None
+    for turn, shift in _motions():
+        loop = bar @ turn.T + shift
+        (region,) = regions([loop[::-1] if np.linalg.det(turn) < 0.0 else loop])
+        walls = {"walls": 3} if pattern == "lines" else {}
+        angle = np.arctan2(turn[1, 0], turn[0, 0])
+        curves = fill(region, Beads(4.0, 0.8, 0.05), pattern, angle=angle, **walls)
+        if pattern == "lines":
+            curves = [curve for curve in curves if curve.kind == "contour"]
+        lines = [np.vstack([c.points, c.points[:1]]) if c.closed else c.points for c in curves]
+        total = sum(float(np.hypot(*np.diff(line, axis=0).T).sum()) for line in lines)
+        if wanted is None:
+            wanted = (len(curves), total)
+        assert len(curves) == wanted[0] and total == pytest.approx(wanted[1], abs=0.5)

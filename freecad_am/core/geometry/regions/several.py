@@ -10,6 +10,8 @@ from ..curves.plane_curve import length
 from .region import Region
 from .strip import Strip, Window
 
+HAIR = 0.01  # of the chord error
+
 
 @overload
 def grown(regions: Sequence[Region], distance: float, chord_error: float) -> tuple[Region, ...]: ...
@@ -62,3 +64,21 @@ def wider(regions: Sequence[Region], width: float, chord_error: float) -> list[R
 def longer(regions: Sequence[Region], least: float) -> tuple[Region, ...]:
     """Those of regions whose outer border is at least so long, mm."""
     return tuple(region for region in regions if length(region.borders()[0], True) >= least)
+
+
+def shrunk(region: Region, distance: float, chord_error: float) -> tuple[Region, ...]:
+    """`region.grown(-distance)` without necks that only rounding leaves.
+
+    Where a region is exactly twice `distance` wide, rounding decides whether what stays hangs together by a neck of no
+    width, and decides otherwise once the region is turned. Necks narrower than two HAIRS of the chord error are taken away.
+    """
+    parts, hair = region.grown(-distance, chord_error), HAIR * chord_error
+    within = region.grown(-distance - hair, chord_error)
+    if _loops(parts) == _loops(within):
+        return parts
+    return grown(within, hair, chord_error)
+
+
+def _loops(regions: Sequence[Region]) -> list[int]:
+    """How many borders each of regions has, sorted."""
+    return sorted(len(region.borders()) for region in regions)
