@@ -24,6 +24,10 @@ from .path_view import PathView
 from .slider_row import Row
 
 NAME = "RoboticAM_PathDock"
+VISIBILITY, GROUP_TOUCHED = (
+    "Visibility",
+    "_GroupTouched",
+)  # a group has the latter changed with its members
 
 
 class PathDock(Follower):
@@ -104,11 +108,11 @@ class PathDock(Follower):
         """Look at a path: it is made visible, and what lies at the same place is hidden."""
         self.target = (obj.Document.Name, obj.Name)
         if not obj.ViewObject.Visibility:
-            obj.ViewObject.Visibility = True
+            _show(obj, True)
             planned = getattr(obj, "Toolpath", None)
             for other in _paths(obj.Document):
                 if other is planned or getattr(other, "Toolpath", None) is obj:
-                    other.ViewObject.Visibility = False
+                    _show(other, False)
 
     def _chosen(self, index: int) -> None:
         paths = _paths()
@@ -234,6 +238,20 @@ class PathDock(Follower):
         if _is_path(found) and found.ViewObject.Visibility:
             self.target = (document, name)
             self.fill()
+
+
+def _show(obj: Any, visible: bool) -> None:
+    """Show or hide a path; to look at one does not count as a change of the document."""
+    groups = [one for one in obj.InListRecursive if GROUP_TOUCHED in one.PropertiesList]
+    changing = [(obj, VISIBILITY), (obj.ViewObject, VISIBILITY)]
+    changing += [(group, GROUP_TOUCHED) for group in groups]
+    for holder, name in changing:
+        holder.setPropertyStatus(name, "NoModify")
+    try:
+        obj.ViewObject.Visibility = visible
+    finally:
+        for holder, name in changing:
+            holder.setPropertyStatus(name, "-NoModify")
 
 
 def _is_path(obj: Any) -> bool:

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A document counts as changed after a change alone: not when it is opened, nor when panels and docks of its stages are."""
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+
+PANELS = {
+    "Cell": "RoboticAM_Cell",
+    "Feature": "RoboticAM_RevolutionFeature",
+    "Toolpath": "RoboticAM_Toolpath",
+    "JointPath": "RoboticAM_JointPath",
+}
+
+
+def touched(document):
+    return [obj.Label for obj in document.Objects if "Touched" in obj.State]
+
+
+@pytest.fixture
+def saved(person, hemisphere, coarse, tmp_path):
+    """A job that is saved as a user saves it."""
+    document = hemisphere.Document
+    api.make_all(document, hemisphere)
+    document.recompute()
+    person.idle(0.3)
+    document.saveAs(str(tmp_path / "job.FCStd"))
+    person.gui.SendMsgToActiveView("Save")
+    assert not person.gui.getDocument(document.Name).Modified
+    return document
+
+
+def test_panels_and_docks_change_nothing(person, saved):
+    window = person.gui.getDocument(saved.Name)
+    for name, panel in PANELS.items():
+        person.double_click(saved.getObject(name))
+        person.panel(panel)
+        person.idle(0.3)
+        assert not window.Modified and touched(saved) == [], name
+        person.press("Cancel")
+        person.panel_closed()
+        assert not window.Modified and touched(saved) == [], name
+    for stage in (saved.Toolpath, saved.JointPath):  # each is shown in place of the other one
+        person.select(stage)
+        person.click("RoboticAM_Path")
+        person.idle(0.3)
+        assert stage.ViewObject.Visibility and stage.Visibility
+        assert not window.Modified and touched(saved) == [], stage.Label
+    saved.Toolpath.ViewObject.Visibility = True  # by the user, in the tree
+    assert window.Modified
+
+
+def test_opened_and_pasted_jobs_are_up_to_date(person, saved, tmp_path):
+    path = saved.FileName
+    App.closeDocument(saved.Name)
+    again = App.openDocument(path)
+    person.idle(0.4)
+    assert not person.gui.getDocument(again.Name).Modified and touched(again) == []
+    group = again.findObjects("App::DocumentObjectGroup")[0]
+    other = App.newDocument("Other")
+    other.copyObject(group, True)
+    again.copyObject(group, True)
+    person.idle(0.3)
+    for document, count in ((other, 5), (again, 10)):
+        stages = api.stages_of(document)
+        assert len(stages) == count
+        assert [stage.Label for stage in stages if "Touched" in stage.State] == []
+        assert {stage.Status for stage in stages} == {"up to date"}
+    # FreeCAD 1.0 touches pasted shapes, for its names of faces; one recompute ends that and computes no stage anew
+    keys = [stage.Key for stage in api.stages_of(other)]
+    other.recompute()
+    assert touched(other) == [] and keys == [stage.Key for stage in api.stages_of(other)]
+    api.export(other.Program, str(tmp_path / "program"))
