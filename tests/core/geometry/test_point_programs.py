@@ -88,13 +88,53 @@ def test_arcs_are_within_the_chord_error(words, middle, radius, turn):
     )
 
 
+@pytest.mark.parametrize("word", ["J-10", "R10"])
+def test_arcs_in_the_plane_of_y_and_z_turn_from_y_to_z(word):
+    """As seen against X, the same as in the plane of X and Y seen against Z."""
+    (curve,) = laid(f"G90\nM83\nG18\nG19\nG0 X5 Y10 Z0\nG3 X6 Y0 Z10 {word} E4\nG17\n", 0.02)
+    y, z = curve.points[:, 1:].T
+    np.testing.assert_allclose(np.hypot(y, z), 10.0, atol=1e-9)
+    angle = np.degrees(np.arctan2(z, y))
+    assert (np.diff(angle) > 0.0).all()
+    np.testing.assert_allclose(angle[[0, -1]], [0.0, 90.0], atol=1e-9)
+    np.testing.assert_allclose(curve.points[:, 0], 5.0 + angle / 90.0, atol=1e-9)
+
+
+def test_inches_are_read_until_millimetres_follow():
+    """Positions, middles of arcs and origins, absolute and relative; angles of axes are not lengths."""
+    inches = (
+        "G20 G90 M83\nG0 X1 Y1 Z0.1\nG1 X2 E1\nG3 X3 Y2 J1 E1\nG92 X0\nG1 X1 E1\nG91\nG1 Y1 E1\n"
+        "G90\nG21\nG1 X0 E1\n"
+    )
+    (curve,) = laid(inches)
+    corners = np.array(
+        [[1, 1, 0.1], [2, 1, 0.1], [3, 2, 0.1], [4, 2, 0.1], [4, 3, 0.1], [3, 3, 0.1]]
+    )
+    for corner in corners * 25.4:
+        assert np.linalg.norm(curve.points - corner, axis=1).min() < 1e-9
+    straight = 25.4 * (1.0 + 1.0 + 1.0 + 1.0)
+    # the chords of a quarter of an inch's radius, within 0.01 mm
+    assert 0.0 <= straight + 25.4 * np.pi / 2.0 - length([curve]) < 0.02
+    by_rotary = "G20 G90 M83\nG0 X0 Y0 Z1 A0\nG1 X1 A30 E1\n"
+    (leaning,) = gcode.curves_of(by_rotary, "a", 0.01, rotary="head-ac")
+    np.testing.assert_allclose(leaning.directions[-1], [0.0, -0.5, np.sqrt(0.75)], atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
         ("", "part.gcode", "no bead"),
         ("G0 X1 Y1 Z1\nG1 X5\n", "part.gcode", "no move of it extrudes"),
-        ("G20\nG1 X1 Y1 Z1 E1\n", "line 1", "inches"),
-        ("G18\n", "line 1", "plane of X and Z"),
+        ("G21 X5\n", "line 1", "G21 has the word X"),
+        ("G1 X1 Y1 Z1\nG18\nG2 X2 Z2 I1 E1\n", "line 3", "plane of X and Z"),
+        (
+            "G1 X1 Y1 Z1\nG19\nG2 Y2 Z2 I1 E1\n",
+            "line 3",
+            "I is no word of an arc in G19; give J and K",
+        ),
+        ("G1 X1 Y1 Z1\nG2 X2 Y2 K1 E1\n", "line 2", "K is no word of an arc in G17; give I and J"),
+        ("G1 X1 Y1 Z1\nG1 X2 Y2 K1 E1\n", "line 2", "G1 has no word K"),
+        ("G1 X1 Y1 Z1 E0\nG1 X2 E1 G20\n", "line 2", "follows a move"),
         ("G1 X1 E1\n", "line 1", "before the program says where"),
         ("G0 X0 Y0 Z0\nG2 X5 Y5 E1\n", "line 2", "give the middle of the arc or its radius"),
         ("G0 X0 Y0 Z0\nG2 X5 Y5 I1 J0 E1\n", "line 2", "from its middle"),

@@ -38,15 +38,19 @@ SAME_HEIGHT = 1e-3  # mm; slicers write Z to hundredths or thousandths
 MAX_TURN_DEG = 1.0  # by which the direction turns from one point to the next
 NO_ROTARY, ANY_ROTARY = "none", "any"  # any: of a drawing, which shows no directions
 ROTARY = (NO_ROTARY, "head-ac", "head-bc", "table-ac", "table-bc")
-FORM = "give absolute or relative moves in mm, G0 to G3 with E, as a slicer for filament or pellets writes them"
+FORM = "give absolute or relative moves, G0 to G3 with E, as a slicer for filament or pellets writes them"
 MOTIONS = frozenset({"G0", "G1", "G2", "G3"})
-LINEAR_WORDS, ARC_WORDS = frozenset("XYZEF"), frozenset("XYZEFIJRP")
-# codes without a meaning for the path: dwell, plane XY, mm, cancelled modes, first work offset, feed modes, fans, states
+LINEAR_WORDS, ARC_WORDS = frozenset("XYZEF"), frozenset("XYZEFIJKRP")
+LENGTH_WORDS = frozenset("XYZEFIJKR")  # in mm, or in inches after G20
+INCH = 25.4  # mm
+# of each plane of arcs, its two axes and the one along which they climb, and the words of their middle. Controllers turn
+# arcs in G18 from Z to X, Klipper from X to Z, so these are rejected
+PLANES = {"G17": ((0, 1, 2), "IJ"), "G18": ((2, 0, 1), "KI"), "G19": ((1, 2, 0), "JK")}
+UNITS = {"G20": INCH, "G21": 1.0}
+# codes without a meaning for the path: dwell, cancelled modes, first work offset, feed modes, fans, states
 NO_MOTION = frozenset(
     {
         "G4",
-        "G17",
-        "G21",
         "G40",
         "G49",
         "G54",
@@ -66,10 +70,6 @@ OWN_MOTION = frozenset(
     {"G12", "G27", "G28", "G29", "G29.1", "G29.2", "G30", "G32", "G33", "G34", "G35", "G392"}
 )
 REFUSED = {
-    "G20": "it is in inches; let the slicer write mm (G21)",
-    "G18": "arcs are in the plane of X and Z, which Klipper and Marlin turn in opposite ways; let the slicer write arcs in the "
-    "plane of X and Y, or lines only",
-    "G19": "arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines only",
     "G5": "splines are not known; let the slicer write lines and arcs",
     "G6": "direct moves of steppers are not known; let the slicer write G1",
     "G26": "it prints a pattern of the machine's own; leave it out",
@@ -399,6 +399,7 @@ class _Reader:
         self.pushed: list[tuple[bool, str]] = []  # modes at each M120 without its M121
         self.known: set[str] = set()  # axes told so far
         self.motion = ""
+        self.plane, self.unit = "G17", 1.0
         self.points: list[Array] = []
         self.directions: list[Array] = []
         self.runs: list[_Run] = []
@@ -435,7 +436,7 @@ class _Reader:
                 raise self._error(
                     Text("{} stands before a command; write the command first", command.words[0][0])
                 )
-            if moved and command.name in ("G90", "G91", "G53", "M82", "M83"):
+            if moved and command.name in ("G90", "G91", "G53", "M82", "M83", *PLANES, *UNITS):
                 raise self._error(
                     Text("{} follows a move in its line; give it a line of its own", command.name)
                 )
@@ -465,7 +466,7 @@ class _Reader:
             self.tool = f"T{command.rest or '0'}"
         elif self._is_refused(command):
             return
-        elif name in ("G90", "G91", "M82", "M83"):
+        elif name in ("G90", "G91", "M82", "M83", *PLANES, *UNITS):
             self._set_mode(command)
         elif name in ("G92", "G92.1"):
             self._reset_origin(command)
@@ -525,6 +526,10 @@ class _Reader:
             )
         if command.name in ("G90", "G91"):
             self.state.absolute = command.name == "G90"
+        elif command.name in PLANES:
+            self.plane = command.name
+        elif command.name in UNITS:
+            self.unit = UNITS[command.name]
         else:
             self.state.extruder_mode = command.name
 
@@ -622,6 +627,8 @@ class _Reader:
                 )
             if value is None:
                 raise self._error(Text("{} has no number; give one", letter))
+            if letter in LENGTH_WORDS:
+                value *= self.unit
             if letter != "F" and abs(value) > MAX_MM:
                 raise self._error(
                     Text("{} is {:g}; give a number of at most {:g}", letter, value, MAX_MM)
@@ -658,7 +665,10 @@ class _Reader:
                 )
             if letter in "ABC":
                 self._check_rotary(letter, value - self.state.at[letter])
-        words = {letter: float(value or 0.0) for letter, value in command.words}
+        words = {
+            letter: float(value or 0.0) * (self.unit if letter in LENGTH_WORDS else 1.0)
+            for letter, value in command.words
+        }
         for axis in "XYZ":
             if axis in words or not words:
                 state.at[axis] = words.get(axis, 0.0)
@@ -758,16 +768,34 @@ class _Reader:
         """Points (3,) of an arc but its first."""
         if extrudes and words.get("P", 0.0) > 1.0:
             raise self._error("P asks for several turns, which are not known; write each turn out")
-        middle = self._middle(name, start, end, words)
+        if self.plane == "G18":
+            raise self._error(
+                "arcs are in the plane of X and Z (G18), which Klipper and other controllers turn in opposite ways; let "
+                "the slicer write arcs in another plane, or lines only"
+            )
+        axes, letters = PLANES[self.plane]
+        start, end = start[list(axes)], end[list(axes)]
+        for letter in {"I", "J", "K"} - {*letters}:
+            if letter in words:
+                raise self._error(
+                    Text(
+                        "{} is no word of an arc in {}; give {} and {}",
+                        letter,
+                        self.plane,
+                        *letters,
+                    )
+                )
+        middle = self._middle(name, start, end, words, letters)
         one, other = start[:2] - middle, end[:2] - middle
         radius = float(np.hypot(*one))
         if radius < APART or abs(radius - float(np.hypot(*other))) > max(ARC_END, 1e-3 * radius):
             raise self._error(
                 Text(
-                    "the ends of the arc are {:.4g} and {:.4g} mm from its middle; give I and J from its start to its "
+                    "the ends of the arc are {:.4g} and {:.4g} mm from its middle; give {} and {} from its start to its "
                     "middle",
                     radius,
                     np.hypot(*other),
+                    *letters,
                 )
             )
         turn = math.atan2(other[1], other[0]) - math.atan2(one[1], one[0])
@@ -787,25 +815,35 @@ class _Reader:
             ]
         )
         rows[-1] = end
-        return list(rows)
+        return list(rows[:, np.argsort(axes)])
 
-    def _middle(self, name: str, start: Array, end: Array, words: dict[str, float]) -> Array:
-        if "I" in words or "J" in words:
+    def _middle(
+        self, name: str, start: Array, end: Array, words: dict[str, float], letters: str
+    ) -> Array:
+        """(2,) the middle of an arc in its plane, from words with these two letters or from its radius."""
+        if words.keys() & {*letters}:
             if "R" in words:
-                raise self._error("the arc has I or J, and R; give one of them")
-            return np.asarray(start[:2] + np.array([words.get("I", 0.0), words.get("J", 0.0)]))
+                raise self._error(
+                    Text("the arc has {} or {}, and R; give one of them", letters[0], letters[1])
+                )
+            return np.asarray(start[:2] + np.array([words.get(letter, 0.0) for letter in letters]))
         if "R" not in words:
             raise self._error(
-                Text("{} has neither I and J nor R; give the middle of the arc or its radius", name)
+                Text(
+                    "{} has neither {} and {} nor R; give the middle of the arc or its radius",
+                    name,
+                    *letters,
+                )
             )
         radius, chord = words["R"], end[:2] - start[:2]
         length = float(np.hypot(*chord))
         if length < APART or abs(2.0 * radius) < length * (1.0 - 1e-6):
             raise self._error(
                 Text(
-                    "a radius of {:g} mm makes no arc between points {:.4g} mm apart; give I and J",
+                    "a radius of {:g} mm makes no arc between points {:.4g} mm apart; give {} and {}",
                     radius,
                     length,
+                    *letters,
                 )
             )
         away = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0))
