@@ -17,7 +17,7 @@ from ..process.order import IslandOrder, RankedBead, ordered, waited
 from ..toolpath import Bead, Toolpath
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
-from .solids.filling import Pictures, bead_width, spaced
+from .solids.filling import Pictures, bead_width, over_fed, spaced
 from .solids.notes import notes
 from .solids.volumes import of_layers, twice
 
@@ -81,7 +81,8 @@ def plan(
         for one in notes(made, layers, strategy, build, process, model)
         if one.code != "SINGLE_LAYER"
     ]  # as asked
-    issues = [*given.issues, *_stretched(stretch), *issues, *noted]
+    fed = over_fed(strategy, process, model, width)
+    issues = [*given.issues, *_stretched(stretch), *issues, *fed, *noted]
     return Toolpath(
         layers,
         np.eye(4),

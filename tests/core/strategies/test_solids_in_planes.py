@@ -16,7 +16,7 @@ from freecad_am.core.issues import InputError, summarised
 from freecad_am.core.layers.planes.stacking import stacked
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
-from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
+from freecad_am.core.parameters.process import ProcessParameters, SeamParameters, WireParameters
 from freecad_am.core.process.deposit import spacing
 from freecad_am.core.strategies.solids.plan import plan
 
@@ -740,3 +740,22 @@ def test_open_beads_of_a_thin_plate_begin_at_alternate_ends(fill):
     assert all((a > 30.0) != (b > 30.0) for a, b in zip(starts, starts[1:]))
     usual = planned(plate, fill=fill, bead_spacing=5.0, fill_angle_step=0.0)
     assert len({float(layer.beads[0].points[0, 0]) > 30.0 for layer in usual.layers}) == 1
+
+
+@pytest.mark.parametrize("width, apart, times", [(15.0, 5.0, "3 times"), (8.0, 5.0, "1.6 times")])
+def test_beads_much_wider_than_they_are_apart_are_told(width, apart, times):
+    """The wire feeds for their width what has no room at their spacing; not where a feed, or the spacing, is what counts."""
+    block, wide = box((0, 0, 0), (60, 40, 10)), {"bead_width": width, "fill_width": "bead_width"}
+
+    def told(**process):
+        path = planned(
+            block, process=ProcessParameters(**process), bead_spacing=apart, layer_height=2.0
+        )
+        return [issue for issue in path.issues if issue.code == "BEAD_SPACING"]
+
+    (issue,) = told(**wide)
+    assert issue.level == "warning" and times in issue.message
+    assert f"{width:g} mm wide" in issue.message and f"{apart:g} mm apart" in issue.message
+    assert not told(**wide, wire=WireParameters(1.2, 50.0))
+    assert not told(bead_width=width, fill_width="spacing")
+    assert not told(bead_width=apart / 0.7, fill_width="bead_width")

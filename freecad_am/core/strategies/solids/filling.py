@@ -32,6 +32,10 @@ Same = TypeVar("Same", bound=FilledParameters)
 
 TOLERANCE_MM = 1e-6  # mm; regions whose borders are no farther apart are equal
 USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
+MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
+USUAL_SPACING = (
+    0.738  # of a width, at which the surface between beads is flat (Ding, Pan, Cuiuri, Li 2015)
+)
 MUCH = 0.03  # of a region, laid over other beads of it
 EVERY = (1.0, 1.0)  # widths that all beads have
 INSTEAD = {  # round a hub
@@ -323,6 +327,30 @@ def bead_width(
             width,
         )
     return width
+
+
+def over_fed(
+    strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None, width: float
+) -> list[Issue]:
+    """A warning where beads that count as `width` mm wide lie so close that the wire, fed for their width, fills a layer
+    more than MOST_FED times. A bead model, or a speed of the wire that is given, says itself what is fed."""
+    spacing, height = strategy.bead_spacing, strategy.layer_height
+    fed = width / spacing
+    if model is not None or not isinstance(process.wire.feed, str) or fed <= MOST_FED:
+        return []
+    text = Text(
+        "beads {:g} mm wide (process.bead_width) lie {:.4g} mm apart (strategy.bead_spacing): the wire feeds {:.4g} mm3 "
+        "for each mm of bead, {:.3g} times the {:.4g} mm3 that it has room for; set strategy.bead_spacing to {:.3g} mm, "
+        "process.bead_width to {:.3g} mm, or process.fill_width to spacing",
+        width,
+        spacing,
+        width * height,
+        fed,
+        spacing * height,
+        USUAL_SPACING * width,
+        spacing / USUAL_SPACING,
+    )
+    return [Issue(WARNING, "BEAD_SPACING", text)]
 
 
 def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:

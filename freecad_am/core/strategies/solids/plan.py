@@ -22,7 +22,7 @@ from ...toolpath import Bead, Toolpath
 from .. import size
 from ..progress import Progress, silent
 from .beads import MadeBead, bead_of
-from .filling import Pictures, bead_width, spaced
+from .filling import Pictures, bead_width, over_fed, spaced
 from .notes import notes
 from .volumes import twice, volumes
 from .without_bead import BareLayer, without_bead
@@ -105,6 +105,7 @@ def plan(
         *solids.issues,
         *[_numbered(issue, stack, course) for stack, issue in issues],
         *without_bead(bare, course),
+        *over_fed(strategy, process, model, width),
         *notes(made, layers, strategy, build, process, model),
     ]
     return Toolpath(
