@@ -608,3 +608,51 @@ def test_the_feature_of_a_part_tells_what_was_left_out_of_its_file(tmp_path):
         assert note.message.values  # it can be said in another language
     finally:
         FreeCAD.closeDocument(document.Name)
+
+
+@pytest.mark.parametrize(
+    ("unit", "right"), [("", True), ('unit="inch"', True), ('unit="millimeter"', False)]
+)
+def test_a_file_of_a_component_has_the_unit_of_the_model(tmp_path, unit, right):
+    inner = (
+        f'<?xml version="1.0"?><model {unit} xmlns="{three_mf.CORE}"><resources>{mesh(1)}'
+        "</resources><build/></model>"
+    )
+    outer = model(
+        holder(2, placed("component", 1, more=' p:path="/3D/inner.model"')),
+        placed("item", 2),
+        "inch",
+        f'xmlns:p="{three_mf.PRODUCTION}"',
+    )
+    path = written(tmp_path, outer, more={"3D/inner.model": inner})
+    if right:
+        points, _ = three_mf.triangles(path)
+        assert np.ptp(points[:, 0]) == pytest.approx(25.4 * np.ptp(CORNERS[:, 0]))
+    else:
+        with pytest.raises(InputError, match=r"inner\.model in it is in another unit") as raised:
+            read_mesh(path)
+        assert raised.value.code == "UNSUPPORTED_FILE"
+
+
+@pytest.mark.parametrize(
+    ("name", "noted"),
+    [
+        ("Metadata/parts.config", True),
+        ("Metadata/edges.xml", True),
+        ("Metadata/holes.json", True),
+        ("Metadata/holes.txt", True),
+        ("Metadata/more/parts.bin", True),
+        ("Metadata/Slic3r_PE.config", False),
+        ("Metadata/Prusa_Slicer_wipe_tower_information.xml", False),
+        ("Metadata/project_settings.config", False),
+        ("Metadata/process_settings_1.config", False),
+        ("Metadata/plate_1.json", False),
+        ("Metadata/thumbnail.png", False),
+        ("Metadata/plate_1.gcode", False),
+    ],
+)
+def test_settings_that_are_not_known_are_noted(tmp_path, name, noted):
+    path = written(tmp_path, model(mesh(1), placed("item", 1)), more={name: "{}"})
+    volume, notes = volume_and_notes(path)
+    assert volume == 1.0 and len(notes) == noted
+    assert not noted or name in notes[0]

@@ -86,8 +86,18 @@ MAX_NAMED = 5  # pieces that a note names
 CONTENT = "FILE_CONTENT"
 # files of a zip that hold no shape: pictures, settings, and what describes the zip
 HARMLESS = re.compile(
-    r"\[content_types\]\.xml|mimetype|.*/?_rels/.*|.*\.(png|jpe?g|gif|bmp|webp|svg|gcode|md5|txt|ini|json|cfg|rels|psmdcp)"
-    r"|cura/.*|docprops/.*|metadata/.*\.(config|xml|bin)|auxiliaries/.*|3d/textures?/.*|thumbnails?/.*|.*/",
+    r"\[content_types\]\.xml|mimetype|.*/?_rels/.*|.*\.(png|jpe?g|gif|bmp|webp|svg|gcode|md5|rels|psmdcp)"
+    r"|(?!metadata/).*\.(txt|ini|json|cfg)"
+    r"|cura/.*|docprops/.*|auxiliaries/.*|3d/textures?/.*|thumbnails?/.*|.*/",
+    re.IGNORECASE,
+)
+# files in Metadata that are known to hold settings alone: of PrusaSlicer, SuperSlicer, Bambu Studio and OrcaSlicer
+SETTINGS = re.compile(
+    r"metadata/((slic3r(_pe)?|prusaslicer|superslicer)\.config|(slic3r|prusa|superslicer|slic3r_pe|prusa_slicer)_("
+    r"layer_heights_profile|layer_config_ranges|sla_support_points|sla_drain_holes|custom_gcode_per_print_z|"
+    r"wipe_tower_information|cut_information)\.(txt|xml)|(project_settings|slice_info|"
+    r"(process|filament|machine|print)_settings_\d+)\.config|(layer_heights_profile|brim_ear_points)\.txt|"
+    r"(layer_config_ranges|custom_gcode_per_layer|cut_information)\.xml|(plate_\d+|filament_sequence)\.json)",
     re.IGNORECASE,
 )
 
@@ -251,7 +261,8 @@ class _Package:
         others = [
             name
             for name in self.archive.namelist()
-            if name.lower() not in read and not HARMLESS.fullmatch(name)
+            if name.lower() not in read
+            and not (HARMLESS.fullmatch(name) or SETTINGS.fullmatch(name) or roles.is_config(name))
         ]
         if others:
             message = Text(
@@ -350,6 +361,14 @@ class _Package:
             reader = _Model(self.where, name)
             self._parse(name, reader.start, reader.prefix, reader.end, reader.text)
             self.read[name] = reader.unit
+            if reader.unit_is_given and reader.unit != self.read[file]:
+                raise InputError(
+                    "UNSUPPORTED_FILE",
+                    self.where,
+                    "{} in it is in another unit than {}, which programs read in different ways; export it in one unit",
+                    name,
+                    file,
+                )
             self.objects |= reader.objects
             self.spaces |= reader.spaces
             if name == file:
@@ -545,7 +564,7 @@ class _Model:
 
     def __init__(self, where: str, name: str) -> None:
         self.where, self.name = where, name
-        self.unit = 1.0
+        self.unit, self.unit_is_given = 1.0, False
         self.objects: dict[Key, _Object] = {}
         self.items: list[_Item] = []
         self.prefixes: dict[str, str] = {}
@@ -677,7 +696,7 @@ class _Model:
         unit = values.get("unit", "millimeter")
         if unit not in UNITS:
             raise _bad(self.where, Text("its unit {!r} is none of {}", unit, ", ".join(UNITS)))
-        self.unit = UNITS[unit]
+        self.unit, self.unit_is_given = UNITS[unit], "unit" in values
         for prefix in values.get("requiredextensions", "").split():
             space = self.prefixes.get(prefix, prefix)
             if space not in KNOWN:
