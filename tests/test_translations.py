@@ -339,7 +339,7 @@ def test_parameters_in_messages_are_those_of_a_panel(collected):
     told = {
         match[0] for text in collected.messages for match in NAMED.finditer(as_in_panels(text, str))
     }
-    assert told <= {"strategy.wait", "part.faces", "part.scale"}
+    assert told <= {"strategy.wait", "part.faces", "part.object", "part.scale"}
 
 
 MISTAKES = {

@@ -450,8 +450,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Largest distance between a bead and the straight segments that stand for it.</source>
-        <translation>Plus grande distance entre un cordon et les segments droits qui le représentent.</translation>
+        <source>Largest distance between a bead and the straight segments that stand for it. A new feature begins with 0.01 mm up to a size of 250 mm and with more beyond, at most a hundredth of the bead width.</source>
+        <translation>Distance maximale entre un cordon et les segments de droite qui le représentent. Un nouvel élément commence avec 0,01 mm jusqu&apos;à une taille de 250 mm et avec davantage au-delà, au plus un centième de la largeur du cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -644,6 +644,11 @@
         <translation>Normale du plan de symmetry-plane, en x y z dans les coordonnées de la pièce ; auto : le plan d&apos;un coude.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/file_issues.py"/>
+        <source>Notes on the content of the file.</source>
+        <translation>Remarques sur le contenu du fichier.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Number of beads.</source>
         <translation>Nombre de cordons.</translation>
@@ -702,6 +707,16 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Number of the user frame named in the program.</source>
         <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Of G-code, how the words A, B and C turn the tool while X, Y and Z are the tip in the part: the head by C and then A (head-ac) or B (head-bc), or the part under it (table-ac, table-bc); none rejects them.</source>
+        <translation>Pour le G-code, comment les mots A, B et C tournent l&apos;outil, X, Y et Z étant la pointe dans la pièce : la tête par C puis A (head-ac) ou B (head-bc), ou la pièce dessous (table-ac, table-bc) ; none les refuse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Of G-code, what is deposited: part, all, or groups and types of the slicer, separated by commas, such as part, support. Skirt, brim, raft, support, towers, ironing and purge lines are not part.</source>
+        <translation>Pour le G-code, ce qui est déposé : part, all, ou des groupes et types du trancheur séparés par des virgules, par exemple part, support. Jupe, bordure, radeau, supports, tours, lissage et lignes de purge ne sont pas la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -1387,6 +1402,11 @@
         <translation>, et </translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>, for what it holds is not part ({0})</source>
+        <translation>, car son contenu n&apos;est pas la pièce ({0})</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>. At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the section, at {0} to {1} mm/s of wire</source>
         <translation>. Au même dévidage les passages plus rapides sont plus bas ; process.wire.feed_mode: proportional garderait la section, à {0} à {1} mm/s de fil</translation>
@@ -1420,6 +1440,11 @@
         <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>1 face</source>
         <translation>1 face</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
+        <source>1 finding</source>
+        <translation>1 constat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/promise.py"/>
@@ -1477,6 +1502,11 @@
         <translation>; entre les arêtes de ses triangles elle court régulièrement, à {0} mm d&apos;eux au plus, à peu près autant qu&apos;ils s&apos;écartent de ce qu&apos;ils représentent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>&lt;axis&gt; has no rpy; turn its xyz</source>
+        <translation>&lt;axis&gt; n&apos;a pas de rpy ; tournez son xyz</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/collision.py"/>
         <source>&lt;{0}&gt; has a size that is not larger than 0; give its sizes in m</source>
         <translation>&lt;{0}&gt; a une taille qui n’est pas supérieure à 0 ; donnez ses dimensions en m</translation>
@@ -1487,9 +1517,19 @@
         <translation>&lt;{0}&gt; n&apos;a pas de &lt;{1}&gt; ; ajoutez-le</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>&lt;{0}&gt; has no attribute {1}; remove it</source>
+        <translation>&lt;{0}&gt; n&apos;a pas d&apos;attribut {1} ; supprimez-le</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>&lt;{0}&gt; has no {1}; add it</source>
         <translation>&lt;{0}&gt; n&apos;a pas de {1} ; ajoutez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>&lt;{0}&gt; in the joint {1} is not known and may change where links are; remove it</source>
+        <translation>&lt;{0}&gt; dans l&apos;articulation {1} est inconnu et peut déplacer les corps ; supprimez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
@@ -1575,11 +1615,6 @@
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>Acceleration</source>
         <translation>Accélération</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>Across</source>
-        <translation>En travers</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
@@ -1712,14 +1747,9 @@
         <translation>Aire des faces.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
         <source>Arm clearance</source>
         <translation>Dégagement du bras</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>Arm clearance, mm</source>
-        <translation>Distance du bras, mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
@@ -2257,6 +2287,16 @@
         <translation>Refroidissement</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
+        <source>Criterion</source>
+        <translation>Critère</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>Cubic</source>
+        <translation>Cubique</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Curve</source>
         <translation>Courbe</translation>
@@ -2320,6 +2360,11 @@
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Degree of the polynomials</source>
         <translation>Degré des polynômes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>Degree {}</source>
+        <translation>Degré {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2577,11 +2622,6 @@
         <translation>Entrer dans la cellule la pose choisie dans le tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
-        <source>Eq. 17</source>
-        <translation>Éq. 17</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>Every axis stays within its limits</source>
         <translation>Chaque axe reste dans ses limites</translation>
@@ -2757,6 +2797,11 @@
         <translation>Largeur de remplissage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/parts.py"/>
+        <source>Filling in detail</source>
+        <translation>Détails du remplissage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>First</source>
         <translation>Premier</translation>
@@ -2788,8 +2833,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/needs.py"/>
-        <source>First make a feature: Feature…, Wall on Part…, Solid… and Solids on Hub… do so.</source>
-        <translation>Faites d&apos;abord un élément : Élément…, Paroi sur pièce…, Solide… et Solides sur moyeu… le font.</translation>
+        <source>First make a feature: Feature…, Wall on Part…, Solid…, Solids on Hub…, Curves… and Cladding… do so.</source>
+        <translation>Créez d&apos;abord un élément : avec Élément…, Paroi sur pièce…, Solide…, Solides sur moyeu…, Courbes… ou Rechargement….</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/needs.py"/>
@@ -2947,6 +2992,16 @@
         <translation>Fusionner</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>G53 in relative moves (G91) is not known; write G90 before it</source>
+        <translation>G53 en déplacements relatifs (G91) est inconnu ; écrivez G90 avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>G92 has no word {0}; give X, Y, Z or E with a number</source>
+        <translation>G92 n&apos;a pas de mot {0} ; donnez X, Y, Z ou E avec un nombre</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Gain</source>
         <translation>Gain</translation>
@@ -3045,6 +3100,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Holes of meshes up to this size across are closed, with a note; larger ones are refused.</source>
         <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>Horizontal axis</source>
+        <translation>Axe horizontal</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -3393,8 +3453,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Largest distance between a bead and the straight segments that stand for it.</source>
-        <translation>Plus grande distance entre un cordon et les segments droits qui le représentent.</translation>
+        <source>Largest distance between a bead and the straight segments that stand for it. A new feature begins with 0.01 mm up to a size of 250 mm and with more beyond, at most a hundredth of the bead width.</source>
+        <translation>Distance maximale entre un cordon et les segments de droite qui le représentent. Un nouvel élément commence avec 0,01 mm jusqu&apos;à une taille de 250 mm et avec davantage au-delà, au plus un centième de la largeur du cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -3582,6 +3642,11 @@
         <translation>Laissé comme saisi ; la tâche de {} peut se faire avec {}.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <source>Left empty, it is as large as the first layer needs it.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Length</source>
         <translation>Longueur</translation>
@@ -3652,6 +3717,11 @@
         <translation>Ligne {} : {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>Linear</source>
+        <translation>Linéaire</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only.</source>
         <translation>LinuxCNC : M428 et M429 choisissent entre bout d&apos;outil et axes ; faux pour une machine qui n&apos;a que ses axes.</translation>
@@ -3717,9 +3787,19 @@
         <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; sans lui la sortie logique le fait.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>M121 restores the modes before M120 on RepRapFirmware, and keeps those of now on Marlin; write G90 or G91, M82 or M83 in its place</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>M428 and M429 switch the kinematics, and the work offset is that of the remarks</source>
         <translation>M428 et M429 commutent la cinématique, et l’origine pièce est celle des remarques</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>M82 and G91 are both on: Klipper counts E from the position before, Marlin from zero; write M83, or G90</source>
+        <translation>M82 et G91 sont actifs ensemble : Klipper compte E depuis la position précédente, Marlin depuis zéro ; écrivez M83 ou G90</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -4142,6 +4222,16 @@
         <translation>Obstacles</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Of G-code, how the words A, B and C turn the tool while X, Y and Z are the tip in the part: the head by C and then A (head-ac) or B (head-bc), or the part under it (table-ac, table-bc); none rejects them.</source>
+        <translation>Pour le G-code, comment les mots A, B et C tournent l&apos;outil, X, Y et Z étant la pointe dans la pièce : la tête par C puis A (head-ac) ou B (head-bc), ou la pièce dessous (table-ac, table-bc) ; none les refuse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Of G-code, what is deposited: part, all, or groups and types of the slicer, separated by commas, such as part, support. Skirt, brim, raft, support, towers, ironing and purge lines are not part.</source>
+        <translation>Pour le G-code, ce qui est déposé : part, all, ou des groupes et types du trancheur séparés par des virgules, par exemple part, support. Jupe, bordure, radeau, supports, tours, lissage et lignes de purge ne sont pas la pièce.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Of paths, from the least to the greatest</source>
         <translation>Des trajectoires, de la plus petite à la plus grande valeur</translation>
@@ -4252,6 +4342,11 @@
         <translation>Ordre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/parts.py"/>
+        <source>Order and waits</source>
+        <translation>Ordre et attentes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Origin</source>
         <translation>Origine</translation>
@@ -4287,6 +4382,16 @@
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>P asks for several turns, which are not known; write each turn out</source>
+        <translation>P demande plusieurs tours, ce qui est inconnu ; écrivez chaque tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
+        <source>P[{0}] has other motion groups, or axes of them, than P[{1}]; record all positions alike</source>
+        <translation>P[{0}] a d&apos;autres groupes de mouvement ou d&apos;autres axes que P[{1}] ; enregistrez toutes les positions de la même façon</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>P[{0}] is not recorded</source>
         <translation>P[{0}] n&apos;est pas enregistré</translation>
@@ -4295,6 +4400,11 @@
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>P[{0}] is recorded in another U{1} than the one selected</source>
         <translation>P[{0}] est enregistré dans un autre U{1} que celui qui est choisi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
+        <source>P[{0}] is recorded twice, the second time in line {1}</source>
+        <translation>P[{0}] est enregistrée deux fois, la seconde à la ligne {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -4652,6 +4762,11 @@
         <translation>PyKDL n&apos;est pas installé ; le programme a été vérifié par un seul solveur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>Quadratic</source>
+        <translation>Quadratique</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>RMS</source>
         <translation>RMS</translation>
@@ -4675,6 +4790,11 @@
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across</source>
         <translation>RZ comme dans Chalvin 2020, la vraie rotation autour de l&apos;axe de l&apos;outil, ou un autre axe externe que celui en travers</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>RZ at the start</source>
+        <translation>RZ au départ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -4817,9 +4937,19 @@
         <translation>Robots : là où sort le dépôt, son Z pointant vers l&apos;outil ; avec l&apos;outil sur le robot, le plateau fixe. Dans le repère de base du constructeur.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Roles</source>
+        <translation>Rôles</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Root mean square</source>
         <translation>Moyenne quadratique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Rotary</source>
+        <translation>Rotatif</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -4953,8 +5083,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>Select the shape to deposit, or its faces, and press Use selection.</source>
-        <translation>Sélectionnez la forme à déposer, ou ses faces, et cliquez sur Prendre.</translation>
+        <source>Select the shape to deposit, or its faces, and press Pick.</source>
+        <translation>Sélectionnez la forme à déposer, ou ses faces, et appuyez sur Choisir.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -5357,6 +5487,11 @@
         <translation>Départs</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/parts.py"/>
+        <source>Starts and ends of beads</source>
+        <translation>Débuts et fins des cordons</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>Starts on</source>
         <translation>Commence sur</translation>
@@ -5448,8 +5583,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>Takes what is selected now. {}</source>
-        <translation>Prend ce qui est sélectionné maintenant. {}</translation>
+        <source>Takes what is selected now, or else what is clicked next. {}</source>
+        <translation>Prend la sélection actuelle, sinon le prochain objet cliqué. {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -5973,8 +6108,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>The whole of {} is taken; Use selection takes the selected faces only.</source>
-        <translation>{} est pris en entier ; Prendre la sélection prend des faces seules.</translation>
+        <source>The whole of {} is taken; Pick takes the selected faces only.</source>
+        <translation>{} est pris en entier ; Choisir ne prend que les faces sélectionnées.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
@@ -6302,19 +6437,9 @@
         <translation>Monter</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>Upwards</source>
-        <translation>Ordonnée</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
         <source>Use beads {0} mm wider on either side, by process.bead_width, or leave less of it to machine</source>
         <translation>Utilisez des cordons plus larges de {0} mm de chaque côté, par process.bead_width, ou laissez moins à usiner</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>Use selection</source>
-        <translation>Prendre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/form.py"/>
@@ -6325,6 +6450,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>User frame</source>
         <translation>Repère utilisateur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/fields/preferences.py"/>
+        <source>User parameter:BaseApp/Preferences/Units</source>
+        <translation>User parameter:BaseApp/Preferences/Units</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -6365,6 +6495,11 @@
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>Values (*.csv)</source>
         <translation>Valeurs (*.csv)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <source>Vertical axis</source>
+        <translation>Axe vertical</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -6832,6 +6967,11 @@
         <translation>un cône</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
+        <source>a controller of this kind was known to have room for about {0} MB in all</source>
+        <translation>une commande de ce type a de la place pour environ {0} Mo en tout</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
         <source>a coordinate of its vertices is not a number; export it again</source>
         <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
@@ -6840,6 +6980,16 @@
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
         <source>a corner has no end from which the time of a trigger counts</source>
         <translation>un coin n&apos;a pas de fin d&apos;où compterait le temps d&apos;un déclencheur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>a corner of a face is not a number; export the part again</source>
+        <translation>un sommet d&apos;une face n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <source>a corner of a triangle is not a number; export the part again</source>
+        <translation>un sommet d&apos;un triangle n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/curves.py"/>
@@ -6855,6 +7005,11 @@
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>a cylinder</source>
         <translation>un cylindre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>a face has the corner {0}, and there are {1} points; export the part again</source>
+        <translation>une face a le sommet {0} et il y a {1} points ; exportez la pièce de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -6915,6 +7070,16 @@
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
         <source>a mesh has no faces to choose; leave them out</source>
         <translation>un maillage n&apos;a pas de faces à choisir ; omettez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>a mesh of low resolution beside its slices</source>
+        <translation>un maillage de basse résolution à côté de ses tranches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>a model of the resolution {0} alone</source>
+        <translation>un modèle de la seule résolution {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
@@ -7015,11 +7180,6 @@
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
         <source>a position is not a number of at most {0} mm; export it again</source>
         <translation>une position n&apos;est pas un nombre d&apos;au plus {0} mm ; exportez-le à nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/records.py"/>
-        <source>a position is recorded twice</source>
-        <translation>une position est enregistrée deux fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/read.py"/>
@@ -7137,6 +7297,11 @@
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>a stack of slices</source>
+        <translation>une pile de tranches</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>a straight line</source>
         <translation>une droite</translation>
@@ -7195,6 +7360,11 @@
         <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>a value is not a plain number</source>
         <translation>une valeur n&apos;est pas un nombre simple</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>a value of {0} is set, but {1} is not made from it; check the names</source>
+        <translation>une valeur de {0} est fixée, mais {1} n&apos;en dépend pas ; vérifiez les noms</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
@@ -7272,6 +7442,11 @@
         <translation>environ {0} points en {1} couches sont planifiés, ce qui prend environ {2} min de processeur et {3} Go de mémoire ; une plus grande valeur de strategy.layer_height ou de strategy.chord_error en réduit le nombre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>absolute centres of arcs are not known; give I and J from the start of the arc</source>
+        <translation>les centres d&apos;arc absolus sont inconnus ; donnez I et J depuis le début de l&apos;arc</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>acceleration</source>
         <translation>accélération</translation>
@@ -7342,6 +7517,11 @@
         <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez plus loin sur le tour</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>all that it holds is marked as invisible, which is not read; show the part and export it again</source>
+        <translation>tout son contenu est marqué invisible et n&apos;est pas lu ; affichez la pièce et exportez-la de nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>all triangles of the mesh cancel one another; export it again</source>
         <translation>tous les triangles du maillage s&apos;annulent ; exportez-le à nouveau</translation>
@@ -7392,9 +7572,9 @@
         <translation>un axe de translation a deux bouts ; saisissez les deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/program.py"/>
-        <source>an earlier version wrote this program, whose rapids were not all checked; recompute the job, and read Migrating in the changelog</source>
-        <translation>une version antérieure a écrit ce programme, dont les rapides n’étaient pas tous vérifiés ; recalculez le travail, et lisez Migrating dans le journal des modifications</translation>
+        <location filename="../../freecad_am/objects/current.py"/>
+        <source>an earlier version computed it; read Migrating in the changelog</source>
+        <translation>une version antérieure l&apos;a calculé ; lisez Migrating dans le journal des modifications</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
@@ -7488,8 +7668,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines only</source>
-        <translation>les arcs sont dans le plan de X et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
+        <source>arcs are in the plane of X and Z, which Klipper and Marlin turn in opposite ways; let the slicer write arcs in the plane of X and Y, or lines only</source>
+        <translation>les arcs sont dans le plan X-Z, que Klipper et Marlin tournent en sens opposés ; faites écrire au trancheur des arcs dans le plan X-Y ou seulement des droites</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -7505,6 +7685,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>around-axis</source>
         <translation>autour de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <source>as FreeCAD shows speeds</source>
+        <translation>comme FreeCAD affiche les vitesses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -7535,6 +7720,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>as the axes can</source>
         <translation>selon les axes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <source>as the part needs it</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
@@ -7757,6 +7947,11 @@
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/chord_error.py"/>
+        <source>beads are straight within {0} mm, as suits a part {1} mm large and its beads; set strategy.chord_error for another value</source>
+        <translation>les cordons sont droits à {0} mm près, selon la taille de la pièce ({1} mm) et ses cordons ; fixez strategy.chord_error pour une autre valeur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>beads are woven otherwise than planned</source>
         <translation>les cordons sont balayés autrement que prévu</translation>
@@ -7790,6 +7985,11 @@
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>beads {0} mm wide (process.bead_width), {1} mm apart, leave stripes of {2} mm open between them; use {3} mm or less, or wider beads</source>
         <translation>des cordons larges de {0} mm (process.bead_width), distants de {1} mm, laissent entre eux des bandes ouvertes de {2} mm ; prenez {3} mm ou moins, ou des cordons plus larges</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>before the first type</source>
+        <translation>avant le premier type</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
@@ -7845,6 +8045,11 @@
         <location filename="../../freecad_am/gui/placement/form.py"/>
         <source>blue {:.4g} … yellow {:.4g}; grey: not feasible</source>
         <translation>bleu {:.4g} … jaune {:.4g} ; gris : pas réalisable</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>boolean tree</source>
+        <translation>arbre booléen</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -8152,6 +8357,16 @@
         <translation>découpe des couches</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>cutting mesh</source>
+        <translation>maillage de découpe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>cutting out</source>
+        <translation>découpe</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>cylinder, R {:.4g} mm</source>
         <translation>cylindre, R {:.4g} mm</translation>
@@ -8193,8 +8408,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/histogram.py"/>
-        <source>deviation, mm (most: {} points)</source>
-        <translation>écart, mm (maximum : {} points)</translation>
+        <source>deviation, {} (most: 1 point)</source>
+        <translation>écart, {} (maximum : 1 point)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/histogram.py"/>
+        <source>deviation, {} (most: {} points)</source>
+        <translation>écart, {} (maximum : {} points)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
@@ -8312,6 +8532,11 @@
         <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>export exact faces (AP203, AP214 or AP242 with B-rep), or a mesh (STL, OBJ, 3MF)</source>
+        <translation>exportez des faces exactes (AP203, AP214 ou AP242 avec B-rep) ou un maillage (STL, OBJ, 3MF)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>external axes do not run at {0} % of their speeds</source>
         <translation>les axes externes ne tournent pas à {0} % de leurs vitesses</translation>
@@ -8395,6 +8620,11 @@
         <location filename="../../freecad_am/core/strategies/walls/plan.py"/>
         <source>finding layers</source>
         <translation>recherche des couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>finite element</source>
+        <translation>élément fini</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -8532,6 +8762,11 @@
         <translation>donnez des mouvements absolus ou relatifs en mm, G0 à G3 avec E, comme les écrit un trancheur pour filament ou granulés</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <source>give bends a larger radius than the tube</source>
+        <translation>donnez aux coudes un rayon plus grand que celui du tube</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>give both ends of its range, or none for an endless axis</source>
         <translation>donnez les deux bouts de sa plage, ou aucun pour un axe sans fin</translation>
@@ -8540,6 +8775,11 @@
         <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
         <source>give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length</source>
         <translation>donnez des dimensions supérieures à 0 : d&apos;un pavé selon x, y et z, d&apos;un cylindre son diamètre et sa longueur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <source>give the bend a larger radius than the tube</source>
+        <translation>donnez au coude un rayon plus grand que celui du tube</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -8587,6 +8827,16 @@
         <translation>diviser par deux les arêtes du maillage de la paroi jusqu&apos;à {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, n&apos;a pas de fin, alors qu&apos;environ {1} triangles suffiraient, comme là où une face est tordue, telle celle d&apos;un ressort ; faites-la de faces plus courtes, ou déposez la paroi par parties ou comme un solide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>head-ac</source>
+        <translation>tête AC</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>head-bc</source>
+        <translation>tête BC</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>height</source>
         <translation>hauteur</translation>
@@ -8627,6 +8877,11 @@
         <translation>combien d&apos;impulsions {0} compte par degré de chaque axe n&apos;est pas connu, et deux modèles diffèrent toujours ; faites-en un fichier machine à vous, avec controller.pulses_per_degree d&apos;après le pupitre (une position en impulsions divisée par la même en degrés), ou planifiez sans programme</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
+        <source>how much the controller takes is not known here; look it up</source>
+        <translation>la capacité de la commande n&apos;est pas connue ici ; vérifiez-la</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
         <source>however far it is tilted back, the nozzle touches platform or deposit, beads of {0} mm, in {1} layer(s), from layer {2} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where beads are not that wide</source>
         <translation>si fort qu&apos;elle soit redressée, la buse touche le plateau ou le dépôt, des cordons de {0} mm, dans {1} couche(s), à partir de la couche {2} ; utilisez une buse plus fine, une autre paroi, ou un process.bead_width plus petit là où les cordons sont moins larges</translation>
@@ -8665,6 +8920,11 @@
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>infeasible</source>
         <translation>infaisable</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>infill mesh</source>
+        <translation>maillage de remplissage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -8763,8 +9023,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it builds no triangles; export the part again</source>
-        <translation>il ne construit pas de triangles ; exportez la pièce de nouveau</translation>
+        <source>it builds no triangles{0}; export the part again</source>
+        <translation>il ne construit aucun triangle{0} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it calls a subprogram; write its moves out</source>
+        <translation>il appelle un sous-programme ; écrivez ses déplacements</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
@@ -8877,6 +9142,11 @@
         <translation>elle ne tourne pas autour de l&apos;axe</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it drops an object while the program runs; let the slicer leave the object out</source>
+        <translation>il abandonne un objet pendant le programme ; retirez l&apos;objet dans le trancheur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>it ends before the last move does</source>
         <translation>il finit avant le dernier mouvement</translation>
@@ -8895,6 +9165,11 @@
         <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>it ends within a loop</source>
         <translation>il finit dans une boucle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it extrudes after {0}, which ends the program; leave out what follows</source>
+        <translation>il extrude après {0}, qui termine le programme ; retirez la suite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -8930,6 +9205,16 @@
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>it has an edge that is neither straight across the tube at its end nor below the first layer, which cannot be deposited yet; fill openings, and cut ends straight</source>
         <translation>elle a une arête qui n&apos;est ni droite en travers du tube à son extrémité ni sous la première couche, ce qui ne peut pas encore être déposé ; comblez les ouvertures, et coupez droit les extrémités</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>it has an object of the type {0}, which 3MF does not know</source>
+        <translation>il a un objet du type {0}, inconnu de 3MF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>it has free-form surfaces ({0} in line {1}), which are not read; export triangles, or STEP</source>
+        <translation>il a des surfaces libres ({0} à la ligne {1}), qui ne sont pas lues ; exportez des triangles ou du STEP</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/names.py"/>
@@ -8970,6 +9255,11 @@
         <location filename="../../freecad_am/brep/curves.py"/>
         <source>it has no edges to lay as beads; choose edges, a wire or a sketch</source>
         <translation>il n&apos;a pas d&apos;arêtes à déposer en cordons ; choisissez des arêtes, un fil ou une esquisse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/array_elements.py"/>
+        <source>it has no element {0}; its {1} elements are numbered from 0</source>
+        <translation>il n&apos;a pas d&apos;élément {0} ; ses {1} éléments sont numérotés à partir de 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -9022,6 +9312,11 @@
         <translation>il n&apos;a pas de solide ; choisissez des solides ou des maillages fermés à déposer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>it has no types</source>
+        <translation>il n&apos;a pas de types</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/curves.py"/>
         <source>it has no {0}, but {1} {2}(s); name others, from {3}1 on</source>
         <translation>il n&apos;a pas de {0}, mais {1} {2}(s) ; nommez-en d&apos;autres, à partir de {3}1</translation>
@@ -9050,6 +9345,11 @@
         <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>it has other characters than ASCII</source>
         <translation>il contient d&apos;autres caractères que l&apos;ASCII</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>it has solids by constructive geometry ({0}), which are not read; {1}</source>
+        <translation>il a des solides par géométrie constructive ({0}), qui ne sont pas lus ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -9092,6 +9392,16 @@
         <translation>cela vaut pour tout le programme, non pour un de ses éléments ; donnez-le au premier niveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>it holds no shape, only annotations; export the part again</source>
+        <translation>il ne contient aucune forme, seulement des annotations ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>it holds no shape, only product data or annotations; export the part again</source>
+        <translation>il ne contient aucune forme, seulement des données de produit ou des annotations ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it holds no shape; export the part again</source>
         <translation>il ne contient pas de forme ; exportez la pièce de nouveau</translation>
@@ -9100,6 +9410,11 @@
         <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it holds no triangles; export the part again</source>
         <translation>il ne contient pas de triangles ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/meshes.py"/>
+        <source>it holds shapes and meshes, and only one kind can be used at a time; choose the objects in it one by one</source>
+        <translation>il contient des formes et des maillages, et une seule sorte est utilisable à la fois ; choisissez ses objets un par un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/clad_mesh.py"/>
@@ -9127,9 +9442,24 @@
         <translation>c&apos;est un solide de {0} face(s), et aucune n&apos;est choisie ; nommez celles à recouvrir : part.faces d&apos;une tâche, ou sélectionnez-les</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it is binary G-code; let the slicer export G-code as text</source>
+        <translation>c&apos;est du G-code binaire ; faites exporter le G-code en texte par le trancheur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it is compressed in a way that 3MF does not allow</source>
         <translation>il est comprimé d&apos;une façon que 3MF ne permet pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <source>it is cut off, or is no STL file: it says that it has {0} triangles, and has room for {1}; export the part again</source>
+        <translation>il est tronqué ou n&apos;est pas un fichier STL : il annonce {0} triangles et n&apos;en contient que {1} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <source>it is cut off: its last solid has no end; export the part again</source>
+        <translation>il est tronqué : son dernier solide n&apos;a pas de fin ; exportez la pièce de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
@@ -9212,11 +9542,6 @@
         <translation>il est chiffré ; exportez-le sans protection</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it is encrypted; export plain triangles</source>
-        <translation>il est chiffré ; exportez des triangles simples</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/macro/suit.py"/>
         <source>it is for kind: solid, not for {0}; leave it out</source>
         <translation>c’est pour kind: solid, pas pour {0} ; omettez-le</translation>
@@ -9285,6 +9610,11 @@
         <location filename="../../freecad_am/gui/redundancy_map/source.py"/>
         <source>it is not a joint path; select one</source>
         <translation>ce n&apos;est pas une trajectoire articulaire ; sélectionnez-en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/array_elements.py"/>
+        <source>it is not a link array; give the object itself</source>
+        <translation>ce n&apos;est pas un réseau de liens ; donnez l&apos;objet lui-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/parsed.py"/>
@@ -9373,11 +9703,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
-        <source>it is not text; give G-code</source>
-        <translation>ce n&apos;est pas du texte ; donnez du G-code</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/table_part.py"/>
         <source>it is not text; give a table of points as CSV</source>
         <translation>ce n&apos;est pas du texte ; donnez un tableau de points en CSV</translation>
     </message>
@@ -9400,6 +9725,11 @@
         <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>it is several solids</source>
         <translation>ce sont plusieurs solides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/places.py"/>
+        <source>it is shown by several link groups ({0}), each at a place of its own; choose one of these, or make a link to it</source>
+        <translation>il est affiché par plusieurs groupes de liens ({0}), chacun à sa place ; choisissez l&apos;un d&apos;eux ou créez un lien vers lui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -9457,14 +9787,14 @@
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/records.py"/>
-        <source>it moves groups {0}, and has positions of others</source>
-        <translation>il déplace les groupes {0}, et a des positions d&apos;autres groupes</translation>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it moves a motor alone; leave it out</source>
+        <translation>il ne déplace qu&apos;un moteur ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/found.py"/>
-        <source>it moves other groups than those before</source>
-        <translation>il déplace d&apos;autres groupes que les précédents</translation>
+        <source>it moves other groups than the programs before</source>
+        <translation>il déplace d&apos;autres groupes que les programmes précédents</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -9487,6 +9817,16 @@
         <translation>il demande une extension qui n&apos;est pas lue ({0}) ; exportez des triangles simples</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it prints a pattern of the machine&apos;s own; leave it out</source>
+        <translation>il imprime un motif propre à la machine ; retirez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it prints copies side by side; print one</source>
+        <translation>il imprime des copies côte à côte ; n&apos;en imprimez qu&apos;une</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it reaches to {0} mm, farther than {1} mm; a coordinate is damaged, or its unit is wrong; export the part again</source>
         <translation>il s&apos;étend jusqu&apos;à {0} mm, plus loin que {1} mm ; une coordonnée est endommagée ou son unité est fausse ; exportez la pièce de nouveau</translation>
@@ -9497,9 +9837,29 @@
         <translation>elle dépasse de {0} mm son origine selon Z, là où est le dépôt ; faites pointer le Z du fichier hors de la buse, à l&apos;opposé de la torche, et mettez l&apos;origine à sa pointe</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it returns from a subprogram, or repeats the program; leave it out</source>
+        <translation>il revient d&apos;un sous-programme ou répète le programme ; retirez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it returns to a stored position; write the move out</source>
+        <translation>il revient à une position mémorisée ; écrivez le déplacement</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>it rounds corners or accelerates in a way that is not understood</source>
         <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it scales axes; leave it out</source>
+        <translation>il met les axes à l&apos;échelle ; retirez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it shifts the origin; leave it out, or use G92</source>
+        <translation>il décale l&apos;origine ; retirez-le ou utilisez G92</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -9542,6 +9902,16 @@
         <translation>son XML est endommagé ({0})</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>its axes are up to {0} deg off right angles, and its solutions do not give back its poses</source>
+        <translation>ses axes s&apos;écartent jusqu&apos;à {0}° de l&apos;angle droit, et ses solutions ne redonnent pas ses poses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
+        <source>its axes are up to {0} deg off right angles: joint angles are solved for the axes as they are</source>
+        <translation>ses axes s&apos;écartent jusqu&apos;à {0}° de l&apos;angle droit : les angles articulaires sont résolus pour les axes réels</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/surfaces.py"/>
         <source>its beads fill solids, most are inside; compare the points with the feature</source>
         <translation>ses cordons remplissent des solides, la plupart sont à l&apos;intérieur ; comparez les points à l&apos;élément à déposer</translation>
@@ -9550,6 +9920,11 @@
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
         <source>its cell is gone; choose a cell for it</source>
         <translation>sa cellule a disparu ; choisissez-lui une cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>its checksum is {0}, not {1}; the line is damaged</source>
+        <translation>sa somme de contrôle est {0} et non {1} ; la ligne est endommagée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -9565,6 +9940,11 @@
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>its columns are {0}; {1}</source>
         <translation>ses colonnes sont {0} ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>its columns have different units: {0}; export them in one</source>
+        <translation>ses colonnes ont des unités différentes : {0} ; exportez-les dans une seule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
@@ -9587,6 +9967,11 @@
         <translation>son extrémité n&apos;est pas au-dessus du substrat sur tout le tour ; allongez-la</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>its faces have no surfaces: it holds triangles (AP242 tessellated geometry); {0}</source>
+        <translation>ses faces n&apos;ont pas de surfaces : il contient des triangles (géométrie tessellée AP242) ; {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>its faces that are not flat run on smoothly into {0}, which is; name the faces of the wall: part.faces of a job, or select them</source>
         <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
@@ -9605,6 +9990,11 @@
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>its group is not that of its positions</source>
         <translation>son groupe n&apos;est pas celui de ses positions</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
+        <source>its header moves groups {0}, and its positions are of groups {1}</source>
+        <translation>son en-tête déplace les groupes {0} et ses positions sont des groupes {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/found.py"/>
@@ -9637,9 +10027,9 @@
         <translation>son groupe de mouvement, de 2 à {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/records.py"/>
-        <source>its positions are not all of the same motion groups, or one is not understood</source>
-        <translation>ses positions ne sont pas toutes des mêmes groupes de mouvement, ou l&apos;une n&apos;est pas comprise</translation>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>its moves are {0}, and strategy.roles is {1}: nothing is left to deposit; name other roles</source>
+        <translation>ses déplacements sont {0} et strategy.roles vaut {1} : il ne reste rien à déposer ; nommez d&apos;autres rôles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -9977,6 +10367,36 @@
         <translation>ligne</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>line {0} begins with {1}, which is no statement of OBJ; export the part again</source>
+        <translation>la ligne {0} commence par {1}, qui n&apos;est pas une instruction OBJ ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>line {0} cannot be read: {1}; export the part again</source>
+        <translation>la ligne {0} ne peut pas être lue : {1} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>line {0} takes content from another file, which is not read; export all in one file</source>
+        <translation>la ligne {0} prend du contenu d&apos;un autre fichier, qui n&apos;est pas lu ; exportez tout dans un fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>line {0}: soft limits are not used</source>
+        <translation>ligne {0} : les limites logicielles ne sont pas utilisées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>line {0}: the limit has no {1}, which counts as 0</source>
+        <translation>ligne {0} : la limite n&apos;a pas de {1}, qui compte pour 0</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>line {0}: {1} is read as a right angle</source>
+        <translation>ligne {0} : {1} est lu comme un angle droit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>linear moves at the speed of a fixed nozzle over a part on the robot need the controller&apos;s external reference point, whose instruction is not documented well enough to write it; use `motion: joint`</source>
         <translation>les mouvements linéaires à la vitesse d&apos;une buse fixe sur une pièce portée par le robot demandent le point de référence externe de la commande, dont l&apos;instruction n&apos;est pas assez documentée pour l&apos;écrire ; utilisez `motion: joint`</translation>
@@ -10027,6 +10447,16 @@
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/collisions.py"/>
+        <source>link {0} of the arm is inside {1} on {2} % of the motion, first with the nozzle at {3}; move cell.platform or cell.deposition_point, choose another cell.branch, or set cell.arm_clearance</source>
+        <translation>le corps {0} du bras est dans {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; déplacez cell.platform ou cell.deposition_point, choisissez une autre cell.branch ou fixez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/collisions.py"/>
+        <source>link {0} of the arm, as drawn, touches {1} on {2} % of the motion, first with the nozzle at {3}; its core stays clear, so look at it in Simulate, or set cell.arm_clearance</source>
+        <translation>le corps {0} du bras, tel que dessiné, touche {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; son cœur reste dégagé : regardez-le dans Simuler ou fixez cell.arm_clearance</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>links of the robot are drawn from the kinematics</source>
         <translation>les corps du robot sont dessinés d’après la cinématique</translation>
@@ -10060,6 +10490,11 @@
         <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
         <source>looking for beads over nothing</source>
         <translation>recherche de cordons au-dessus du vide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>looking for collisions of the arm</source>
+        <translation>recherche de collisions du bras</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/upright.py"/>
@@ -10167,6 +10602,11 @@
         <translation>mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>modifier</source>
+        <translation>modificateur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>more than one axis is called the track, or it has no value</source>
         <translation>plus d&apos;un axe est appelé le rail, ou il n&apos;a pas de valeur</translation>
@@ -10192,11 +10632,6 @@
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>most solids of {0} stand on a cylinder or cone of another of them</source>
-        <translation>la plupart des solides de {0} se dressent sur un cylindre ou un cône de l&apos;un d&apos;eux</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
         <translation>remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
@@ -10220,6 +10655,11 @@
         <location filename="../../freecad_am/gui/redundancy_map/drawn/picture.py"/>
         <source>near a singularity</source>
         <translation>près d&apos;une singularité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>negative volume</source>
+        <translation>volume négatif</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -10352,6 +10792,16 @@
         <translation>aucun de ses mouvements n&apos;extrude, il n&apos;y a donc pas de cordon ; {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>no object in it has a shape; recompute and save it in FreeCAD, or use another file</source>
+        <translation>aucun de ses objets n&apos;a de forme ; recalculez et enregistrez-le dans FreeCAD, ou utilisez un autre fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>no object with a shape is called {0}; name one of {1}</source>
+        <translation>aucun objet avec une forme ne s&apos;appelle {0} ; nommez l&apos;un de {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>no point is reached</source>
         <translation>aucun point n’est atteint</translation>
@@ -10367,12 +10817,7 @@
         <translation>aucun positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/program.py"/>
-        <source>no program fits its inputs ({0}); mend that and recompute it</source>
-        <translation>aucun programme ne convient à ses entrées ({0}) ; corrigez cela et recalculez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/report/of_document.py"/>
+        <location filename="../../freecad_am/objects/current.py"/>
         <source>no result fits its inputs ({0}); recompute it first</source>
         <translation>aucun résultat ne correspond à ses entrées ({0}) ; recalculez-le d&apos;abord</translation>
     </message>
@@ -10395,6 +10840,16 @@
         <location filename="../../freecad_am/api.py"/>
         <source>no source</source>
         <translation>pas de source</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>nodal displacement</source>
+        <translation>déplacement nodal</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>nodal result</source>
+        <translation>résultat nodal</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/inputs.py"/>
@@ -10557,6 +11012,11 @@
         <translation>inconnu de cette machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>not printable</source>
+        <translation>non imprimable</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>note</source>
         <translation>remarque</translation>
@@ -10580,6 +11040,16 @@
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.</source>
         <translation>nozzle : pas plus d&apos;inclinaison qu&apos;il n&apos;en faut pour tenir la buse éloignée du dépôt et du plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>object of type &apos;other&apos;</source>
+        <translation>objet de type « other »</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>object {0} has {1}, which changes its shape and is not read; export it as plain triangles</source>
+        <translation>l&apos;objet {0} a {1}, qui change sa forme et n&apos;est pas lu ; exportez-le en simples triangles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -10687,9 +11157,9 @@
         <translation>l&apos;un après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>one object that nothing else is made from</source>
-        <translation>un objet dont rien d&apos;autre n&apos;est fait</translation>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>one of its operations is {0}, which deposits nothing; export the operations that deposit alone</source>
+        <translation>l&apos;une de ses opérations est {0}, qui ne dépose rien ; n&apos;exportez que les opérations qui déposent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -10800,6 +11270,16 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>part-on-robot</source>
         <translation>pièce sur le robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>parts of it are in other files (entity {0}), which are not read; export the assembly as one file</source>
+        <translation>des parties sont dans d&apos;autres fichiers (entité {0}), qui ne sont pas lus ; exportez l&apos;assemblage en un fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>parts of it are in other files ({0}), which are not read; export the assembly as one file</source>
+        <translation>des parties sont dans d&apos;autres fichiers ({0}), qui ne sont pas lus ; exportez l&apos;assemblage en un fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/view.py"/>
@@ -10917,6 +11397,11 @@
         <translation>les positions sur la pièce demandent la cinématique que choisit M428 ; mettez-le à true, ou utilisez `motion: joint`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>pre extrude</source>
+        <translation>pré-extrusion</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
         <source>predicting the deposit, {0}</source>
         <translation>prédiction du dépôt, {0}</translation>
@@ -11007,6 +11492,11 @@
         <translation>mouvement rapide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>raster scanning</source>
+        <translation>balayage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>rate</source>
         <translation>débit</translation>
@@ -11050,6 +11540,16 @@
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>recompute it</source>
         <translation>recalculez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <source>redraw it with a larger radius there, or divide it and deposit its parts one after the other</source>
+        <translation>redessinez-la avec un plus grand rayon à cet endroit, ou divisez-la et déposez ses parties l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <source>redraw the face so that it does not cross itself, or divide it and deposit its parts one after the other</source>
+        <translation>redessinez la face pour qu&apos;elle ne se coupe pas, ou divisez-la et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/layer_by_layer.py"/>
@@ -11102,6 +11602,11 @@
         <translation>rotation non permise</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
+        <source>rows of the bead table were laid alike and measured differently: {0}; measure these beads again, or leave one of each pair out</source>
+        <translation>des lignes du tableau de cordons ont les mêmes réglages et des mesures différentes : {0} ; mesurez ces cordons de nouveau ou retirez une ligne de chaque paire</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>run as fast as the axes can follow, beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
@@ -11120,6 +11625,11 @@
         <location filename="../../freecad_am/gui/new_job/fields.py"/>
         <source>saved cell: {}</source>
         <translation>cellule enregistrée : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>scaled coordinates are not known; let the slicer leave them out</source>
+        <translation>les coordonnées à l&apos;échelle sont inconnues ; faites-les omettre par le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/fit.py"/>
@@ -11150,6 +11660,16 @@
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>select</source>
         <translation>sélectionner</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>selected component</source>
+        <translation>composant sélectionné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>several columns are {0}: {1}; keep the one that was measured</source>
+        <translation>plusieurs colonnes sont {0} : {1} ; gardez celle qui a été mesurée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -11227,6 +11747,11 @@
         <translation>simple</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>single extrusion</source>
+        <translation>extrusion simple</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>slides</source>
         <translation>glisse</translation>
@@ -11242,9 +11767,24 @@
         <translation>lisse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>solid of extrusion</source>
+        <translation>solide d&apos;extrusion</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>solid of revolution</source>
+        <translation>solide de révolution</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/regions/region.py"/>
         <source>solids are filled with the Python package shapely (1.8 or newer), which is not installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely</source>
         <translation>les solides sont remplis avec le paquet Python shapely (1.8 ou plus récent), qui n&apos;est pas installé ; sous Debian : apt-get install python3-shapely, ailleurs : pip install shapely</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>some of its faces have no surfaces: it holds triangles (AP242 tessellated geometry); {0}</source>
+        <translation>certaines de ses faces n&apos;ont pas de surfaces : il contient des triangles (géométrie tessellée AP242) ; {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/proposal.py"/>
@@ -11327,9 +11867,34 @@
         <translation>par exemple : pupitre du R-30iB, 21 novembre ; ou un simulateur avec sa version</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>support</source>
+        <translation>support</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>support blocker</source>
+        <translation>bloqueur de support</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
+        <source>support enforcer</source>
+        <translation>générateur de support</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>surface finishing</source>
+        <translation>finition de surface</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>surface of each layer of the predicted deposit, in the mean, against where the next one should begin</source>
         <translation>surface de chaque couche du dépôt prédit, en moyenne, par rapport à l&apos;endroit où la suivante devrait commencer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>surface scanning</source>
+        <translation>balayage de surface</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -11350,6 +11915,16 @@
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>table, row {0}</source>
         <translation>tableau, ligne {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>table-ac</source>
+        <translation>plateau AC</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>table-bc</source>
+        <translation>plateau BC</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -11425,6 +12000,11 @@
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
         <source>the arc ends with other data than it burnt by</source>
         <translation>l&apos;arc s&apos;éteint avec d&apos;autres données que celles par lesquelles il brûlait</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the arc has I or J, and R; give one of them</source>
+        <translation>l&apos;arc a I ou J, et R ; donnez l&apos;un des deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
@@ -11542,6 +12122,16 @@
         <translation>la forme explicite est pour six articulations, il y en a {0} ; omettez opw</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <source>the column {0} is not known; remove it, or name it one of {1}</source>
+        <translation>la colonne {0} est inconnue ; supprimez-la ou nommez-la l&apos;un de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <source>the column {0} stands twice; keep one of them</source>
+        <translation>la colonne {0} est là deux fois ; gardez-en une</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>the configurations that its positions name are supervised, and are none</source>
         <translation>les configurations que nomment ses positions sont surveillées, et n&apos;en sont pas</translation>
@@ -11653,8 +12243,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>the face folds back and cuts itself at {0}; give the bend a larger radius than the tube</source>
-        <translation>la face se replie et se coupe elle-même en {0} ; donnez au coude un rayon plus grand que celui du tube</translation>
+        <source>the face folds back and cuts itself at {0}; {1}</source>
+        <translation>la face se replie et se coupe en {0} ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -11802,6 +12392,11 @@
         <translation>l&apos;instruction {0} n&apos;est pas comprise</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the instruction {0} is not understood: of a TRIGGER, which is read ahead of the motion, only one with DISTANCE=1 and a DELAY of at most 0 is</source>
+        <translation>l&apos;instruction {0} n&apos;est pas comprise : parmi les TRIGGER, lus en avance sur le mouvement, seul l&apos;est celui avec DISTANCE=1 et un DELAY d&apos;au plus 0</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the instructions do not begin as those of a robot&apos;s job do</source>
         <translation>les instructions ne commencent pas comme celles d&apos;un job de robot</translation>
@@ -11825,6 +12420,11 @@
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the joint {0} has no &lt;limit&gt;; one that turns without end is continuous</source>
         <translation>l&apos;articulation {0} n&apos;a pas de &lt;limit&gt; ; une qui tourne sans fin est continuous</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the joint {0} has several &lt;{1}&gt;; keep one of them</source>
+        <translation>l&apos;articulation {0} a plusieurs &lt;{1}&gt; ; gardez-en un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -11852,9 +12452,19 @@
         <translation>la clé {0} s&apos;y trouve deux fois ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
+        <source>the key {0} stands there twice; remove one</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>the kinematics changes while the deposit is on</source>
         <translation>la cinématique change pendant que le dépôt est en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the limits of {0} run from {1} to {2} rad, which are many turns; a URDF is in radians: convert degrees, or make the joint continuous</source>
+        <translation>les limites de {0} vont de {1} à {2} rad, soit de nombreux tours ; un URDF est en radians : convertissez les degrés ou rendez l&apos;articulation continue</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -12137,6 +12747,11 @@
         <translation>le numéro de son MACHINE_DEF, de 2 à 16</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the origin of the joint {0} is {1} m away; a URDF is in metres: divide what is in mm by 1000</source>
+        <translation>l&apos;origine de l&apos;articulation {0} est à {1} m ; un URDF est en mètres : divisez les valeurs en mm par 1000</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
         <source>the pairs of points lie in one line, about which the part can turn; choose others</source>
         <translation>les paires de points sont sur une ligne, autour de laquelle la pièce peut tourner ; choisissez-en d&apos;autres</translation>
@@ -12317,6 +12932,11 @@
         <translation>le programme ne contient pas de mouvements ; vérifiez où il commence</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
+        <source>the program of {0} will have about {1} points in {2} files, {3} MB: {4}. A larger strategy.chord_error or strategy.layer_height makes it smaller; program.max_points sets the size of a file</source>
+        <translation>le programme de {0} aura environ {1} points dans {2} fichiers, {3} Mo : {4}. Un plus grand strategy.chord_error ou strategy.layer_height le réduit ; program.max_points fixe la taille d&apos;un fichier</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the pulses per {0} of {1} differ, or are none</source>
         <translation>les impulsions par {0} de {1} diffèrent, ou sont nulles</translation>
@@ -12377,6 +12997,11 @@
         <translation>les coutures de {0} cordons ont été déplacées pour garder un axe dans ses limites</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>the search for what makes the job feasible stopped after {0} s; tried in vain by then: {1}</source>
+        <translation>la recherche d&apos;une solution faisable s&apos;est arrêtée après {0} s ; essayé en vain jusque-là : {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>the second group of P[{0}] is not understood</source>
         <translation>le deuxième groupe de P[{0}] n&apos;est pas compris</translation>
@@ -12395,6 +13020,16 @@
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>the shape to deposit, or some of its faces</source>
         <translation>la forme à déposer, ou certaines de ses faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the slicer&apos;s roles name triangle {0} of {1} twice</source>
+        <translation>les rôles du trancheur nomment deux fois le triangle {0} de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the slicer&apos;s roles name triangles {0} to {1} of object {2}, which has {3}</source>
+        <translation>les rôles du trancheur nomment les triangles {0} à {1} de l&apos;objet {2}, qui en a {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/substrate.py"/>
@@ -12612,6 +13247,11 @@
         <translation>la torche touche {what}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the torch weaves already, or not yet</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>the transformation changes while the deposit is on</source>
         <translation>la transformation change pendant que le dépôt est en marche</translation>
@@ -12622,6 +13262,16 @@
         <translation>l&apos;unité de V est un réglage de la commande de {0}, et une autre unité est une autre vitesse ; donnez controller.speed_unit dans un fichier machine à vous, ou utilisez `motion: joint`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the unit of the column {0} is not read; use mm, cm, m, um or inch</source>
+        <translation>l&apos;unité de la colonne {0} n&apos;est pas lue ; utilisez mm, cm, m, um ou inch</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the unknown element {0}</source>
+        <translation>l&apos;élément inconnu {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>the value of {0} is not understood</source>
         <translation>la valeur de {0} n&apos;est pas comprise</translation>
@@ -12630,6 +13280,11 @@
         <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>the values of {0} are not those from 0 to its size, each once</source>
         <translation>les valeurs de {0} ne sont pas celles de 0 à sa taille, chacune une fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the velocity {0} is negative; give a positive one</source>
+        <translation>la vitesse {0} est négative ; donnez-en une positive</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -12648,8 +13303,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>the wall cuts itself at {0} ({1}); give bends a larger radius than the tube, and let no faces cross</source>
-        <translation>la paroi se coupe elle-même en {0} ({1}) ; donnez aux coudes un rayon plus grand que celui du tube, et ne laissez aucune face en croiser une autre</translation>
+        <source>the wall cuts itself at {0} ({1}); {2}</source>
+        <translation>la paroi se coupe en {0} ({1}) ; {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
@@ -12693,8 +13348,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/verify.py"/>
-        <source>the way between two beads leaves the one that was checked by up to {0} mm</source>
-        <translation>le chemin entre deux cordons s&apos;écarte jusqu&apos;à {0} mm de celui qui a été vérifié</translation>
+        <source>the way between two beads leaves the one that was checked by up to {0} mm and {1} deg</source>
+        <translation>le trajet entre deux cordons s&apos;écarte de celui qui a été vérifié de jusqu&apos;à {0} mm et {1}°</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/read.py"/>
@@ -12710,6 +13365,11 @@
         <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own</source>
         <translation>le balayage d&apos;ArcTech fait partie de ses données de soudage, que le pupitre crée, et n&apos;a pas de numéro à lui</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the weave that begins here does not end</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
@@ -13122,6 +13782,11 @@
         <translation>pour tenir la buse éloignée, les axes de l&apos;outil tournent jusqu&apos;à {0} deg/mm, plus vite que build_direction.max_turn ({1} deg/mm) ; utilisez une buse plus fine ou permettez une rotation plus rapide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>tool</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
         <source>tool axes are spread along the bead, by up to {0} deg, to turn no faster than build_direction.max_turn</source>
         <translation>les axes de l&apos;outil sont étalés le long du cordon, jusqu&apos;à {0} deg, pour ne pas tourner plus vite que build_direction.max_turn</translation>
@@ -13150,6 +13815,16 @@
         <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>tool or platform is set again</source>
         <translation>l&apos;outil ou le plateau est redéfini</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>tool radius compensation and moves to points of a mesh are not known; leave it out</source>
+        <translation>la compensation de rayon d&apos;outil et les déplacements vers des points d&apos;un maillage sont inconnus ; retirez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>tool radius compensation is not known; leave it out</source>
+        <translation>la compensation de rayon d&apos;outil est inconnue ; retirez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -13190,6 +13865,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>trim</source>
         <translation>coupée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
+        <source>trim the faces where they cross, or choose those that do not cross and deposit the others as a feature of their own</source>
+        <translation>ajustez les faces là où elles se croisent, ou choisissez celles qui ne se croisent pas et déposez les autres comme un élément à part</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -13407,6 +14087,16 @@
         <translation>ce qui a été palpé est {0} fois plus grand que ce qui est prévu ; ce sont des points d&apos;une autre pièce, ou dans un autre ordre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
+        <source>where the base frame of {0} lies is not known: positions of the program count from its base_link. Compare the pose of a known point on the controller before the program is run, set base in a copy of the machine file, or use program.motion: joint</source>
+        <translation>la position du repère de base de {0} est inconnue : les positions du programme comptent depuis son base_link. Comparez la pose d&apos;un point connu sur la commande avant de lancer le programme, fixez base dans une copie du fichier de machine, ou utilisez program.motion: joint</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>where the coordinates of another work offset begin is not known; leave it out</source>
+        <translation>l&apos;origine d&apos;un autre décalage de pièce est inconnue ; retirez-le</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
         <source>whether TriggSpeed follows the speed over a part that moves was not confirmed</source>
         <translation>que TriggSpeed suive la vitesse sur une pièce mobile n&apos;a pas été confirmé</translation>
@@ -13517,6 +14207,11 @@
         <translation>sans modèle de cordon ni rampe, la vitesse d&apos;avance ne varie pas et le fil n&apos;a rien à suivre ; utilisez constant, un process.bead_model, ou process.start.ramp ou process.end.ramp</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>work frame</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>work offset {0} is not there for the part; use 1 to {1} (G54 to G59.2; the ninth, {2}, is set to zero for moves of the axes)</source>
         <translation>le décalage d&apos;origine {0} n&apos;existe pas pour la pièce ; utilisez 1 à {1} (G54 à G59.2 ; le neuvième, {2}, est mis à zéro pour les mouvements des axes)</translation>
@@ -13572,7 +14267,12 @@
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
+        <location filename="../../freecad_am/core/issues.py"/>
+        <source>{0} (and {1} more like it)</source>
+        <translation>{0} (et {1} autres semblables)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} (line {1})</source>
         <translation>{0} (ligne {1})</translation>
     </message>
@@ -13582,9 +14282,9 @@
         <translation>{0} (ligne {1}, colonne {2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/issues.py"/>
-        <source>{0} (more layers like it: {1})</source>
-        <translation>{0} (autres couches de ce genre : {1})</translation>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} (line {1}, {2} in all)</source>
+        <translation>{0} (ligne {1}, {2} en tout)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
@@ -13598,6 +14298,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/other_cells.py"/>
+        <source>{0} and `cell.arm_clearance: {1} mm`</source>
+        <translation>{0} et `cell.arm_clearance: {1} mm`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/other_cells.py"/>
         <source>{0} and `cell.branch: auto`</source>
         <translation>{0} et `cell.branch: auto`</translation>
     </message>
@@ -13607,9 +14312,24 @@
         <translation>{0} et `cell.branch: {1}`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/other_cells.py"/>
+        <source>{0} and `cell.platform_diameter: 0`</source>
+        <translation>{0} et `cell.platform_diameter: 0`</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} and {1}</source>
         <translation>{0} et {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <source>{0} and {1} (height {2} and {3} mm)</source>
+        <translation>{0} et {1} (hauteur {2} et {3} mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <source>{0} and {1} (width {2} and {3} mm)</source>
+        <translation>{0} et {1} (largeur {2} et {3} mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/clad_faces.py"/>
@@ -13702,6 +14422,11 @@
         <translation>{0} cordons ont été divisés parce qu&apos;un axe n&apos;a pas la course d&apos;un cordon entier</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <source>{0} bytes follow its {1} triangles, which may be further ones; export the part again, as one solid</source>
+        <translation>{0} octets suivent ses {1} triangles et peuvent en être d&apos;autres ; exportez la pièce de nouveau en un solide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>{0} calls itself</source>
         <translation>{0} s&apos;appelle lui-même</translation>
@@ -13715,6 +14440,11 @@
         <location filename="../../freecad_am/core/parameters/external.py"/>
         <source>{0} cannot be carried; use {1} or {2}</source>
         <translation>{0} ne peut pas être porté ; utilisez {1} ou {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>{0} cannot be computed: the add-on that made it is not there; install it, or leave the value out</source>
+        <translation>{0} ne peut pas être calculé : l&apos;extension qui l&apos;a créé manque ; installez-la ou retirez la valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/arrangement.py"/>
@@ -13772,6 +14502,11 @@
         <translation>{0} cm3 de lui se trouvent dans {1} et seraient déposés deux fois ; découpez l&apos;un de l&apos;autre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/collisions.py"/>
+        <source>{0} comes within {1} {2} of its limit, {3} % of half its range; move the part, or choose another cell.branch or joints.rotation_range</source>
+        <translation>{0} arrive à {1} {2} de sa limite, {3} % de la moitié de sa course ; déplacez la pièce ou choisissez une autre cell.branch ou joints.rotation_range</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/scan.py"/>
         <source>{0} compares with {1}; choose an inspection of the part that is deposited on</source>
         <translation>{0} compare avec {1} ; choisissez un contrôle de la pièce sur laquelle on dépose</translation>
@@ -13785,6 +14520,11 @@
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} do not join to one wall; name the faces of the wall, or deposit them one by one</source>
         <translation>{0} ne se joignent pas en une paroi ; nommez les faces de la paroi, ou déposez-les une à une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/on_substrate.py"/>
+        <source>{0} does not touch its substrate {1}: it is {2} mm away at ({3}, {4}, {5}), where it comes nearest; move it onto the substrate, or leave the substrate out</source>
+        <translation>{0} ne touche pas son substrat {1} : il en est à {2} mm en ({3}, {4}, {5}), au plus près ; posez-le sur le substrat ou retirez le substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -13817,6 +14557,16 @@
         <translation>{0} remplit tout, non pas {1} % ; choisissez 100 %, ou fill : contours, lines, zigzag, grid, triangles, honeycomb ou gyroid</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/issues.py"/>
+        <source>{0} findings in layers {1}, the worst here: {2}</source>
+        <translation>{0} constats dans les couches {1}, le pire ici : {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} follows a move in its line; give it a line of its own</source>
+        <translation>{0} suit un déplacement dans sa ligne ; donnez-lui sa propre ligne</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/fields/expressions.py"/>
         <source>{0} follows the expression {1}, which gives nothing any more; give {2} a value or another one</source>
         <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
@@ -13847,6 +14597,11 @@
         <translation>{0} fronts se divisent chacun en {1} à la couche {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} gives a piece of it the role {1}, which is not known; export the part alone</source>
+        <translation>{0} donne à un morceau le rôle {1}, qui est inconnu ; exportez la pièce seule</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/fields/expressions.py"/>
         <source>{0} gives {1}, which is not a number; write one that gives a number</source>
         <translation>{0} donne {1}, qui n&apos;est pas un nombre ; écrivez-en une qui donne un nombre</translation>
@@ -13860,6 +14615,11 @@
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} has a comma; write decimals with a point, such as {1}</source>
         <translation>{0} a une virgule ; écrivez les décimales avec un point, comme {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} has a decimal comma; write numbers with a point</source>
+        <translation>{0} a une virgule décimale ; écrivez les nombres avec un point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
@@ -13902,9 +14662,19 @@
         <translation>{0} n&apos;a pas de numéro</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} has no number; give one</source>
+        <translation>{0} n&apos;a pas de nombre ; donnez-en un</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>{0} has no spherical wrist, and what its controller calls the configurations of cartesian positions is not known; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} has no word {1}; give {2}, or correct the line</source>
+        <translation>{0} n&apos;a pas de mot {1} ; donnez {2} ou corrigez la ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
@@ -13920,6 +14690,11 @@
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} has sliding axes; use {1}, or choose another machine</source>
         <translation>{0} a des axes de translation ; utilisez {1}, ou choisissez une autre machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} has the word {1} after it; give it a line of its own</source>
+        <translation>{0} est suivi du mot {1} ; donnez-lui sa propre ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
@@ -13942,6 +14717,11 @@
         <translation>{0} contient {1} solides{2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} holds {1} solids{2}; to deposit on one of them, name it as the substrate</source>
+        <translation>{0} contient {1} solides{2} ; pour déposer sur l&apos;un d&apos;eux, nommez-le comme substrat</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} holes were closed, the largest {1} mm across at {2}</source>
         <translation>{0} trous ont été bouchés, le plus grand large de {1} mm en {2}</translation>
@@ -13962,6 +14742,16 @@
         <translation>{0} y a un type de document, qu&apos;aucun document de FreeCAD n&apos;a, et n&apos;est pas lu ; enregistrez-le de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} in it has a value that is not a number ({1})</source>
+        <translation>{0} y a une valeur qui n&apos;est pas un nombre ({1})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} in it says that the slicer drills holes, which the mesh does not have; remove them, or export the drilled part as a mesh</source>
+        <translation>{0} y dit que le trancheur perce des trous que le maillage n&apos;a pas ; supprimez-les ou exportez la pièce percée en maillage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} in or about a loop that waits for an analogue input</source>
         <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
@@ -13970,6 +14760,16 @@
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>{0} is a URDF, which does not say what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} is a comment that does not end; close it with )</source>
+        <translation>{0} est un commentaire sans fin ; fermez-le par )</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} is a condition, a loop or a variable; write the moves out</source>
+        <translation>{0} est une condition, une boucle ou une variable ; écrivez les déplacements</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
@@ -13990,6 +14790,11 @@
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is a module or a routine of this program and is not loaded</source>
         <translation>{0} est un module ou une routine de ce programme et n&apos;est pas chargé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} is a negative volume, and cannot be subtracted from the part here; subtract it where the part was drawn, or remove it in the slicer, and export again</source>
+        <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/quantity.py"/>
@@ -14035,6 +14840,11 @@
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is a thin wall that grows on {1}</source>
         <translation>{0} est une paroi mince qui croît sur {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} is activated, and no move follows</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -14092,6 +14902,11 @@
         <translation>{0} est appelé avant d&apos;être chargé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>{0} is called, which is not among the files: what it moves, switches or sets is not driven; give its file too, or look at it at the controller</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} is carried by {1}, as the robot is; let the positioner stand on the floor</source>
         <translation>{0} est porté par {1}, comme le robot ; posez le positionneur au sol</translation>
@@ -14100,6 +14915,11 @@
         <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>{0} is defined again, or within a part</source>
         <translation>{0} est défini à nouveau, ou dans une partie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/table_part.py"/>
+        <source>{0} is for G-code, which {1} is not; leave it out</source>
+        <translation>{0} est pour le G-code, ce que {1} n&apos;est pas ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
@@ -14115,11 +14935,6 @@
         <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} is loaded while depositing, is not there, or {1} is not a library</source>
         <translation>{0} est chargé pendant le dépôt, n&apos;existe pas, ou {1} n&apos;est pas une bibliothèque</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is loaded without being run and removed</source>
-        <translation>{0} est chargé sans être exécuté puis retiré</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/links.py"/>
@@ -14150,6 +14965,11 @@
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0} is neither a file nor a box, or both; give one of them</source>
         <translation>{0} n&apos;est ni un fichier ni une boîte, ou les deux ; donnez l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>{0} is neither a group ({1}) nor a type of {2} ({3}); use one of them</source>
+        <translation>{0} n&apos;est ni un groupe ({1}) ni un type de {2} ({3}) ; utilisez l&apos;un d&apos;eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -14310,11 +15130,6 @@
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a number; give one such as 2 or {1}</source>
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2 ou {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} is not a number; give one such as 2{1}</source>
-        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2{1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
@@ -14497,6 +15312,11 @@
         <translation>{0} n&apos;est pas un vecteur unitaire ; donnez-en un de longueur 1</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/parts.py"/>
+        <source>{0} is not a whole number; give one such as 1</source>
+        <translation>{0} n&apos;est pas un nombre entier ; donnez par exemple 1</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a whole number; give one such as 3</source>
         <translation>{0} n&apos;est pas un nombre entier ; donnez-en un comme 3</translation>
@@ -14572,11 +15392,6 @@
         <translation>{0} n&apos;est pas pour les solides sur moyeu, qui croissent le long de ses normales ; utilisez local</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} is not found among the objects with a shape ({1}); name one</source>
-        <translation>{0} n&apos;est pas trouvé parmi les objets à forme ({1}) ; nommez-en un</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
         <source>{0} is not known; built in are {1}; or give the path of a machine file or a URDF</source>
         <translation>{0} n&apos;est pas connu ; sont intégrés {1} ; ou donnez le chemin d&apos;un fichier de machine ou d&apos;un URDF</translation>
@@ -14602,7 +15417,7 @@
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}, ou none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} is not known; {1}</source>
         <translation>{0} n&apos;est pas connu ; {1}</translation>
     </message>
@@ -14677,11 +15492,6 @@
         <translation>{0} n&apos;est pas compris ici</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>{0} is not understood, or a second output is switched</source>
-        <translation>{0} n&apos;est pas compris, ou une seconde sortie est commandée</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>{0} is not understood, or declares a name again</source>
         <translation>{0} n&apos;est pas compris, ou déclare un nom une seconde fois</translation>
@@ -14702,6 +15512,11 @@
         <translation>{0} n&apos;est pas compris ; donnez couche/cordon:constante:pente avec jusqu&apos;à {1} coefficients en deg et deg par tour, comme 12/0:-35:360 ; * vaut pour tout autre cordon</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} is not understood; give letters with numbers such as X-1.5</source>
+        <translation>{0} n&apos;est pas compris ; donnez des lettres avec des nombres comme X-1.5</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} is not understood; give {1}</source>
         <translation>{0} n&apos;est pas compris ; donnez {1}</translation>
@@ -14710,6 +15525,11 @@
         <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>{0} is not understood; {1}</source>
         <translation>{0} n&apos;est pas compris ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
+        <source>{0} is not what a warning applies to; use {1}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -14797,6 +15617,11 @@
         <translation>{0} jobs ne sont appelés par aucun autre, un seul est attendu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/without_bead.py"/>
+        <source>{0} layer(s) of {1} have places too narrow for a bead, and none in them: {2}; the largest place, {3} mm^2 and {4} mm wide, is at {5}; all of them are {6} mm^2; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
+        <translation>{0} couche(s) de {1} ont des endroits trop étroits pour un cordon et n&apos;y ont aucun cordon : {2} ; le plus grand, {3} mm^2 et {4} mm de large, est en {5} ; tous ensemble font {6} mm^2 ; utilisez des cordons plus étroits, baissez strategy.narrowest ou épaississez la pièce à ces endroits</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/deposit/support.py"/>
         <source>{0} layers more have beads over nothing, {1} mm of them</source>
         <translation>{0} autres couches ont des cordons au-dessus du vide, sur {1} mm</translation>
@@ -14820,6 +15645,21 @@
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>{0} links to nothing, what it showed is gone or was not loaded; choose another {1}</source>
         <translation>{0} ne lie à rien, ce qu&apos;il montrait a disparu ou n&apos;a pas été chargé ; choisissez un autre {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} links to {1}, which is not there; put the file there and open the document again, or choose another {2}</source>
+        <translation>{0} est lié à {1}, qui manque ; remettez le fichier et ouvrez le document de nouveau, ou choisissez un autre {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
+        <source>{0} links to {1}, which is not there; put the file there, or change the link in FreeCAD</source>
+        <translation>{0} est lié à {1}, qui manque ; remettez le fichier ou changez le lien dans FreeCAD</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} may be a number with an exponent, or two words; write the number without exponent, or a space before E</source>
+        <translation>{0} peut être un nombre avec exposant ou deux mots ; écrivez le nombre sans exposant ou une espace avant E</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -14972,6 +15812,11 @@
         <translation>{0} modules ont une routine main, un seul était attendu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} more</source>
+        <translation>{0} de plus</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
         <source>{0} moves take {1} s in all and cannot be shorter than 1 ms each; use a larger chord error or a lower speed</source>
         <translation>{0} mouvements prennent {1} s en tout et ne peuvent pas durer moins de 1 ms chacun ; prenez une plus grande erreur de corde ou une vitesse plus basse</translation>
@@ -14987,6 +15832,11 @@
         <translation>{0} doit être compris entre -180 et 180 ; donnez les mêmes angles dans cette plage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} names a state that was not stored; store it first</source>
+        <translation>{0} nomme un état qui n&apos;a pas été mémorisé ; mémorisez-le d&apos;abord</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
         <source>{0} names faces or edges of several objects ({1}, {2}); choose those of one</source>
         <translation>{0} désigne des faces ou des arêtes de plusieurs objets ({1}, {2}) ; choisissez celles d’un seul</translation>
@@ -14997,9 +15847,29 @@
         <translation>{0} ne désigne pas d&apos;axes externes ; {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>{0} names no roles; give part, all, or a list</source>
+        <translation>{0} ne nomme aucun rôle ; donnez part, all ou une liste</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} names the edges that it starts from</source>
         <translation>{0} nomme les arêtes d&apos;où elle part</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>{0} objects are called {1}; give one of them another label</source>
+        <translation>{0} objets s&apos;appellent {1} ; donnez un autre nom à l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>{0} objects have a shape of their own ({1}); name the part with part.object</source>
+        <translation>{0} objets ont leur propre forme ({1}) ; nommez la pièce par part.object</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
+        <source>{0} of it has no shape; choose an object with a shape</source>
+        <translation>{0} n&apos;y a pas de forme ; choisissez un objet avec une forme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -15007,9 +15877,24 @@
         <translation>{0} de ses points sont sur {1} ; choisissez l&apos;objet qui a été mesuré, son unité, ou des paires de points pour commencer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>{0} of its {1} faces have no surfaces, only triangles; export exact faces, or a mesh (STL, OBJ, 3MF)</source>
+        <translation>{0} de ses {1} faces n&apos;ont pas de surfaces, seulement des triangles ; exportez des faces exactes ou un maillage (STL, OBJ, 3MF)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
         <source>{0} of its {1} points lie within {2} mm of {3}, at least {4} have to; half of them are farther off than {5} mm. It reaches over {6} mm, {7} over {8} mm: scan this part, crop the scan to it, check its unit, or raise substrate.scan_within</source>
         <translation>{0} de ses {1} points sont à moins de {2} mm de {3}, il en faut au moins {4} ; la moitié en est plus loin que {5} mm. Elle s&apos;étend sur {6} mm, {7} sur {8} mm : numérisez cette pièce, rognez la numérisation à celle-ci, vérifiez son unité, ou augmentez substrate.scan_within</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0} of its {1} solids and {2} of its {3} faces cannot be read; check these where they were drawn, and export the part again</source>
+        <translation>{0} de ses {1} solides et {2} de ses {3} faces ne peuvent pas être lus ; vérifiez-les là où ils ont été dessinés et exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} of the extension {1}</source>
+        <translation>{0} de l&apos;extension {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
@@ -15045,6 +15930,11 @@
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} of {1} is a step of {2} mm in the wall; it is kept</source>
         <translation>{0} de {1} est une marche de {2} mm dans la paroi ; elle est gardée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <source>{0} of {1} is chosen, which most solids of it stand on</source>
+        <translation>{0} de {1} est choisi, car la plupart de ses solides reposent dessus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -15152,6 +16042,11 @@
         <translation>{0} morceaux qui n&apos;enferment rien ont été écartés</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>{0} place(s) too narrow for a bead get none, {1} mm^2 in all; the largest, {2} mm^2 and {3} mm wide, is at {4}; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
+        <translation>{0} endroit(s) trop étroits pour un cordon n&apos;en reçoivent pas, {1} mm^2 en tout ; le plus grand, {2} mm^2 et {3} mm de large, est en {4} ; utilisez des cordons plus étroits, baissez strategy.narrowest ou épaississez la pièce à cet endroit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
         <source>{0} point(s) do not determine where a part stands; touch {1} or more, far from one another and not on a line</source>
         <translation>{0} point(s) ne disent pas où se trouve une pièce ; palpez-en {1} ou plus, éloignés les uns des autres et pas sur une droite</translation>
@@ -15207,6 +16102,11 @@
         <translation>{0} rapides</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/collisions.py"/>
+        <source>{0} reaches into the platform, a plate of {1} mm below the origin of the frame that sits on it; set cell.platform to where the part is held and cell.platform_diameter to what there is (0 for none)</source>
+        <translation>{0} entre dans le plateau, une plaque de {1} mm sous l&apos;origine du repère posé dessus ; fixez cell.platform là où la pièce est tenue et cell.platform_diameter selon ce qui existe (0 pour aucun)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>{0} reaches {1} mm below the platform, at {2}</source>
         <translation>{0} descend à {1} mm au-dessous du plateau, en {2}</translation>
@@ -15220,6 +16120,16 @@
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0} row {1} (line {2})</source>
         <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/places.py"/>
+        <source>{0} scales or mirrors it; choose {1} itself</source>
+        <translation>{0} le met à l&apos;échelle ou le retourne ; choisissez {1} lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} sets offsets, which are not known; leave it out</source>
+        <translation>{0} fixe des décalages, qui sont inconnus ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -15247,6 +16157,11 @@
         <translation>{0} se trouve parmi les lignes d&apos;une autre instruction</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} stands before a command; write the command first</source>
+        <translation>{0} est avant une commande ; écrivez d&apos;abord la commande</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} stands on a cylinder or cone of {1}</source>
         <translation>{0} se dresse sur un cylindre ou un cône de {1}</translation>
@@ -15255,6 +16170,11 @@
         <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>{0} stands outside of its function</source>
         <translation>{0} est en dehors de sa fonction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>{0} stands outside of the sub {1}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -15267,6 +16187,16 @@
         <translation>{0} s&apos;y trouve deux fois ; retirez-en un, ou donnez au second du même type sa propre pose</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>{0} stands twice in {1}; leave one out</source>
+        <translation>{0} est deux fois dans {1} ; retirez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} stands without a command before it; begin the line with G, M or T</source>
+        <translation>{0} n&apos;a pas de commande avant lui ; commencez la ligne par G, M ou T</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>{0} starts in {1} curves, about {2}: layers grow from all of them; choose the edges to start from if only some are meant</source>
         <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
@@ -15275,6 +16205,11 @@
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
         <source>{0} states its own unit; leave out the scale, which is for STL and OBJ</source>
         <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>{0} switches a second output, after {1}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
@@ -15327,6 +16262,11 @@
         <translation>{0} tourne autour d&apos;un axe, et sa paroi est un cordon de {1} mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} turns an axis, and strategy.rotary is {1}; name there how A, B and C turn the tool ({2}), or leave them out</source>
+        <translation>{0} tourne un axe et strategy.rotary vaut {1} ; indiquez-y comment A, B et C tournent l&apos;outil ({2}), ou retirez-les</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/turn.py"/>
         <source>{0} turns {1} and {2} {3}; choose faces that turn alike</source>
         <translation>{0} tourne {1} et {2} {3} ; choisissez des faces qui tournent pareillement</translation>
@@ -15337,9 +16277,34 @@
         <translation>{0} occupe plus de {1} Mo une fois décomprimé ; exportez-le avec un maillage plus grossier</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/current.py"/>
+        <source>{0} was changed and is not recomputed yet; recompute the document first</source>
+        <translation>{0} a été modifié et n&apos;est pas encore recalculé ; recalculez d&apos;abord le document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
+        <source>{0} was computed anew for {1}: a document that it links to changed after this one was saved</source>
+        <translation>{0} a été recalculé pour {1} : un document lié a changé après l&apos;enregistrement de celui-ci</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} where {1} was loaded to be run</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} where {1} was to be removed</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>{0} with a move is not understood</source>
         <translation>{0} avec un mouvement n&apos;est pas compris</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/collisions.py"/>
+        <source>{0} with {1}</source>
+        <translation>{0} avec {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
@@ -15365,6 +16330,16 @@
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>{0} {1} is not a straight line; choose a straight edge or an axis</source>
         <translation>{0} {1} n&apos;est pas une droite ; choisissez une arête droite ou un axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>{0} {1} is selected, moves before are in {2}: only one of them is known here, and all moves are driven in that; give a program of one alone</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>{0} {1} is selected, the job has {2}: moves are driven in that of the cell; compare the two, and correct the program&apos;s number or that of the job</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
@@ -15487,14 +16462,19 @@
         <translation>{0} : une paroi d’un seul cordon, de {1} mm de large, est prévue</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/current.py"/>
+        <source>{0}: an input changed since it was computed</source>
+        <translation>{0} : une entrée a changé depuis le calcul</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0}: beads of {1} mm do not reach into what is narrower, layers not above the last cut, and nothing is laid within a hub; use narrower beads, or lower layers</source>
         <translation>{0} : les cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, les couches ne montent pas au-dessus de la dernière coupe, et rien n&apos;est déposé dans un moyeu ; prenez des cordons plus étroits, ou des couches plus basses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>{0}: checked for the nozzle, and for links and part only in simulation and preflight; give cell.arm_clearance so that these are kept clear of it while planning</source>
-        <translation>{0} : vérifié pour la buse, et pour les segments et la pièce dans la simulation et le contrôle préalable seulement ; donnez cell.arm_clearance pour que ceux-ci l&apos;évitent dès la planification</translation>
+        <source>{0}: checked for the nozzle while planning, for links and part only once the path is planned; give cell.arm_clearance so that planning keeps these clear of it</source>
+        <translation>{0} : vérifié pour la buse pendant la planification, pour les corps et la pièce seulement une fois la trajectoire planifiée ; donnez cell.arm_clearance pour que la planification les en tienne éloignés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
@@ -15512,9 +16492,29 @@
         <translation>{0} : des axes à côté du robot demandent l&apos;outil sur le robot ; utilisez setup: tool-on-robot, ou omettez external</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>{0}: fields that the published schema does not have are not read: {1}</source>
+        <translation>{0} : les champs absents du schéma publié ne sont pas lus : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: files in it that are not read, as nothing that is built uses them: {1}</source>
+        <translation>{0} : fichiers contenus qui ne sont pas lus, car rien de ce qui est construit ne les utilise : {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/api.py"/>
         <source>{0}: give source, and any of {1}</source>
         <translation>{0} : donnez source, et au besoin {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0}: it marks items as invisible; they are read as the others</source>
+        <translation>{0} : il marque des éléments comme invisibles ; ils sont lus comme les autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0}: its construction geometry (axes, planes) is not read</source>
+        <translation>{0} : sa géométrie de construction (axes, plans) n&apos;est pas lue</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/whole_mesh.py"/>
@@ -15525,6 +16525,26 @@
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
         <source>{0}: layer {1} lies on what was scanned, {2} to {3} mm from the plan, now within {4} mm; {5} layers lead back to the plan. {6} points were used, {7} that face another way left out; along the beads it rises by up to {8} deg against the plan{9}</source>
         <translation>{0} : la couche {1} repose sur ce qui a été numérisé, de {2} à {3} mm du plan, maintenant à moins de {4} mm ; {5} couches ramènent au plan. {6} points ont été regardés, {7} tournés ailleurs laissés de côté ; le long des cordons elle monte de {8} deg au plus par rapport au plan{9}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: left out, as they are not part of the shape: {1}</source>
+        <translation>{0} : omis, car ne faisant pas partie de la forme : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>{0}: left out, as they bound no shape: {1}</source>
+        <translation>{0} : omis, car ne bornant aucune forme : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: not read, as no object uses it for its shape: what these extensions add: {1}</source>
+        <translation>{0} : non lu, car aucun objet ne l&apos;utilise pour sa forme : ce qu&apos;ajoutent ces extensions : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0}: not read: {1}</source>
+        <translation>{0} : non lu : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
@@ -15542,6 +16562,26 @@
         <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: subtracted from the part: {1}</source>
+        <translation>{0} : soustrait de la pièce : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>{0}: the types {1} are not known and are deposited as the part; name roles in strategy.roles to leave them out</source>
+        <translation>{0} : les types {1} sont inconnus et déposés comme la pièce ; nommez des rôles dans strategy.roles pour les omettre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0}: tools {1} deposit, all of which are taken for the one of the cell</source>
+        <translation>{0} : les outils {1} déposent, tous pris pour celui de la cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>{0}: values of external axes are not read; the cell&apos;s own are planned anew</source>
+        <translation>{0} : les valeurs des axes externes ne sont pas lues ; celles de la cellule sont replanifiées</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
         <source>{0}: where facets meet at an angle the wall runs smoothly, up to {1} mm off them, at {2}</source>
         <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
@@ -15550,6 +16590,11 @@
         <location filename="../../freecad_am/core/issues.py"/>
         <source>{0}: {1}</source>
         <translation>{0} : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/stl_check.py"/>
+        <source>{0}: {1} bytes after its triangles are not read</source>
+        <translation>{0} : {1} octets après ses triangles ne sont pas lus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -15567,6 +16612,11 @@
         <translation>{0} : {1} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>{0}: {1} left out, as strategy.roles is {2}; name other roles to deposit more</source>
+        <translation>{0} : {1} omis, car strategy.roles vaut {2} ; nommez d&apos;autres rôles pour déposer davantage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0}: {1} mm is not a box; give three lengths of more than 0 mm, at most {2} mm</source>
         <translation>{0} : {1} mm n&apos;est pas une boîte ; donnez trois longueurs de plus de 0 mm, au plus {2} mm</translation>
@@ -15580,6 +16630,31 @@
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0}: {1} mm off; name the faces of the wall if it is not part of it</source>
         <translation>{0} : écart de {1} mm ; nommez les faces de la paroi si elle n&apos;en fait pas partie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0}: {1} not read: codes and macros of the machine, taken as if they moved nothing and deposited nothing</source>
+        <translation>{0} : {1} non lus : codes et macros de la machine, considérés comme ne déplaçant et ne déposant rien</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0}: {1} of its entities are marked as invisible, and are left out</source>
+        <translation>{0} : {1} de ses entités sont marquées invisibles et omises</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0}: {1} of its {2} faces are not in any shape that was read; check the part (Part, Check geometry)</source>
+        <translation>{0} : {1} de ses {2} faces ne sont dans aucune forme lue ; vérifiez la pièce (Part, Vérifier la géométrie)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0}: {1} of its {2} solids are read as faces that enclose nothing; check the part (Part, Check geometry)</source>
+        <translation>{0} : {1} de ses {2} solides sont lus comme des faces qui n&apos;enferment rien ; vérifiez la pièce (Part, Vérifier la géométrie)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>{0}: {1} {2} are taken for the one of the cell</source>
+        <translation>{0} : {1} {2} sont pris pour celui de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -15712,7 +16787,7 @@
         <translation>{condition:.3f} (au moins {threshold:.3f})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/fields.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{count} findings</source>
         <translation>{count} remarques</translation>
     </message>
@@ -15943,8 +17018,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
-        <source>{} is missing: select it and press its Use selection.</source>
-        <translation>{} manque : sélectionnez-le et cliquez sur Prendre.</translation>
+        <source>{} is missing: select it and press its Pick.</source>
+        <translation>{} manque : sélectionnez-le et appuyez sur son Choisir.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
