@@ -318,6 +318,12 @@ def test_a_message_that_begins_with_a_name_is_known():
             "my/process.bead_model.csv and strategy.nothing",
         ),
         ("use `motion: joint`", "use “Motion: joint”"),
+        ("on the robot; use setup: tool-on-robot.", "on the robot; use “Setup: tool-on-robot”."),
+        ("use path: layers, or a limit", "use “Path: layers”, or a limit"),
+        ("cell.mount: feature, move", "“Mount: feature”, move"),
+        ("(3, 4) and `cell.branch: auto`", "(3, 4) and “Branch: auto”"),
+        ("write fill: lead 5", "write fill: lead 5"),  # no choice of that field
+        ("layers 3: a bead; my/path: layers", "layers 3: a bead; my/path: layers"),
         ("choose another joints.rotation_range", "choose another “Rotation range”"),  # two fields
         ("use `kind: solid`", "use `kind: solid`"),  # no field of a panel
         ("cell.machine.json is not a file", "cell.machine.json is not a file"),

@@ -35,7 +35,8 @@ _PANELS = {
     "program": "Program",
     "inspection": "Inspection",
 }
-_PAIR = re.compile(r"`([a-z_]+): ([A-Za-z0-9+_-]+)`")  # a line of a job file
+_LINE = r"((?:[a-z_]+\.)*[a-z_]+): ([A-Za-z0-9+_-]+)"  # of a job file
+_QUOTED, _BARE = re.compile(f"`{_LINE}`"), re.compile(rf"(?<![\w./\\`-]){_LINE}(?!`)")
 _KEY = re.compile(
     rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])"
 )
@@ -62,6 +63,17 @@ def _known() -> dict[str, tuple[str, str]]:
 
 
 @lru_cache(maxsize=1)
+def _choices() -> dict[str, set[str]]:
+    """What each parameter that has choices may be, in any family, by its name in job files."""
+    found: dict[str, set[str]] = {}
+    for section, cls in _SECTIONS:
+        for row in rows(cls):
+            name = ".".join([section, *(step for step in row.path if isinstance(step, str))])
+            found.setdefault(name, set()).update(row.spec.choices, row.spec.words)
+    return found
+
+
+@lru_cache(maxsize=1)
 def _short_names() -> dict[str, str]:
     """The whole name of each parameter whose last part no other section has, by that part."""
     found: dict[str, list[str]] = {}
@@ -78,7 +90,7 @@ def as_in_panels(
     text: str, translate: Callable[[str], str], quoted: str = "“{}”", with_panel: bool = False
 ) -> str:
     """A message with the names that parameters have in panels, translated: “Bead width” for process.bead_width, “Motion:
-    joint” for `motion: joint`. with_panel: tell whose panel has it, “Bead width” (Toolpath)."""
+    joint” for motion: joint, with or without backticks. with_panel: tell whose panel has it, “Bead width” (Toolpath)."""
 
     def shown(name: str, value: str = "") -> str:
         group, label = _known()[name]
@@ -91,7 +103,11 @@ def as_in_panels(
         return shown(match[0]) if _known().get(match[0], ("", ""))[1] else match[0]
 
     def paired(match: re.Match[str]) -> str:
-        name = _short_names().get(match[1])
+        name = match[1] if match[1] in _known() else _short_names().get(match[1])
         return match[0] if name is None else shown(name, match[2])
 
-    return _PAIR.sub(paired, _KEY.sub(named, text))
+    def paired_bare(match: re.Match[str]) -> str:
+        name = match[1] if match[1] in _known() else _short_names().get(match[1], "")
+        return paired(match) if match[2] in _choices().get(name, ()) else match[0]
+
+    return _KEY.sub(named, _BARE.sub(paired_bare, _QUOTED.sub(paired, text)))
