@@ -45,7 +45,7 @@ LEAST_DIGITS, MOST_DIGITS = 3, 7  # significant ones of a converted number
 
 _NUMBER = r"[-+−]?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?:e[-+]?\d+)?"
 _EXPONENT = re.compile(r"(?<![\w.])-?\d(?:\.\d+)?e[-+]\d+(?![\w.])")
-_BETWEEN = r" (?:and|to|x|×|–|or|of|of the|et|à|ou|sur|sur les|de|des) "
+_BETWEEN = r" (?:and|to|x|×|–|or|of|of the|of its|et|à|ou|sur|sur les|sur ses|de|des|de ses) "
 _QUANTITY = re.compile(
     rf"(?<![\w.,/'^(-])\(?(?P<numbers>{_NUMBER}(?:, {_NUMBER}, {_NUMBER}|(?:{_BETWEEN}{_NUMBER})*))\)?"
     rf"(?P<blank>[ \N{{NO-BREAK SPACE}}])(?P<unit>{'|'.join(map(re.escape, sorted(UNITS, key=len, reverse=True)))})"

@@ -19,6 +19,7 @@ from ..core.strategies.support import ABOVE_PLATFORM, OVER_PLATFORM, surely_abov
 from ..objects import user_machines
 from ..objects.checks.collisions import in_platform
 from ..objects.fields import properties
+from ..objects.fields.rows import rows
 from ..objects.planned import platform_size, suited_cell
 from ..objects.results.findings import issues_of
 from ..objects.staleness import INFEASIBLE
@@ -33,11 +34,17 @@ def suit(cell: Any, *stages: Any) -> None:
     found = suited_cell.of_toolpath(stages[0])(settings)
     if found != settings:
         _write(cell, found, stages)
-        changed = ", ".join(
+        different = {
             field.name
             for field in dataclasses.fields(found)
             if getattr(found, field.name) != getattr(settings, field.name)
-        )
+        }
+        labels = [
+            row.label
+            for row in rows(CellParameters)
+            if row.path[0] in different and len(row.path) == 1
+        ]
+        changed = ", ".join(labels)
         App.Console.PrintWarning(
             f"{cell.Label}: {changed}: proposed for this job; enter what yours really has\n"
         )

@@ -39,6 +39,8 @@ def test_numbers_in_messages_have_no_exponent(form, value, text):
         ("boxes of 25.4 x 50.8 mm", "boxes of 1 x 2 in"),
         ("at 25.4, 50.8, -76.2 mm from it", "at 1, 2, -3 in from it"),
         ("5 of 8.4 cm3 of it", "0.305 of 0.513 in³ of it"),
+        ("5 of its 8.4 cm3", "0.305 of its 0.513 in³"),
+        ("5 de ses 8.4 cm3", "0.305 de ses 0.513 in³"),
         ("in layer 3, 25.4 mm away", "in layer 3, 1 in away"),
         ("use at most 8 mm", "use at most 0.314 in"),
         ("use at least 8 mm", "use at least 0.315 in"),

@@ -2,8 +2,10 @@
 """A new job gets the cell in which it can be done: a positioner where the torch would lean too far, found before it is
 planned, and another place where the robot's usual one does not serve. Held against PyKDL chains of the machine files."""
 
+import dataclasses
 import json
 import math
+import types
 
 import numpy as np
 import PyKDL
@@ -14,6 +16,7 @@ from freecad_am.core.kinematics import external
 from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.core.parameters.external import externals
 from freecad_am.core.planning import suited
+from freecad_am.macro import suit
 
 ROBOT, TOOL, MOST = "kuka-kr8-r2100-2-arc-hw", "tool-on-robot", 10.0
 COARSE = {"layer_height": 15.0, "chord_error": 0.3}
@@ -118,3 +121,20 @@ def test_what_no_cell_helps_is_left_as_it_is(doc, dome, looked):
     )[:4]
     assert path.Status == "infeasible" and api.result(cell) == cell_of(ROBOT, setup=TOOL)
     assert "NOT_LEVEL" in {issue.code for issue in api.issues(path)}
+
+
+def test_what_is_proposed_is_named_as_the_panel_names_it(doc, monkeypatch):
+    told = []
+    console = types.SimpleNamespace(PrintWarning=told.append)
+    monkeypatch.setattr(suit, "App", types.SimpleNamespace(Console=console))
+    monkeypatch.setattr(
+        suit.suited_cell,
+        "of_toolpath",
+        lambda toolpath: lambda cell: dataclasses.replace(cell, platform=7.0, arm_clearance=3.0),
+    )
+    cell = api.make_cell(doc)
+    monkeypatch.setattr(suit, "_write", lambda *_: None)
+    suit.suit(cell, None)
+    assert told == [
+        "Cell: Platform, Arm clearance: proposed for this job; enter what yours really has\n"
+    ]
