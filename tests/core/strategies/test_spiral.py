@@ -95,3 +95,18 @@ def test_a_part_of_a_turn_has_no_spiral():
     with pytest.raises(InputError, match="not a full turn") as refused:
         spiral(SPHERE, turn=(0.0, 3.0))
     assert refused.value.code == "PARTIAL_TURN"
+
+
+@pytest.mark.parametrize("meridian, flat_top", [(FUNNEL, True), (BENT, True), (SPHERE, False)])
+def test_the_places_where_it_lies_over_itself_are_told(meridian, flat_top):
+    """Where the room above the turn before is less than a layer height: from 0 in the second turn, to 0 in the last."""
+    toolpath = spiral(meridian, layer_height=2.0)
+    bead = toolpath.layers[0].beads[0]
+    turned = bead.parameter - 0.3
+    notes = [issue for issue in toolpath.issues if issue.code == "DEPOSITED_TWICE"]
+    assert [(note.level, note.layer, note.bead) for note in notes] == [("note", 0, 0)] * (
+        1 + flat_top
+    )
+    assert turned[notes[0].point] == pytest.approx(TURN)
+    if flat_top:
+        assert turned[notes[1].point] == pytest.approx(turned[-1] - TURN, abs=0.3)

@@ -11,7 +11,7 @@ import numpy as np
 from ...geometry.curves.polyline import largest_step
 from ...geometry.curves.profile import Meridian, RevolvedWall
 from ...geometry.step_count import step_count
-from ...issues import InputError, Issue
+from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.bead_classes import WALL
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import RevolutionParameters
@@ -57,7 +57,31 @@ def layers(
         False,
         bead_class=WALL,
     )
-    return (Layer((bead,)),), issues
+    ends = _over_itself(turns, end, pitch, wall.meridian.closed_top)
+    return (Layer((bead,)),), [*issues, *ends]
+
+
+def _over_itself(turns: Array, end: float, pitch: float, closed_top: bool) -> list[Issue]:
+    """Notes with the places where the spiral has less than a layer height of room above its turn before: in the turn that
+    rises from the flat first one, and in the flat last one of an open top."""
+    issues = []
+    start = int(np.searchsorted(turns, 2.0 * math.pi - 1e-9))
+    if end > 0.0 and start < len(turns) - 1:
+        text = Text(
+            "from here the second turn rises from 0 to {:g} mm above the flat first one, and half of it is deposited over "
+            "that; the end of the turn is right. Machine the foot, or use path: layers",
+            pitch,
+        )
+        issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, start))
+    last = int(np.searchsorted(turns, turns[-1] - 2.0 * math.pi - 1e-9))
+    if not closed_top and start < last < len(turns) - 1:
+        text = Text(
+            "from here the flat last turn comes down from {:g} to 0 mm above the turn before, and half of it is deposited over "
+            "that. Machine the top, or use path: layers",
+            pitch,
+        )
+        issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, last))
+    return issues
 
 
 def _end(meridian: Meridian, pitch: float) -> float:
