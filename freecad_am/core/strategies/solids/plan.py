@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from ...filling.cover import Cover
-from ...geometry.beyond_hub import solids_beyond
 from ...geometry.on_hub import SolidsOnHub
 from ...issues import InputError, Issue
 from ...layers import field
@@ -24,6 +23,7 @@ from ..progress import Progress, silent
 from .beads import MadeBead, bead_of
 from .filling import Pictures, bead_width, over_fed, spaced
 from .notes import notes
+from .part_volume import part_volume
 from .volumes import twice, volumes
 from .without_bead import BareLayer, without_bead
 
@@ -119,7 +119,7 @@ def plan(
         solids.surroundings,
         None if model is None else model.law(process.acceleration),
         width,
-        volumes=volumes(None if strategy.margin else solids_beyond(solids), strategy, covers),
+        volumes=volumes(None if strategy.margin else part_volume(solids), strategy, covers),
         twice=twice(made, strategy, covers, width),
         uneven=np.array(
             [(number, min(both), max(both)) for number, both in sorted(heights.items())]

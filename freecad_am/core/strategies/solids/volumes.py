@@ -23,7 +23,7 @@ def volumes(
 ) -> tuple[float, float, float]:
     """mm3 of the part, of what beads leave of it, and of what of them lies beside it; what is cut of it counts as high as
     its layers, so that what is above the last cut is left, and what layers reach beyond it lies beside. A part of which the
-    volume (mm3) is None, as a margin is added to it or its solids may overlap, is as large as its layers are."""
+    volume (mm3) is None, as a margin is added to it or it is open, is as large as its layers are."""
     whole, left, outside = of_layers(strategy, covers)
     if part is None:
         return whole, left, outside
