@@ -22,6 +22,8 @@ TABLES, MESHES = (
 MAX_POINTS = 200_000  # points that are kept of a larger scan, evenly
 LARGEST = 1000  # MB
 LOOK = 200  # rows by which a table's signs are told
+HEAD = 10_000  # bytes of a mesh that may tell a unit
+LONGEST_REMARK = 60  # characters of one that a message shows
 _MARKS = ("#", "//", "%", "!", "'", '"#')
 _SIGNS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
 _NAMES = {None: "blanks", ";": "semicolons", "\t": "tabs", ",": "commas"}
@@ -79,7 +81,7 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
         found, messages, named = (
             MESHES[suffix](data, label),
             ["the vertices of a mesh are taken as points"],
-            "",
+            _unit_of_remarks(_remarks_of_mesh(data, suffix), label) if unit == AUTO else "",
         )
     else:
         found, messages, named = _table(_text(data), label)
@@ -157,13 +159,57 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
         messages.append(
             f"{len(bad)} lines that are not points are left out, the first is line {bad[0]}"
         )
+    _check_widths(cells[first:], width, delimiter, label)
     texts = [
         *named,
         *(" ".join(head) for head in heads if "unit" in " ".join(head).lower()),
         *(remark for remark in remarks if "unit" in remark.lower()),
     ]
-    unit = next((one for one in map(_unit_in, texts) if one), "")
+    unit = _unit_of_remarks(texts, label)
     return np.array(found).reshape(-1, 3), messages, unit
+
+
+def _unit_of_remarks(texts: list[str], label: str) -> str:
+    """The unit that remarks or headings name, '' for none. InputError BAD_UNIT for one that is not read."""
+    unit = next((one for one in map(_unit_in, texts) if one), "")
+    for text in texts:
+        if not unit and _OTHER_UNIT.search(text.lower().replace("_", " ")) is not None:
+            raise InputError(
+                "BAD_UNIT",
+                label,
+                "the unit in {!r} is not read; use mm, cm, m, um or inch",
+                text[:LONGEST_REMARK],
+            )
+    return unit
+
+
+def _remarks_of_mesh(data: bytes, suffix: str) -> list[str]:
+    """Lines of the head of a PLY file, or remarks of an OBJ file, that tell of a unit."""
+    if suffix == ".ply":
+        head, marks = data[: max(data.find(b"end_header"), 0)], ("comment", "obj_info")
+    elif suffix == ".obj":
+        head, marks = data[:HEAD], ("#",)
+    else:
+        return []
+    lines = [line.strip() for line in head.decode("latin-1").splitlines()]
+    return [line for line in lines if line.startswith(marks) and "unit" in line.lower()]
+
+
+def _check_widths(
+    rows: list[tuple[int, list[str]]], width: int, delimiter: str | None, label: str
+) -> None:
+    """InputError BAD_FILE for a row with more cells than the first: commas may stand for decimals there."""
+    if delimiter != ",":
+        return
+    for number, row in rows:
+        if len([cell for cell in row if cell]) > width:
+            raise InputError(
+                "BAD_FILE",
+                f"{label} line {number}",
+                "it has {} values, the first row {}: commas may stand before decimals too; export it with decimal points",
+                len(row),
+                width,
+            )
 
 
 def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
@@ -234,6 +280,15 @@ def _columns(
                 [f"{more} more columns not used"] if more else []
             )
             return columns, [head[k] for k in columns], messages
+    for head in heads[-1:]:
+        names = [cell.lower() for cell in head]
+        if len(head) == width and all(map(_is_name, names)) and not _are_of_points(names):
+            raise InputError(
+                "AMBIGUOUS",
+                label,
+                "its columns are called {}; call those of the coordinates x, y and z",
+                ", ".join(head),
+            )
     whole = [row for _, row in rows if len(row) == width]
     columns = [k for k in range(width) if all(_is_number(row[k], comma) for row in whole)]
     messages = []
@@ -246,10 +301,23 @@ def _columns(
     return columns[:3], [], messages
 
 
+def _is_name(cell: str) -> bool:
+    """Whether a heading is a name, not a number or a remark."""
+    return re.fullmatch(r"[^\W\d][\w .:/()\[\]°µ-]*", cell) is not None
+
+
+def _are_of_points(names: list[str]) -> bool:
+    """Whether headings are those of ParaView, points:0 to points:2, which come in this order."""
+    numbered = [name[-1] for name in names if re.fullmatch(r"points?[:_ ][012]", name)]
+    return numbered == ["0", "1", "2"]
+
+
 def _check_units(names: list[str], label: str) -> None:
     """InputError BAD_UNIT for a unit that is not read, or units that differ."""
     for name in names:
-        if _OTHER_UNIT.search(name.lower().replace("_", " ")) is not None:
+        bracket = re.search(r"\[(.*)\]", name)
+        is_unknown = bracket is not None and bool(bracket[1].strip()) and not _unit_in(bracket[1])
+        if is_unknown or _OTHER_UNIT.search(name.lower().replace("_", " ")) is not None:
             raise InputError(
                 "BAD_UNIT",
                 label,

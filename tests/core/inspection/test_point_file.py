@@ -198,3 +198,43 @@ def test_headings_that_leave_a_choice_are_refused(head, code, words):
     with pytest.raises(InputError) as refused:
         point_file.parse(f"{head}\n{rows}".encode(), "scan.csv")
     assert refused.value.code == code and words in refused.value.message
+
+
+PLY = "ply\nformat ascii 1.0\n{}element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "code", "words"),
+    [
+        ("a.csv", "x [furlong],y,z\n1,2,3\n", "BAD_UNIT", "x [furlong]"),
+        ("a.csv", "# units: ft\nx,y,z\n1,2,3\n", "BAD_UNIT", "# units: ft"),
+        ("a.csv", "# unit: yards\n1,2,3\n", "BAD_UNIT", "yards"),
+        ("a.csv", "a,b,c\n1,2,3\n", "AMBIGUOUS", "called a, b, c"),
+        ("a.csv", "east;north;up\n1,5;2;3\n", "AMBIGUOUS", "called east, north, up"),
+        ("a.csv", "id,px,py,pz\n7,2,3,4\n1,2,3,4\n", "AMBIGUOUS", "id, px, py, pz"),
+        ("a.csv", 'x,y,z\n1.5,5,6\n"1,5",6,7\n', "BAD_FILE", "4 values"),
+        ("a.csv", "x,y,z\n1,2,3\n1,5,2,3\n", "BAD_FILE", "4 values"),
+        ("a.ply", PLY.format("comment unit: feet\n"), "BAD_UNIT", "feet"),
+        ("a.obj", "# units = yd\nv 1 2 3\nv 1 2 4\nv 1 3 4\nf 1 2 3\n", "BAD_UNIT", "yd"),
+    ],
+)
+def test_units_and_columns_that_are_not_known_are_refused(name, text, code, words):
+    with pytest.raises(InputError) as raised:
+        point_file.parse(text.encode("utf-8"), name)
+    assert raised.value.code == code and words in raised.value.message
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "scale"),
+    [
+        ("a.ply", PLY.format("comment unit: inch\n"), 25.4),
+        ("a.ply", PLY.format("obj_info units = m\n"), 1000.0),
+        ("a.ply", PLY.format("comment made by a scanner in Minnesota\n"), 1.0),
+        ("a.csv", "Points:0,Points:1,Points:2\n1,2,3\n", 1.0),
+        ("a.csv", "\ufeffX [cm];Y [cm];Z [cm]\r\n1,0;2,0;3,0\r\n", 10.0),
+        ("a.csv", "x,y,z,\n1,2,3,\n", 1.0),
+    ],
+)
+def test_units_of_heads_and_remarks_are_read(name, text, scale):
+    measured = point_file.parse(text.encode("utf-8"), name)
+    np.testing.assert_allclose(measured.points, [[scale, 2 * scale, 3 * scale]])
