@@ -24,7 +24,10 @@ PIECES = 6  # colours along a bead
 
 
 def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
-    """First and middle layer of each group laid flat, coloured by speed where a bead model sets it, else by order."""
+    """First and middle layer of each group laid flat, coloured by speed where a bead model sets it, else by order.
+
+    A layer that is too narrow for a bead has none, and no picture.
+    """
     found = []
     runs = _runs(toolpath.layers)
     by_group = np.array_split(np.arange(len(runs)), len(solids.groups))
@@ -37,6 +40,7 @@ def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
         found += [
             _flat(group, toolpath.layers[run[place]], place, toolpath.layer_height)
             for place in places
+            if toolpath.layers[run[place]].beads
         ]
     return found
 

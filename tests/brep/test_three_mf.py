@@ -423,9 +423,24 @@ def test_negative_volumes_that_cannot_be_cut_are_refused_by_name(tmp_path, monke
     keys = {"name": "the hole", "volume_type": "NegativeVolume"}
     text = model(mesh(1, BOTH, BOTH_FACES), placed("item", 1))
     path = written(tmp_path, text, more={PRUSA: prusa((0, 11, {}), (12, 23, keys))})
-    with pytest.raises(InputError, match="'the hole' is a negative volume") as caught:
+    with pytest.raises(
+        InputError, match=r"'the hole' is a negative volume.*: 24 triangles"
+    ) as caught:
         read_mesh(path)
     assert caught.value.code == "UNSUPPORTED_FILE"
+
+
+def test_a_negative_volume_that_crosses_itself_is_refused(tmp_path):
+    """Letters of a slicer's text that overlap are one closed mesh that crosses itself; the kernel's difference is wrong."""
+    size = np.array([10.0, 10.0, 10.0]) / 30.0
+    letter = BLOCK * size + [5.0, 5.0, 25.0]
+    points = np.vstack([BLOCK, letter, letter + [5.0, 3.0, 0.0]])
+    corners = np.vstack([CUBE_FACES, CUBE_FACES + 8, CUBE_FACES + 16])
+    keys = {"name": "text", "volume_type": "NegativeVolume"}
+    text = model(mesh(1, points, corners), placed("item", 1))
+    path = written(tmp_path, text, more={PRUSA: prusa((0, 11, {}), (12, 35, keys))})
+    with pytest.raises(InputError, match=r"'text' is a negative volume.* no sound solid"):
+        read_mesh(path)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from freecad_am.core.types import Array, Index
 from ...core.geometry.mesh.refined import Edges
 from ...core.geometry.mesh.solid import SolidMesh
 
-MAX_TRIANGLES = 2000  # of both; these take about 2 s of the processor
+MAX_TRIANGLES = 2000  # of both that are cut; these take about 2 s of the processor
 SEWN = 1e-4  # mm; points of a file nearer to each other than this are one
 EXACT = 1e-6  # of a volume
 
@@ -27,17 +27,16 @@ def difference(
 ) -> tuple[Array, Index] | None:
     """Points (n, 3) and corners (m, 3) of a closed mesh less a closed tool; no triangles where the tool takes all of it.
 
-    None where the meshes are too large, or what the kernel returns is not closed, or its volume and that of what is
-    common to both are not together that of the mesh.
+    None where the kernel finds one of them unsound (it then returns too small a common part of some, and a difference that
+    agrees with that), or what it returns is not closed, or its volume and that of what is common to both are not together
+    that of the mesh.
     """
-    if len(corners) + len(tool_corners) > MAX_TRIANGLES:
-        return None
     try:
         part, tool = _solid(points, corners), _solid(tool_points, tool_corners)
+        if part.Volume <= 0.0 or tool.Volume <= 0.0 or not (part.isValid() and tool.isValid()):
+            return None
         rest, common = part.cut(tool), part.common(tool)
         whole = SolidMesh(points, corners).volume
-        if part.Volume <= 0.0 or tool.Volume <= 0.0:
-            return None
         if abs(rest.Volume + common.Volume - whole) > EXACT * whole:
             return None
         if rest.Volume <= EXACT * whole:

@@ -22,8 +22,8 @@ import numpy as np
 from freecad_am.core.types import Array, Index
 
 from ...core.issues import NOTE, InputError, Issue, Text, Word
+from . import mesh_difference
 from . import three_mf_roles as roles
-from .mesh_difference import difference
 from .three_mf_roles import NEGATIVE, PART, Volume
 
 UNITS = {
@@ -218,16 +218,27 @@ class _Package:
     def _subtracted(self, points: Array, corners: Index, tool: _Piece) -> tuple[Array, Index]:
         if not len(corners) or not _meet(points, tool.points):
             return points, corners
-        self.cut += len(corners) + len(tool.corners)
-        found = None
-        if self.cut <= MAX_CUT:
-            found = difference(points, corners, tool.points, tool.corners)
+        count = len(corners) + len(tool.corners)
+        self.cut += count
+        most = mesh_difference.MAX_TRIANGLES
+        if count > most or self.cut > MAX_CUT:
+            raise InputError(
+                "UNSUPPORTED_FILE",
+                self.where,
+                "{!r} is a negative volume, and cannot be subtracted from the part here: {} triangles take part, and at most "
+                "{} are cut; subtract it where the part was drawn, or remove it in the slicer, and export again",
+                tool.name,
+                count if count > most else self.cut,
+                most if count > most else MAX_CUT,
+            )
+        found = mesh_difference.difference(points, corners, tool.points, tool.corners)
         if found is None:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "{!r} is a negative volume, and cannot be subtracted from the part here; subtract it where the part was "
-                "drawn, or remove it in the slicer, and export again",
+                "{!r} is a negative volume, and cannot be subtracted from the part here: the geometry kernel makes no sound "
+                "solid of the two, as of a mesh that touches or crosses itself; subtract it where the part was drawn, or "
+                "remove it in the slicer, and export again",
                 tool.name,
             )
         self.subtracted.append((tool.name, NEGATIVE))
