@@ -8,7 +8,7 @@ from typing import Any
 import FreeCAD as App
 
 from ..core.issues import AmError, InputError, Text
-from .results.findings import message_of
+from .results.findings import message_of, reason_of
 from .results.keys import is_of_earlier_version
 from .shapes.containers import containers_of, members_of
 from .stage import stage_of
@@ -61,6 +61,15 @@ def reason_outdated(obj: Any) -> str:
     if is_of_earlier_version(obj):
         return Text("an earlier version computed it; read Migrating in the changelog")
     return Text("{}: an input changed since it was computed", obj.Label)
+
+
+def reason_stale(obj: Any) -> str:
+    """Why a stage is not up to date: that of the first stage that is stale, where it only waits for that."""
+    if obj.Status == STALE:
+        first = next((one for one in _chain(obj) if one.Status == STALE), obj)
+        if first != obj:
+            return Text("{}: {}", first.Label, message_of(first))
+    return reason_of(obj)
 
 
 def check_recomputed(obj: Any, code: str = "NO_RESULT") -> None:

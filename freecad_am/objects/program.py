@@ -24,7 +24,7 @@ from ..core.toolpath import Toolpath
 from ..posts import catalogue, refusals
 from . import user_machines
 from .checks import controllers
-from .current import check_current
+from .current import check_current, reason_stale
 from .joint_path import Planned
 from .results.findings import reason_of
 from .stage import Stage
@@ -245,7 +245,7 @@ def files_of(obj: Any) -> dict[str, bytes]:
     document as it is now, saying why."""
     template = "no program fits its inputs ({}); mend that and recompute it"
     if not obj.Key or obj.Status != UP_TO_DATE:
-        raise InputError("NO_PROGRAM", obj.Label, template, reason_of(obj) or obj.Status)
+        raise InputError("NO_PROGRAM", obj.Label, template, reason_stale(obj) or obj.Status)
     check_current(obj, "NO_PROGRAM", template)
     files: dict[str, bytes] = obj.Proxy.value(obj).files
     if not files:

@@ -45,6 +45,7 @@ class Stage(Stored):
     figures: ClassVar[tuple[tuple[str, str, str], ...]] = ()  # property, FreeCAD type, help
     _busy = False
     changes = 0  # of the inputs, counted by `staleness`
+    was_run = False  # by FreeCAD in its last recompute
 
     def __init__(self, obj: Any) -> None:
         obj.Proxy = self
@@ -259,6 +260,7 @@ class Stage(Stored):
     def execute(self, obj: Any) -> None:
         """Renew, and report what is wrong in the status and in one line on the console. What follows one that was
         cancelled waits for it."""
+        self.was_run = True
         if _deferred:
             return
         stale = next(

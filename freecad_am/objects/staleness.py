@@ -33,6 +33,8 @@ RESULTS = frozenset(
     }
 )
 
+LEFT_OUT = "FreeCAD left it out of the recompute; unfreeze it (Toggle Freeze in the tree) if it is frozen, then recompute"
+
 _observer: _Observer | None = None
 
 
@@ -76,6 +78,9 @@ class _Observer:
     def slotBeforeRecomputeDocument(self, document: Any) -> None:
         """What FreeCAD told nobody of, such as changes of frozen objects and files, counts in this recompute."""
         _mark_outdated(document)
+        for obj in document.Objects:
+            if hasattr(obj, "ResultLayout"):
+                obj.Proxy.was_run = False
 
     def slotRecomputedDocument(self, document: Any) -> None:
         """FreeCAD does not run what follows an object that failed, such as a link to nothing: tell what is missing. Stages of
@@ -83,6 +88,8 @@ class _Observer:
         for obj in document.Objects:
             if hasattr(obj, "ResultLayout") and obj.Status == STALE and obj.Proxy.missing(obj):
                 _mark(obj, "")
+            elif hasattr(obj, "ResultLayout") and _is_left_out(obj):
+                say(obj, STALE, Text(LEFT_OUT))
         for follower in (document, *document.InList):
             _mark_outdated(follower)
 
@@ -119,6 +126,16 @@ def is_outdated(obj: Any) -> bool:
         return bool(obj.Proxy.key(obj) != obj.Key)
     except AmError:
         return False  # what is wrong is told when it is recomputed
+
+
+def _is_left_out(obj: Any) -> bool:
+    """Whether a stage is still stale after a recompute that did not run it, though nothing that it is made of stood against
+    that. FreeCAD 1.0 does so with frozen objects, and does not tell which these are."""
+    if obj.Status != STALE or obj.Proxy.was_run:
+        return False
+    inputs = obj.OutListRecursive
+    waits = any(getattr(one, "Status", "") in (STALE, FAILED, INFEASIBLE) for one in inputs)
+    return not waits and not any("Invalid" in one.State for one in inputs)
 
 
 def _mark(obj: Any, cause: str) -> None:

@@ -3,8 +3,10 @@
 
 import importlib
 import os
+import re
 import sys
 import time
+import zipfile
 
 import FreeCAD as App
 import Part
@@ -16,6 +18,7 @@ from freecad_am.batch.job.part_source import PartSource
 from freecad_am.core.issues import InputError
 from freecad_am.objects.shapes.file_issues import file_issues
 
+SECOND = b"2026-11-01T12:00:00Z"
 HOLE = 3.141592653589793 * 4 * 10  # of the cylinder in the box, 10 mm high
 
 
@@ -146,6 +149,33 @@ def test_a_linked_document_that_changed_later(documents):
     assert volume(hall, "Sized") == (pytest.approx(900), pytest.approx(0), ["LINKED_CHANGED"])
     wide = volume(hall, "Cut", ("Cylinder", "Radius", "3 mm"))
     assert wide[0] == pytest.approx(2000 - HOLE * 9 / 4) and wide[2] == ["LINKED_CHANGED"]
+
+
+def test_a_linked_document_saved_again_within_the_same_second(documents):
+    hall = documents / "hall.FCStd"
+
+    def change(again):
+        """Save both as at one second, the linked document before or after the other one."""
+        for name in ("sub/store.FCStd", "hall.FCStd"):
+            with zipfile.ZipFile(documents / name) as archive:
+                texts = {each: archive.read(each) for each in archive.namelist()}
+            with zipfile.ZipFile(documents / name, "w") as archive:
+                for each, text in texts.items():
+                    if each == "Document.xml":
+                        text = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", SECOND, text)
+                    archive.writestr(each, text)
+        os.utime(documents / "sub" / "store.FCStd", ns=(10**18 + again, 10**18 + again))
+        os.utime(hall, ns=(10**18, 10**18))
+
+    change_store(documents, A2="20")
+    change(-1)
+    assert volume(hall, "Cut") == (pytest.approx(1000 - HOLE), pytest.approx(50), [])
+    change(1000)
+    assert volume(hall, "Cut") == (
+        pytest.approx(2000 - HOLE),
+        pytest.approx(50),
+        ["LINKED_CHANGED"],
+    )
 
 
 def test_a_change_two_documents_away(documents):

@@ -5,6 +5,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from freecad_am.core.issues import InputError
 
 PANELS = {
     "Cell": "RoboticAM_Cell",
@@ -72,3 +73,20 @@ def test_opened_and_pasted_jobs_are_up_to_date(person, saved, tmp_path):
     other.recompute()
     assert touched(other) == [] and keys == [stage.Key for stage in api.stages_of(other)]
     api.export(other.Program, str(tmp_path / "program"))
+
+
+def test_a_frozen_stage_is_not_exported(person, saved, tmp_path):
+    if int(App.Version()[0]) < 1:
+        pytest.skip("FreeCAD freezes objects since 1.0")
+    person.select(saved.Toolpath)
+    person.gui.runCommand("Std_ToggleFreeze")
+    saved.Feature.LayerHeight = 4.0
+    saved.recompute()
+    assert saved.Toolpath.Status == "stale" and "Toggle Freeze" in saved.Toolpath.Message
+    with pytest.raises(InputError, match=r"Toolpath.*Toggle Freeze"):
+        api.export(saved.Program, str(tmp_path / "program"))
+    person.select(saved.Toolpath)
+    person.gui.runCommand("Std_ToggleFreeze")
+    saved.recompute()
+    assert saved.Program.Status == "up to date"
+    api.export(saved.Program, str(tmp_path / "program"))

@@ -179,3 +179,22 @@ def test_a_linked_document_that_was_changed(tmp_path):
     finally:
         App.closeDocument(doc.Name)
         App.closeDocument(other.Name)
+
+
+def test_a_stage_that_freecad_leaves_out(job, tmp_path):
+    """As it does with frozen objects: the export names the first one, and what to do."""
+    doc = job.doc
+    job.feature.LayerHeight = 4.0
+    doc.recompute([job.feature])
+    assert job.feature.Status == OK and job.toolpath.Status == STALE
+    assert "Toggle Freeze" in job.toolpath.Message
+    for write_it in (
+        lambda: api.export(job.program, str(tmp_path / "program")),
+        lambda: api.export_wires(job.joint_path, str(tmp_path / "w.dxf")),
+    ):
+        with pytest.raises(InputError, match=f"{job.toolpath.Label}.*Toggle Freeze"):
+            write_it()
+    assert not list(tmp_path.rglob("*.*"))
+    doc.recompute()
+    assert job.program.Status == OK and "Toggle Freeze" not in job.toolpath.Message
+    api.export(job.program, str(tmp_path / "program"))

@@ -86,10 +86,25 @@ def _of_changed_files(document: Any) -> list[Any]:
     changed = []
     for name, files in linked_files(document.FileName).items():
         obj = document.getObject(name)
-        stamps = [(saved.get(os.path.realpath(file), stamp), stamp) for file, stamp in files]
-        if obj is not None and any(now != stamp for now, stamp in stamps if stamp):
+        stamps = [(file, saved.get(os.path.realpath(file), stamp), stamp) for file, stamp in files]
+        if obj is not None and any(
+            now != stamp or _is_saved_later(file, stamp, document)
+            for file, now, stamp in stamps
+            if stamp
+        ):
             changed.append(obj)
     return changed
+
+
+def _is_saved_later(file: str, stamp: str, document: Any) -> bool:
+    """Whether a linked file was written after a document that was saved in the same second: FreeCAD knows no more than the
+    second of saving."""
+    if document.LastModifiedDate != stamp:
+        return False
+    try:
+        return os.stat(file).st_mtime_ns > os.stat(document.FileName).st_mtime_ns
+    except OSError:
+        return False
 
 
 def in_order(document: Any, known: Iterable[Any] = ()) -> list[Any]:
