@@ -21,7 +21,7 @@ from ..core.geometry.mesh.repair import Repaired, crossing_messages, mended_issu
 from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.obstacles import Body
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
-from ..core.issues import InputError, Issue
+from ..core.issues import NOTE, InputError, Issue, Text
 from .kernel.limits import refuse_bare
 from .revolution.axis import from_normals
 from .shapes.tessellate import WELDED
@@ -87,8 +87,25 @@ def bodies_of(
             crossing += crossing_messages(found.solids[0], CROSSED * chord_error)
     return Bodies(
         _named([mesh for _, meshes in made for mesh in meshes], label),
-        (*issues, *mended_issues(label, crossing)),
+        (*issues, *_loose(source, label), *mended_issues(label, crossing)),
     )
+
+
+def _loose(source: Any, label: str) -> tuple[Issue, ...]:
+    """A note of the faces and edges of a shape that belong to none of its solids: they are not deposited."""
+    of_solids = {face.hashCode() for solid in source.Solids for face in solid.Faces}
+    of_faces = {edge.hashCode() for face in source.Faces for edge in face.Edges}
+    faces = sum(face.hashCode() not in of_solids for face in source.Faces)
+    edges = sum(edge.hashCode() not in of_faces for edge in source.Edges)
+    if not faces and not edges:
+        return ()
+    text = Text(
+        "{}: {} face(s) and {} edge(s) belong to none of its solids and are left out",
+        label,
+        faces,
+        edges,
+    )
+    return (Issue(NOTE, "FILE_CONTENT", text),)
 
 
 def _meshed(

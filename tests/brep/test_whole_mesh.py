@@ -111,3 +111,21 @@ def test_a_part_that_lacks_is_seen_where_the_kernel_is_wrong_too(monkeypatch, ax
 
     monkeypatch.setattr(whole_mesh, "in_kernel_process", dented)
     assert [issue.code for issue in whole_mesh.whole(shape, 0.02, "it")[1]] == ["MESH_VOLUME"]
+
+
+def test_faces_and_edges_beside_solids_are_noted():
+    """They are not deposited; a face that two solids share is no loose one."""
+    box = Part.makeBox(10.0, 10.0, 10.0)
+    plane = Part.makePlane(5.0, 5.0, FreeCAD.Vector(0.0, 0.0, 40.0))
+    line = Part.makeLine(FreeCAD.Vector(0.0, 0.0, 0.0), FreeCAD.Vector(0.0, 0.0, 50.0))
+    for shape, words in (
+        (box, None),
+        (box.Solids[0].multiFuse([Part.makeBox(5.0, 5.0, 20.0)]), None),
+        (Part.makeCompound([box, plane]), "1 face(s) and 0 edge(s)"),
+        (Part.makeCompound([plane, line, box]), "1 face(s) and 1 edge(s)"),
+    ):
+        found = hub.bodies_of(shape, "box", 0.1, 0.1)
+        assert [(note.level, note.code) for note in found.issues] == (
+            [("note", "FILE_CONTENT")] if words else []
+        )
+        assert words is None or words in str(found.issues[0].message)
