@@ -146,7 +146,9 @@ class FittedLength:
         self.label = self.heading = translated(row.label)
         self.widget.setToolTip(f"{translated(row.spec.help)} {more}")
         self.widget.setWhatsThis(fields.whats_this(row, "cell"))
+        self.quantity.known_text = ""
         self.quantity.line.clear()
+        self.quantity.make_room()
         self.quantity.line.setPlaceholderText(placeholder)
 
     @property
@@ -166,7 +168,7 @@ class Sizes:
         self.spacing = fields.make(spacing, spacing.default, section="strategy")
         self.platform = FittedLength(
             _row(CellParameters, "platform_diameter"),
-            tr("as the part needs it"),
+            tr("auto"),
             tr("Left empty, it is as large as the first layer needs it."),
         )
         self.of_job = {

@@ -38,7 +38,7 @@ from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE,
 
 FILLED = (SOLID, DEVELOPABLE, CLADDING)  # families whose beads have a spacing
 WIDEST_LABEL = (
-    80  # pixels; with wider ones the choice of the set-up makes it wider than what is seen of it
+    70  # pixels; with wider ones the choice of the set-up makes it wider than what is seen of it
 )
 
 

@@ -12,7 +12,7 @@ from ..colours import WRONG, set_role
 from .present import present
 
 KEEP_MS = 2500  # ms that the place of a note stays once it has gone
-WIDEST_LABEL = 96  # pixels; longer ones go on below
+WIDEST_LABEL = 78  # pixels; longer ones go on below
 LONGEST_ROW = 2  # fields beside a label; more go below it
 WIDEST_CHOICE = 84  # pixels of the texts of a choice beside its label; longer ones go below it
 
