@@ -19,6 +19,7 @@ from PySide import QtCore, QtGui
 FOLDER = Path(os.environ["LOOKS_FOLDER"])
 sys.path.insert(0, os.environ["LOOKS_ROOT"])
 LEAST_CONTRAST = 4.5
+PATIENCE = 10  # s that a panel may take to open
 LOOKS = 6  # pictures of the same, at most
 PAGES = int(os.environ.get("LOOKS_PAGES", "6"))  # of a panel, at most
 MARGIN = 6  # pixels about a panel, which FreeCAD holds at 250 where its view has less
@@ -206,9 +207,10 @@ def cancel():
             return
 
 
-def look_at_panels(theme, wrong, most):
-    for command in PANELS:
-        Gui.runCommand(f"RoboticAM_{command}")
+def panels():
+    """The panel that was opened just now, once it is there."""
+    end = time.monotonic() + PATIENCE
+    while True:
         idle(0.5)
         names = [
             widget
@@ -218,6 +220,14 @@ def look_at_panels(theme, wrong, most):
             and not isinstance(widget, (QtGui.QDockWidget, QtGui.QAction))
             and widget.layout() is not None
         ]
+        if (names and Gui.Control.activeDialog()) or time.monotonic() > end:
+            return names
+
+
+def look_at_panels(theme, wrong, most):
+    for command in PANELS:
+        Gui.runCommand(f"RoboticAM_{command}")
+        names = panels()
         if not Gui.Control.activeDialog() or not names:
             wrong.append(f"{theme}: {command} opens no panel")
             continue
