@@ -3,10 +3,32 @@
 
 import numpy as np
 
+from freecad_am.core.geometry.curves.bead_curves import BeadCurve, Curves
 from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.strategy import CurvesParameters
+from freecad_am.core.strategies import curves
 from freecad_am.objects.checks import controllers
+
+
+def test_the_size_of_a_program_is_told_before_there_is_one():
+    """By the first post of the machine; robots of a URDF have none."""
+    line = np.column_stack([np.linspace(0.0, 600.0, 60_050), np.zeros((60_050, 2))])
+    toolpath = curves.plan(
+        Curves("line", (BeadCurve(line),)),
+        CurvesParameters(),
+        BuildDirectionParameters(),
+        ProcessParameters(),
+    )
+    for machine, level in (("kuka-kr16-2", "warning"), ("fanuc-arcmate120ic", "note")):
+        placed = {"deposition_point": (1000.0, 0.0, 0.0, 0.0, 0.0, 0.0)}
+        cell = cells.resolve(CellParameters(machine=machine, **placed), np.eye(4))
+        (issue,) = controllers.likely_size_issues(toolpath, cell)
+        assert (issue.level, issue.code) == (level, "PROGRAM_SIZE")
+        assert f"the program of {cell.machine.posts[0]}" in issue.message
 
 
 def test_doubts_in_machine_files_become_issues_of_programs():

@@ -21,6 +21,7 @@ from ...core.planning.plan import OF_ROBOTS, plan_joints
 from ...core.planning.rotation.headroom import Judgement, judged
 from ...core.planning.sampled import Sampled, sampled
 from ...objects import user_machines
+from ...objects.checks import controllers
 from ...objects.joint_path import Job, JointPath
 from ...objects.stage_parts import Outcome
 from ...objects.work import progress
@@ -52,6 +53,7 @@ class Trial:
     sample: Sampled
     planned: JointsOfBeads
     judgement: Judgement
+    size: list[Issue]  # of the program to come
 
 
 class JointPathPanel(PreviewPanel):
@@ -116,6 +118,7 @@ class JointPathPanel(PreviewPanel):
             [
                 *_found(drawing),
                 *_figures(judgement),
+                *(translated(issue.message) for issue in drawing.size),
                 *stale_lines(drawing.stale),
                 _looked_at(drawing.sample),
             ]
@@ -141,7 +144,7 @@ def _place(name: str) -> str:
     return f"joints_{name}"
 
 
-def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement]:
+def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement, list[Issue]]:
     """The plan of as many points as are soon planned, with external axes where optimising them, which takes long, begins.
     Raises what planning raises."""
     sample = sampled(job.toolpath(), MAX_POINTS)
@@ -151,7 +154,8 @@ def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement]:
         job.parameters, compare=(), given=sample.given(job.parameters.given), external_axes=LEVEL
     )
     planned = plan_joints(toolpath, cell, parameters, progress.report)
-    return sample, planned, judged(planned.beads, cell.limits, cell.machine.max_speed)
+    judgement = judged(planned.beads, cell.limits, cell.machine.max_speed)
+    return sample, planned, judgement, controllers.likely_size_issues(job.toolpath(), cell)
 
 
 def _found(trial: Trial) -> list[str]:

@@ -119,6 +119,12 @@ def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue
     ]
 
 
+def likely_size_issues(toolpath: Toolpath, cell: Cell) -> list[Issue]:
+    """The findings of `size_issues` before a program is set up: with the first post of the machine and files as usual."""
+    posts = readers(cell)
+    return size_issues(toolpath, ProgramParameters(post=posts[0])) if posts else []
+
+
 def base_issues(machine: Machine, parameters: ProgramParameters) -> list[Issue]:
     """A warning where positions of a Cartesian program count from a base frame that may not be the controller's."""
     if machine.base_is_known or parameters.motion != "cartesian" or parameters.post == "none":
