@@ -538,7 +538,7 @@ def test_times_and_corners():
     fast = program(
         moves("rapid", np.zeros(6)), moves("deposit", np.ones(6), 0.00004, layer=2, bead=1)
     )
-    assert "4e-05 s" in refusal(fast, code="MOVE_TIME", where="layer 2 bead 1")
+    assert "takes 0.00004 s" in refusal(fast, code="MOVE_TIME", where="layer 2 bead 1")
     for speed in (0.004, 1e6, np.nan):
         blocks = (
             dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b
