@@ -454,12 +454,13 @@ def test_what_adaone_may_not_mean_as_a_deposit_is_told():
 
 
 def test_codes_of_makers_are_noted_and_positions_given_anew():
-    start = "M290 X40 Y40 Z2.6\nG91\nG380 S2 Z30 F300\nG39.4\n"
+    start = "M290 X40 Y40 Z2.6\nG91\nG380 S2 Z30 F300\nG39.4\nG2814 Z0.32\n"
     read = gcode.read(start + HEAD + "G1 X5 E1\n", "p", 0.01)
     assert length(read.curves) == pytest.approx(5.0)
     (note,) = read.issues
     assert all(
-        name in note.message for name in ("M290 (line 1)", "G380 (line 3)", "G39.4 (line 4)")
+        name in note.message
+        for name in ("M290 (line 1)", "G380 (line 3)", "G39.4 (line 4)", "G2814 (line 5)")
     )
     with pytest.raises(InputError) as told:
         gcode.read(HEAD + "G380 S2 Z30\nG1 X5 E1\n", "p", 0.01)

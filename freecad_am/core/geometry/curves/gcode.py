@@ -91,7 +91,7 @@ REFUSED = {
     "EXCLUDE_OBJECT": "it drops an object while the program runs; let the slicer leave the object out",
 }
 # codes that makers of printers give a meaning of their own: probing, levelling, states of the machine
-VENDOR = re.compile(r"G39(?:\.\d+)?|G\d{3}(?:\.\d+)?")
+VENDOR = re.compile(r"G39(?:\.\d+)?|G\d{3,}(?:\.\d+)?")
 WORK_OFFSETS = re.compile(r"G5[5-9](?:\.[123])?")
 # M codes and macros that are known to leave the path as it is
 HARMLESS_M = frozenset(
