@@ -112,6 +112,15 @@ def judge(top, name, wrong):
     wrong.extend(found)
 
 
+def part_of(seen, widget, rect):
+    """The pixels of a rectangle of a widget on the screen."""
+    at, ratio = widget.mapToGlobal(rect.topLeft()), widget.devicePixelRatioF()
+    x, y, wide, high = (
+        round(ratio * length) for length in (at.x(), at.y(), rect.width(), rect.height())
+    )
+    return seen[y : y + high, x : x + wide]
+
+
 def wrong_with(top, name):
     """What is wrong with the texts below a widget in one picture of the screen."""
     wrong = []
@@ -121,6 +130,10 @@ def wrong_with(top, name):
     for widget in present(QtGui.QWidget, top):
         icon = isinstance(widget, QtGui.QToolButton) and not widget.icon().isNull()
         text = text_of(widget)
+        if widget.objectName() == "canvas" and widget.isVisible():
+            area = part_of(seen, widget, widget.visibleRegion().boundingRect())
+            if not area.size or contrast(area) < LEAST_CONTRAST:
+                wrong.append(f"{name}: the plot is empty")
         if not (text.strip() or icon) or not widget.isVisible():
             continue
         what = f"{name}: {widget.objectName() or type(widget).__name__} {text[:40]!r}"
@@ -138,14 +151,9 @@ def wrong_with(top, name):
             if needed > widget.width() + 1:
                 wrong.append(f"{what} is cut off: {widget.width()} of {needed}")
         if is_seen(widget):
-            at, ratio = widget.mapToGlobal(QtCore.QPoint(0, 0)), widget.devicePixelRatioF()
-            x, y, wide, high = (
-                round(ratio * length)
-                for length in (at.x(), at.y(), widget.width(), widget.height())
-            )
-            area = seen[y : y + high, x : x + wide]
-            # push buttons are the theme's own; a dash has too few pixels to be measured
-            own = not isinstance(widget, QtGui.QPushButton) and (icon or len(text.strip()) > 1)
+            area = part_of(seen, widget, widget.rect())
+            # push buttons are the theme's own; two letters have too few whole pixels to be measured
+            own = not isinstance(widget, QtGui.QPushButton) and (icon or len(text.strip()) > 2)
             if own and area.size and contrast(area) < LEAST_CONTRAST:
                 wrong.append(f"{what} has a contrast of {contrast(area):.1f}")
     return wrong
