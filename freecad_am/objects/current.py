@@ -12,7 +12,7 @@ from .results.findings import message_of, reason_of
 from .results.keys import is_of_earlier_version
 from .shapes.containers import containers_of, members_of
 from .stage import stage_of
-from .staleness import FAILED, INFEASIBLE, STALE
+from .staleness import FAILED, INFEASIBLE, STALE, is_outdated
 
 
 def check_current(obj: Any, code: str = "NO_RESULT", template: str = "") -> None:
@@ -61,6 +61,11 @@ def reason_outdated(obj: Any) -> str:
     if is_of_earlier_version(obj):
         return Text("an earlier version computed it; read Migrating in the changelog")
     return Text("{}: an input changed since it was computed", obj.Label)
+
+
+def is_stale(obj: Any) -> bool:
+    """Whether a stage shows an earlier state than that of its inputs; one that is infeasible shows why that is."""
+    return obj.Status == STALE or is_outdated(obj)
 
 
 def reason_stale(obj: Any) -> str:

@@ -226,6 +226,20 @@ def test_layers_path_and_files(person, panel, planned, tmp_path, monkeypatch):
     )
 
 
+def test_a_stale_plot_is_not_saved(person, planned, panel, monkeypatch, tmp_path):
+    take(person, panel, "angles")
+    path = tmp_path / "plot.csv"
+    monkeypatch.setattr(
+        person.widgets.QFileDialog, "getSaveFileName", staticmethod(lambda *_: (str(path), ""))
+    )
+    planned.Toolpath.TravelSpeed = "4 mm/s"
+    person.field(panel, "save").click()
+    person.until(
+        lambda: "is out of date" in person.window.statusBar().currentMessage(), "the message", 10
+    )
+    assert not path.exists()
+
+
 def test_changes_are_followed(person, planned, panel):
     dock = take(person, panel, "angles")
     toolpath, doc = planned.Toolpath, planned.Document

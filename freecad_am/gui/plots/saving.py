@@ -11,11 +11,13 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
+from ...objects.current import is_stale
 from ...plots.chart import Picture
 from ..background.later import Background
 from ..background.worker import Worker
 from ..texts.translation import tr
 from .canvas import Canvas
+from .sources import made_from
 
 _writing: list[Background] = []  # Python must keep them as long as they write
 
@@ -35,7 +37,13 @@ def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
 
 
 def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> None:
-    """Ask for a file, and write to it, beside the window, what `content` gives for its ending, png, svg, pdf or csv."""
+    """Ask for a file, and write to it, beside the window, what `content` gives for its ending, png, svg, pdf or csv. Say why
+    not where the object that it shows is out of date."""
+    stale = next((one for one in made_from(obj) if one is not None and is_stale(one)), None)
+    if stale is not None:
+        text = tr("{} is out of date; recompute the document, then save.").format(stale.Label)
+        _say(text, App.Console.PrintError)
+        return
     first = os.path.join(os.path.dirname(obj.Document.FileName), f"{obj.Label}-{name}.png")
     kinds = ";;".join(
         (tr("Image (*.png)"), tr("Drawing (*.svg)"), tr("Document (*.pdf)"), tr("Values (*.csv)"))
