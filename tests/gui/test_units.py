@@ -8,6 +8,7 @@ import pytest
 
 from freecad_am.core.parameters import field as parameters
 from freecad_am.gui.widgets import fields
+from freecad_am.gui.widgets.fold import Fold
 from freecad_am.gui.widgets.quantity import QuantityField
 from freecad_am.objects.fields import preferences
 from freecad_am.objects.fields.rows import LENGTH_OR_POSE, MIXED, rows
@@ -208,9 +209,25 @@ def test_number_and_unit_are_seen_whole_under_a_style_sheet(person, window, sche
         text = field.line.text()
         assert text.endswith(" in")
         assert field.line.fontMetrics().boundingRect(text).width() + 4 <= mark.x(), text
+        field.line = person.widgets.QLineEdit()  # a style changes while a panel is deleted
+        person.qt.delete(field.line)
     finally:
         application.setStyleSheet("")
         person.idle(0.2)
+
+
+def test_a_field_is_below_its_name_where_both_do_not_fit(person, window, scheme):
+    scheme(IMPERIAL)
+    fold = Fold("Layers", True)
+    field = QuantityField(1234.5678, "mm", "Field")
+    field.box.setObjectName("Field")
+    fold.add("A name of some words", field.box)
+    window.addWidget(fold.widget)
+    fold.widget.setFixedWidth(field.box.minimumWidth() + 40)
+    person.idle(0.1)
+    name = fold.rows["Field"][0]
+    assert field.box.width() >= field.box.minimumWidth()
+    assert field.box.mapTo(fold.widget, field.box.rect().topLeft()).y() >= name.geometry().bottom()
 
 
 @pytest.mark.parametrize(

@@ -114,7 +114,7 @@ class Fold:
         self.form = QtGui.QFormLayout(self.body)
         self.form.setContentsMargins(4, 0, 0, 4)
         self.form.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
-        self.form.setRowWrapPolicy(QtGui.QFormLayout.DontWrapRows)
+        self.form.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         self.rows: dict[
             str, tuple[Any, Any]
         ] = {}  # label, and what holds the field and its note, by the field's name

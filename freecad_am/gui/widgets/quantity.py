@@ -74,8 +74,13 @@ class UnitBox(QtGui.QAbstractSpinBox):
     def showEvent(self, event: Any) -> None:
         """Called by Qt. A style sheet sets its own least width once, just before a box is shown for the first time."""
         super().showEvent(event)
-        if self.field is not None:
-            self.field.make_room()
+        self._fit()
+
+    def _fit(self) -> None:
+        """Have room for what is shown, unless the line is deleted, as happens first where a panel is closed."""
+        with contextlib.suppress(RuntimeError):
+            if self.field is not None:
+                self.field.make_room()
 
     def width_beside_line(self) -> int:
         """Width of frame and arrows, px, as the style draws them."""
@@ -92,8 +97,8 @@ class UnitBox(QtGui.QAbstractSpinBox):
         """The font has another size."""
         super().changeEvent(event)
         kinds = (QtCore.QEvent.FontChange, QtCore.QEvent.StyleChange)
-        if event.type() in kinds and self.field is not None:
-            self.field.make_room()
+        if event.type() in kinds:
+            self._fit()
 
     def _raw_value(self) -> float:
         return math.nan if self.field is None else self.field.internal_value()
