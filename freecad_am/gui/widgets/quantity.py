@@ -153,7 +153,7 @@ class QuantityField:
         icon = style.pixelMetric(QtGui.QStyle.PM_SmallIconSize) + 6  # as QLineEdit places an action
         wanted = metrics.horizontalAdvance(letters) + icon + icon // 4 + _LINE_MARGINS
         wanted += self.box.width_beside_line()
-        self.box.setMinimumWidth(max(_LEAST_WIDTH, wanted))
+        self.box.setMinimumWidth(min(max(_LEAST_WIDTH, wanted), self.box.maximumWidth()))
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
