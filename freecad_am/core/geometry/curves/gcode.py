@@ -795,7 +795,8 @@ class _Reader:
                     "middle",
                     radius,
                     np.hypot(*other),
-                    *letters,
+                    letters[0],
+                    letters[1],
                 )
             )
         turn = math.atan2(other[1], other[0]) - math.atan2(one[1], one[0])
