@@ -13,6 +13,9 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError, has_errors
+from freecad_am.core.kinematics.links import cylinders as link_cylinders
+from freecad_am.core.kinematics.links.collisions import CORE, flange_passes
+from freecad_am.core.kinematics.links.rounds import of_cylinder
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.planning.remedies import remedies
@@ -241,3 +244,28 @@ def test_a_search_for_remedies_stops_in_time(doc):
     (note,) = remedies(asked, planned, planned.issues, slow, longest=0.5)
     assert note.code == "NO_REMEDY" and "stopped after" in note.message
     assert len(calls) <= 4 and time.monotonic() - started < 30.0
+
+
+def test_a_wrist_of_which_no_shape_is_known_is_warned_about(doc):
+    """The forearm of the default robot is hollow and forked: what is drawn of it is no proof that the platform hits it."""
+    ball = doc.addObject("Part::Sphere", "Ball")
+    ball.Radius, ball.Angle1, ball.Angle2 = 45, 0, 90
+    doc.recompute()
+    cell = api.make_cell(doc)
+    toolpath = api.make_toolpath(doc, api.make_feature(doc, ball, layer_height=10), cell)
+    path = api.make_joint_path(doc, toolpath, cell)
+    assert path.Status == "up to date"
+    (near,) = (one for one in api.issues(path) if one.code == "ARM_NEAR" and one.level == "warning")
+    assert "q4" in near.message and "platform" in near.message and near.layer is not None
+
+
+def test_the_flange_tells_what_of_a_forearm_is_not_there():
+    def passes(name, share):
+        robot = machines.load(name, ())
+        link = link_cylinders.of_robot(robot.chain)[4]
+        inner = [dataclasses.replace(one, radius=share * one.radius) for one in link]
+        return flange_passes(robot, [of_cylinder(one, 0.0) for one in inner])
+
+    assert passes("fanuc-arcmate120ic", 0.5) and not passes("fanuc-arcmate120ic", CORE)
+    assert passes("fanuc-m10-8-20d", 0.001)  # its arm is bent aside, its wrist turns by 180 deg
+    assert not passes("abb-irb1600-8-145", 0.5)

@@ -58,7 +58,8 @@ def remedies(
     which is told."""
     if not has_errors(list(issues)):
         return []
-    until, tried = time.monotonic() + longest, []
+    until = time.monotonic() + longest
+    tried: list[str] = []
 
     def in_time(share: float, text: str) -> None:
         progress(share, text)

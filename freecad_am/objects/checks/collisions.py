@@ -37,8 +37,8 @@ LEAST_MARGIN = 0.5  # deg or mm to a limit, below which it is reported; as Simul
 def collision_issues(
     motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters
 ) -> list[Issue]:
-    """The errors about what the arm, on the whole motion, and the platform are in, and a note on what links that are drawn
-    from the kinematics alone come near. None for machines of whose links no file tells enough."""
+    """The errors about what the arm, on the whole motion, and the platform are in, and warnings and notes about
+    what links that are drawn from the kinematics alone come near. None for machines of whose links no file tells enough."""
     if not cell.arrangement.links_known:
         return []
     width = toolpath.bead_width or process.bead_width
@@ -133,12 +133,27 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, looked: int) -
             ),
             **place,
         )
+    if collision.deep:
+        return Issue(
+            WARNING,
+            ARM_NEAR,
+            Text(
+                "link {} of the arm, as drawn, has {} in the inner half of its radius on {:.3g} % of the motion, first with the "
+                "nozzle at {}; unless the robot is slimmer or hollow there, it collides: look at it in Simulate, give the "
+                "links the shapes of the manufacturer, or set cell.arm_clearance",
+                collision.link,
+                collision.what,
+                share,
+                where,
+            ),
+            **place,
+        )
     return Issue(
         NOTE,
         ARM_NEAR,
         Text(
-            "link {} of the arm, as drawn, touches {} on {:.3g} % of the motion, first with the nozzle at {}; its core stays "
-            "clear, so look at it in Simulate, or set cell.arm_clearance",
+            "link {} of the arm, as drawn, touches {} on {:.3g} % of the motion, first with the nozzle at {}; the inner half of "
+            "its radius stays clear, so look at it in Simulate, or set cell.arm_clearance",
             collision.link,
             collision.what,
             share,

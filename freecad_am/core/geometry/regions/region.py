@@ -207,7 +207,7 @@ class Region:
         if all(len(ring) != 4 for ring in found[0].borders()):
             return found[0]
         # the library keeps four points of a ring at least
-        rings = [_without_straight(ring, tolerance) for ring in found[0].borders()]
+        rings = [_without_fourth(ring, tolerance) for ring in found[0].borders()]
         return Region(geometry.Polygon(rings[0], rings[1:]), self.sheet)
 
     def inside(self) -> Array:
@@ -362,7 +362,7 @@ def _wound(loops: list[Array]) -> tuple[Any, float]:
     return kept, float((np.abs(count - inside) * area).sum())
 
 
-def _without_straight(ring: Array, tolerance: float) -> Array:
+def _without_fourth(ring: Array, tolerance: float) -> Array:
     """A ring (n, 2) of four points without one that is within a tolerance (mm) of the line between its neighbours."""
     if len(ring) != 4:
         return ring

@@ -19,6 +19,7 @@ from .solids import BRIGHT, DARK, Solid, capsule, cylinder, strut, turned
 # radii of the first and the last joint as shares of the arm's whole length, tapering between; the last such that flanges of
 # robots from 0.7 to 3 m are about as wide as the plates of ISO 9409-1 are: 40 to 125 mm
 THICK, THIN = 0.068, 0.016
+FLANGE = 1.045  # radius of the flange, in that of the last joint
 # half the length of a drum, in radii
 DRUM = 0.85
 # runs shorter than this share of the arm are none
@@ -153,7 +154,7 @@ def _between(bones: Skeleton, axis: int, own: list[Solid]) -> None:
 
 
 def _flange(bones: Skeleton, last: list[Solid]) -> None:
-    radius = 0.95 * bones.radius(len(bones.directions) - 1)
+    radius = bones.radius(len(bones.directions) - 1)
     direction = (
         bones.directions[-1]
         if bones.run(len(bones.directions) - 1) == 0.0
@@ -162,8 +163,15 @@ def _flange(bones: Skeleton, last: list[Solid]) -> None:
         )
     )
     last.append(
-        cylinder(bones.flange - 0.3 * radius * direction, bones.flange, 1.1 * radius, BRIGHT, 0.05)
+        cylinder(
+            bones.flange - 0.285 * radius * direction, bones.flange, FLANGE * radius, BRIGHT, 0.05
+        )
     )
+
+
+def flange_radius(chain: Chain) -> float:
+    """The radius (mm) of the flange as it is drawn."""
+    return FLANGE * skeleton(chain).radius(chain.axes - 1)
 
 
 def _on_axis(point: Array, origin: Array, direction: Array) -> Array:
