@@ -7,6 +7,8 @@ import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import Part
+
 from ...brep.kernel import limits as kernel
 from ...core.issues import NOTE, AmError, Issue, Text
 from ...core.parameters.chord_error import (
@@ -77,7 +79,9 @@ def _boxes(obj: Any) -> Iterator[Any]:
             yield part.Mesh.BoundBox if "Mesh" in part.PropertiesList else mesh_of(part)[0].BoundBox
             continue
         shape = global_shape(part)
-        chosen = [shape.getElement(name) for name in names if name] if part is source else []
+        chosen = []
+        with contextlib.suppress(IndexError, ValueError, Part.OCCError):  # told once it is planned
+            chosen = [shape.getElement(name) for name in names if name] if part is source else []
         for piece in chosen or [shape]:
             yield _box(piece)
 
