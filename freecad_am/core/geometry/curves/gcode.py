@@ -782,7 +782,8 @@ class _Reader:
                         "{} is no word of an arc in {}; give {} and {}",
                         letter,
                         self.plane,
-                        *letters,
+                        letters[0],
+                        letters[1],
                     )
                 )
         middle = self._middle(name, start, end, words, letters)
@@ -833,7 +834,8 @@ class _Reader:
                 Text(
                     "{} has neither {} and {} nor R; give the middle of the arc or its radius",
                     name,
-                    *letters,
+                    letters[0],
+                    letters[1],
                 )
             )
         radius, chord = words["R"], end[:2] - start[:2]
@@ -844,7 +846,8 @@ class _Reader:
                     "a radius of {:g} mm makes no arc between points {:.4g} mm apart; give {} and {}",
                     radius,
                     length,
-                    *letters,
+                    letters[0],
+                    letters[1],
                 )
             )
         away = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0))
