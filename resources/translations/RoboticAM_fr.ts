@@ -2917,6 +2917,11 @@
         <translation>Rotation libre de {title}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>FreeCAD left it out of the recompute; unfreeze it (Toggle Freeze in the tree) if it is frozen, then recompute</source>
+        <translation>FreeCAD l&apos;a omis du recalcul ; dégelez-le s&apos;il est gelé (Basculer le gel dans l&apos;arborescence), puis recalculez</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/interop/export.py"/>
         <source>FreeCAD wrote no STEP file; see the report view, or write DXF instead</source>
         <translation>FreeCAD n&apos;a pas écrit de fichier STEP ; voyez la vue rapport, ou écrivez DXF</translation>
@@ -3644,7 +3649,7 @@
     <message>
         <location filename="../../freecad_am/gui/new_job/fields.py"/>
         <source>Left empty, it is as large as the first layer needs it.</source>
-        <translation type="unfinished"></translation>
+        <translation>Laissé vide, il est aussi grand que la première couche le demande.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -3789,7 +3794,7 @@
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>M121 restores the modes before M120 on RepRapFirmware, and keeps those of now on Marlin; write G90 or G91, M82 or M83 in its place</source>
-        <translation type="unfinished"></translation>
+        <translation>M121 rétablit les modes d&apos;avant M120 sur RepRapFirmware et garde ceux du moment sur Marlin ; écrivez à sa place G90 ou G91, M82 ou M83</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
@@ -7213,8 +7218,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>a radius of {0} mm makes no arc between points {1} mm apart; give I and J</source>
-        <translation>un rayon de {0} mm ne fait pas d&apos;arc entre des points distants de {1} mm ; donnez I et J</translation>
+        <source>a radius of {0} mm makes no arc between points {1} mm apart; give {2} and {3}</source>
+        <translation>un rayon de {0} mm ne fait pas d&apos;arc entre des points distants de {1} mm ; donnez {2} et {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
@@ -7668,13 +7673,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>arcs are in the plane of X and Z, which Klipper and Marlin turn in opposite ways; let the slicer write arcs in the plane of X and Y, or lines only</source>
-        <translation>les arcs sont dans le plan X-Z, que Klipper et Marlin tournent en sens opposés ; faites écrire au trancheur des arcs dans le plan X-Y ou seulement des droites</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines only</source>
-        <translation>les arcs sont dans le plan de Y et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
+        <source>arcs are in the plane of X and Z (G18), which Klipper and other controllers turn in opposite ways; let the slicer write arcs in another plane, or lines only</source>
+        <translation>les arcs sont dans le plan X-Z (G18), que Klipper et d&apos;autres commandes tournent en sens opposés ; faites écrire au trancheur des arcs dans un autre plan ou seulement des droites</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -7722,11 +7722,6 @@
         <translation>selon les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/fields.py"/>
-        <source>as the part needs it</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>as wide as the room that they have, {0} to {1} mm</source>
         <translation>la largeur de la place qu’ils ont, {0} à {1} mm</translation>
@@ -7772,7 +7767,7 @@
         <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
         <source>auto</source>
         <translation>auto</translation>
     </message>
@@ -7980,6 +7975,11 @@
         <location filename="../../freecad_am/core/planning/program/beads.py"/>
         <source>beads of the class {0} have no schedule, which arc instructions name; give process.schedule, or one in process.classes.{1}</source>
         <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, que les instructions d&apos;arc nomment ; donnez process.schedule, ou un dans process.classes.{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>beads {0} mm wide (process.bead_width) lie {1} mm apart (strategy.bead_spacing): the wire feeds {2} mm3 for each mm of bead, {3} times the {4} mm3 that it has room for; set strategy.bead_spacing to {5} mm, process.bead_width to {6} mm, or process.fill_width to spacing</source>
+        <translation>des cordons larges de {0} mm (process.bead_width) sont espacés de {1} mm (strategy.bead_spacing) : le fil apporte {2} mm3 par mm de cordon, {3} fois les {4} mm3 qui ont de la place ; fixez strategy.bead_spacing à {5} mm, process.bead_width à {6} mm, ou process.fill_width à spacing</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
@@ -8677,6 +8677,16 @@
         <translation>freecad-am machines</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
+        <source>from here the flat last turn comes down from {0} to 0 mm above the turn before, and half of it is deposited over that. Machine the top, or use path: layers</source>
+        <translation>à partir d&apos;ici, le dernier tour, plat, descend de {0} à 0 mm au-dessus du tour précédent, et la moitié est déposée par-dessus. Usinez le haut ou utilisez path: layers</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
+        <source>from here the second turn rises from 0 to {0} mm above the flat first one, and half of it is deposited over that; the end of the turn is right. Machine the foot, or use path: layers</source>
+        <translation>à partir d&apos;ici, le deuxième tour monte de 0 à {0} mm au-dessus du premier, plat, et la moitié est déposée par-dessus ; la fin du tour est juste. Usinez le pied ou utilisez path: layers</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
         <source>from layer {0} on, directions are tilted back to keep the nozzle clear, by up to {1} deg in layer {2}</source>
         <translation>à partir de la couche {0}, les directions sont redressées pour tenir la buse éloignée, jusqu&apos;à {1} deg dans la couche {2}</translation>
@@ -8758,8 +8768,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>give absolute or relative moves in mm, G0 to G3 with E, as a slicer for filament or pellets writes them</source>
-        <translation>donnez des mouvements absolus ou relatifs en mm, G0 à G3 avec E, comme les écrit un trancheur pour filament ou granulés</translation>
+        <source>give absolute or relative moves, G0 to G3 with E, as a slicer for filament or pellets writes them</source>
+        <translation>donnez des déplacements absolus ou relatifs, G0 à G3 avec E, comme les écrit un trancheur pour filament ou granulés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
@@ -9387,6 +9397,11 @@
         <translation>il a {0} lignes ; mesurez au moins {1} cordons</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>it has {0} values, the first row {1}: commas may stand before decimals too; export it with decimal points</source>
+        <translation>elle a {0} valeurs, la première ligne {1} : des virgules peuvent aussi précéder des décimales ; exportez avec des points décimaux</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>it holds for the whole program, not for one of its features; give it at the top level</source>
         <translation>cela vaut pour tout le programme, non pour un de ses éléments ; donnez-le au premier niveau</translation>
@@ -9555,11 +9570,6 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>it is for solids, not for cladding; use {0}</source>
         <translation>c&apos;est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it is in inches; let the slicer write mm (G21)</source>
-        <translation>il est en pouces ; faites écrire des mm au trancheur (G21)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/run.py"/>
@@ -9935,6 +9945,11 @@
         <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>its code does not run from begin to end</source>
         <translation>son code ne va pas de begin à end</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>its columns are called {0}; call those of the coordinates x, y and z</source>
+        <translation>ses colonnes s&apos;appellent {0} ; appelez celles des coordonnées x, y et z</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
@@ -10453,8 +10468,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
-        <source>link {0} of the arm, as drawn, touches {1} on {2} % of the motion, first with the nozzle at {3}; its core stays clear, so look at it in Simulate, or set cell.arm_clearance</source>
-        <translation>le corps {0} du bras, tel que dessiné, touche {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; son cœur reste dégagé : regardez-le dans Simuler ou fixez cell.arm_clearance</translation>
+        <source>link {0} of the arm, as drawn, has {1} in the inner half of its radius on {2} % of the motion, first with the nozzle at {3}; unless the robot is slimmer or hollow there, it collides: look at it in Simulate, give the links the shapes of the manufacturer, or set cell.arm_clearance</source>
+        <translation>le corps {0} du bras, tel que dessiné, a {1} dans la moitié intérieure de son rayon sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; sauf si le robot y est plus mince ou creux, il y a collision : regardez-le dans Simuler, donnez aux corps les formes du constructeur ou fixez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/collisions.py"/>
+        <source>link {0} of the arm, as drawn, touches {1} on {2} % of the motion, first with the nozzle at {3}; the inner half of its radius stays clear, so look at it in Simulate, or set cell.arm_clearance</source>
+        <translation>le corps {0} du bras, tel que dessiné, touche {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; la moitié intérieure de son rayon reste dégagée : regardez-le dans Simuler ou fixez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -12003,8 +12023,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the arc has I or J, and R; give one of them</source>
-        <translation>l&apos;arc a I ou J, et R ; donnez l&apos;un des deux</translation>
+        <source>the arc has {0} or {1}, and R; give one of them</source>
+        <translation>l&apos;arc a {0} ou {1}, et R ; donnez l&apos;un des deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
@@ -12228,8 +12248,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the ends of the arc are {0} and {1} mm from its middle; give I and J from its start to its middle</source>
-        <translation>les extrémités de l&apos;arc sont à {0} et {1} mm de son centre ; donnez I et J de son début à son centre</translation>
+        <source>the ends of the arc are {0} and {1} mm from its middle; give {2} and {3} from its start to its middle</source>
+        <translation>les extrémités de l&apos;arc sont à {0} et {1} mm de son centre ; donnez {2} et {3} de son début à son centre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -12454,7 +12474,7 @@
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>the key {0} stands there twice; remove one</source>
-        <translation type="unfinished"></translation>
+        <translation>la clé {0} est là deux fois ; supprimez-en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -13249,12 +13269,17 @@
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the torch weaves already, or not yet</source>
-        <translation type="unfinished"></translation>
+        <translation>la torche oscille déjà, ou pas encore</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>the transformation changes while the deposit is on</source>
         <translation>la transformation change pendant que le dépôt est en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the unit in {0} is not read; use mm, cm, m, um or inch</source>
+        <translation>l&apos;unité dans {0} n&apos;est pas lue ; utilisez mm, cm, m, um ou inch</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -13369,7 +13394,7 @@
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the weave that begins here does not end</source>
-        <translation type="unfinished"></translation>
+        <translation>l&apos;oscillation qui commence ici ne se termine pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
@@ -13784,7 +13809,7 @@
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>tool</source>
-        <translation type="unfinished"></translation>
+        <translation>outil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
@@ -14209,7 +14234,7 @@
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>work frame</source>
-        <translation type="unfinished"></translation>
+        <translation>repère de travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
@@ -14638,8 +14663,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} has neither I and J nor R; give the middle of the arc or its radius</source>
-        <translation>{0} n&apos;a ni I et J ni R ; donnez le centre de l&apos;arc ou son rayon</translation>
+        <source>{0} has neither {1} and {2} nor R; give the middle of the arc or its radius</source>
+        <translation>{0} n&apos;a ni {1} et {2} ni R ; donnez le centre de l&apos;arc ou son rayon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
@@ -14748,6 +14773,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} in it is in another unit than {1}, which programs read in different ways; export it in one unit</source>
+        <translation>{0} y est dans une autre unité que {1}, ce que les programmes lisent différemment ; exportez dans une seule unité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0} in it says that the slicer drills holes, which the mesh does not have; remove them, or export the drilled part as a mesh</source>
         <translation>{0} y dit que le trancheur perce des trous que le maillage n&apos;a pas ; supprimez-les ou exportez la pièce percée en maillage</translation>
     </message>
@@ -14793,8 +14823,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} is a negative volume, and cannot be subtracted from the part here; subtract it where the part was drawn, or remove it in the slicer, and export again</source>
-        <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
+        <source>{0} is a negative volume, and cannot be subtracted from the part here: the geometry kernel makes no sound solid of the two, as of a mesh that touches or crosses itself; subtract it where the part was drawn, or remove it in the slicer, and export again</source>
+        <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici : le noyau géométrique n&apos;en fait pas de solide sain, comme pour un maillage qui se touche ou se croise ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} is a negative volume, and cannot be subtracted from the part here: {1} triangles take part, and at most {2} are cut; subtract it where the part was drawn, or remove it in the slicer, and export again</source>
+        <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici : {1} triangles sont concernés, et au plus {2} sont coupés ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/quantity.py"/>
@@ -14844,7 +14879,7 @@
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is activated, and no move follows</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} est activé et aucun déplacement ne suit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -14904,7 +14939,7 @@
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>{0} is called, which is not among the files: what it moves, switches or sets is not driven; give its file too, or look at it at the controller</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} est appelé et n&apos;est pas parmi les fichiers : ce qu&apos;il déplace, commute ou fixe n&apos;est pas simulé ; donnez aussi son fichier ou vérifiez-le sur la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
@@ -14980,6 +15015,11 @@
         <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is neither true nor false; give one of them</source>
         <translation>{0} n&apos;est ni true ni false ; donnez l&apos;un des deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0} is no word of an arc in {1}; give {2} and {3}</source>
+        <translation>{0} n&apos;est pas un mot d&apos;un arc en {1} ; donnez {2} et {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/placed.py"/>
@@ -15529,7 +15569,7 @@
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not what a warning applies to; use {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} n&apos;est pas un objet possible d&apos;un avertissement ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -16174,7 +16214,7 @@
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} stands outside of the sub {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} est hors du sous-programme {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -16209,7 +16249,7 @@
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} switches a second output, after {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} commute une deuxième sortie, après {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
@@ -16289,12 +16329,12 @@
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} where {1} was loaded to be run</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} là où {1} a été chargé pour être exécuté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} where {1} was to be removed</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} là où {1} devait être retiré</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -16334,12 +16374,12 @@
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>{0} {1} is selected, moves before are in {2}: only one of them is known here, and all moves are driven in that; give a program of one alone</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} {1} est sélectionné, les déplacements précédents sont dans {2} : un seul est connu ici, et tous les déplacements y sont simulés ; donnez un programme qui n&apos;en a qu&apos;un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>{0} {1} is selected, the job has {2}: moves are driven in that of the cell; compare the two, and correct the program&apos;s number or that of the job</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} {1} est sélectionné, le travail a {2} : les déplacements sont simulés dans celui de la cellule ; comparez les deux et corrigez le numéro du programme ou celui du travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
@@ -16600,6 +16640,11 @@
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>{0}: {1} edges, the first at {2}; {3}</source>
         <translation>{0} : {1} arêtes, la première en {2} ; {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>{0}: {1} face(s) and {2} edge(s) belong to none of its solids and are left out</source>
+        <translation>{0} : {1} face(s) et {2} arête(s) n&apos;appartiennent à aucun de ses solides et sont omises</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
@@ -17035,6 +17080,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>{} is not below {}; enter the smaller end first</source>
         <translation>{} n&apos;est pas inférieur à {} ; saisissez d&apos;abord la plus petite extrémité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>{} is out of date; recompute the document, then save.</source>
+        <translation>{} est périmé ; recalculez le document, puis enregistrez.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/preview.py"/>
