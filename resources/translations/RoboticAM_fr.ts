@@ -6457,11 +6457,6 @@
         <translation>Repère utilisateur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/preferences.py"/>
-        <source>User parameter:BaseApp/Preferences/Units</source>
-        <translation>User parameter:BaseApp/Preferences/Units</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>V has two units</source>
         <translation>V a deux unités</translation>
@@ -15200,6 +15195,16 @@
         <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} is not a path; give one as a text, such as &quot;cup.step&quot;</source>
         <translation>{0} n’est pas un chemin ; donnez-en un sous forme de texte, tel que &quot;cup.step&quot;</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <source>{0} is not a percentage; give one such as 20 %</source>
+        <translation>{0} n&apos;est pas un pourcentage ; donnez par exemple 20 %</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <source>{0} is not a percentage; give one such as 20 % or {1}</source>
+        <translation>{0} n&apos;est pas un pourcentage ; donnez par exemple 20 % ou {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>

@@ -152,12 +152,11 @@ class StepContent:
             loose += len(TESSELLATED.findall(self.data)) + len(FACE_SETS.findall(self.data))
             loose += self.kinds["TRIANGULATED_FACE"] + self.kinds["COMPLEX_TRIANGULATED_FACE"]
         if loose:
-            where = Text("its faces") if not self.has_geometry else Text("some of its faces")
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
                 "{} have no surfaces: it holds triangles (AP242 tessellated geometry); {}",
-                Word(where),
+                Word("some of its faces" if self.has_geometry else "its faces"),
                 PLAIN,
             )
 

@@ -12,7 +12,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...objects.fields.preferences import GROUP, SCHEME, SHOWN, UNITS
+from ...objects.fields.preferences import GROUP, SCHEME, SHOWN, UNIT_SETTINGS
 
 _listeners: list[Callable[[], None]] = []
 _readers: list[Callable[[], None]] = []  # who shows texts
@@ -22,7 +22,7 @@ class _Watch:
     """Attached to the group of our preferences and that of FreeCAD's units; several changes at once are told once."""
 
     def __init__(self) -> None:
-        self.groups = [App.ParamGet(GROUP), App.ParamGet(UNITS)]
+        self.groups = [App.ParamGet(GROUP), App.ParamGet(UNIT_SETTINGS)]
         self.asked = False
         for group in self.groups:
             group.Attach(self)

@@ -19,7 +19,7 @@ from . import rows
 from .unit_scheme import scheme_speed_unit
 
 GROUP = "User parameter:BaseApp/Preferences/Mod/RoboticAM"
-UNITS, SCHEME = "User parameter:BaseApp/Preferences/Units", "UserSchema"  # of FreeCAD
+UNIT_SETTINGS, SCHEME = "User parameter:BaseApp/Preferences/Units", "UserSchema"  # of FreeCAD
 SPEED_UNITS = {  # how many of them 1 mm/s is
     "mm/s": 1.0,
     "mm/min": 60.0,

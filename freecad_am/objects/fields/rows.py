@@ -277,18 +277,19 @@ def quantity(text: str) -> Any:
 
 
 def _number(spec: f.Spec, value: Any, where: str) -> Any:
-    also = Text.joined(" or ", ("", *spec.words))
+    also = Text(" or {}", ", ".join(spec.words)) if spec.words else ""
     if spec.kind not in _UNITS:
         percentage = spec.kind == f.RATIO
         try:
             number = float(_without_percent_sign(value) if percentage else value)
         except (TypeError, ValueError):
-            template = (
-                "{!r} is not a percentage; give one such as 20 %{}"
-                if percentage
-                else "{!r} is not a number; give one such as 2{}"
-            )
-            raise InputError("BAD_VALUE", where, template, value, also) from None
+            if percentage:
+                message = Text(
+                    "{!r} is not a percentage; give one such as 20 %{}", value, Word(also)
+                )
+            else:
+                message = Text("{!r} is not a number; give one such as 2{}", value, Word(also))
+            raise InputError("BAD_VALUE", where, message) from None
         if spec.kind == f.COUNT:
             return int(number) if number.is_integer() else number
         return number * f.TO_INNER.get(spec.kind, 1.0)

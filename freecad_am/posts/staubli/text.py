@@ -63,10 +63,12 @@ def project(name: str, programs: Sequence[str], libraries: dict[str, str]) -> by
 
 def database(arrays: dict[str, tuple[str, list[str]]]) -> bytes:
     """The data of an application: type and the attributes of each value, by name."""
-    return _file(_DATA.format(data="".join(_array(name, *arrays[name]) for name in sorted(arrays))))
+    return _file(
+        _DATA.format(data="".join(_data_element(name, *arrays[name]) for name in sorted(arrays)))
+    )
 
 
-def _array(name: str, kind: str, values: list[str]) -> str:
+def _data_element(name: str, kind: str, values: list[str]) -> str:
     head = f'    <Data name="{name}" access="private" xsi:type="array" type="{kind}" size="{len(values)}">\n'
     return (
         head
