@@ -130,7 +130,7 @@ def kinked():
             ("Edge1",),
             "TOO_FINE",
             "strategy.layer_height",
-            ["1e-06 mm", "more than 0.0"],
+            ["0.000001 mm", "more than 0.0"],
         ),
         (kinked, slab, 4.0, (), "ROUGH_WALL", "Wall Face1", ["26.6 deg", "40)"]),
         (
@@ -273,7 +273,7 @@ def test_mesh_files_bring_the_same_solid(tmp_path):
     [
         ("none.stl", None, "NO_FILE"),
         ("empty.stl", b"", "EMPTY_FILE"),
-        ("odd.obj", b"nothing here\n", "EMPTY_FILE"),
+        ("odd.obj", b"nothing here\n", "BAD_FILE"),
     ],
 )
 def test_bad_mesh_files(tmp_path, name, content, code):

@@ -272,8 +272,10 @@ def usual_motion(joint_path: Any, post: Any) -> dict[str, str]:
     linked = getattr(joint_path, "Cell", None)
     setup = getattr(linked, "Setup", "")
     usual = ProgramParameters()
+    if post is not None and not isinstance(post, str):  # rejected when the program is made
+        return {}
     try:
-        motion = motion_written(str(post or usual.post), str(setup))
+        motion = motion_written(post or usual.post, str(setup))
     except InputError:  # told when the program is made
         return {}
     return {} if motion == usual.motion else {"motion": motion}
