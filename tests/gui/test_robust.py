@@ -297,7 +297,7 @@ def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monke
         closed.wait(20)
         return found
 
-    monkeypatch.setattr(job_proposal, "proposal", lambda picks: slowly)
+    monkeypatch.setattr(job_proposal, "proposal", lambda picks, bead_width: slowly)
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
