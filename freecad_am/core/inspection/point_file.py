@@ -185,6 +185,7 @@ def _unit_of_remarks(texts: list[str], label: str) -> str:
 
 def _remarks_of_mesh(data: bytes, suffix: str) -> list[str]:
     """Lines of the head of a PLY file, or remarks of an OBJ file, that tell of a unit."""
+    marks: tuple[str, ...]
     if suffix == ".ply":
         head, marks = data[: max(data.find(b"end_header"), 0)], ("comment", "obj_info")
     elif suffix == ".obj":
