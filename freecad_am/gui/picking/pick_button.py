@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import weakref
 from collections.abc import Callable
 from typing import Any
 
@@ -22,10 +23,13 @@ def pick_button(text: str, name: str, help: str) -> Any:
 
 
 class NextClick:
-    """Calls `act` once something is selected, after `wait`; `widget`: whose end ends it."""
+    """Calls `act`, a method, once something is selected, after `wait`; `widget`: whose end ends it.
+
+    The method is held weakly: its object holds this one, and a cycle would keep the fields of a closed panel.
+    """
 
     def __init__(self, widget: Any, act: Callable[[], None]) -> None:
-        self.act, self.waits = act, False
+        self.act, self.waits = weakref.WeakMethod(act), False
         widget.destroyed.connect(self.stop)
 
     def wait(self) -> None:
@@ -49,5 +53,7 @@ class NextClick:
     def _clicked(self) -> None:
         if self.waits:
             self.stop()
+            act = self.act()
             with contextlib.suppress(RuntimeError):  # the panel is closed
-                self.act()
+                if act is not None:
+                    act()
