@@ -57,9 +57,9 @@ def scale_of(most: float, unit: str) -> tuple[float, str]:
 
 
 def _speed_conversion(unit: str) -> tuple[float, str] | None:
-    shown = preferences.speed_unit()
-    if shown == unit:
-        return None
+    preferred, shown = preferences.preferred_speed_unit(), preferences.speed_unit()
+    if shown == unit or (not preferred and shown == "mm/s"):
+        return None  # mm/min and m/min, as is usual of torches and wire, are metric as well
     return float(App.Units.Quantity(f"1 {unit}").getValueAs(shown).Value), shown
 
 
