@@ -62,7 +62,7 @@ def test_tools_say_in_french_what_is_missing(french):
     App.newDocument("Window")
     button = french.button("RoboticAM_Toolpath")
     french.until(
-        lambda: re.search(r"Découpe un élément.*Faites d'abord un élément", button.toolTip()),
+        lambda: re.search(r"Découpe un élément.*Créez d'abord un élément", button.toolTip()),
         "what is missing",
         5,
     )
