@@ -123,3 +123,18 @@ def test_pieces_without_room_for_a_circle_are_left_out_and_no_others():
             ]
             assert all(np.array_equal(a, b) for a, b in zip(room, found, strict=True))
         assert len(room) < len(square.without(bites, wide)) < len(whole)
+
+
+def test_points_on_straight_borders_are_left_out_at_once(monkeypatch):
+    """A square with thousands of points on its sides is four corners after a few looks at it."""
+    side = np.stack([np.arange(3000) / 100.0, np.zeros(3000)], axis=1)
+    turn, sides = np.array([[0.0, 1.0], [-1.0, 0.0]]), []
+    for _ in range(4):
+        sides.append(side)
+        side = side @ turn + np.array([30.0, 0.0])
+    looks = []
+    real = module._every_other
+    monkeypatch.setattr(module, "_every_other", lambda marked: looks.append(1) or real(marked))
+    (square,) = regions([np.vstack(sides)])
+    assert len(square.borders()[0]) == 4 and square.area == pytest.approx(900.0)
+    assert len(looks) < 20

@@ -116,3 +116,21 @@ def test_a_hole_goes_all_the_way_through():
     assert part.area == pytest.approx(
         turn * 18.0 - np.sum(0.5 * (lost[1:] + lost[:-1])) * (y[1] - y[0]), rel=2e-4
     )
+
+
+@pytest.mark.parametrize("apex", [math.inf, 100.0])
+def test_borders_at_one_height_stay_round_a_cone(apex):
+    """In (u, v) they are straight, laid flat about the apex of a cone they are arcs."""
+    cone = Period(200.0 if math.isinf(apex) else 2.0, apex)
+    u = np.linspace(-0.5 * cone.around, 0.5 * cone.around, 201)[:-1]
+    strip = Strip(
+        cone,
+        np.stack([u, np.zeros(200)], axis=1),
+        np.stack([u[::-1], np.full(200, 20.0)], axis=1),
+    )
+    area = sum(part.area for window in strip.windows(3.0) for part in strip.flat(window))
+    whole = 4000.0 if math.isinf(apex) else 0.5 * 2.0 * (100.0**2 - 80.0**2)
+    assert area == pytest.approx(whole, rel=1e-4)
+    (inner,) = strip.grown(-3.0, 0.01)
+    assert inner.lower[:, 1] == pytest.approx(3.0, abs=1e-3)
+    assert inner.upper[:, 1] == pytest.approx(17.0, abs=1e-2)

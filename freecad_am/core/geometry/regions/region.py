@@ -29,7 +29,7 @@ _MITRE, SHARPEST = 2, 1000.0
 DIGITS = 9  # of coordinates in mm where points are left out: last bits decide nothing
 LEAST_ARC = 8  # segments of a full turn
 EIGHT = 2.8  # times the squared radius, a hair less than the area of a regular octagon in a circle
-STRAIGHT = 1e-6  # mm; a point that near to the line between its neighbours is on it
+ON_EDGE = 1e-6  # mm; a point that near to the line between its neighbours is on it
 SAME_TURN = 1e-6  # rad; corners whose turns differ by less turn as much
 ROUND_AREA = 0.02  # moments of area that differ by less, relatively, are the same
 WIDTH = 0.005  # relative tolerance of a region's width
@@ -166,10 +166,12 @@ class Region:
             left = _apart(left, STRAIGHT * self.extent)
         return _parts(left, max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2), self.sheet)
 
-    def common(self, others: Iterable[Region]) -> tuple[Region, ...]:
-        """What it shares with others."""
+    def common(self, others: Iterable[Region], every_point: bool = False) -> tuple[Region, ...]:
+        """What it shares with others. every_point: as `regions`."""
         both = shapely().ops.unary_union([other.shape for other in others])
-        return _parts(self.shape.intersection(both), SLIVER * self.extent**2)
+        return _parts(
+            self.shape.intersection(both), SLIVER * self.extent**2, every_point=every_point
+        )
 
     def pieces(self, line: Array) -> list[Array]:
         """What of an open line (n, 2), which does not meet itself, lies inside: pieces (m, 2) in its order and sense."""
@@ -243,13 +245,18 @@ class Mended(NamedTuple):
         return tuple(found)
 
 
-def regions(loops: Sequence[Array], least_area: float | None = None) -> tuple[Region, ...]:
+def regions(
+    loops: Sequence[Array], least_area: float | None = None, every_point: bool = False
+) -> tuple[Region, ...]:
     """The regions that closed loops (n, 2) bound, material to their left; islands in holes are regions of their own. In the
-    order of their leftmost points. Pieces below `least_area` mm^2 are dropped, by default SLIVER of the squared extent."""
-    return mended(loops, least_area).regions
+    order of their leftmost points. Pieces below `least_area` mm^2 are dropped, by default SLIVER of the squared extent.
+    every_point: points on straight lines stay, as of lines in (u, v) that are bent when laid flat."""
+    return mended(loops, least_area, every_point).regions
 
 
-def mended(loops: Sequence[Array], least_area: float | None = None) -> Mended:
+def mended(
+    loops: Sequence[Array], least_area: float | None = None, every_point: bool = False
+) -> Mended:
     """As `regions`; where loops cross themselves or each other, inside is what they go round at least once."""
     clean = [ring for loop in loops if len(ring := _distinct(np.asarray(loop, dtype=float))) > 2]
     if not clean:
@@ -259,7 +266,7 @@ def mended(loops: Sequence[Array], least_area: float | None = None) -> Mended:
     shape, changed = _nested(clean), 0.0
     if shape is None:
         shape, changed = _wound(clean)
-    kept = _parts(shape, least)
+    kept = _parts(shape, least, every_point=every_point)
     dropped = max(float(shape.area) - sum(region.area for region in kept), 0.0)
     noise = SLIVER * extent**2
     return Mended(kept, changed if changed > noise else 0.0, dropped if dropped > noise else 0.0)
@@ -378,7 +385,7 @@ def _at_corner(ring: Array) -> Array:
     corner that turns most instead: simplification keeps the point that a ring begins at. Any other ring as it is."""
     edge = ring[1] - ring[-1]
     gap = ring[0] - ring[-1]
-    if abs(edge[0] * gap[1] - edge[1] * gap[0]) > STRAIGHT * max(float(np.hypot(*edge)), 1e-300):
+    if abs(edge[0] * gap[1] - edge[1] * gap[0]) > ON_EDGE * max(float(np.hypot(*edge)), 1e-300):
         return ring
     way = np.roll(ring, -1, axis=0) - ring
     before = np.roll(way, 1, axis=0)
@@ -399,9 +406,15 @@ def _ring(ring: Any, sense: float) -> Array:
     return np.concatenate([points[first:], points[:first]])
 
 
-def _parts(shape: Any, least_area: float, sheet: float = 0.0) -> tuple[Region, ...]:
+def _parts(
+    shape: Any, least_area: float, sheet: float = 0.0, every_point: bool = False
+) -> tuple[Region, ...]:
     """The polygons of a shape in the order of their leftmost points."""
-    found = [Region(_plain(part), sheet) for part in _polygons(shape) if part.area > least_area]
+    found = [
+        Region(part if every_point else _plain(part), sheet)
+        for part in _polygons(shape)
+        if part.area > least_area
+    ]
     if len(found) < 2:
         return tuple(found)
     return tuple(
@@ -442,10 +455,17 @@ def _without_straight(ring: Array, tolerance: float) -> Array:
         needless = aside <= tolerance * longer
         if not needless.any():
             break
-        needless[1:] &= ~needless[:-1]
-        needless[0] &= not needless[-1]
-        ring = ring[~needless]
+        ring = ring[~_every_other(needless)]
     return ring
+
+
+def _every_other(marked: Mask) -> Mask:
+    """The first, the third and so on of each run of marks (n,) round a ring: no two that follow each other."""
+    first = int(np.argmin(marked))
+    marked = np.roll(marked, -first)
+    number = np.arange(len(marked))
+    before = np.maximum.accumulate(np.where(marked, 0, number))
+    return np.asarray(np.roll(marked & ((number - before) % 2 == 1), first), dtype=bool)
 
 
 def _extent(points: Array) -> float:

@@ -144,7 +144,9 @@ class Strip:
             ):
                 uv = [self._cut(ring, window) for ring in part.borders()]
                 found += [
-                    ring for inner in regions(uv) for ring in _boxed(inner, window.low, window.high)
+                    ring
+                    for inner in regions(uv, every_point=True)
+                    for ring in _boxed(inner, window.low, window.high)
                 ]
             pieces.append(found)
         return parts(
@@ -162,7 +164,11 @@ class Strip:
             last = math.ceil((high - hole[:, 0].min()) / turn)
             loops += [hole + np.array([k * turn, 0.0]) for k in range(first, last + 1)]
         box = _box(low, high, *self.levels)
-        return tuple(part for region in regions(loops) for part in region.common(regions([box])))
+        return tuple(
+            part
+            for region in regions(loops, every_point=True)
+            for part in region.common(regions([box]), every_point=True)
+        )
 
     def flat(self, window: Window, with_margin: bool = False) -> list[Region]:
         """The strip in a window, with its margin or without, as regions laid flat about its middle."""
@@ -333,4 +339,4 @@ def _boxed(region: Region, low: float, high: float) -> list[Array]:
     """The rings of what of a region lies between two generatrices."""
     v = region.borders()[0][:, 1]
     box = regions([_box(low, high, float(v.min()), float(v.max()))])
-    return [ring for part in region.common(box) for ring in part.borders()]
+    return [ring for part in region.common(box, every_point=True) for ring in part.borders()]
