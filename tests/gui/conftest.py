@@ -187,9 +187,11 @@ class Person:
     def as_revolution(self, panel=None):
         """Choose parts of revolution in New Job, whatever it proposes: one bead in place of a filled solid."""
         panel = panel or self.panel("RoboticAM_NewJob")
-        self.choose(panel, "Kind", "Part of revolution")
         box = self.field(panel, "Kind")
-        box.activated.emit(box.currentIndex())
+        at = box.findText("Part of revolution")
+        box.setCurrentIndex(at)  # a proposal that comes in before it is told would take its place
+        box.activated.emit(at)
+        self.idle(0.05)
 
     def press(self, standard_button):
         wanted = getattr(self.widgets.QDialogButtonBox, standard_button)
