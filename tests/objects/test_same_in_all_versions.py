@@ -7,7 +7,7 @@ import shutil
 from tests.batch.conftest import Workshop
 
 PROGRAMS = (  # of the bracket, the same in all versions
-    "e1335daa8eb89cb9c5d4ffc9e9496f2760808d0d3269ea055d41da3d8aa0ab96"
+    "3f0608c1633a620ef5bfe3a36795650c77c1a2b5a4a79c7d08150b410f555288"
 )
 
 
