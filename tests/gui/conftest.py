@@ -420,6 +420,8 @@ def person(tmp_path, capfd, request):
         someone.gui.Control.closeDialog()
     for name in list(App.listDocuments()):
         App.closeDocument(name)
+    for page in someone.present(someone.widgets.QDialog, "RoboticAM_Help"):
+        page.hide()  # the window for help lies over the 3D view
     for dock in someone.present(someone.widgets.QDockWidget):  # one that stays open goes on looking
         if dock.objectName().startswith("RoboticAM"):
             if dock.isFloating():
