@@ -177,7 +177,7 @@ def test_a_small_part_by_a_robot_that_takes_no_short_moves(workshop):
     done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
     assert done.status == 2
     assert (
-        "error[BEAD_TOO_LONG] job.yaml: program.max_points: layer 1 bead 7 has 293 points, and"
+        "error[BEAD_TOO_LONG] job.yaml: program.max_points: layer 1 bead 7 has 294 points, and"
         in done.err
     )
     assert "with its approach" not in done.err  # told before joints were planned
