@@ -13,12 +13,7 @@ from typing import Any
 
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
 COMMANDS = ("plan", "export", "batch", "inspect", "check", "place", "machines")
-SHAPES = {
-    "plan": "job",
-    "export": "document",
-    "inspect": "source",
-    "place": "job",
-}  # read shapes, in what is named so
+SHAPES = ("plan", "export", "inspect", "place")  # commands that read shapes
 USAGE = """usage: freecad-am COMMAND
 
   plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
