@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from arm_jobs import CLEARANCE, EXAMPLE, box_text, carried_out, cylinder, places
+from arm_jobs import CLEARANCE, EXAMPLE, box_text, carried_out, cylinder, is_path, places
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.external import MECHANISMS
@@ -144,7 +144,7 @@ def _judged(job: Moving, key: str) -> float | None:
             text = "".join(box_text(low, size) for low, size in job.torch)
             (folder / "torch.stl").write_text(text, encoding="utf-8")
         done = carried_out(folder, job.job(key))
-        assert not done.returncode, done.stderr
+        assert is_path(done, key), done.stderr
         try:
             import fcl
         except ImportError:

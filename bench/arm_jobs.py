@@ -75,3 +75,10 @@ def box_text(low: Sequence[float], size: Sequence[float]) -> str:
             points = [f"vertex {x:g} {y:g} {z:g}" for x, y, z in corners[list(triangle)]]
             lines += ["facet normal 0 0 0", "outer loop", *points, "endloop", "endfacet"]
     return "\n".join([*lines, "endsolid box", ""])
+
+
+def is_path(done: subprocess.CompletedProcess[str], clearance: str) -> bool:
+    """Whether a job gave the path asked for; one without a clearance may be infeasible because the arm is in something."""
+    if not clearance and done.returncode == 3:
+        return "error[ARM_COLLISION]" in done.stderr
+    return done.returncode == 0

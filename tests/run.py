@@ -160,7 +160,7 @@ HEADLESS_OF_VERSION = (
     ),
     *(
         f"--ignore=tests/objects/test_{name}.py"
-        for name in ("memory", "one_thread", "rotor_rapids")
+        for name in ("memory", "one_thread", "rotor_rapids", "samples")
     ),
     *(
         f"--ignore=tests/brep/test_{name}.py"

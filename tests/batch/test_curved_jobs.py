@@ -362,9 +362,11 @@ def test_layers_on_a_plate_that_is_not_flat_are_as_far_from_it_as_they_are_many(
         np.array([int(row["layer"]) for row in rows]),
     )
     assert layer.max() >= 8 and report["unsupported_mm"] == 0.0
-    some = slice(None, None, 7)
-    away = [face.distToShape(Part.Vertex(*point))[0] for point in points[some]]
-    assert np.abs(away - 2.0 * layer[some]).max() < 0.25
+    away = [face.distToShape(Part.Vertex(*point))[0] for point in points]
+    off = np.abs(away - 2.0 * layer)
+    assert (
+        off.max() < 0.3 and off.mean() < 0.05
+    )  # the layers are triangles, coarsest where they bend most
 
 
 @pytest.mark.parametrize(

@@ -160,7 +160,7 @@ def test_the_worst_places_are_apart_and_the_least_is_the_worst(made):
             for value, size in zip(one["place"], SIZE, strict=True)
         )
         row = re.search(
-            rf'<tr><td>{one["name"]}</td><td>{NUMBER}</td>.*?<button data-row="(\d+)">([^<]*)</button>',
+            rf'<tr><td>{one["name"]}</td><td>{NUMBER} mm</td>.*?<button data-row="(\d+)">([^<]*)</button>',
             page,
         )
         assert float(row[1]) == pytest.approx(one["beyond_mm"], abs=6e-4)

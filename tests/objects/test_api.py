@@ -464,22 +464,16 @@ def test_a_new_job_puts_a_part_that_lies_about_its_origin_on_the_platform(doc):
     assert files_of(program) == files_of(above)
 
 
-@pytest.mark.parametrize(
-    ("machine", "long"), [("fanuc-crx10ia", True), ("fanuc-lrmate200id", False)]
-)
+@pytest.mark.parametrize(("seconds", "long"), [(0.0, True), (3600.0, False)])
 def test_remedies_that_take_long_are_told_before_they_are_looked_for(
-    doc, part, monkeypatch, machine, long
+    doc, part, monkeypatch, seconds, long
 ):
-    """On an arm with an offset wrist, each of whose poses is searched for."""
-    cell = api.make_cell(
-        doc, machine=machine, deposition_point=(5000, 0, 0, 0, 0, 0)
-    )  # out of reach
+    """What counts as long is set so that the search for this part does, or does not."""
+    cell = api.make_cell(doc, deposition_point=(5000, 0, 0, 0, 0, 0))  # out of reach
     toolpath = api.make_toolpath(
         doc, api.make_feature(doc, part, layer_height=15, chord_error=0.5), cell
     )
-    monkeypatch.setattr(
-        size, "SECONDS_A_REMEDY", size.LARGE_SECONDS
-    )  # one point takes as long as that
+    monkeypatch.setattr(size, "LARGE_SECONDS", seconds)
     told, looked = [], []
     monkeypatch.setattr(
         "freecad_am.objects.joint_path.remedies", lambda *_: looked.append(list(told)) or []

@@ -96,7 +96,7 @@ def codes(obj):
     return {issue.code for issue in api.issues(obj)}
 
 
-def test_a_pipe_about_the_origin_is_held_clear_of_arm_and_platform(doc):
+def test_a_pipe_about_the_origin_is_held_clear_of_arm_and_platform(doc, monkeypatch):
     pipe, branch = pipe_and_branch(doc)
     cell, _, _, path, program = api.make_all(doc, branch, kind="surface", substrate=pipe)
     assert path.Status == program.Status == "up to date", api.issues(path)
@@ -104,7 +104,8 @@ def test_a_pipe_about_the_origin_is_held_clear_of_arm_and_platform(doc):
     assert in_plate(settings, pipe.Shape, np.eye(4)) == 0
     assert deepest_in_wrist(path, pipe.Shape) < 0.0
 
-    # as it was placed before
+    # as it was placed before; what would help is looked for in other tests
+    monkeypatch.setattr("freecad_am.objects.joint_path.remedies", lambda *_: [])
     api.change(cell, platform=5.0, platform_diameter=113.0)
     assert path.Status == "infeasible" and program.Status != "up to date"
     assert in_plate(api.result(cell), pipe.Shape, np.eye(4)) > 0

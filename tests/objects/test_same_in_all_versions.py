@@ -7,7 +7,7 @@ import shutil
 from tests.batch.conftest import Workshop
 
 PROGRAMS = (  # of the bracket, the same in all versions
-    "3f0608c1633a620ef5bfe3a36795650c77c1a2b5a4a79c7d08150b410f555288"
+    "b357eb42df111ea5467851420b023e00d7abe0053984cc6f94f91ca4baee0693"
 )
 
 

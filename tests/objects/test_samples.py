@@ -15,6 +15,12 @@ SAMPLES = ("hemisphere", "tube-on-pipe")
 RENEW = "run resources/examples/make_samples.py"
 
 
+def figure(value):
+    """A figure without the last digits, in which FreeCAD's versions differ."""
+    number = getattr(value, "Value", value)
+    return f"{number:.9g}" if isinstance(number, float) else str(value)
+
+
 def read(stages):
     """The findings, message and figures of stages, as a user reads them."""
     return {
@@ -24,7 +30,7 @@ def read(stages):
                 for issue in issues_of(stage)
             ],
             str(message_of(stage)),
-            [str(getattr(stage, name)) for name, *_ in stage.Proxy.figures],
+            [figure(getattr(stage, name)) for name, *_ in stage.Proxy.figures],
         )
         for stage in stages
     }

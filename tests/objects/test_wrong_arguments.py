@@ -97,6 +97,9 @@ RIGHT = {  # of each function arguments that serve, by name
         "machine": "",
         "cell": "",
         "post": "",
+        "layer_height": "3 mm",
+        "bead_spacing": "4 mm",
+        "platform_diameter": "80 mm",
         "process": {"travel_speed": 10},
         "then": (),
         "mend": 0.0,
@@ -335,6 +338,8 @@ def test_every_function_is_tried(world):
 
 @pytest.mark.parametrize("function", sorted(RIGHT))
 def test_right_arguments_serve(world, function):
+    if function == "array_element" and App.Version()[:2] == ["1", "0"]:
+        pytest.skip("FreeCAD 1.0 does not take back a new App::Link; see docs/compatibility.md")
     assert call(world, function, RIGHT[function](world)) is None
 
 

@@ -34,7 +34,10 @@ FIRST = {
     "zigzag": 1,
 }  # who keeps its room; all others come last
 LAST = 2
-MOVED = ("contour", "connected", "spiral", *CENTRES)
+MOVED = ("contour", "connected", "spiral")
+SMOOTHED = (
+    1.0  # of the spacing, along a bead to either side, over which widths and moves are averaged
+)
 ALIKE = 0.95  # cosine of a turn; where a bead turns less it is moved by the mean of its edges
 FARTHEST = 2.0  # times how far its edges move; no corner moves farther
 ALONG = 0.02  # sine of the angle to the lines of a zigzag; what is turned more is a link
@@ -157,6 +160,24 @@ def narrowed(
     )
 
 
+def _smoothed(line: Array, values: Array, closed: bool, reach: float) -> Array:
+    """The values (n - 1,) of the edges of a line (n, 2), averaged over `reach` mm to either side: a bead whose width changes
+    at once has a kink in its path, or a dent in its side."""
+    ends = arcs(line)
+    length = ends[-1]
+    reach = min(reach, 0.5 * length)
+    sums = np.r_[0.0, np.cumsum(values * np.diff(ends))]
+    if closed:
+        ends = np.r_[ends[:-1] - length, ends, ends[1:] + length]
+        sums = np.r_[sums[:-1] - sums[-1], sums, sums[1:] + sums[-1]]
+    else:
+        ends = np.r_[-length, ends, 2.0 * length]
+        sums = np.r_[-length * values[0], sums, sums[-1] + length * values[-1]]
+    middles = 0.5 * (arcs(line)[1:] + arcs(line)[:-1])
+    rise = np.interp(middles + reach, ends, sums) - np.interp(middles - reach, ends, sums)
+    return np.asarray(rise / (2.0 * reach))
+
+
 def _may_move(curve: PlaneCurve) -> bool:
     """Whether a narrow bead is laid in the middle of its own room: not the lines of a zigzag, which its links join, nor
     lines that end on contours."""
@@ -222,6 +243,10 @@ def _with(
     these points no more than its corners (n,) and what tells the shares and how far it moves."""
     if share.min() > 1.0 - SHARE_TOLERANCE:
         return replace(curve, share=None)
+    if aside.any():
+        for _ in range(2):  # twice, so that the way has no kinks where an average begins
+            share = _smoothed(line, share, curve.closed, SMOOTHED * spacing)
+            aside = _smoothed(line, aside, curve.closed, SMOOTHED * spacing)
     ends = (
         np.r_[share[-1:], share, share[:1]] if curve.closed else np.r_[share[:1], share, share[-1:]]
     )

@@ -57,7 +57,6 @@ SECONDS_A_LAYER = (
     0.05  # s of the processor through all stages, however few points its beads have, measured at 25
 )
 SECONDS_A_SQUARE = 1.5e-4  # s of the processor that filling layers that differ takes by the square of the spacing, measured
-SECONDS_A_REMEDY = 8e-3  # s of the processor that a point takes with each remedy on an arm with an offset wrist, measured
 SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
 # s of the processor that finding layers takes by the mm of folds in a mesh: measured are 0.0018 where layers run along those
 # of an even mesh to 0.011 where they meet those of an uneven one at all angles
@@ -361,12 +360,9 @@ def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:
     )
 
 
-def of_remedies(
-    points: int, each: float = SECONDS_A_REMEDY, longest: float = math.inf
-) -> tuple[Issue, ...]:
+def of_remedies(points: int, each: float, longest: float = math.inf) -> tuple[Issue, ...]:
     """A note LARGE where a job cannot be carried out, and planning so many points at most anew, to find what would make it
-    feasible, takes long. each: s that a point takes, that of an arm with an offset wrist by default; longest: s, after which
-    the search stops."""
+    feasible, takes long. each: s that a point takes; longest: s, after which the search stops."""
     seconds = min(points * each, longest)
     if seconds < LARGE_SECONDS:
         return ()

@@ -43,7 +43,7 @@ def collision_issues(
         return []
     width = toolpath.bead_width or process.bead_width
     deposit = deposit_obstacles(motion, width, toolpath.layer_height)
-    found = in_platform(cell, toolpath)
+    found = in_platform(cell, toolpath, WARNING)
     joints, row, _ = places(motion.joints, None, tracks_of(cell))
     before = np.cumsum(motion.deposit) - motion.deposit
     shapes = meshes_of(cell.machine)
@@ -89,15 +89,16 @@ def look(path: JointPath, cell: Cell, toolpath: Toolpath) -> list[Issue]:
     ]
 
 
-def in_platform(cell: Cell, toolpath: Toolpath) -> list[Issue]:
-    """The errors about what of the substrate and the fixtures reaches into the platform."""
+def in_platform(cell: Cell, toolpath: Toolpath, level: str = ERROR) -> list[Issue]:
+    """The issues about what of the substrate and the fixtures reaches into the platform. No program depends on the platform's
+    plate, whose usual size is a guess, so a planned job has them as warnings; a proposed cell must have none."""
     collisions = platform_collisions(cell, toolpath.surroundings)
-    return [_platform_issue(cell, one) for one in collisions]
+    return [_platform_issue(cell, one, level) for one in collisions]
 
 
-def _platform_issue(cell: Cell, collision: Collision) -> Issue:
+def _platform_issue(cell: Cell, collision: Collision, level: str) -> Issue:
     return Issue(
-        ERROR,
+        level,
         PLATFORM_COLLISION,
         Text(
             "{} reaches into the platform, a plate of {:.4g} mm below the origin of the frame that sits on it; set "

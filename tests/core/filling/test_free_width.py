@@ -239,3 +239,24 @@ def test_narrow_lines_lie_half_their_own_width_from_the_border():
     curves = narrowed(fill(region, beads, "lines"), beads, 0.0, 0.3)
     heights = sorted(float(curve.points[:, 1].mean()) for curve in curves)
     assert heights == pytest.approx([1.5, 4.5], abs=0.02)
+
+
+def test_a_round_bead_beside_a_neck_stays_round():
+    """Two holes near each other: beads narrow in the neck between them, and neither kinks nor waves lead to it."""
+    around = np.linspace(0.0, 2.0 * np.pi, 240, endpoint=False)
+    circle = 10.0 * np.stack([np.cos(around), np.sin(around)], axis=1)
+    holes = [circle[::-1] + (x, 0.0) for x in (-14.0, 14.0)]
+    plate = np.array([(-40.0, -25.0), (40.0, -25.0), (40.0, 25.0), (-40.0, 25.0)])
+    (region,) = regions([plate, *holes])
+    curves = narrowed(fill(region, BEADS, "contours"), BEADS, 0.0, 0.3)
+    rings = [
+        curve
+        for curve in curves
+        if curve.share is not None and curve.ring == 0 and np.ptp(curve.points[:, 0]) < 40.0
+    ]
+    assert len(rings) == 2
+    for ring in rings:
+        assert ring.share.min() < 0.9
+        way = np.diff(np.vstack([ring.points, ring.points[:2]]), axis=0)
+        turns = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
+        assert np.abs(np.diff(turns)).max() < 0.1  # rad between chords of 1 mm

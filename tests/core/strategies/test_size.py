@@ -293,8 +293,8 @@ def test_layers_of_a_wide_margin_are_told_by_what_filling_them_takes():
 
 
 def test_remedies_that_take_long_to_find_are_told():
-    assert size.of_remedies(0) == size.of_remedies(3_700) == ()
-    (issue,) = size.of_remedies(15_516)
+    assert size.of_remedies(0, 8e-3) == size.of_remedies(3_700, 8e-3) == ()
+    (issue,) = size.of_remedies(15_516, 8e-3)
     assert (issue.level, issue.code) == (
         "note",
         "LARGE",
