@@ -49,14 +49,15 @@ def pipe_and_branch(doc, up=0.0):
 
 
 def samples(shape, step=6.0):
-    """Points in a solid, of a grid."""
+    """Points of a grid in the pipe."""
     box = shape.BoundBox
     axes = [
         np.arange(low + 0.5, high, step)
         for low, high in ((box.XMin, box.XMax), (box.YMin, box.YMax), (box.ZMin, box.ZMax))
     ]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    return np.array([point for point in grid if shape.isInside(V(*point), 1e-6, True)])
+    radius = np.hypot(grid[:, 1] - box.Center.y, grid[:, 2] - box.Center.z)
+    return grid[(radius > INNER) & (radius < OUTER)]
 
 
 def deepest_in_wrist(path, solid):
@@ -87,7 +88,8 @@ def deepest_in_wrist(path, solid):
 
 def in_plate(settings, solid, frame):
     """How many points of a solid are in the plate between flange and platform."""
-    local = np.c_[samples(solid, 3.0), np.ones(len(samples(solid, 3.0)))] @ np.linalg.inv(frame).T
+    points = samples(solid, 3.0)
+    local = np.c_[points, np.ones(len(points))] @ np.linalg.inv(frame).T
     inside = np.hypot(local[:, 0], local[:, 1]) < 0.5 * settings.platform_diameter - 0.5
     return int((inside & (local[:, 2] < -0.5) & (local[:, 2] > -4.5)).sum())
 
