@@ -68,6 +68,7 @@ from .macro.suit import (
     proposed_place,
     refuse_otherwise,
     suit,
+    suit_path,
 )
 from .objects import user_machines
 from .objects.cell import Cell
@@ -345,7 +346,7 @@ def _suited_path(doc: Any, toolpath: Any, cell: Any, setup: str, saved: bool) ->
         suit(cell, toolpath)
     path = make_joint_path(doc, toolpath, cell)
     if path.Status == "infeasible" and not saved:
-        suit(cell, toolpath, path)
+        suit_path(cell, toolpath, path)
     return path
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -27,11 +27,30 @@ from .changes import change
 from .steps import one_step, renew
 
 
-def suit(cell: Any, *stages: Any) -> None:
+SEARCHES = 3  # for a cell, of a new job whose joint path is infeasible
+
+
+def suit_path(cell: Any, toolpath: Any, path: Any) -> None:
+    """Look for another cell as long as all of an infeasible joint path cannot be planned: each search regards the layers that
+    failed in the cell found before too, as a search plans some layers alone."""
+    failed: set[int] = set()
+    for _ in range(SEARCHES):
+        failed |= {
+            issue.layer
+            for issue in issues_of(path)
+            if issue.level == ERROR and issue.layer is not None
+        }
+        changed = suit(cell, toolpath, path, failed_layers=failed)
+        if path.Status != INFEASIBLE or not changed:
+            return
+
+
+def suit(cell: Any, *stages: Any, failed_layers: Collection[int] = ()) -> bool:
     """Give a cell object the place, branch or positioner in which the job of a toolpath can be done, and renew the toolpath,
-    first of the stages, and what follows; all is as it was where that serves, or nothing was found that does."""
+    first of the stages, and what follows; all is as it was where that serves, or nothing was found that does. Whether the
+    cell has changed. failed_layers: places of layers to be regarded beside the usual ones."""
     settings = cell.Proxy.value(cell)
-    found = suited_cell.of_toolpath(stages[0])(settings)
+    found = suited_cell.of_toolpath(stages[0], failed_layers)(settings)
     if found != settings:
         _write(cell, found, stages)
         different = {
@@ -48,6 +67,7 @@ def suit(cell: Any, *stages: Any) -> None:
         App.Console.PrintWarning(
             f"{cell.Label}: {changed}: proposed for this job; enter what yours really has\n"
         )
+    return bool(found != settings)
 
 
 def _write(cell: Any, settings: CellParameters, stages: Sequence[Any]) -> None:

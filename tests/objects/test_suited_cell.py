@@ -130,7 +130,7 @@ def test_what_is_proposed_is_named_as_the_panel_names_it(doc, monkeypatch):
     monkeypatch.setattr(
         suit.suited_cell,
         "of_toolpath",
-        lambda toolpath: lambda cell: dataclasses.replace(cell, platform=7.0, arm_clearance=3.0),
+        lambda *_: lambda cell: dataclasses.replace(cell, platform=7.0, arm_clearance=3.0),
     )
     cell = api.make_cell(doc)
     monkeypatch.setattr(suit, "_write", lambda *_: None)
@@ -138,3 +138,26 @@ def test_what_is_proposed_is_named_as_the_panel_names_it(doc, monkeypatch):
     assert told == [
         "Cell: Platform, Arm clearance: proposed for this job; enter what yours really has\n"
     ]
+
+
+def test_layers_that_failed_are_planned_in_the_next_search(doc, dome, monkeypatch):
+    """A search plans some layers; where another one fails after it, a second search finds a cell for that one too."""
+    first = api.make_cell(doc, platform=3.0)
+    feature = api.make_feature_of(doc, "revolution", dome, (), links={}, values={})
+    toolpath = api.make_toolpath(doc, feature, first)
+    count = len(api.result(toolpath).layers)
+    assert count >= 4
+    beside = next(k for k in range(count) if k not in {0, (count - 1) // 2, count // 2, count - 1})
+    planned = []
+
+    def errors(job, some, _):
+        numbers = {api.result(toolpath).layers.index(layer) for layer in some.layers}
+        planned.append(numbers)
+        return {"SINGULAR"} if beside in numbers and job.settings == usual else set()
+
+    monkeypatch.setattr(suited, "_errors", errors)
+    usual = api.result(first)
+    assert not suit.suit(first, toolpath)
+    assert all(beside not in numbers for numbers in planned)
+    assert suit.suit(first, toolpath, failed_layers={beside})
+    assert beside in planned[-1] and api.result(first) != usual

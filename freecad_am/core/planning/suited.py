@@ -7,7 +7,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import numpy as np
 
@@ -22,12 +22,14 @@ from .remedies import LONGEST_SEARCH
 from .tried import LAYERS, POINTS, Tried
 
 
-def suited(job: Tried, progress: Progress) -> CellParameters:
+def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) -> CellParameters:
     """The parameters of the first cell in which some layers of a job can be done, those it has first; they themselves where
-    none was found. The layers are the first, the middle and the last one, and that which leans most. progress may raise to
-    cancel. Raises what reading the toolpath and resolving the cell raise."""
+    none was found. The layers are the first, the middle and the last one, that which leans most, and those that failed when
+    all of the job was planned, by their places. progress may raise to cancel. Raises what reading the toolpath and resolving
+    the cell raise."""
     toolpath = job.toolpath()
-    some, left, until = _layers(toolpath), POINTS, time.monotonic() + LONGEST_SEARCH
+    some = _layers(toolpath, failed_layers)
+    left, until = POINTS, time.monotonic() + LONGEST_SEARCH
     errors = _errors(job, some, progress)
     if not errors or not of_setup(job.settings.setup).free:
         return job.settings
@@ -59,13 +61,12 @@ def _errors(job: Tried, toolpath: Toolpath, progress: Progress) -> set[str]:
     return {issue.code for issue in job.issues(toolpath, False, progress) if issue.level == ERROR}
 
 
-def _layers(toolpath: Toolpath) -> Toolpath:
-    """Some of its layers, that which leans most from the part's axis among them."""
+def _layers(toolpath: Toolpath, failed: Collection[int]) -> Toolpath:
+    """Some of its layers, that which leans most from the part's axis and those that failed among them."""
     upright = [
         min((float((bead.tool @ toolpath.frame[:3, 2]).min()) for bead in layer.beads), default=1.0)
         for layer in toolpath.layers
     ]
-    chosen = {round(at) for at in np.linspace(0, len(upright) - 1, LAYERS)} | {
-        int(np.argmin(upright))
-    }
+    chosen = {round(at) for at in np.linspace(0, len(upright) - 1, LAYERS)}
+    chosen |= {int(np.argmin(upright)), *(k for k in failed if 0 <= k < len(upright))}
     return dataclasses.replace(toolpath, layers=tuple(toolpath.layers[k] for k in sorted(chosen)))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 from ...core.kinematics.arrangement import of_setup
@@ -19,9 +19,12 @@ from ..shapes import cell_obstacles
 from ..work import progress
 
 
-def of_toolpath(toolpath: Any) -> Callable[[CellParameters], CellParameters]:
+def of_toolpath(
+    toolpath: Any, failed_layers: Collection[int] = ()
+) -> Callable[[CellParameters], CellParameters]:
     """What finds, beside the document, the parameters of a cell that suits the job of a toolpath object: those it is asked
-    about, or with another branch, another place, or a positioner. It raises what resolving a cell raises."""
+    about, or with another branch, another place, or a positioner. failed_layers: places of layers that could not be planned
+    in the cell found before. It raises what resolving a cell raises."""
     read, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
 
@@ -42,6 +45,6 @@ def of_toolpath(toolpath: Any) -> Callable[[CellParameters], CellParameters]:
             cylinders=cylinders_of(cell),
             look=look,
         )
-        return suited(job, progress.report)
+        return suited(job, progress.report, failed_layers)
 
     return of
