@@ -26,7 +26,6 @@ from ..objects.staleness import INFEASIBLE
 from .changes import change
 from .steps import one_step, renew
 
-
 SEARCHES = 3  # for a cell, of a new job whose joint path is infeasible
 
 
