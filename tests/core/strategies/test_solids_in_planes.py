@@ -759,3 +759,43 @@ def test_beads_much_wider_than_they_are_apart_are_told(width, apart, times):
     assert not told(**wide, wire=WireParameters(1.2, 50.0))
     assert not told(bead_width=width, fill_width="spacing")
     assert not told(bead_width=apart / 0.7, fill_width="bead_width")
+
+
+def test_a_solid_between_two_cuts_is_named_with_its_place_and_volume():
+    """A cover of 0.8 mm lies between the cuts at 9 and 11 mm; the foot, counted 2 mm high for 1.2 mm, hides it in the sum."""
+    foot = box((0, 0, 0), (60, 40, 1.2), "foot")
+    wall = box((0, 0, 1.2), (6, 40, 9.2), "wall")
+    cover = box((0, 0, 9.2), (60, 40, 10.0), "cover")
+    made = planned(foot, wall, cover, layer_height=2.0, bead_spacing=3.0, direction="0 0 1")
+    (issue,) = [issue for issue in made.issues if issue.code == "NOT_DEPOSITED"]
+    assert issue.level == "warning" and "1 solid(s)" in issue.message and "cover" in issue.message
+    bare = float(re.search(r"mm high, ([\d.]+) of its 1.92 cm3", str(issue.message))[1])
+    # over the wall the layer at 8 mm reaches up to 10 mm and covers it, a bead's half beyond the middles of its beads
+    assert bare == pytest.approx(0.8 * (60 - 6) * 40 / 1000.0, rel=0.02)
+    x, y, z = map(
+        float, re.search(r"at \(([-\d.]+), ([-\d.]+), ([-\d.]+)\)", issue.message).groups()
+    )
+    assert 6.0 < x < 60.0 and 0.0 < y < 40.0 and 9.2 < z < 10.0
+    part, left, _ = made.volumes
+    assert part == pytest.approx(60 * 40 * 2.0 + 6 * 40 * 8.0) and left >= 1000.0 * bare
+
+
+@pytest.mark.parametrize("low, high", [(0.0, 0.8), (9.2, 9.9)])
+def test_a_thin_solid_that_beads_of_another_cover_is_not_named(low, high):
+    thick = box((0, 0, high if low == 0.0 else 0.0), (60, 40, 10.0 if low == 0.0 else 9.2))
+    thin = box((0, 0, low), (60, 40, high), "sheet")
+    made = planned(thick, thin, layer_height=2.0, bead_spacing=3.0, direction="0 0 1")
+    assert not [issue for issue in made.issues if issue.code == "NOT_DEPOSITED"]
+
+
+def test_a_closed_piece_of_a_mesh_between_two_cuts_is_named_and_a_hollow_is_not():
+    block, chip = box((0, 0, 0), (40, 40, 10)), box((60, 0, 5.2), (90, 40, 6.8))
+    hollow = box((18, 18, 5.2), (22, 22, 6.8))
+    mesh = Body(
+        "mesh",
+        np.vstack([block.vertices, chip.vertices, hollow.vertices]),
+        np.vstack([block.triangles, chip.triangles + 8, hollow.triangles[:, ::-1] + 16]),
+    )
+    made = planned(mesh, layer_height=2.0, bead_spacing=3.0, direction="0 0 1")
+    (issue,) = [issue for issue in made.issues if issue.code == "NOT_DEPOSITED"]
+    assert "1 solid(s)" in issue.message and "1.92 of its 1.92 cm3" in issue.message

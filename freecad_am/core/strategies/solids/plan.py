@@ -21,6 +21,8 @@ from ...toolpath import Bead, Toolpath
 from .. import size
 from ..progress import Progress, silent
 from .beads import MadeBead, bead_of
+from .between_cuts import issues as uncut_issues
+from .between_cuts import uncut
 from .filling import Pictures, bead_width, over_fed, spaced
 from .notes import notes
 from .part_volume import part_volume
@@ -101,10 +103,12 @@ def plan(
         )
     course = ordered(ranked, strategy.order)
     layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    missed = uncut(solids, strategy, ranked, width)
     told = [
         *solids.issues,
         *[_numbered(issue, stack, course) for stack, issue in issues],
         *without_bead(bare, course),
+        *uncut_issues(missed, strategy),
         *over_fed(strategy, process, model, width),
         *notes(made, layers, strategy, build, process, model),
     ]
@@ -119,7 +123,12 @@ def plan(
         solids.surroundings,
         None if model is None else model.law(process.acceleration),
         width,
-        volumes=volumes(None if strategy.margin else part_volume(solids), strategy, covers),
+        volumes=volumes(
+            None if strategy.margin else part_volume(solids),
+            strategy,
+            covers,
+            sum(each.bare for each in missed),
+        ),
         twice=twice(made, strategy, covers, width),
         uneven=np.array(
             [(number, min(both), max(both)) for number, both in sorted(heights.items())]

@@ -19,15 +19,18 @@ def of_layers(strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[floa
 
 
 def volumes(
-    part: float | None, strategy: FilledParameters, covers: Sequence[Cover]
+    part: float | None, strategy: FilledParameters, covers: Sequence[Cover], uncut: float = 0.0
 ) -> tuple[float, float, float]:
     """mm3 of the part, of what beads leave of it, and of what of them lies beside it; what is cut of it counts as high as
-    its layers, so that what is above the last cut is left, and what layers reach beyond it lies beside. A part of which the
-    volume (mm3) is None, as a margin is added to it or it is open, is as large as its layers are."""
+    its layers, so that what is above the last cut is left, and what layers reach beyond it lies beside. uncut: mm3 of solids
+    that no layer is cut in, which are left, whatever layers of others reach beyond these. A part of which the volume (mm3)
+    is None, as a margin is added to it or it is open, is as large as its layers are."""
     whole, left, outside = of_layers(strategy, covers)
     if part is None:
         return whole, left, outside
-    return part, left + max(part - whole, 0.0), outside + max(whole - part, 0.0)
+    uncut = min(uncut, part)
+    cut = part - uncut
+    return part, left + uncut + max(cut - whole, 0.0), outside + max(whole - cut, 0.0)
 
 
 def twice(

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Solids, and closed pieces of meshes, that no layer is cut in: thinner than a layer, or between two cuts.
+
+What the beads of other solids cover of them is deposited all the same, such as a thin sheet below a thick one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...collision.inside import inside_of
+from ...geometry.curves.guide import Guide
+from ...geometry.developable import Developable
+from ...geometry.formatting import place
+from ...geometry.mesh.orientation import connected_pieces
+from ...geometry.mesh.solid import SolidMesh
+from ...geometry.obstacles import Body
+from ...geometry.on_hub import Group, SolidsOnHub
+from ...geometry.plane import Plane
+from ...issues import WARNING, Issue, Text
+from ...layers.planes.field import ASIDE, EXACT
+from ...parameters.filled import FilledParameters
+from ...process.order import RankedBead
+from ...toolpath import Bead
+from ...types import Array
+
+PLACES = 4000  # in the box about a piece, at which it is looked whether beads cover it
+FEWEST, MOST = 3, 60  # of these along one axis
+LEAST_SHARE = 0.05  # of a piece, which is no more than rounding at its borders
+STEPS = 4  # to the width of a bead, of points along it
+MAX_NAMED = 8
+MM3 = 1000.0  # in a cm3
+
+
+class Uncut(NamedTuple):
+    """A solid, or a closed piece of it, that no layer is cut in: its name, its volume and what of that no bead covers, mm3, a
+    point (3,) in it in part coordinates, and how high it is across the layers, mm."""
+
+    name: str
+    volume: float
+    bare: float
+    point: Array
+    height: float
+
+
+def uncut(
+    solids: SolidsOnHub, strategy: FilledParameters, ranked: Sequence[RankedBead], width: float
+) -> list[Uncut]:
+    """All of them of which beads, of a width in mm, leave more than LEAST_SHARE. Curved layers are not looked at: they reach
+    all that hangs together with what they start on."""
+    if getattr(strategy, "layers", "planes") in ("geodesic", "offset"):
+        return []
+    missed = []
+    for number, group in enumerate(solids.groups):
+        for piece in (piece for body in group.bodies for piece in _pieces(body)):
+            levels = _levels(group, piece.vertices[np.unique(piece.triangles)])
+            if _is_cut(float(levels.min()), float(levels.max()), strategy):
+                continue
+            own = [each for each in ranked if each.group == number]
+            found = _missed(group, piece, strategy, own, width)
+            if found.bare > LEAST_SHARE * found.volume:
+                missed.append(found)
+    return missed
+
+
+def issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Issue]:
+    """One warning that names them, the largest first."""
+    if not missed:
+        return []
+    named = [
+        Text(
+            "{} at {} ({:.3g} mm high, {:.4g} of its {:.4g} cm3)",
+            each.name,
+            place(each.point),
+            each.height,
+            each.bare / MM3,
+            each.volume / MM3,
+        )
+        for each in sorted(missed, key=lambda each: -each.bare)[:MAX_NAMED]
+    ]
+    return [
+        Issue(
+            WARNING,
+            "NOT_DEPOSITED",
+            Text(
+                "{} solid(s) lie between the cuts of two layers, {:g} mm apart, and get no bead, {:.4g} cm3 in all: {}{}; set "
+                "strategy.layer_height to at most their height, or fuse them with the solid beside them",
+                len(missed),
+                strategy.layer_height,
+                sum(each.bare for each in missed) / MM3,
+                Text.joined(", ", named),
+                "" if len(missed) <= MAX_NAMED else ", ...",
+            ),
+        )
+    ]
+
+
+def _pieces(body: Body) -> Iterator[Body]:
+    """The closed pieces of a body, without the walls of hollows in it."""
+    triangles = np.asarray(body.triangles, dtype=np.intp)
+    piece = connected_pieces(triangles)
+    whole = SolidMesh(body.vertices, triangles).volume
+    for number in range(int(piece.max(initial=-1)) + 1):
+        own = triangles[piece == number]
+        if SolidMesh(body.vertices, own).volume * whole > 0.0:
+            yield Body(body.name, body.vertices, own)
+
+
+def _levels(group: Group, points: Array) -> Array:
+    """How far (n,) mm points (n, 3) of the part are from where the layers of a group begin, across the layers."""
+    surface, inside = group.base.surface, group.base.inside(points)
+    if isinstance(surface, Plane):
+        height: Array = inside[:, 2]
+        return height
+    assert isinstance(surface, (Guide, Developable))
+    return surface.distance(inside)
+
+
+def _is_cut(low: float, high: float, strategy: FilledParameters) -> bool:
+    """Whether a layer is cut between two levels, mm; a cut in a face of a solid is moved aside as `planes.field` does it."""
+    aside = ASIDE * strategy.chord_error
+    share = getattr(strategy, "share_of_cut", 0.0)
+    if getattr(strategy, "cut_at", "bottom") == "top":
+        low, high = low + 2.0 * aside, high + 2.0 * aside
+    first = max(0, int(np.ceil((low - aside) / strategy.layer_height - share - EXACT)))
+    return (first + share) * strategy.layer_height < high - aside
+
+
+def _missed(
+    group: Group,
+    piece: Body,
+    strategy: FilledParameters,
+    ranked: Sequence[RankedBead],
+    width: float,
+) -> Uncut:
+    """What beads leave of a piece."""
+    corners = piece.vertices[np.unique(piece.triangles)]
+    points = _places_in(piece, corners)
+    levels = _levels(group, points)
+    layer = np.floor(levels / strategy.layer_height + EXACT)
+    covered = np.zeros(len(points), dtype=bool)
+    reach = 0.5 * width / strategy.fill_density
+    for number in np.unique(layer):
+        beads = [each.bead for each in ranked if each.layer == number]
+        if beads:
+            some = np.flatnonzero(layer == number)
+            rise = levels[some] - number * strategy.layer_height
+            away = cKDTree(_along(beads, width / STEPS)).query(points[some])[0]
+            covered[some] = away**2 - rise**2 <= reach**2 + (0.5 * width / STEPS) ** 2
+    volume = abs(SolidMesh(piece.vertices, np.asarray(piece.triangles, dtype=np.intp)).volume)
+    bare = points[~covered] if (~covered).any() else points
+    middle = bare[int(((bare - bare.mean(axis=0)) ** 2).sum(axis=1).argmin())]
+    high = float(np.ptp(_levels(group, corners)))
+    return Uncut(piece.name, volume, volume * float((~covered).mean()), middle, high)
+
+
+def _places_in(piece: Body, corners: Array) -> Array:
+    """Points (n, 3) in a piece, evenly in the box about its corners (k, 3); the middles of its triangles where none is in it."""
+    low, size = corners.min(axis=0), np.maximum(np.ptp(corners, axis=0), 1e-9)
+    step = float((np.prod(size) / PLACES) ** (1.0 / 3.0))
+    count = np.clip(np.rint(size / step), FEWEST, MOST).astype(np.intp)
+    axes = [low[k] + size[k] * (np.arange(count[k]) + 0.5) / count[k] for k in range(3)]
+    grid = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
+    inside = inside_of(piece)
+    held = grid[inside.holds(grid)] if inside is not None else grid[:0]
+    middles: Array = piece.corners().mean(axis=1)
+    return held if len(held) else middles
+
+
+def _along(beads: Sequence[Bead], step: float) -> Array:
+    """Points (n, 3) along the middles of beads, no more than `step` mm apart."""
+    points = []
+    for bead in beads:
+        way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))]
+        at = np.linspace(0.0, way[-1], int(np.ceil(way[-1] / step)) + 1)
+        points.append(np.stack([np.interp(at, way, bead.points[:, k]) for k in range(3)], axis=1))
+    return np.concatenate(points)
