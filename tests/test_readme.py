@@ -19,6 +19,7 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 LAUNCHED = {
     "demo": r"(-o \S+)?",
     "test": r"(--freecad 1\.[01])? ?(--long)? ?[\w/.]*",
+    "docs": r"(\S+)?",
     "bench": r"(--smallest|kinematics|planning|whole)?",
 }
 

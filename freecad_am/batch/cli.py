@@ -84,7 +84,7 @@ def _run(argv: list[str], session: Any) -> int:
     if command not in COMMANDS:
         import difflib
 
-        near = difflib.get_close_matches(command, (*COMMANDS, "demo", "test", "bench"), n=1)
+        near = difflib.get_close_matches(command, (*COMMANDS, "demo", "test", "bench", "docs"), n=1)
         hint = f"did you mean {near[0]}?" if near else f"use one of {', '.join(COMMANDS)}"
         raise InputError("USAGE", "command line", "there is no command {!r}; {}", command, hint)
     parser = _parser(command)
