@@ -107,7 +107,7 @@ def main(words: list[str]) -> int:
         from sphinx.cmd.build import build_main
     except ImportError:
         print(
-            "error[NO_SPHINX] docs: Sphinx and numpydoc are missing; on Debian: "
+            "docs: Sphinx and numpydoc are missing; on Debian: "
             "apt-get install python3-sphinx python3-numpydoc",
             file=sys.stderr,
         )
