@@ -30,6 +30,7 @@ ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
 BRACKET, SECONDS, FEWER = EXAMPLE.parent / "bracket.yaml", 10.0, choose(3, 1)
 ROUNDS = choose(9, 1)
+WARMING = choose(1, 0)  # rounds that fill caches and do not count
 BARE = """import os, sys
 import FreeCAD, Import
 document = FreeCAD.newDocument("Bare")
@@ -84,9 +85,9 @@ def _hemisphere() -> Row:
         )
         plan = [str(ROOT / "freecad-am"), "plan", str(job), "-o", str(out), "--no-page"]
         commands = [plan, *([[host, str(script)]] if host else [])]
-        rounds = [[_took(command, folder) for command in commands] for _ in range(ROUNDS + 1)][
-            1:
-        ]  # the first fills caches
+        rounds = [
+            [_took(command, folder) for command in commands] for _ in range(WARMING + ROUNDS)
+        ][WARMING:]
         ours, *bare = zip(*rounds)
         used = f"{median(one.used for one in ours):.3f} s of the processor"
         for peer in bare:

@@ -160,7 +160,15 @@ HEADLESS_OF_VERSION = (
     ),
     *(
         f"--ignore=tests/objects/test_{name}.py"
-        for name in ("memory", "one_thread", "rotor_rapids", "samples")
+        for name in (
+            "layers_otherwise",
+            "memory",
+            "one_thread",
+            "ready",
+            "rotor_rapids",
+            "samples",
+            "suited_cell",
+        )
     ),
     *(
         f"--ignore=tests/brep/test_{name}.py"

@@ -62,6 +62,7 @@ def test_curved_layers_that_can_be_carried_out_stay(doc, coarse_tee):
     assert made[1].Layers == "geodesic" and made[3].Status == "up to date"
 
 
+@pytest.mark.long  # 14 s; test_suited_cell.py looks for cells of other jobs
 def test_planes_have_the_cell_that_suits_them(doc, coarse_tee):
     """Curved layers of the T lean more than 30 deg, so that a positioner is put under them; upright ones need none."""
     asked = {
