@@ -97,7 +97,7 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
         if region.width >= beads.thinnest and region.extent < DOT * beads.inset:
             points, closed = _spine(region, beads, 0.15 * region.width)
             if len(points) < 2 or length(points, closed) < beads.shortest:
-                found.append(_dot(region, beads))
+                found.append(dot(region, beads))
                 continue
         for _ in range(ROUNDS):
             parts, rest = rest, []
@@ -119,7 +119,7 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
     return found
 
 
-def _dot(region: Region, beads: Beads) -> PlaneCurve:
+def dot(region: Region, beads: Beads) -> PlaneCurve:
     """A short bead in the middle of a region narrower than a bead and about as long as wide: its length, and its width where
     it would be too short, are such that the region is filled."""
     long = max(region.area / beads.spacing, beads.shortest)

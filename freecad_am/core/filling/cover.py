@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.curves.plane_curve import length
 from ..geometry.regions.region import Region, along, simplified
 from ..geometry.regions.several import common
 from ..geometry.regions.strip import Strip
@@ -101,13 +102,11 @@ def _widths(curve: PlaneCurve, beads: Beads) -> tuple[list[Line], list[float]]:
     """A bead in lines along which its width is one, and the share of the usual width of each. A dot is a disc as large as
     what is fed along it covers."""
     if curve.dot:
-        way, share = (
-            curve.points[-1] - curve.points[0],
-            1.0 if curve.share is None else curve.share[0],
-        )
-        disc = math.sqrt(beads.spacing * share * float(np.hypot(*way)) / math.pi)
+        share = 1.0 if curve.share is None else curve.share[0]
+        fed = beads.spacing * share * length(curve.points, curve.closed)
         middle = curve.points.mean(axis=0)
-        return [(middle + DOT * np.stack([-way, way]), False)], [disc / beads.inset]
+        ends = middle + DOT * (curve.points[[0, len(curve.points) // 2]] - middle)
+        return [(ends, False)], [math.sqrt(fed / math.pi) / beads.inset]
     if curve.share is None:
         return [(curve.points, curve.closed)], [1.0]
     if np.ptp(curve.share) < SHARES:

@@ -11,6 +11,7 @@ from ..geometry.regions.region import Region
 from ..geometry.regions.strip import Strip
 from ..issues import InputError
 from ..types import Array
+from .balanced_ring import balanced
 from .centre import closing, left_open
 from .connected import connected
 from .contours import contours
@@ -95,7 +96,8 @@ def fill(
             curves += closing(inner, curves, beads, rounds)
         else:
             curves += sparse(framed, inner, beads, pattern, angle, rounds, link, infill)
-    return tuple(long_enough(curves, beads.shortest))
+    curves = long_enough(curves, beads.shortest)
+    return tuple(balanced(region, curves, beads) if infill.density == 1.0 else curves)
 
 
 def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Gaps:

@@ -132,4 +132,6 @@ def test_regions_too_narrow_or_too_small_have_their_single_bead():
     assert curve.kind == "centre" and not curve.closed
     (small,) = regions([shapes.circle(4.0)])
     (curve,) = fill(small, BEADS, "connected")
-    assert curve.closed and np.hypot(*curve.points.T) == pytest.approx(1.5, abs=0.03)
+    assert curve.closed and np.hypot(*curve.points.T) == pytest.approx(
+        4.0**2 / (2.0 * 5.0), abs=0.03
+    )

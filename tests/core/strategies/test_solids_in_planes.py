@@ -3,6 +3,7 @@
 
 import math
 import re
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -18,6 +19,8 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters, WireParameters
 from freecad_am.core.process.deposit import spacing
+from freecad_am.core.process.model import bead_table
+from freecad_am.core.process.model.wire import fed
 from freecad_am.core.strategies.solids.plan import plan
 
 ERROR = 0.05
@@ -799,3 +802,81 @@ def test_a_closed_piece_of_a_mesh_between_two_cuts_is_named_and_a_hollow_is_not(
     made = planned(mesh, layer_height=2.0, bead_spacing=3.0, direction="0 0 1")
     (issue,) = [issue for issue in made.issues if issue.code == "NOT_DEPOSITED"]
     assert "1 solid(s)" in issue.message and "1.92 of its 1.92 cm3" in issue.message
+
+
+def rod(radius, sides):
+    angle = 2.0 * np.pi * (np.arange(sides) + 0.5) / sides
+    ring = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return hull(np.vstack([np.column_stack([ring, np.full(sides, z)]) for z in (0.0, 12.0)]), "rod")
+
+
+@pytest.mark.parametrize("fill", ["contours", "connected", "spiral", "lines", "zigzag"])
+@pytest.mark.parametrize("sides, radius", [(96, 2.6), (96, 3.0), (96, 4.0), (4, 4.4), (6, 3.3)])
+def test_a_rod_hardly_wider_than_a_bead_is_fed_its_volume(fill, sides, radius):
+    """A contour half a bead inside the border fed 55 % of a rod of 3 mm with beads of 5 mm, and nothing of one of 2.6 mm."""
+    made = planned(
+        rod(radius, sides), layer_height=2.0, bead_spacing=5.0, direction="0 0 1", fill=fill
+    )
+    area = 0.5 * sides * math.sin(2.0 * math.pi / sides) * radius**2
+    assert len(made.layers) == 6
+    for layer in made.layers:
+        volume = 0.0
+        for bead in layer.beads:
+            step = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+            wide = np.full(len(bead), 5.0) if bead.width is None else bead.width
+            volume += float(0.5 * (wide[1:] + wide[:-1]) @ step)
+            assert np.hypot(*bead.points[:, :2].T).max() < radius
+        assert volume == pytest.approx(area, rel=0.025)
+    assert not [one for one in made.issues if one.code in ("DEPOSITED_TWICE", "NO_BEAD")]
+
+
+def spacing_issues(overlap, model=None, **process):
+    strategy = SolidParameters(
+        layer_height=2.5,
+        chord_error=ERROR,
+        bead_spacing=7.0,
+        bead_overlap=overlap,
+        direction="0 0 1",
+    )
+    solids = stacked([box((0, 0, 0), (60, 60, 5))], strategy, "part")
+    made = plan(solids, strategy, BuildDirectionParameters(), ProcessParameters(**process), model)
+    return [issue for issue in made.issues if issue.code == "BEAD_SPACING"]
+
+
+@pytest.mark.parametrize("overlap, told", [(0.3, False), (0.6, True), (None, False)])
+def test_an_overlap_that_a_bead_model_overfills_is_told(overlap, told):
+    """The model's wire feeds a bead of 9.5 mm whatever lies beside it."""
+    model = bead_table.load("csw")
+    issues = spacing_issues(overlap, model, bead_width=9.5, bead_model="csw")
+    assert len(issues) == told
+    if told:
+        section = math.pi * 0.6**2 * model.wire_feed / model.straight_speed(9.5)
+        room = 0.4 * 9.5 * 2.5
+        assert f"{section / room:.3g} times the {room:.4g} mm3" in issues[0].message
+        balanced = 100.0 * (1.0 - section / 2.5 / 9.5)
+        assert f"strategy.bead_overlap to {balanced:.3g} %" in issues[0].message
+        assert not spacing_issues(balanced / 100.0, model, bead_width=9.5, bead_model="csw")
+
+
+def test_an_overlap_that_the_wire_overfills_is_told_with_a_feed_of_its_own_too():
+    (issue,) = spacing_issues(0.5, bead_width=9.5)
+    assert "2 times" in issue.message and "bead_overlap to 26.2 %" in issue.message
+    travel = ProcessParameters().travel_speed
+    wire = WireParameters(1.2, 9.5 * 2.5 * travel / (math.pi * 0.36))  # for the width
+    (issue,) = spacing_issues(0.5, bead_width=9.5, wire=wire)
+    assert "2 times" in issue.message
+    half = WireParameters(1.2, wire.feed / 2.0)  # for the spacing
+    assert not spacing_issues(0.5, bead_width=9.5, wire=half)
+
+
+@pytest.mark.parametrize("share, codes", [(1.0, []), (0.5, []), (0.75, ["FEED_BALANCE"])])
+def test_a_feed_for_the_room_of_beads_that_overlap_balances(share, codes):
+    """Beads of 9.5 mm half over one another fill the part at half the feed that their width would take."""
+    travel = ProcessParameters().travel_speed
+    wire = WireParameters(1.2, share * 9.5 * 2.5 * travel / (math.pi * 0.36))
+    process = ProcessParameters(bead_width=9.5, wire=wire)
+    made = planned(
+        box((0, 0, 0), (160, 160, 5)), layer_height=2.5, bead_overlap=0.5, process=process
+    )
+    issues = fed(replace(made, issues=()), process, None).issues
+    assert [issue.code for issue in issues] == codes

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from ...issues import WARNING, Issue, Text
 from ...parameters.bead_classes import CLASSES
 from ...parameters.process import ProcessParameters
@@ -25,7 +27,8 @@ def with_model(process: ProcessParameters, model: BeadModel) -> float:
 def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None) -> Toolpath:
     """The toolpath with the speed of its wire, and an issue where that does not balance with its beads.
 
-    Balanced is wire section x feed = bead width x layer height x travel speed. Beads of a model were measured with their
+    Balanced is wire section x feed = bead width x layer height x travel speed, or what fills the part: beads that overlap may
+    be fed for the room that each has. Beads of a model were measured with their
     wire, and are told apart from that by `solids.notes`; a feed of 0 stands for no wire. Where nothing tells the width of
     beads nothing is said.
     """
@@ -40,7 +43,7 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
         return _of_classes(_following(replace(toolpath, wire_feed=balanced), process), process)
     made = _following(replace(toolpath, wire_feed=process.wire.feed), process)
     given = process.wire.feed * process.wire.section
-    if given == 0.0 or abs(given - taken) <= TOLERANCE * taken:
+    if given == 0.0 or abs(given - taken) <= TOLERANCE * taken or _fills(toolpath, given):
         return _of_classes(made, process)
     return replace(
         made,
@@ -65,6 +68,19 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
             ),
         ),
     )
+
+
+def _fills(toolpath: Toolpath, given: float) -> bool:
+    """Whether a wire of so many mm3/s feeds as much as the beads of a filled part deposit."""
+    if toolpath.volumes is None:
+        return False
+    part, left, outside = toolpath.volumes
+    deposited = part - left + outside
+    seconds = sum(
+        float((np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum())
+        for _, _, bead in toolpath
+    )
+    return abs(given * seconds - deposited) <= TOLERANCE * deposited
 
 
 def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:

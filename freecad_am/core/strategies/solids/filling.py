@@ -20,12 +20,13 @@ from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest_among
 from ...geometry.regions.region import Region, joined
 from ...geometry.regions.strip import Period, Strip
-from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text
+from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text, Word
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
+from ...process.model.wire import with_model
 from ...types import Array
 
 Same = TypeVar("Same", bound=FilledParameters)
@@ -332,25 +333,68 @@ def bead_width(
 def over_fed(
     strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None, width: float
 ) -> list[Issue]:
-    """A warning where beads that count as `width` mm wide lie so close that the wire, fed for their width, fills a layer
-    more than MOST_FED times. A bead model, or a speed of the wire that is given, says itself what is fed."""
+    """A warning where beads that count as `width` mm wide lie so close that what the wire feeds along them fills a layer more
+    than MOST_FED times: fed for their width, as the bead model has it, or as it is given. Where beads are not much wider than
+    they are apart a feed that is given is looked at by `wire.fed` alone."""
     spacing, height = strategy.bead_spacing, strategy.layer_height
-    fed = width / spacing
-    if model is not None or not isinstance(process.wire.feed, str) or fed <= MOST_FED:
+    section = _fed_section(process, model, width * height)
+    fed = section / (spacing * height)
+    given = model is None and not isinstance(process.wire.feed, str)
+    if fed <= MOST_FED or (given and width <= MOST_FED * spacing):
         return []
+    overlap = strategy.bead_overlap is not None
     text = Text(
-        "beads {:g} mm wide (process.bead_width) lie {:.4g} mm apart (strategy.bead_spacing): the wire feeds {:.4g} mm3 "
-        "for each mm of bead, {:.3g} times the {:.4g} mm3 that it has room for; set strategy.bead_spacing to {:.3g} mm, "
-        "process.bead_width to {:.3g} mm, or process.fill_width to spacing",
-        width,
+        "beads {:g} mm wide (process.bead_width) lie {:.4g} mm apart ({}): the wire feeds {:.4g} mm3 "
+        "for each mm of bead, {:.3g} times the {:.4g} mm3 that it has room for; {}",
+        process.bead_width,
         spacing,
-        width * height,
+        Word("strategy.bead_overlap" if overlap else "strategy.bead_spacing"),
+        section,
         fed,
         spacing * height,
-        USUAL_SPACING * width,
-        spacing / USUAL_SPACING,
+        Word(_wider_apart(strategy, process, model, section)),
     )
     return [Issue(WARNING, "BEAD_SPACING", text)]
+
+
+def _fed_section(process: ProcessParameters, model: BeadModel | None, usual: float) -> float:
+    """What the wire feeds for each mm of a straight bead, mm2; usual: where nothing else says how much."""
+    if model is not None:
+        speed = model.straight_speed(process.bead_width)
+        return process.wire.section * with_model(process, model) / speed
+    if isinstance(process.wire.feed, str):
+        return usual
+    return process.wire.section * process.wire.feed / process.travel_speed
+
+
+def _wider_apart(
+    strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None, section: float
+) -> str:
+    """What to do about beads that are too close for their section, mm2."""
+    width, spacing, overlap = process.bead_width, strategy.bead_spacing, strategy.bead_overlap
+    if model is None and isinstance(process.wire.feed, str):
+        if overlap is not None:
+            return Text(
+                "set strategy.bead_overlap to {:.3g} %, or leave it out and set process.fill_width to spacing",
+                100.0 * (1.0 - USUAL_SPACING),
+            )
+        return Text(
+            "set strategy.bead_spacing to {:.3g} mm, process.bead_width to {:.3g} mm, or process.fill_width to spacing",
+            USUAL_SPACING * width,
+            spacing / USUAL_SPACING,
+        )
+    balanced = section / strategy.layer_height  # mm apart
+    if balanced > width:
+        return Text(
+            "set strategy.layer_height to {:.3g} mm, or feed less wire",
+            section / (USUAL_SPACING * width),
+        )
+    if overlap is not None:
+        return Text(
+            "set strategy.bead_overlap to {:.3g} %, or feed less wire",
+            100.0 * (1.0 - balanced / width),
+        )
+    return Text("set strategy.bead_spacing to {:.3g} mm, or feed less wire", balanced)
 
 
 def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A region hardly wider than a bead: one ring that feeds as much as the region holds.
+
+A contour half a bead inside the border of such a region is so short that its bead lies over itself in the middle: it
+covers all of the region and feeds little of it. A ring nearer to the border is longer. The one that feeds the region's area
+at the usual spacing is taken; what it lays flows to the middle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from scipy.optimize import brentq
+
+from ..geometry.curves.plane_curve import length
+from ..geometry.regions.region import Region
+from ..types import Array
+from .centre import dot
+from .curve import Beads, PlaneCurve, begun
+
+LESS = 0.98  # of the area of a region; what feeds less is not enough
+EXACT = 1e-4  # of half a bead's width
+
+
+def balanced(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> list[PlaneCurve]:
+    """The curves that fill a region; one ring instead where no more than one lies in it, no farther from the middle than it
+    is wide, and feeds too little; a dot where that ring is too short for a bead."""
+    if len(curves) > 1 or any(curve.dot for curve in curves) or len(region.borders()) > 1:
+        return list(curves)
+    fed = sum(beads.spacing * length(curve.points, curve.closed) for curve in curves)
+    if region.area > math.pi * (2.0 * beads.inset) ** 2 or fed >= LESS * region.area:
+        return list(curves)
+    if not region.grown(-beads.inset, beads.chord_error):
+        return list(curves)  # narrower than a bead, which has rules of its own
+    ring = _ring(region, beads)
+    if ring is None:
+        return list(curves)
+    if length(ring, True) < beads.shortest:
+        return [dot(region, beads)]
+    return [begun(PlaneCurve(ring, True, "contour", 0, dot=True), beads)]
+
+
+def _ring(region: Region, beads: Beads) -> Array | None:
+    """The parallel curve (n, 2) inside the border of a region that feeds its area; None where there is none in one piece."""
+
+    def inside(depth: float) -> Array | None:
+        parts = region.grown(-depth, beads.chord_error)
+        return parts[0].borders()[0] if len(parts) == 1 else None
+
+    def lacking(depth: float) -> float:
+        border = inside(depth)
+        return 0.0 if border is None else region.area - beads.spacing * length(border, True)
+
+    if not lacking(0.0) < 0.0 < lacking(beads.inset):
+        return None
+    return inside(float(brentq(lacking, 0.0, beads.inset, xtol=EXACT * beads.inset)))
