@@ -515,6 +515,62 @@ def test_roles_of_cura(tmp_path, setting, at, value):
     assert len(notes) == (value == "True")
 
 
+def with_cura_setting(key, value, at):
+    group = f'<metadatagroup><metadata name="cura:{key}">{value}</metadata></metadatagroup>'
+    old = f'<c:settings xmlns:c="http://software.ultimaker.com/xml/cura/3mf/2015/10"><c:setting key="{key}">{value}</c:setting></c:settings>'
+    if at == "item":
+        return model(mesh(1), '<item objectid="1">' + group + "</item>")
+    if at == "holder":
+        held = holder(2, placed("component", 1)).replace("<components>", group + "<components>")
+        return model(mesh(1) + held, placed("item", 2))
+    setting = group if at == "object" else old
+    return model(mesh(1).replace("<mesh>", setting + "<mesh>"), placed("item", 1))
+
+
+@pytest.mark.parametrize("at", ["object", "item", "old", "holder"])
+@pytest.mark.parametrize(
+    "key", ["mold_enabled", "conical_overhang_enabled", "meshfix_union_all_remove_holes"]
+)
+def test_settings_of_cura_that_make_another_solid_are_refused(tmp_path, key, at):
+    """Cura deposits a mould round the mesh, or fills up what overhangs; the mesh was deposited without a message."""
+    with pytest.raises(
+        InputError, match=f"{key} = True of Cura, which changes its shape"
+    ) as caught:
+        read_mesh(written(tmp_path, with_cura_setting(key, "True", at)))
+    assert caught.value.code == "UNSUPPORTED_FILE"
+    assert volume_and_notes(written(tmp_path, with_cura_setting(key, "False", at))) == (1.0, [])
+
+
+@pytest.mark.parametrize("at", ["object", "item", "old", "holder"])
+@pytest.mark.parametrize(
+    "key, value, unused",
+    [
+        ("xy_offset", "-0.3", "0.0"),
+        ("hole_xy_offset", "0.1", "0"),
+        ("magic_mesh_surface_mode", "surface", "normal"),
+        ("magic_spiralize", "True", "False"),
+    ],
+)
+def test_settings_of_cura_that_are_not_applied_are_named(tmp_path, key, value, unused, at):
+    volume, notes = volume_and_notes(written(tmp_path, with_cura_setting(key, value, at)))
+    assert volume == 1.0 and len(notes) == 1 and f"{key} = {value}" in notes[0]
+    assert volume_and_notes(written(tmp_path, with_cura_setting(key, unused, at))) == (1.0, [])
+
+
+def test_settings_of_a_project_of_cura_are_named(tmp_path):
+    name = "Cura/custom.inst.cfg"
+    profile = (
+        "[general]\nname = custom\n[values]\nmold_enabled = {}\nxy_offset = {}\nspeed_print = 40\n"
+    )
+    text = model(mesh(1), placed("item", 1))
+    path = written(tmp_path, text, more={name: profile.format("True", "0")})
+    volume, notes = volume_and_notes(path)
+    assert volume == 1.0 and len(notes) == 1
+    assert name in notes[0] and "mold_enabled = True" in notes[0] and "xy_offset" not in notes[0]
+    path = written(tmp_path, text, more={name: profile.format("False", "0.0")})
+    assert volume_and_notes(path) == (1.0, [])
+
+
 @pytest.mark.parametrize("kind", ["support", "solidsupport", "other"])
 def test_objects_that_are_not_part_are_named(tmp_path, kind):
     text = model(mesh(1) + mesh(2, CORNERS + 9.0, kind=kind), placed("item", 1) + placed("item", 2))

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 from xml.parsers import expat
@@ -114,12 +114,15 @@ class _Object:
     role: str = PART
     volumes: list[Volume] = field(default_factory=list)  # ranges of its triangles
     unread: str = ""  # what of it changes its shape and is not read
+    laid: list[str] = field(default_factory=list)  # settings by which a slicer lays it otherwise
 
 
 class _Item(NamedTuple):
     key: Key
     moved: Array
     role: str
+    unread: str = ""  # as of an object
+    laid: tuple[str, ...] = ()
 
 
 class _Piece(NamedTuple):
@@ -179,6 +182,7 @@ class _Package:
         self.pieces: list[_Piece] = []
         self.cut = 0  # triangles that took part in subtractions
         self.subtracted: list[tuple[str, str]] = []
+        self.laid: dict[str, None] = {}  # settings of Cura that are not applied, with their objects
 
     def built(self) -> Content:
         self._read_keystore()
@@ -186,7 +190,13 @@ class _Package:
         self._load(self.start)
         self._read_roles()
         for number, item in enumerate(self.items):
-            self._add(item.key, item.moved, item.role, (), number)
+            made = self.objects.get(item.key)
+            if made is not None:  # settings of an item are those of what it places
+                made = replace(
+                    made, unread=item.unread or made.unread, laid=[*made.laid, *item.laid]
+                )
+            self._add(item.key, item.moved, item.role, (), number, made)
+        self._read_profiles()
         points, corners = self._joined()
         if not len(corners):
             raise InputError(
@@ -261,6 +271,14 @@ class _Package:
         if self.subtracted:
             message = Text("{}: subtracted from the part: {}", self.where, _listed(self.subtracted))
             notes.append(Issue(NOTE, CONTENT, message))
+        if self.laid:
+            message = Text(
+                "{}: settings of Cura that are not applied, so that the solids are deposited as their meshes are: {}{}",
+                self.where,
+                Text.joined(", ", list(self.laid)[:MAX_NAMED]),
+                "" if len(self.laid) <= MAX_NAMED else ", ...",
+            )
+            notes.append(Issue(NOTE, CONTENT, message))
         if self.spaces:
             message = Text(
                 "{}: not read, as no object uses it for its shape: what these extensions add: {}",
@@ -329,6 +347,15 @@ class _Package:
                 "the drilled part as a mesh",
                 name,
             )
+
+    def _read_profiles(self) -> None:
+        """Note settings of all objects, in the profiles that Cura saves with a project."""
+        for name in filter(roles.CURA_PROFILE.fullmatch, self.archive.namelist()):
+            with self.archive.open(name) as stream:
+                text = stream.read(CHUNK).decode("utf-8", "replace")
+            for key, value in roles.CURA_VALUES.findall(text):
+                if roles.is_used(value):
+                    self.laid[Text("{!r}: {} = {}", name, key, value)] = None
 
     def _give_roles(self, number: int, volumes: list[Volume]) -> None:
         made = self.objects.get((self.start, number))
@@ -437,9 +464,16 @@ class _Package:
     def _refuse_doctype(self, *_: object) -> None:
         raise _bad(self.where, "it has a document type, which 3MF does not allow")
 
-    def _add(self, key: Key, moved: Array, role: str, within: tuple[Key, ...], item: int) -> None:
-        """Add an object, moved (4, 3), to the pieces. role: that of what holds it."""
-        made = self.objects.get(key)
+    def _add(
+        self,
+        key: Key,
+        moved: Array,
+        role: str,
+        within: tuple[Key, ...],
+        item: int,
+        made: _Object | None,
+    ) -> None:
+        """Add an object, moved (4, 3), to the pieces; None: it is not there. role: that of what holds it."""
         if made is None or key in within:
             text = "holds itself" if made else "is not in it"
             raise _bad(self.where, Text("object {} of {} {}", key[1], key[0], Word(text)))
@@ -463,9 +497,11 @@ class _Package:
                 name,
                 made.unread,
             )
+        for setting in made.laid:
+            self.laid[Text("{!r}: {}", name, setting)] = None
         for part, way in made.parts:
             placed = np.vstack([way[:3] @ moved[:3], way[3] @ moved[:3] + moved[3]])
-            self._add(part, placed, role, (*within, key), item)
+            self._add(part, placed, role, (*within, key), item, self.objects.get(part))
         if made.triangles:
             self._add_mesh(made, key, moved, role, name, item)
 
@@ -687,17 +723,37 @@ class _Model:
     def _start_setting(self, name: str) -> None:
         """Begin to read a setting of Cura, of an object or an item."""
         key = name.rpartition(":")[2].strip()
-        if key in roles.CURA_ROLES and (self.inside or self.item is not None):
+        known = (*roles.CURA_ROLES, *roles.CURA_SHAPES, *roles.CURA_LAID)
+        if key in known and (self.inside or self.item is not None):
             self.setting, self.value = key, []
 
     def _finish_setting(self) -> None:
-        if "".join(self.value).strip().lower() in roles.TRUE:
-            role = roles.CURA_ROLES[self.setting]
-            if self.inside:
-                self.now.role = role
-            elif self.item is not None:
-                self.items[self.item] = self.items[self.item]._replace(role=role)
+        key, value = self.setting, "".join(self.value).strip()
         self.setting = ""
+        if key in roles.CURA_ROLES:
+            if value.lower() in roles.TRUE:
+                self._finish_role(roles.CURA_ROLES[key])
+        elif roles.is_used(value):
+            self._finish_shape(key, Text("{} = {}", key, value))
+
+    def _finish_role(self, role: str) -> None:
+        if self.inside:
+            self.now.role = role
+        elif self.item is not None:
+            self.items[self.item] = self.items[self.item]._replace(role=role)
+
+    def _finish_shape(self, key: str, setting: str) -> None:
+        """Take up a setting by which Cura deposits another shape than the mesh."""
+        if key in roles.CURA_SHAPES:
+            unread = Text("the setting {} of Cura", setting)
+            self._leave_unread(unread)
+            if not self.inside and self.item is not None:
+                self.items[self.item] = self.items[self.item]._replace(unread=unread)
+        elif self.inside:
+            self.now.laid.append(setting)
+        elif self.item is not None:
+            item = self.items[self.item]
+            self.items[self.item] = item._replace(laid=(*item.laid, setting))
 
     def _key(self, values: dict[str, str]) -> Key:
         path = next((text for name, text in values.items() if name.endswith(" path")), "")

@@ -3,7 +3,7 @@
 
 PrusaSlicer and SuperSlicer store them in `Metadata/Slic3r_PE_model.config` by ranges of triangles of an object; Bambu
 Studio, OrcaSlicer and programs made from them in `Metadata/model_settings.config` by components of an object; Cura as
-metadata of an object in the model; Slic3r as `slic3r:volume` elements in the mesh.
+metadata of an object in the model, beside settings that change its shape; Slic3r as `slic3r:volume` elements in the mesh.
 """
 
 from __future__ import annotations
@@ -51,15 +51,45 @@ CURA_ROLES = {
     "support_mesh": SUPPORT,
     "cutting_mesh": CUTTING,
 }
+# settings of Cura by which it deposits another solid than the mesh encloses
+CURA_SHAPES = (
+    "mold_enabled",
+    "conical_overhang_enabled",
+    "meshfix_union_all_remove_holes",
+)
+# settings of Cura by which it deposits the same solid otherwise: offset, as a skin, in one turn, with rough sides
+CURA_LAID = (
+    "xy_offset",
+    "xy_offset_layer_0",
+    "hole_xy_offset",
+    "magic_mesh_surface_mode",
+    "magic_spiralize",
+    "magic_fuzzy_skin_enabled",
+    "wireframe_enabled",
+)
+CURA_PROFILE = re.compile(r"cura/.*\.cfg", re.IGNORECASE)
+CURA_VALUES = re.compile(
+    rf"^\s*({'|'.join((*CURA_SHAPES, *CURA_LAID))})\s*=[ \t]*(.*?)[ \t]*\r?$", re.MULTILINE
+)
 CONFIG = re.compile(r"metadata/(?:\w+_model|model_settings)\.config", re.IGNORECASE)
 DRAIN_HOLES = "metadata/slic3r_pe_sla_drain_holes.txt"
 TRUE = ("1", "true", "yes")
+UNUSED = ("", "false", "no", "none", "normal")  # values of settings of Cura that change nothing
 LAST = 1 << 62  # of triangles, where a range has no end
 
 
 def is_config(name: str) -> bool:
     """Whether a file of the zip is a slicer's file of roles: those of programs made from PrusaSlicer end in `_model.config`."""
     return CONFIG.fullmatch(name) is not None
+
+
+def is_used(value: str) -> bool:
+    """Whether a setting of Cura with that value changes anything."""
+    text = value.strip().lower()
+    try:
+        return float(text) != 0.0
+    except ValueError:
+        return text not in UNUSED
 
 
 @dataclass
