@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from typing import Any
 
@@ -50,7 +51,7 @@ def _opened(document: Any, part: PartSource, key: str) -> Any:
     shape, label, issues = changed_part(
         part.file,
         part.object or "",
-        lambda source: _change(source, part, key),
+        functools.partial(_change, part=part, section=key),
         f"{key}.set",
         PATIENCE,
     )

@@ -2,9 +2,10 @@
 """Files from outside, read in a process that may crash, with limits of time and memory.
 
 FreeCAD and the geometry kernel crash on some damaged files, and on others read without end. Without a window the process is
-a copy of this one, made by fork in milliseconds. Beside a window, whose threads a fork would not copy, it is one of
-`kernel_process`, which is started once, and ended as soon as whoever waits for it is cancelled. What was read comes back as
-`answers` has it. Where there is neither, files are read here. A copy may begin before the file is asked for (`ahead`).
+a copy of this one, made by fork in milliseconds. A fork does not copy threads, though: beside a window, and after the
+geometry kernel of FreeCAD 1.0 or later has started its threads, it is a process of `kernel_process`, which is started once,
+and ended as soon as whoever waits for it is cancelled. What was read comes back as `answers` has it. Where there is neither,
+files are read here.
 """
 
 from __future__ import annotations
@@ -60,14 +61,14 @@ def apart(
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return read(path, *rest)
     limits = _limits(size, patience)
-    if not FreeCAD.GuiUp:
+    if not (FreeCAD.GuiUp or _has_kernel_threads()):
         with _Reading(read, path, rest, *limits) as copy:
             ended, used = copy.wait()
             if ended:
                 raise _refused(where, ended, used, *limits)
             found = answers.hear(*copy.files)
     else:
-        with _with_window() as files:
+        with _answer_files() as files:
             question = (*files, read.__module__, read.__qualname__, path, rest, *limits)
             how = kernel_process.limited(answer, question, LONGER * limits[0])
             if how is None:  # there is no other process
@@ -83,8 +84,17 @@ def _limits(size: float, patience: float) -> tuple[float, float]:
     return patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
 
 
+def _has_kernel_threads() -> bool:
+    """Whether the geometry kernel may have started threads in this process.
+
+    From FreeCAD 1.0 on it does so for booleans, for example. A forked copy that computes a shape then waits for threads
+    which it does not have, without end.
+    """
+    return int(FreeCAD.Version()[0]) >= 1 and len(os.listdir("/proc/self/task")) > 1
+
+
 @contextlib.contextmanager
-def _with_window() -> Iterator[tuple[str, str]]:
+def _answer_files() -> Iterator[tuple[str, str]]:
     """The paths of two files in a folder of their own."""
     with tempfile.TemporaryDirectory(prefix="reading_") as folder:
         yield os.path.join(folder, "told"), os.path.join(folder, "geometry")

@@ -89,13 +89,12 @@ def changed_part(
 ) -> tuple[Any, str, tuple[Issue, ...]]:
     """As `part_content` of an FCStd file, after `change(document)` changed the document; it returns the changed objects.
 
-    where: what errors about the change name. patience: how many times as long as reading a file this may take. The file
-    stays as it is. InputError NO_ADD_ON besides.
+    change: a function of a module, or a `functools.partial` of one, because another process may call it. where: what errors
+    about the change name. patience: how many times as long as reading a file this may take. The file stays as it is.
+    InputError NO_ADD_ON besides.
     """
     place = str(located(path))
-    return _decoded(
-        apart(lambda _: _shape_of_file(place, object_name, change, where), place, patience=patience)
-    )
+    return _decoded(apart(_shape_of_file, place, object_name, change, where, patience=patience))
 
 
 def add_part(document: Any, shape: Any, label: str, issues: tuple[Issue, ...] = ()) -> Any:
