@@ -41,7 +41,7 @@ def clad_faces(
 
     InputError NO_FACES, UNKNOWN_FACE, SEVERAL_BODIES, BACK_OF_SOLID, BRANCHING_FACES, and those of `sheet`.
     """
-    with reported(label):
+    with reported(label, shape):
         known = faces_by_name(shape, names, label)
         if not names and shape.Solids:
             raise InputError(

@@ -24,6 +24,7 @@ from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, uprig
 from ..core.issues import NOTE, InputError, Issue, Text
 from .kernel.limits import refuse_bare
 from .revolution.axis import from_normals
+from .shapes.no_solid import no_solid
 from .shapes.tessellate import WELDED
 from .whole_mesh import whole
 
@@ -69,9 +70,7 @@ def bodies_of(
         )
         return Bodies(_named(found.solids, label), found.issues)
     if source is None or source.isNull() or not source.Solids:
-        raise InputError(
-            "NO_SOLID", label, "it has no solid; choose solids or closed meshes to deposit"
-        )
+        raise no_solid(source, label, Text("choose solids or closed meshes to deposit"))
     made: list[tuple[Any, tuple[SolidMesh, ...]]] = []
     crossing: list[str] = []
     issues: list[Issue] = []

@@ -16,11 +16,12 @@ from freecad_am.core.types import Array, Index
 
 from ...core.geometry.formatting import place
 from ...core.geometry.walls.surface import dot
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 
 # since FreeCAD 1.0 some faults are a plain RuntimeError, the base of these
 FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)
 FAULTY = "BAD_SHAPE"
+MAX_NAMED = 5  # faces named in a message
 SAMPLES = 720  # of an edge that may cross itself
 CROSSED = (
     1e-3  # of a step between samples; stretches of an edge nearer to each other than this cross
@@ -28,8 +29,9 @@ CROSSED = (
 
 
 @contextmanager
-def reported(label: str) -> Iterator[None]:
-    """Faults of the geometry kernel within, as an InputError FAULTY that names `label`."""
+def reported(label: str, shape: Any = None) -> Iterator[None]:
+    """Faults of the geometry kernel within, as an InputError FAULTY that names `label`, and the damaged faces of a Part.Shape, or
+    where that is."""
     try:
         yield
     except FAULTS as error:
@@ -37,10 +39,39 @@ def reported(label: str) -> Iterator[None]:
         raise InputError(
             FAULTY,
             label,
-            "the geometry kernel cannot work with this shape ({}); repair it (Part, Check geometry), or "
+            "the geometry kernel cannot work with this shape ({}{}); repair it (Part, Check geometry), or "
             "redraw its faces",
             what,
+            Word(_damaged(shape)),
         ) from error
+
+
+def _damaged(shape: Any) -> str:
+    """Which faces of a Part.Shape are damaged, and where; of one whose faces are each sound, where it is."""
+    faces = list(getattr(shape, "Faces", ()))
+    named = []
+    for number, face in enumerate(faces, start=1):
+        try:
+            sound = face.isValid()
+        except FAULTS:
+            sound = False
+        if not sound:
+            named.append(Text("Face{} at {} is damaged", number, _middle(face)))
+    if named:
+        return Text("; {}", Text.joined(", ", named[:MAX_NAMED]))
+    if faces:
+        return Text("; its {} face(s), about {}, are each sound", len(faces), _middle(shape))
+    return ""
+
+
+def _middle(shape: Any) -> str:
+    """The middle of a shape as text; a corner of it where it has no extent."""
+    try:
+        if shape.BoundBox.isValid():
+            return place(tuple(shape.BoundBox.Center))
+        return place(tuple(shape.Vertexes[0].Point))
+    except (*FAULTS, IndexError):
+        return "(?)"
 
 
 def refuse_bare(
@@ -64,8 +95,9 @@ def refuse_bare(
         raise InputError(
             FAULTY,
             f"{label} {name}",
-            "the geometry kernel cannot divide this face into triangles; repair it (Part, "
+            "the geometry kernel cannot divide this face, about {}, into triangles; repair it (Part, "
             "Check geometry), or redraw it",
+            _middle(face),
         )
 
 

@@ -18,6 +18,7 @@ from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.surface import dot
 from ...core.geometry.walls.surface_wall import TABLE, TORUS, Placed, SurfaceWall
 from ...core.issues import NOTE, InputError, Issue, Text
+from ..shapes.no_solid import no_solid
 from .patch_wall import sound
 from .wall import Tube, tubes
 
@@ -98,9 +99,7 @@ def find_wall(
 
 def _solid(substrate: Any, label: str) -> Any:
     if substrate is None or substrate.isNull() or not substrate.Solids:
-        raise InputError(
-            "NO_SOLID", label, "it is not a solid; choose a solid part for the wall to grow on"
-        )
+        raise no_solid(substrate, label, Text("choose a solid part for the wall to grow on"))
     if substrate.Volume <= 0.0:
         raise InputError(
             "INSIDE_OUT", label, "the solid is turned inside out; repair it (Part, Check geometry)"

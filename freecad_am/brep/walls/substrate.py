@@ -13,9 +13,10 @@ from ...core.geometry.mesh.repair import repaired
 from ...core.geometry.mesh.solid import SolidMesh
 from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.ground import ExactGround, FacetGround, Ground
-from ...core.issues import InputError, Issue
+from ...core.issues import InputError, Issue, Text
 from ..kernel.limits import refuse_bare
 from ..kernel.process import in_kernel_process
+from ..shapes.no_solid import no_solid
 from ..shapes.tessellate import body, tessellated, welded
 from .sheet import facing
 from .surface_patch import patch_of
@@ -59,10 +60,8 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
         solid, issues = mesh_solid(mesh.vertices, mesh.triangles, label, mend)
         return Substrate(label, None, solid, None, issues)
     if source is None or source.isNull() or not source.Solids:
-        raise InputError(
-            "NO_SOLID",
-            label,
-            "it is not a solid; choose a solid part or a closed mesh for the wall to grow on",
+        raise no_solid(
+            source, label, Text("choose a solid part or a closed mesh for the wall to grow on")
         )
     for solid in source.Solids:
         if solid.Volume <= 0.0:

@@ -49,9 +49,9 @@ def wall_on(
     straight across, and the first layer one loop; a PatchWall otherwise, and always for fronts. Raises the InputErrors of
     `find_patch_wall` and `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
     """
-    with reported(substrate_label):
+    with reported(substrate_label, substrate):
         carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)
-    with reported(label):
+    with reported(label, shape):
         wall = _wall_on(shape, faces, carrier, height, label, start_edges, mend, fronts)
     return wall if carrier is None else replace(wall, issues=(*carrier.issues, *wall.issues))
 

@@ -397,7 +397,7 @@ def _direction_text(way: Array) -> str:
 def _turned(part: Taken, faces: Sequence[str]) -> RevolvedWall | None:
     """The wall of revolution of a shape, None where it is of none."""
     try:
-        with kernel.reported(part.label):
+        with kernel.reported(part.label, part.shape):
             return find_wall(part.shape.copy(False), tuple(faces), label=part.label)
     except InputError as error:
         if error.code == kernel.FAULTY:

@@ -29,5 +29,6 @@ def memory(label: str) -> Iterator[None]:
 def kernel(obj: Any) -> Iterator[None]:
     """Faults of the geometry kernel within, as an InputError BAD_SHAPE that names what the stage `obj` is made from."""
     source = getattr(obj, "Source", None)
-    with reported(str(source[0].Label if source else obj.Label)):
+    origin = source[0] if source else obj
+    with reported(str(origin.Label), getattr(origin, "Shape", None)):
         yield

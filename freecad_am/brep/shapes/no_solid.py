@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a shape without solids has instead, and how to make a solid of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...core.geometry.formatting import place
+from ...core.issues import InputError, Text, Word
+
+SEW = Text(
+    "sew them (Part, Shape builder: Shell from faces, then Solid from shell), or export the part as a solid from CAD, "
+    "as STEP rather than as IGES"
+)
+
+
+def no_solid(source: Any, label: str, wanted: str) -> InputError:
+    """The error NO_SOLID for a Part.Shape, or None. wanted: what to choose instead, for the end of the sentence."""
+    faces = [] if source is None or source.isNull() else list(source.Faces)
+    if not faces:
+        return InputError("NO_SOLID", label, "it is not a solid; {}", Word(wanted))
+    if source.Shells and all(shell.isClosed() for shell in source.Shells):
+        return InputError(
+            "NO_SOLID",
+            label,
+            "it is no solid, but {} closed shell(s) of {} face(s); make solids of them (Part, Convert to solid), or {}",
+            len(source.Shells),
+            len(faces),
+            Word(wanted),
+        )
+    return InputError(
+        "NO_SOLID",
+        label,
+        "it is no solid, but {} face(s) that enclose nothing, as nothing is joined to the edge at {} of {}; {}, or {}",
+        len(faces),
+        *_open_edge(faces),
+        Word(SEW),
+        Word(wanted),
+    )
+
+
+def _open_edge(faces: list[Any]) -> tuple[str, str]:
+    """The place of the middle of an edge that a single face has, and the name of that face."""
+    owners: dict[int, list[int]] = {}
+    edges = {}
+    for number, face in enumerate(faces, start=1):
+        for edge in face.Edges:
+            owners.setdefault(edge.hashCode(), []).append(number)
+            edges[edge.hashCode()] = edge
+    single = [
+        code
+        for code, own in owners.items()
+        if len(own) == 1
+        and not edges[code].Degenerated
+        and not edges[code].isSeam(faces[own[0] - 1])
+    ]
+    if not single:
+        return place(np.array(tuple(faces[0].BoundBox.Center))), "Face1"
+    edge = edges[single[0]]
+    middle = edge.valueAt(0.5 * (edge.FirstParameter + edge.LastParameter))
+    return place(np.array(tuple(middle))), f"Face{owners[single[0]][0]}"
