@@ -315,3 +315,28 @@ def test_a_table_of_straight_beads_says_nothing_of_bends(tmp_path):
         True,
         False,
     ]
+
+
+def refused_table(tmp_path, rows):
+    (tmp_path / "mine.csv").write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        bead_table.load("mine.csv", tmp_path)
+    return caught.value.code, str(caught.value.message)
+
+
+def test_a_table_that_contradicting_rows_spoil_is_refused_for_these(tmp_path):
+    """It was said that beads get wider with speed, and to check the columns."""
+    rows = ["inf,300,4,3,6.5", "inf,300,10,3,6.5", "inf,600,7.5,2.5,6.5", "inf,900,7.2,2,6.5"]
+    code, message = refused_table(tmp_path, rows)
+    assert code == "TABLE_CONTRADICTS"
+    assert "row 1 (line 2) and row 2 (line 3) (width 4 and 10 mm)" in message
+    wider = ["inf,300,6,3,6.5", "inf,300,6.1,3,6.5", "inf,600,7.5,2.5,6.5", "inf,900,8,2,6.5"]
+    code, message = refused_table(tmp_path, wider)
+    assert code == "NO_MODEL" and "wider with speed" in message
+
+
+def test_a_table_of_one_speed_names_its_contradicting_rows_too(tmp_path):
+    rows = ["inf,300,4,3,6.5", "inf,300,10,3,6.5", "inf,300,7,3,6.5", "inf,300,7.1,3,6.5"]
+    code, message = refused_table(tmp_path, rows)
+    assert code == "COLLINEAR_TABLE" and "all beads have the travel speed 300 mm/min" in message
+    assert "row 1 (line 2) and row 2 (line 3) (width 4 and 10 mm)" in message

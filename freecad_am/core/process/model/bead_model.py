@@ -144,7 +144,8 @@ def fit(
     beads laid at several, of which `wire_feed` is the nominal one.
 
     InputError 'TOO_FEW_ROWS', 'BAD_TABLE' (values that are not beads: not positive, not finite), 'COLLINEAR_TABLE' (radii
-    or speeds do not vary, or only together) or 'NO_MODEL' (width does not fall with speed).
+    or speeds do not vary, or only together), 'TABLE_CONTRADICTS' (rows do, so that width does not fall with speed)
+    or 'NO_MODEL' (width does not fall with speed).
     """
     columns = {
         "radius": (radius, "mm"),
@@ -173,10 +174,27 @@ def fit(
         terms = np.insert(terms, 1, 1.0 / radius, axis=1)
     scaled = terms / np.linalg.norm(terms, axis=0)
     singular = np.linalg.svd(scaled, compute_uv=False)
+    contradictions = _contradictions(
+        radius, speed, feeds, {"width": width, "height": height}, lines
+    )
     if singular[-1] < FLATTEST * singular[0]:
-        raise InputError("COLLINEAR_TABLE", label, _alike(radius, speed, equivalent))
+        raise InputError(
+            "COLLINEAR_TABLE",
+            label,
+            "{}{}",
+            Word(_alike(radius, speed, equivalent)),
+            Word(_besides(contradictions)),
+        )
     fits = [_fit(terms, column) for column in (width, height)]
     if fits[0].m <= 0.0:
+        if contradictions:
+            raise InputError(
+                "TABLE_CONTRADICTS",
+                label,
+                "rows that were laid alike were measured differently: {}; with both of each pair beads would get wider with "
+                "speed; measure these beads again, or leave the wrong one out",
+                Text.joined(", ", contradictions),
+            )
         raise InputError(
             "NO_MODEL",
             label,
@@ -189,9 +207,7 @@ def fit(
         (float(speed.min()), float(speed.max())),
         (float(radius.min()), float(radius.max())),
         wire_feed,
-        contradictions=_contradictions(
-            radius, speed, feeds, {"width": width, "height": height}, lines
-        ),
+        contradictions=contradictions,
     )
     return (
         made
@@ -230,6 +246,16 @@ def _contradictions(
                     )
                 )
     return tuple(pairs)
+
+
+def _besides(contradictions: Sequence[str]) -> str:
+    """What else is wrong with a table that is refused: rows that contradict each other."""
+    if not contradictions:
+        return ""
+    return Text(
+        "; and rows that were laid alike were measured differently: {}; measure these again",
+        Text.joined(", ", contradictions),
+    )
 
 
 def _ends(values: Array) -> tuple[float, float]:
