@@ -78,9 +78,7 @@ class _Observer:
     def slotBeforeRecomputeDocument(self, document: Any) -> None:
         """What FreeCAD told nobody of, such as changes of frozen objects and files, counts in this recompute."""
         _mark_outdated(document)
-        for obj in document.Objects:
-            if hasattr(obj, "ResultLayout"):
-                obj.Proxy.was_run = False
+        _forget_runs(document)
 
     def slotRecomputedDocument(self, document: Any) -> None:
         """FreeCAD does not run what follows an object that failed, such as a link to nothing: tell what is missing. Stages of
@@ -90,8 +88,12 @@ class _Observer:
                 _mark(obj, "")
             elif hasattr(obj, "ResultLayout") and _is_left_out(obj):
                 say(obj, STALE, Text(LEFT_OUT))
-        for follower in (document, *document.InList):
+        _run_outdated(document)
+        for follower in document.InList:
             _mark_outdated(follower)
+        _forget_runs(
+            document
+        )  # FreeCAD 1.1 does not call the function for the begin of a recompute
 
 
 def _mark_followers(obj: Any) -> None:
@@ -108,14 +110,36 @@ def _mark_followers(obj: Any) -> None:
                     _mark(later, obj.Label)
 
 
-def _mark_outdated(document: Any) -> None:
-    """Mark the stages of a document whose inputs are not those that their results were made from."""
+def _mark_outdated(document: Any) -> list[Any]:
+    """Mark the stages of a document whose inputs are not those that their results were made from; those stages and what
+    follows them."""
+    marked: dict[Any, None] = {}
     for obj in document.Objects:
         if hasattr(obj, "ResultLayout") and is_outdated(obj):
-            _mark(obj, obj.Label)
-            for later in obj.InListRecursive:
-                if hasattr(later, "ResultLayout"):
-                    _mark(later, obj.Label)
+            for stage in (obj, *obj.InListRecursive):
+                if hasattr(stage, "ResultLayout"):
+                    _mark(stage, obj.Label)
+                    marked[stage] = None
+    return list(marked)
+
+
+def _run_outdated(document: Any) -> None:
+    """Run the stages that a recompute of a document left with results of other inputs.
+
+    FreeCAD may run a stage before an expression moves the container of its part, and 1.1 asks no stage again before a
+    recompute. Stages that FreeCAD is still to run, after a recompute of some objects alone, are left to that.
+    """
+    stages = [obj for obj in _mark_outdated(document) if obj.Document == document]
+    for obj in sorted(stages, key=lambda stage: len(stage.OutListRecursive)):
+        if "Touched" not in obj.State:
+            obj.recompute()
+
+
+def _forget_runs(document: Any) -> None:
+    """From now on no stage of a document counts as run by its last recompute."""
+    for obj in document.Objects:
+        if hasattr(obj, "ResultLayout"):
+            obj.Proxy.was_run = False
 
 
 def is_outdated(obj: Any) -> bool:
