@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from freecad_am.batch import cli
+from freecad_am.batch.arguments import command_parsers
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.posts import catalogue
 
@@ -80,7 +81,7 @@ def test_commands_parse(page, words):
     assert command in cli.COMMANDS
     if not rest:
         return  # a command by its name alone
-    options = vars(cli._parser(command).parse_args(rest))
+    options = vars(command_parsers()[1][command].parse_args(rest))
     for value in options.values():
         if isinstance(value, str) and value.startswith(("resources/", "docs/")):
             assert (ROOT / value).is_file(), value

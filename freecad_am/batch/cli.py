@@ -14,23 +14,6 @@ from typing import Any
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
 COMMANDS = ("plan", "export", "batch", "inspect", "check", "place", "machines")
 SHAPES = ("plan", "export", "inspect", "place")  # commands that read shapes
-USAGE = """usage: freecad-am COMMAND
-
-  plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
-  export DOC.FCStd [-o DIR] [--object NAME ...]     recompute a saved document and write its programs; with
-                                                    --wires step|dxf its paths as wires instead
-  batch TABLE.csv --job JOB.yaml [-o DIR] [-j N]    one plan per row of a table of job keys; --scheduler ADDRESS of a
-                                                    Dask cluster, --resume, --dry-run
-  inspect JOB.yaml|DOC.FCStd --measured FILE ...    compare measured points with what is planned; -o DIR,
-                                                    --set tolerance=0.3 ..., of a document --object NAME
-  check PROGRAM ... --cell JOB.yaml|CELL.yaml       drive a program that was edited, or written elsewhere, in a cell;
-                                                    -o DIR, --post NAME
-  place JOB.yaml [-o DIR]                           where the part can stand: place.csv, place.html, and the best pose
-                                                    as a line of YAML for the section cell
-  machines [NAME --urdf | --dh | --modified-dh]     list the machines known, or write one as URDF or as a table;
-                                                    list some: --maker KUKA --reach '2 m' --payload '20 kg' --post kuka
-  demo | test | bench                               see the README
-"""
 
 
 def main(argv: list[str]) -> int:
@@ -66,10 +49,12 @@ def _main(argv: list[str]) -> int:
 
 
 def _run(argv: list[str], session: Any) -> int:
+    from freecad_am.batch.arguments import command_parsers
     from freecad_am.core.issues import InputError
 
+    whole, parsers = command_parsers()
     if not argv or argv[0] in ("-h", "--help", "help"):
-        session.out(USAGE)
+        session.out(whole.format_help())
         return DONE if argv else BAD_INPUT
     command, words = argv[0], argv[1:]
     for word in argv:
@@ -87,7 +72,7 @@ def _run(argv: list[str], session: Any) -> int:
         near = difflib.get_close_matches(command, (*COMMANDS, "demo", "test", "bench", "docs"), n=1)
         hint = f"did you mean {near[0]}?" if near else f"use one of {', '.join(COMMANDS)}"
         raise InputError("USAGE", "command line", "there is no command {!r}; {}", command, hint)
-    parser = _parser(command)
+    parser = parsers[command]
     if "-h" in words or "--help" in words:
         session.out(parser.format_help())
         return DONE
@@ -118,143 +103,6 @@ def _failed(error: Exception, session: Any) -> int:
         "(FREECAD_AM_DEBUG=1 shows where)"
     )
     return OUR_FAULT
-
-
-def _parser(command: str) -> Any:
-    import argparse
-
-    from freecad_am.core.issues import InputError
-
-    class Parser(argparse.ArgumentParser):
-        def error(self, message: str) -> Any:
-            raise InputError(
-                "USAGE", f"freecad-am {command}", "{}; try freecad-am {} --help", message, command
-            )
-
-    parser = Parser(prog=f"freecad-am {command}", allow_abbrev=False, add_help=False)
-    if command == "machines":
-        _choose_machines(parser)
-        return parser
-    parser.add_argument("-o", "--output", metavar="DIR", help="folder of the outputs")
-    if command == "plan":
-        parser.add_argument("job", metavar="JOB.yaml")
-        parser.add_argument("--no-page", action="store_true", help="leave report.html out")
-    elif command == "place":
-        parser.add_argument("job", metavar="JOB.yaml")
-    elif command == "export":
-        parser.add_argument("document", metavar="DOC.FCStd")
-        parser.add_argument(
-            "--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label"
-        )
-        parser.add_argument(
-            "--wires",
-            choices=("step", "dxf"),
-            default="",
-            help="write paths as wires instead of programs",
-        )
-    elif command == "inspect":
-        parser.add_argument("source", metavar="JOB.yaml|DOC.FCStd")
-        parser.add_argument(
-            "--measured",
-            metavar="FILE",
-            nargs="+",
-            action="extend",
-            required=True,
-            help="points (csv, txt, xyz, asc) or scans (stl, obj, ply)",
-        )
-        parser.add_argument(
-            "--set",
-            metavar="KEY=VALUE",
-            nargs="+",
-            action="extend",
-            default=[],
-            dest="settings",
-            help="parameters of the inspection, such as tolerance=0.3 probe_radius=1.5 heights='15 25 35'",
-        )
-        parser.add_argument(
-            "--object",
-            metavar="NAME",
-            default="",
-            help="Name or Label of what was measured, of a document",
-        )
-    elif command == "check":
-        parser.add_argument(
-            "program", metavar="PROGRAM", nargs="+", help="the files of a program, or their folder"
-        )
-        parser.add_argument(
-            "--cell", metavar="FILE", required=True, help="a job, or a cell in a file of its own"
-        )
-        parser.add_argument(
-            "--post",
-            metavar="NAME",
-            help="the post that reads it; else that of the job or of the machine",
-        )
-    else:
-        _choose_rows(parser)
-    return parser
-
-
-def _choose_rows(parser: Any) -> None:
-    """The words of `batch`."""
-    parser.add_argument("table", metavar="TABLE.csv")
-    parser.add_argument("--job", metavar="JOB.yaml", required=True)
-    parser.add_argument(
-        "-j", "--jobs", metavar="N", type=_count, help="rows planned at the same time, 1 without"
-    )
-    parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="plan on the workers of this Dask scheduler"
-    )
-    parser.add_argument(
-        "--resume", action="store_true", help="keep the rows that an earlier run has done"
-    )
-    parser.add_argument(
-        "--dry-run", action="store_true", help="look whether rows are refused, and plan none"
-    )
-
-
-def _choose_machines(parser: Any) -> None:
-    """The words of `machines`."""
-    parser.add_argument(
-        "machine", metavar="NAME", nargs="?", help="a machine of the list, or a machine file"
-    )
-    forms = parser.add_mutually_exclusive_group()
-    forms.add_argument(
-        "--urdf",
-        action="store_const",
-        const="urdf",
-        dest="form",
-        help="write it as URDF, without looks",
-    )
-    forms.add_argument(
-        "--dh",
-        action="store_const",
-        const="dh",
-        dest="form",
-        help="write its table of Denavit and Hartenberg, in mm and degrees",
-    )
-    forms.add_argument(
-        "--modified-dh",
-        action="store_const",
-        const="modified-dh",
-        dest="form",
-        help="the same by Craig",
-    )
-    parser.add_argument("--maker", metavar="NAME", help="list those of this maker")
-    parser.add_argument("--reach", metavar="LENGTH", help="list those that reach so far at least")
-    parser.add_argument(
-        "--payload", metavar="MASS", help="list those that are known to carry so much at least"
-    )
-    parser.add_argument(
-        "--post", metavar="NAME", help="list those whose controllers read the programs of this post"
-    )
-
-
-def _count(text: str) -> int:
-    import argparse
-
-    if not text.isdecimal() or not 1 <= int(text) <= 256:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes from 1 to 256")
-    return int(text)
 
 
 def _plan(options: Any, session: Any) -> int:

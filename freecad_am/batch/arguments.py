@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command line of the headless commands, by subparsers of argparse."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import NoReturn
+
+from freecad_am.core.issues import InputError
+
+PROGRAM = "freecad-am"
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors are those of a user's input, and name the command that explains itself."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise InputError USAGE."""
+        raise InputError("USAGE", self.prog, "{}; try {} --help", message, self.prog)
+
+
+def command_parsers() -> tuple[Parser, dict[str, Parser]]:
+    """Return the parser of the whole command line, and that of each command by its name.
+
+    Help is not an action of these parsers: the session prints it, with escapes where the terminal needs them.
+    """
+    whole = Parser(prog=PROGRAM, allow_abbrev=False, add_help=False)
+    whole.usage = f"{PROGRAM} COMMAND"
+    whole.epilog = (
+        f"demo, test, bench and docs: see the README; {PROGRAM} COMMAND --help tells the rest"
+    )
+    commands = whole.add_subparsers(title="commands", metavar="COMMAND", dest="command")
+    output = Parser(add_help=False)
+    output.add_argument(
+        "-o",
+        "--output",
+        metavar="DIR",
+        help="folder of the outputs; without it out/<name> beside the job",
+    )
+    parsers = {}
+    for name, (summary, has_outputs, add_arguments) in _COMMANDS.items():
+        parser = commands.add_parser(
+            name,
+            prog=f"{PROGRAM} {name}",
+            help=summary,
+            description=summary,
+            parents=[output] if has_outputs else [],
+            allow_abbrev=False,
+            add_help=False,
+        )
+        add_arguments(parser)
+        parsers[name] = parser
+    return whole, parsers
+
+
+def _add_plan(parser: Parser) -> None:
+    parser.add_argument("job", metavar="JOB.yaml")
+    parser.add_argument("--no-page", action="store_true", help="leave report.html out")
+
+
+def _add_place(parser: Parser) -> None:
+    parser.add_argument("job", metavar="JOB.yaml")
+
+
+def _add_export(parser: Parser) -> None:
+    parser.add_argument("document", metavar="DOC.FCStd")
+    parser.add_argument(
+        "--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label"
+    )
+    parser.add_argument(
+        "--wires", choices=("step", "dxf"), default="", help="write paths as wires, not programs"
+    )
+
+
+def _add_inspect(parser: Parser) -> None:
+    parser.add_argument("source", metavar="JOB.yaml|DOC.FCStd")
+    parser.add_argument(
+        "--measured",
+        metavar="FILE",
+        nargs="+",
+        action="extend",
+        required=True,
+        help="points (csv, txt, xyz, asc) or scans (stl, obj, ply)",
+    )
+    parser.add_argument(
+        "--set",
+        metavar="KEY=VALUE",
+        nargs="+",
+        action="extend",
+        default=[],
+        dest="settings",
+        help="parameters of the inspection, such as tolerance=0.3 probe_radius=1.5 heights='15 25 35'",
+    )
+    parser.add_argument(
+        "--object", metavar="NAME", default="", help="Name or Label of the measured object"
+    )
+
+
+def _add_check(parser: Parser) -> None:
+    parser.add_argument(
+        "program", metavar="PROGRAM", nargs="+", help="the files of a program, or their folder"
+    )
+    parser.add_argument(
+        "--cell", metavar="FILE", required=True, help="a job, or a cell in a file of its own"
+    )
+    parser.add_argument(
+        "--post",
+        metavar="NAME",
+        help="the post that reads it; without it that of the job or of the machine",
+    )
+
+
+def _add_batch(parser: Parser) -> None:
+    parser.add_argument("table", metavar="TABLE.csv")
+    parser.add_argument("--job", metavar="JOB.yaml", required=True)
+    parser.add_argument(
+        "-j", "--jobs", metavar="N", type=_process_count, help="rows planned at the same time"
+    )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="plan on the workers of this Dask scheduler"
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="keep the rows that an earlier run has done"
+    )
+    parser.add_argument(
+        "--dry-run", action="store_true", help="check all rows, and plan none of them"
+    )
+
+
+def _add_machines(parser: Parser) -> None:
+    parser.add_argument(
+        "machine", metavar="NAME", nargs="?", help="a machine of the list, or a machine file"
+    )
+    forms = parser.add_mutually_exclusive_group()
+    for option, form, words in (
+        ("--urdf", "urdf", "write it as URDF, without shapes"),
+        ("--dh", "dh", "write its table of Denavit and Hartenberg, in mm and degrees"),
+        ("--modified-dh", "modified-dh", "the same by Craig"),
+    ):
+        forms.add_argument(option, action="store_const", const=form, dest="form", help=words)
+    parser.add_argument("--maker", metavar="NAME", help="list those of this maker")
+    parser.add_argument("--reach", metavar="LENGTH", help="list those that reach at least so far")
+    parser.add_argument(
+        "--payload", metavar="MASS", help="list those that are known to carry at least so much"
+    )
+    parser.add_argument(
+        "--post", metavar="NAME", help="list those whose controllers read the programs of this post"
+    )
+
+
+def _process_count(text: str) -> int:
+    """The number of processes that a user asks for. argparse names the option in its error."""
+    if not text.isdecimal() or not 1 <= int(text) <= 256:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes from 1 to 256")
+    return int(text)
+
+
+# of each command: what it does, whether it writes outputs, and what adds its arguments
+_COMMANDS: dict[str, tuple[str, bool, Callable[[Parser], None]]] = {
+    "plan": ("plan one job, from part to programs", True, _add_plan),
+    "export": ("recompute a saved document and write its programs", True, _add_export),
+    "batch": ("plan one job per row of a table of job keys", True, _add_batch),
+    "inspect": ("compare measured points with what is planned", True, _add_inspect),
+    "check": ("drive a program that was edited, or written elsewhere, in a cell", True, _add_check),
+    "place": ("find where the part can stand, and the best pose of its cell", True, _add_place),
+    "machines": (
+        "list the known machines, or write one as URDF or as a table",
+        False,
+        _add_machines,
+    ),
+}
