@@ -458,3 +458,18 @@ def test_collars_have_margins_and_the_torch_leans_away_from_them(direction):
     assert (low.tool[:, 2] < low.build[:, 2]).all() and (high.tool[:, 2] > high.build[:, 2]).all()
     turn = np.cross(low.points[:-1], low.points[1:])[:, 2]
     assert (turn > 0.0).all() if direction == "counter-clockwise" else (turn < 0.0).all()
+
+
+def test_a_piece_on_a_hub_between_two_layers_is_named():
+    """A chip 32 to 34 mm off the hub, where layers lie at 30 and 36 mm, beside a blade, of one mesh or by itself."""
+    blade, chip = box((44, -10, 0), (75, 10, 40)), box((77, -5, 60), (79, 5, 80), name="chip")
+    mesh = Body(
+        "mesh",
+        np.vstack([blade.vertices, chip.vertices]),
+        np.vstack([blade.triangles, chip.triangles + len(blade.vertices)]),
+    )
+    for bodies in ((blade, chip), (mesh,)):
+        made = planned(solids(Developable(45.0), *bodies))
+        (issue,) = [one for one in made.issues if one.code == "NOT_DEPOSITED"]
+        assert "0.4 of its 0.4 cm3" in issue.message and bodies[-1].name in issue.message
+    assert not planned(solids(Developable(45.0), blade)).issues

@@ -880,3 +880,25 @@ def test_a_feed_for_the_room_of_beads_that_overlap_balances(share, codes):
     )
     issues = fed(replace(made, issues=()), process, None).issues
     assert [issue.code for issue in issues] == codes
+
+
+def test_a_thin_flange_of_one_solid_is_not_made_up_for_by_a_foot_that_counts_too_high():
+    """A flange of 0.8 mm between two cuts, and a foot of 1.2 mm that counts as high as a layer of 2 mm, of one solid."""
+    bodies = [
+        box((0, 0, 0), (60, 40, 1.2)),
+        box((0, 0, 1.2), (6, 40, 9.2)),
+        box((0, 0, 9.2), (60, 40, 10.0)),
+    ]
+    outline = [(0, 0), (60, 0), (60, 1.2), (6, 1.2), (6, 9.2), (60, 9.2), (60, 10), (0, 10)]
+    cap = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 7), (4, 5, 6), (4, 6, 7)]
+    one = prism(outline, cap, 0.0, 40.0)
+    for made in (
+        planned(one, layer_height=2.0, bead_spacing=3.0, direction="0 0 1"),
+        planned(*bodies, layer_height=2.0, bead_spacing=3.0, direction="0 0 1"),
+    ):
+        part, left, beside = made.volumes
+        assert part == pytest.approx(60 * 40 * 2.0 + 6 * 40 * 8.0)
+        assert (
+            1728.0 < left < 1.04 * 1728.0
+        )  # 0.8 x 54 x 40 mm of the flange, and corners that are round
+        assert beside == pytest.approx(0.8 * 54 * 40, rel=0.02)  # above the foot

@@ -26,7 +26,7 @@ from .between_cuts import uncut
 from .filling import Pictures, bead_width, over_fed, spaced
 from .notes import notes
 from .part_volume import part_volume
-from .volumes import twice, volumes
+from .volumes import of_slabs, twice, volumes
 from .without_bead import BareLayer, without_bead
 
 LEVEL = 1e-6  # mm, and of the cosine of an angle
@@ -59,6 +59,7 @@ def plan(
     issues: list[tuple[Stack, Issue]] = []
     bare: list[BareLayer] = []
     covers: list[Cover] = []
+    numbers: list[int] = []  # of the layers of the covers
     heights: dict[
         int, list[float]
     ] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
@@ -74,6 +75,7 @@ def plan(
                 bare.append(BareLayer(stack, layer, picture.bare))
             if layer.heights is not None:
                 heights.setdefault(layer.number, []).extend(layer.heights[::2])
+            numbers.append(layer.number)
             covers.append(
                 picture.cover.scaled(
                     1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
@@ -128,6 +130,8 @@ def plan(
             strategy,
             covers,
             sum(each.bare for each in missed),
+            of_slabs(solids, strategy.layer_height),
+            numbers,
         ),
         twice=twice(made, strategy, covers, width),
         uneven=np.array(

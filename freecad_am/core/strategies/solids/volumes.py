@@ -8,8 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...filling.cover import Cover, total
+from ...geometry.on_hub import SolidsOnHub
+from ...layers.planes.slabs import group_of, slabs
 from ...parameters.filled import FilledParameters
+from ...types import Array
 from .beads import MadeBead
+
+EXACT = 3e-3  # of the volume of a part; solids that share more overlap
 
 
 def of_layers(strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:
@@ -19,18 +24,45 @@ def of_layers(strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[floa
 
 
 def volumes(
-    part: float | None, strategy: FilledParameters, covers: Sequence[Cover], uncut: float = 0.0
+    part: float | None,
+    strategy: FilledParameters,
+    covers: Sequence[Cover],
+    uncut: float = 0.0,
+    within: Array | None = None,
+    numbers: Sequence[int] = (),
 ) -> tuple[float, float, float]:
     """mm3 of the part, of what beads leave of it, and of what of them lies beside it; what is cut of it counts as high as
     its layers, so that what is above the last cut is left, and what layers reach beyond it lies beside. uncut: mm3 of solids
     that no layer is cut in, which are left, whatever layers of others reach beyond these. A part of which the volume (mm3)
-    is None, as a margin is added to it or it is open, is as large as its layers are."""
+    is None, as a margin is added to it or it is open, is as large as its layers are.
+
+    within: (k,) mm3 that the part has within each layer, so that what one layer leaves is not made up for by what another
+    reaches beyond the part; numbers: of the layers of the covers. None: only the sum of all layers is compared."""
     whole, left, outside = of_layers(strategy, covers)
     if part is None:
         return whole, left, outside
+    if within is not None and abs(float(within.sum()) - part) <= EXACT * part:
+        areas = np.bincount(
+            np.asarray(numbers, dtype=np.intp),
+            [cover.area for cover in covers],
+            minlength=len(within),
+        )
+        within = np.r_[within, np.zeros(len(areas) - len(within))]
+        lacking = within - strategy.layer_height * areas
+        return (
+            part,
+            left + float(np.maximum(lacking, 0.0).sum()),
+            outside + float(np.maximum(-lacking, 0.0).sum()),
+        )
     uncut = min(uncut, part)
     cut = part - uncut
     return part, left + uncut + max(cut - whole, 0.0), outside + max(whole - cut, 0.0)
+
+
+def of_slabs(solids: SolidsOnHub, layer_height: float) -> Array | None:
+    """mm3 (k,) that solids in plane layers have between the planes of each; None for other layers."""
+    group = group_of(solids)
+    return None if group is None else slabs(group, layer_height, np.zeros((0, 3)), np.zeros(0)).part
 
 
 def twice(
