@@ -902,3 +902,12 @@ def test_a_thin_flange_of_one_solid_is_not_made_up_for_by_a_foot_that_counts_too
             1728.0 < left < 1.04 * 1728.0
         )  # 0.8 x 54 x 40 mm of the flange, and corners that are round
         assert beside == pytest.approx(0.8 * 54 * 40, rel=0.02)  # above the foot
+
+
+def test_curved_layers_are_not_compared_with_what_lies_between_planes():
+    """Layers round a corner, from a foot along an arm: by the heights of planes a third of it would be left and beside."""
+    foot, arm = box((0, 0, 0), (16, 16, 32)), box((16, 0, 16), (48, 16, 32))
+    made = planned(foot, arm, layers="geodesic", bead_spacing=4.0, direction="0 0 1")
+    part, left, beside = made.volumes
+    assert part == pytest.approx(2 * 16 * 16 * 32.0, rel=1e-3)
+    assert left < 0.06 * part and beside < 0.06 * part

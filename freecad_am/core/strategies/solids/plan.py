@@ -130,7 +130,7 @@ def plan(
             strategy,
             covers,
             sum(each.bare for each in missed),
-            of_slabs(solids, strategy.layer_height),
+            of_slabs(solids, strategy),
             numbers,
         ),
         twice=twice(made, strategy, covers, width),

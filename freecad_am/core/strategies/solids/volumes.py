@@ -59,10 +59,12 @@ def volumes(
     return part, left + uncut + max(cut - whole, 0.0), outside + max(whole - cut, 0.0)
 
 
-def of_slabs(solids: SolidsOnHub, layer_height: float) -> Array | None:
+def of_slabs(solids: SolidsOnHub, strategy: FilledParameters) -> Array | None:
     """mm3 (k,) that solids in plane layers have between the planes of each; None for other layers."""
     group = group_of(solids)
-    return None if group is None else slabs(group, layer_height, np.zeros((0, 3)), np.zeros(0)).part
+    if group is None or getattr(strategy, "layers", "planes") != "planes":
+        return None  # curved layers may begin on a plane too
+    return slabs(group, strategy.layer_height, np.zeros((0, 3)), np.zeros(0)).part
 
 
 def twice(
