@@ -142,7 +142,7 @@ def add_joints(
         "method": planned.method,
         "objective": planned.objective,
         "feasible": planned.feasible,
-        **comparison.of_path(planned, cell, joints),
+        **comparison.path_figures(planned, cell, joints),
         "planning_time_s": seconds - sum(float(entry["planning_time_s"]) for entry in others),
         "branch": list(planned.branch),
         "limits": planned.limits,

@@ -115,7 +115,7 @@ def motion_of(
 ) -> dict[str, Any]:
     """How the robot moves while it deposits. axis_limited_s: the deposit's time if each step took as long as the slowest
     axis needs."""
-    figures = comparison.of_path(path, cell, joints)
+    figures = comparison.path_figures(path, cell, joints)
     deposit = motion.deposit & (motion.point > 0)
     share = np.nanmax(of_report.speed_ratio(motion, cell)[deposit], axis=1, initial=0.0)
     time = motion.duration[deposit]

@@ -23,7 +23,7 @@ def dome():
     toolpath, cell, path, motion = planned_dome(9.0, process)
     condition, threshold = (on_deposit(motion.deposit, column) for column in path.judged(motion))
     source = Source(path.toolpath(toolpath), motion, process, cell, condition, threshold, 0.1)
-    return source, comparison.of_path(path, cell, JointParameters())
+    return source, comparison.path_figures(path, cell, JointParameters())
 
 
 @pytest.fixture

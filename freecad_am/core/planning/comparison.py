@@ -18,7 +18,7 @@ from .points import gather
 from .task import Task
 
 
-def of_path(path: JointPath, cell: Cell, parameters: JointParameters) -> dict[str, object]:
+def path_figures(path: JointPath, cell: Cell, parameters: JointParameters) -> dict[str, object]:
     """The figures of a planned joint path; of a machine with rotary axes those of its axes alone, which had no choice."""
     if not path.branch:
         return _figures(
@@ -34,13 +34,13 @@ def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
     are the largest within the beads at their travel speed, by differences over the points. Axes that slide have mm in the
     place of degrees.
     """
-    whole = all(path.reachable for path in paths)
+    complete = all(path.reachable for path in paths)
     return _figures(
         task.cell,
         paths,
         {
             "condition_min": float(min(path.condition.min() for path in paths)),
-            "objective_value": float(sum(path.objective for path in paths)) if whole else None,
+            "objective_value": float(sum(path.objective for path in paths)) if complete else None,
             "criteria": criteria_values(task, paths),
         },
     )
@@ -61,14 +61,16 @@ def _figures(
     largest = [np.max([rate[k] for rate in rates], axis=0) if rates else None for k in range(3)]
     speed = largest[0]
     return {
-        "min_deg": _shown(np.nanmin(joints, axis=0) if len(ranges) else None, units),
-        "max_deg": _shown(np.nanmax(joints, axis=0) if len(ranges) else None, units),
-        "range_per_layer_max_deg": _shown(ranges.max(axis=0) if len(ranges) else None, units),
-        "limit_margin_deg": _shown(margin, units),
+        "min_deg": _in_axis_units(np.nanmin(joints, axis=0) if len(ranges) else None, units),
+        "max_deg": _in_axis_units(np.nanmax(joints, axis=0) if len(ranges) else None, units),
+        "range_per_layer_max_deg": _in_axis_units(
+            ranges.max(axis=0) if len(ranges) else None, units
+        ),
+        "limit_margin_deg": _in_axis_units(margin, units),
         **criteria_of_path,
-        "speed_max_deg_s": _shown(speed, units),
-        "acceleration_max_deg_s2": _shown(largest[1], units),
-        "jerk_max_deg_s3": _shown(largest[2], units),
+        "speed_max_deg_s": _in_axis_units(speed, units),
+        "acceleration_max_deg_s2": _in_axis_units(largest[1], units),
+        "jerk_max_deg_s3": _in_axis_units(largest[2], units),
         "speed_ratio_max": None
         if speed is None
         else [float(v) for v in speed / cell.machine.max_speed],
@@ -89,18 +91,18 @@ def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | 
         np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "condition")
     )
     manipulability = np.empty(len(points))
-    for some, matrix in task.jacobians(points, phi, joints):
-        manipulability[some] = jac.manipulability(matrix, task.parameters.characteristic_length)
+    for rows, matrix in task.jacobians(points, phi, joints):
+        manipulability[rows] = jac.manipulability(matrix, task.parameters.characteristic_length)
     share = np.diff(np.append(points.first, len(points))) / len(points)
     values = {name: measure(task, points, joints) for name, measure in criteria.JOINT_ONLY.items()}
     values["manipulability"] = criteria.mean_inverse(points, manipulability)
     values["condition"] = criteria.mean_inverse(points, condition)
-    whole = {name: float((value * share).sum()) for name, value in values.items()}
-    whole |= {
+    totals = {name: float((value * share).sum()) for name, value in values.items()}
+    totals |= {
         "displacement": float(values["displacement"].sum()),
         "limits-klein": float(values["limits-klein"].max()),
     }
-    return {name: whole[name] for name in OBJECTIVES}
+    return {name: totals[name] for name in OBJECTIVES}
 
 
 def _rates(path: BeadPath) -> tuple[Array, Array, Array]:
@@ -119,7 +121,7 @@ def _rates(path: BeadPath) -> tuple[Array, Array, Array]:
     return np.abs(speed).max(axis=0), np.abs(acceleration).max(axis=0), np.abs(jerk).max(axis=0)
 
 
-def _shown(values: Array | None, units: Array) -> list[float | None] | None:
+def _in_axis_units(values: Array | None, units: Array) -> list[float | None] | None:
     """Values of the axes in the unit each is shown in."""
     if values is None:
         return None

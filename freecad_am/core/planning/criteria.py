@@ -60,14 +60,14 @@ def _liegeois_rate(task: Task, points: Points, joints: Array, rates: Array) -> A
 def _klein_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
     offset = task.given_rows.offset(joints)
     row = np.abs(offset).argmax(axis=1)
-    at = np.arange(len(points))
+    point_rows = np.arange(len(points))
     slope = (
         0.5
-        * np.sign(offset[at, row])
+        * np.sign(offset[point_rows, row])
         / task.given_rows.half[row]
-        * (rates @ task.given_rows.matrix.T)[at, row]
+        * (rates @ task.given_rows.matrix.T)[point_rows, row]
     )
-    return np.where(_is_worst(points, -np.abs(offset[at, row])), slope, 0.0)
+    return np.where(_is_worst(points, -np.abs(offset[point_rows, row])), slope, 0.0)
 
 
 def manipulability(task: Task, points: Points, joints: Array, matrix: Array) -> Array:
@@ -151,5 +151,5 @@ def _mean(points: Points, values: Array) -> Array:
 def _is_worst(points: Points, values: Array) -> Mask:
     # one point per bead, the first of the worst ones, so that a sum over points is the gradient of the maximum
     worst = values <= points.worst(values)[points.bead]
-    seen: Integers = np.cumsum(worst) - (np.cumsum(worst) - worst)[points.first][points.bead]
-    return np.asarray(worst & (seen == 1), dtype=np.bool_)
+    occurrence: Integers = np.cumsum(worst) - (np.cumsum(worst) - worst)[points.first][points.bead]
+    return np.asarray(worst & (occurrence == 1), dtype=np.bool_)

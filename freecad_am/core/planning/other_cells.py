@@ -134,7 +134,7 @@ def points(job: Tried) -> Iterator[Tried]:
 
 def external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
     """A positioner elsewhere, or external axes for a robot that has none."""
-    for remedy, settings in external_remedies.moved(job.settings, job.folders):
+    for remedy, settings in external_remedies.move_positioner(job.settings, job.folders):
         yield dataclasses.replace(job, settings=settings, remedy=remedy)
     toolpath = job.toolpath()
     mass = external_remedies.weight(toolpath, job.process)

@@ -17,10 +17,10 @@ from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
 from . import comparison
 from .arm import clear as arm_clear
-from .arm.kept import ArmKept, Cylinders, of_job
+from .arm.kept import ArmKept, Cylinders, build_arm_clearance
 from .beads import phases
 from .beads.chord_error import all_refined
-from .beads.overlap import run_on
+from .beads.overlap import extend_past_seam
 from .beads.retreat import go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
 from .certificate import closing
@@ -93,7 +93,7 @@ def plan_joints(
     parts = toolpath.parts
     joined, kept = (
         all(part.family != REVOLUTION for part, _ in parts),
-        of_job(toolpath, cell, cylinders),
+        build_arm_clearance(toolpath, cell, cylinders),
     )
     wanted = _branch_wanted(cell, parameters)
     among = range(BRANCHES) if wanted is None else (wanted,)
@@ -285,7 +285,7 @@ def _ranked(
         within = 0
         if task.kept is not None:
             within = int((found.margin.max(axis=0) >= 0.0).sum())
-            found = arm_clear.without_touching(
+            found = arm_clear.exclude_touching(
                 task, task.kept, points, [places[k] for k in some], found
             )
         best, each = found.best(), np.arange(len(some))
@@ -345,7 +345,7 @@ def _bettered(
 
 def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
-    straight = closing.where_asked(task, _as_run(task, paths))
+    straight = closing.close_gaps(task, _as_run(task, paths))
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
     paths, missed = as_held(task.cell, paths, task.lock, task.parameters.max_residual)
     phased = [phases.phased(task.cell, path, task.condition_at) for path in paths]
@@ -370,7 +370,9 @@ def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[
         not task.cell.machine.free
     ):  # whose beads are looked at as they are run: axes have room for all of it, or for none
         return [(path, []) for path in paths]
-    longer = [run_on(task, go_back(task, path, task.retreat), task.overlap) for path in paths]
+    longer = [
+        extend_past_seam(task, go_back(task, path, task.retreat), task.overlap) for path in paths
+    ]
     return all_refined(task, longer, task.chord_error)
 
 

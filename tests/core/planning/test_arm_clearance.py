@@ -310,7 +310,7 @@ def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, m
     wall = box(np.array([-140.0, -60.0, -5.0]), np.array([12.0, 120.0, 420.0]), "wall")
     job = dataclasses.replace(dome, surroundings=(*dome.surroundings, wall))
     cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=CLEARANCE), job.frame)
-    kept = arm_kept.of_job(job, cell, link_rods.of_robot(cell.robot.chain))
+    kept = arm_kept.build_arm_clearance(job, cell, link_rods.of_robot(cell.robot.chain))
     beads, places = [bead for _, _, bead in job], [(layer, index) for layer, index, _ in job]
     points = gather(beads, cell, arm_clear.POINTS_PER_BEAD)
     found, looked = [], []
@@ -321,7 +321,7 @@ def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, m
             monkeypatch.setattr(arm_clear, "ENDS", ends)
             asked = []
             monkeypatch.setattr(arm_kept.ArmKept, "rotations_near", counting(asked))
-            found.append(arm_clear.without_touching(task, kept, points, places, candidates).margin)
+            found.append(arm_clear.exclude_touching(task, kept, points, places, candidates).margin)
             looked.append(sum(asked))
             monkeypatch.undo()
     assert all(np.array_equal(one, other) for one, other in zip(found[::2], found[1::2]))

@@ -73,7 +73,7 @@ def test_beads_that_are_looked_at_together_get_the_points_that_they_get_alone(
 ):
     toolpath, found = sliced("sphere", 5.0), []
     for together in (1, 200, 4096):
-        monkeypatch.setattr(chord_error, "TOGETHER", together)
+        monkeypatch.setattr(chord_error, "POINTS_PER_BATCH", together)
         planned = plan_joints(toolpath, cell_of(toolpath, limits="maker"), JointParameters())
         found.append([path.joints for path in planned.beads])
     for other in found[1:]:

@@ -11,8 +11,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import JointParameters, given_text
 from freecad_am.core.planning.external import optimised
-from freecad_am.core.planning.external.courses import on_face
-from freecad_am.core.planning.external.freedom import AMPLE
+from freecad_am.core.planning.external.courses import directions_on_face
+from freecad_am.core.planning.external.freedom import IRRELEVANT_MARGIN
 from freecad_am.core.planning.external.rule import least_margin
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
@@ -141,14 +141,18 @@ def test_derivatives(hemisphere, external, objective):
     )
     path = planned.beads[3]
     freedom = optimised._freedom(
-        task, path, path.coefficients, lambda tool: on_face(cell, tool), math.radians(MOST)
+        task,
+        path,
+        path.coefficients,
+        lambda tool: directions_on_face(cell, tool),
+        math.radians(MOST),
     )
     x = 0.01 * np.random.default_rng(5).normal(
         size=(1 + cell.external.axes) * freedom.shape.shape[1]
     )
     here, step = freedom.look(x), 1e-6
     of_condition = np.arange(len(here.margins)) >= len(here.margins) - len(freedom.points)
-    told = ~(of_condition & (here.margins >= AMPLE))
+    told = ~(of_condition & (here.margins >= IRRELEVANT_MARGIN))
     assert (told & of_condition).any()
     for number in range(len(x)):
         change = np.where(np.arange(len(x)) == number, step, 0.0)
@@ -182,7 +186,7 @@ def test_what_is_no_better_stays(hemisphere, both, monkeypatch):
     level = both[0]
     for one, other in zip(path.beads, level.beads, strict=True):
         assert one.objective <= other.objective and one.margin >= min(
-            other.margin, optimised.ENOUGH
+            other.margin, optimised.SUFFICIENT_MARGIN
         )
     assert motion(cell_for(hemisphere), path) <= motion(cell_for(hemisphere), level)
 

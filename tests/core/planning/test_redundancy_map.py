@@ -365,7 +365,7 @@ def test_a_curve_follows_what_the_planner_planned(funnel):
     )
     assert np.allclose(followed.displacement, [one.objective for one in path.beads], rtol=1e-9)
     sums = spin_curve.sums(followed)
-    figures = plan.comparison.of_path(
+    figures = plan.comparison.path_figures(
         dataclasses.replace(
             path,
             beads=tuple(

@@ -143,11 +143,11 @@ def test_a_bead_that_turns_round_within_a_blend_has_no_point_too_near_another(le
     told, rows = steps.programmed(one, UR, CHORD, 100.0)
     inside = told.deposit[1:] & (told.point[1:] > 0)
     way = np.linalg.norm(np.diff(told.position, axis=0), axis=1)
-    assert way[inside].min() >= steps.NEAREST * UR.least_blend
+    assert way[inside].min() >= steps.MIN_STEP_SHARE * UR.least_blend
     # all that is left out lies near the way that stays
     for row in sorted(set(range(2, len(one))) - set(rows.tolist())):
         start, end = rows[rows < row][-1], rows[rows > row][0]
         line = one.position[end] - one.position[start]
         share = np.clip((one.position[row] - one.position[start]) @ line / (line @ line), 0, 1)
         off = np.linalg.norm(one.position[row] - one.position[start] - share * line)
-        assert off <= steps.OFF * CHORD + 1e-12
+        assert off <= steps.OMITTED_DEVIATION_SHARE * CHORD + 1e-12

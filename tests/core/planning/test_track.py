@@ -192,7 +192,7 @@ def test_a_long_part_without_a_track_is_told_of_one(track):
     assert note.code == "REMEDY" and told in note.message
     # one that has a track already is moved to no other, and a positioner is not in the way
     assert not list(external_remedies.added(changed, (), long, {"UNREACHABLE"}))
-    assert not list(external_remedies.moved(changed, ()))
+    assert not list(external_remedies.move_positioner(changed, ()))
 
 
 def test_between_the_points_too(planned):

@@ -38,112 +38,133 @@ SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way from where the local search began 
 TOUCHING = -1e-3  # margin of the candidate that is planned where none is clear, so that what is in its way can be named
 
 
-def without_touching(
-    task: Task, kept: ArmKept, points: Points, places: Sequence[Place], found: Found
+def exclude_touching(
+    task: Task, arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], candidates: Found
 ) -> Found:
     """The candidates, without a margin where a link comes too near: of each bead the best ones are looked at themselves,
     until one is clear; where the first few are not, all by a map of the rotations at which links come too near. Where none
     is clear the one that was best has next to none."""
-    margin, each = found.margin.copy(), np.arange(points.beads)
-    left = np.ones(points.beads, dtype=bool)
+    margin, bead_rows = candidates.margin.copy(), np.arange(points.beads)
+    pending = np.ones(points.beads, dtype=bool)
     for attempt in range(3 * FIRST_LOOK):
         if attempt == FIRST_LOOK:
-            margin[_mapped(task, kept, points, places, found.coefficients, left)] = UNREACHABLE
-        best = Found(found.coefficients, found.objective, margin).best()
-        left &= margin[best, each] >= 0.0
-        if not left.any():
+            margin[
+                _mapped(task, arm_clearance, points, bead_ids, candidates.coefficients, pending)
+            ] = UNREACHABLE
+        best = Found(candidates.coefficients, candidates.objective, margin).best()
+        pending &= margin[best, bead_rows] >= 0.0
+        if not pending.any():
             break
-        left &= _touched(task, kept, points, places, found.coefficients[best, each], left)
-        margin[best[left], each[left]] = UNREACHABLE
-    first = found.best()
-    lost = np.flatnonzero((margin < 0.0).all(axis=0) & (found.margin[first, each] >= 0.0))
-    margin[first[lost], lost] = TOUCHING
-    return Found(found.coefficients, found.objective, margin)
+        pending &= _find_touching(
+            task, arm_clearance, points, bead_ids, candidates.coefficients[best, bead_rows], pending
+        )
+        margin[best[pending], bead_rows[pending]] = UNREACHABLE
+    initial_best = candidates.best()
+    blocked = np.flatnonzero(
+        (margin < 0.0).all(axis=0) & (candidates.margin[initial_best, bead_rows] >= 0.0)
+    )
+    margin[initial_best[blocked], blocked] = TOUCHING
+    return Found(candidates.coefficients, candidates.objective, margin)
 
 
 def _mapped(
     task: Task,
-    kept: ArmKept,
+    arm_clearance: ArmKept,
     points: Points,
-    places: Sequence[Place],
+    bead_ids: Sequence[Place],
     coefficients: Array,
-    asked: Mask,
+    selected: Mask,
 ) -> Mask:
     """(C, B) for which of the candidates (C, B, degree + 1) of beads asked about a link comes too near at a rotation next to
     one of theirs."""
     joints = task.raw_joints(
         points, np.broadcast_to(np.arange(TURNS)[:, None] * (TURN / TURNS), (TURNS, len(points)))
     )
-    near, hopeless = _map(kept, points, places, joints, asked)
-    every, found = np.arange(len(points)), np.zeros(coefficients.shape[:2], dtype=bool)
-    for row, candidate in zip(found, coefficients):
+    contact_map, hopeless = _map(arm_clearance, points, bead_ids, joints, selected)
+    point_rows, touching = np.arange(len(points)), np.zeros(coefficients.shape[:2], dtype=bool)
+    for row, candidate in zip(touching, coefficients):
         phi = task.rotation(points, points.polynomial(candidate))[0]
-        at = np.mod(phi / (TURN / TURNS), TURNS).astype(np.intp) % TURNS
-        row[:] = asked & np.logical_or.reduceat(
-            near[at, every] | near[(at + 1) % TURNS, every], points.first
+        sector = np.mod(phi / (TURN / TURNS), TURNS).astype(np.intp) % TURNS
+        row[:] = selected & np.logical_or.reduceat(
+            contact_map[sector, point_rows] | contact_map[(sector + 1) % TURNS, point_rows],
+            points.first,
         )
-    found[:, hopeless] = True
-    return found
+    touching[:, hopeless] = True
+    return touching
 
 
 def _map(
-    kept: ArmKept, points: Points, places: Sequence[Place], joints: Array, asked: Mask
+    arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], joints: Array, selected: Mask
 ) -> tuple[Mask, Mask]:
     """(TURNS, T) at which rotations, whose joints are (TURNS, T, axes), a link comes too near at points of the beads asked
     about; and which beads (B,) have a point that no rotation serves. Of these no more than ENDS points are known."""
-    near, hopeless = np.zeros(joints.shape[:2], dtype=bool), np.zeros(points.beads, dtype=bool)
-    last = np.append(points.first[1:], len(points)) - 1
+    contact_map, hopeless = (
+        np.zeros(joints.shape[:2], dtype=bool),
+        np.zeros(points.beads, dtype=bool),
+    )
+    last_points = np.append(points.first[1:], len(points)) - 1
     share = np.linspace(0.0, 1.0, ENDS)[:, None]
     ends = np.zeros(len(points), dtype=bool)
-    ends[np.round(points.first + share * (last - points.first)).astype(np.intp)] = True
+    ends[np.round(points.first + share * (last_points - points.first)).astype(np.intp)] = True
     reached = np.isfinite(joints).all(axis=2)
-    for some in (ends, ~ends):
-        columns = np.flatnonzero(some & (asked & ~hopeless)[points.bead])
-        near[:, columns] = kept.rotations_near(joints[:, columns], points.bead[columns], places)
-        closed = (near | ~reached).all(axis=0) & near.any(axis=0)
+    for subset in (ends, ~ends):
+        columns = np.flatnonzero(subset & (selected & ~hopeless)[points.bead])
+        contact_map[:, columns] = arm_clearance.rotations_near(
+            joints[:, columns], points.bead[columns], bead_ids
+        )
+        closed = (contact_map | ~reached).all(axis=0) & contact_map.any(axis=0)
         hopeless |= np.logical_or.reduceat(closed, points.first)
-    return near, hopeless
+    return contact_map, hopeless
 
 
 def brought_clear(
     task: Task,
-    kept: ArmKept,
+    arm_clearance: ArmKept,
     beads: Sequence[Bead],
-    places: Sequence[Place],
+    bead_ids: Sequence[Place],
     start: Array,
     reached: Refined,
 ) -> tuple[Refined, Mask]:
     """Polynomials that keep the links clear in place of those `reached` that do not, where there are any, and which (B,)
     these are. start: (B, degree + 1) coefficients with which the local search began."""
     points = gather(beads, task.cell, POINTS_PER_BEAD)
-    near = _touched(
-        task, kept, points, places, reached.coefficients, np.ones(points.beads, dtype=bool)
+    touching = _find_touching(
+        task,
+        arm_clearance,
+        points,
+        bead_ids,
+        reached.coefficients,
+        np.ones(points.beads, dtype=bool),
     )
-    some = np.flatnonzero(near)
-    if not len(some):
-        return reached, near
-    points = gather([beads[k] for k in some], task.cell, POINTS_PER_BEAD)
-    serves = _Serving(task, kept, points, [places[k] for k in some])
-    back, near[some] = _stepped_back(
-        start[some], reached.coefficients[some], task.joined & points.closed, serves
+    affected = np.flatnonzero(touching)
+    if not len(affected):
+        return reached, touching
+    points = gather([beads[k] for k in affected], task.cell, POINTS_PER_BEAD)
+    serves = _Serving(task, arm_clearance, points, [bead_ids[k] for k in affected])
+    back, touching[affected] = _stepped_back(
+        start[affected], reached.coefficients[affected], task.joined & points.closed, serves
     )
     coefficients, reason, iterations = (
         reached.coefficients.copy(),
         list(reached.reason),
         list(reached.iterations),
     )
-    coefficients[some] = back
-    some = np.flatnonzero(near)
-    if len(some):
-        full = gather([beads[k] for k in some], task.cell)
-        again = refined_clear(task, kept, full, [places[k] for k in some], coefficients[some])
-        points = gather([beads[k] for k in some], task.cell, POINTS_PER_BEAD)
+    coefficients[affected] = back
+    affected = np.flatnonzero(touching)
+    if len(affected):
+        full = gather([beads[k] for k in affected], task.cell)
+        again = refined_clear(
+            task, arm_clearance, full, [bead_ids[k] for k in affected], coefficients[affected]
+        )
+        points = gather([beads[k] for k in affected], task.cell, POINTS_PER_BEAD)
         for k in np.flatnonzero(
-            _Serving(task, kept, points, [places[k] for k in some])(again.coefficients)
+            _Serving(task, arm_clearance, points, [bead_ids[k] for k in affected])(
+                again.coefficients
+            )
         ):
-            coefficients[some[k]] = again.coefficients[k]
-            reason[some[k]], iterations[some[k]] = again.reason[k], again.iterations[k]
-    return Refined(coefficients, reached.objective, tuple(reason), tuple(iterations)), near
+            coefficients[affected[k]] = again.coefficients[k]
+            reason[affected[k]], iterations[affected[k]] = again.reason[k], again.iterations[k]
+    return Refined(coefficients, reached.objective, tuple(reason), tuple(iterations)), touching
 
 
 @dataclass(frozen=True)
@@ -160,9 +181,11 @@ class _Serving:
         return self.task.thresholds(self.points)
 
     def __call__(self, coefficients: Array) -> Mask:
-        every = np.ones(self.points.beads, dtype=bool)
-        near = _touched(self.task, self.kept, self.points, self.places, coefficients, every)
-        return np.asarray(~near & _fits(self.task, self.points, self._threshold, coefficients))
+        selected = np.ones(self.points.beads, dtype=bool)
+        touching = _find_touching(
+            self.task, self.kept, self.points, self.places, coefficients, selected
+        )
+        return np.asarray(~touching & _fits(self.task, self.points, self._threshold, coefficients))
 
 
 def _stepped_back(
@@ -182,34 +205,42 @@ def _stepped_back(
     return result, changed
 
 
-def findings(kept: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
+def findings(arm_clearance: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
     """An error for each bead at whose points a link comes too near, with the link and what it comes near to."""
-    found = []
+    issues = []
     for path in paths:
-        some = np.unique(
+        sampled = np.unique(
             np.linspace(0, len(path.bead) - 1, min(len(path.bead), POINTS_PER_BEAD)).astype(np.intp)
         )
-        met = kept.contact.touches(
-            path.joints[some], np.full(len(some), kept.moment((path.layer, path.index)))
+        met = arm_clearance.contact.touches(
+            path.joints[sampled],
+            np.full(len(sampled), arm_clearance.moment((path.layer, path.index))),
         )
         if met.any.any():
-            first = int(np.argmax(met.link != NONE))
-            link, what = kept.contact.links[met.link[first]], kept.contact.names[met.what[first]]
-            found.append(clearance_issue(kept.contact.cell, link, what, path.layer, path.index))
-    return found
+            first_contact = int(np.argmax(met.link != NONE))
+            link, what = (
+                arm_clearance.contact.links[met.link[first_contact]],
+                arm_clearance.contact.names[met.what[first_contact]],
+            )
+            issues.append(
+                clearance_issue(arm_clearance.contact.cell, link, what, path.layer, path.index)
+            )
+    return issues
 
 
-def _touched(
+def _find_touching(
     task: Task,
-    kept: ArmKept,
+    arm_clearance: ArmKept,
     points: Points,
-    places: Sequence[Place],
+    bead_ids: Sequence[Place],
     coefficients: Array,
-    asked: Mask,
+    selected: Mask,
 ) -> Mask:
     """(B,) on which of the beads asked about a link comes too near."""
     joints = task.joints(points, task.rotation(points, points.polynomial(coefficients))[0])
-    met = kept.touches(np.where(asked[points.bead, None], joints, np.nan), points, places)
+    met = arm_clearance.touches(
+        np.where(selected[points.bead, None], joints, np.nan), points, bead_ids
+    )
     return np.asarray(np.logical_or.reduceat(met.any, points.first))
 
 

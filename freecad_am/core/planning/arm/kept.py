@@ -37,24 +37,25 @@ class ArmKept:
     contact: ArmContact
     before: Mapping[Place, int]
 
-    def touches(self, joints: Array, points: Points, places: Sequence[Place]) -> Touches:
+    def touches(self, joints: Array, points: Points, bead_ids: Sequence[Place]) -> Touches:
         """What links come too near with joints (T, axes) at the points of beads at these places."""
         return self.contact.touches(
-            joints, np.array([self.moment(place) for place in places], dtype=np.int64)[points.bead]
+            joints,
+            np.array([self.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)[points.bead],
         )
 
-    def rotations_near(self, joints: Array, bead: Index, places: Sequence[Place]) -> Mask:
+    def rotations_near(self, joints: Array, bead: Index, bead_ids: Sequence[Place]) -> Mask:
         """(R, T) with which joints (R, T, axes), of R rotations at points of the beads (T,), a link comes too near."""
-        when = np.array([self.moment(place) for place in places], dtype=np.int64)[bead]
+        when = np.array([self.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)[bead]
         met = self.contact.touches(joints.reshape(-1, joints.shape[2]), np.tile(when, len(joints)))
         return met.any.reshape(joints.shape[:2])
 
-    def moment(self, place: Place) -> int:
+    def moment(self, bead_id: Place) -> int:
         """How many points are there before a bead; before its layer, of one that was divided since."""
-        return self.before.get(place, self.before[place[0], 0])
+        return self.before.get(bead_id, self.before[bead_id[0], 0])
 
 
-def of_job(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | None:
+def build_arm_clearance(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | None:
     """What keeps the links, `cylinders` of each, clear in a job; None where that is not asked for, or no link known."""
     beads = [bead for _, _, bead in toolpath]
     contact = contact_of(
@@ -68,11 +69,11 @@ def of_job(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | No
     if contact is None:
         return None
     counts = np.cumsum([0, *(len(bead) for bead in beads)])
-    before = {
+    points_before = {
         (layer, index): int(count)
         for (layer, index, _), count in zip(toolpath, counts, strict=False)
     }
-    return ArmKept(contact, before)
+    return ArmKept(contact, points_before)
 
 
 def contact_of(
@@ -90,14 +91,14 @@ def contact_of(
     return ArmContact(cell, cylinders, bodies, deposited, cell.arm_clearance)
 
 
-def on_moves(
+def check_moves(
     contact: ArmContact, start: Array, end: Array, deposited: Index
 ) -> tuple[Index, Touches]:
     """What links come too near on moves straight in the joints (k, axes), where so many points (k,) are laid: the move (l,)
     of each look, and what it found. Of moves whose joints are NaN nothing."""
     steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
-    far = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
-    move, share = evenly(1 + np.ceil(far).astype(np.intp))
+    step_count = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
+    move, share = evenly(1 + np.ceil(step_count).astype(np.intp))
     joints = start[move] + share[:, None] * (end - start)[move]
     return move, contact.touches(joints, deposited[move])
 
@@ -107,7 +108,7 @@ def clearance_issue(
 ) -> Issue:
     """That a link, as `ArmContact.links` calls it, comes too near to something at a bead, or on the rapid way to it."""
     where = " on the rapid way to the bead" if on_way else ""
-    stands = what in [one.name for one in cell.external_links]
+    stands = what in [external_link.name for external_link in cell.external_links]
     if link == NOZZLE:
         moved = (
             "lift the part over it by cell.platform, or move it in cell.external"

@@ -21,16 +21,16 @@ from ..rotation.refine_state import state_of
 from ..task import Task
 from .kept import ArmKept, Place
 
-LOOKS = 10
-WITHIN = 50.0  # mm; of what is farther off than it has to be nothing is told
-SLACK = 0.01  # mm that are kept besides, so that what is found is clear
+MAX_LINEARIZATIONS = 10
+GAP_RANGE_MM = 50.0  # mm; of what is farther off than it has to be nothing is told
+EXTRA_GAP_MM = 0.01  # mm that are kept besides, so that what is found is clear
 REACH = 0.3  # rad that a polynomial may change by from the first look to the second
 UNCHANGED = 1e-4  # rad, and share of the objective, less than which is no change
 STOPPED = "the way to what is better comes too near"
 
 
 def refined_clear(
-    task: Task, kept: ArmKept, points: Points, places: Sequence[Place], start: Array
+    task: Task, arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], start: Array
 ) -> Refined:
     """Polynomials that are better than those of the beads at these places which it starts with (B, degree + 1), and keep the
     links as clear; those it starts with where none was found. points: all of the beads."""
@@ -38,44 +38,53 @@ def refined_clear(
         task.thresholds(points),
         basis.changes(task, points, start.shape[1] - 1),
     )
-    gaps = Gaps(kept.contact, WITHIN)
-    moment = np.array([kept.moment(place) for place in places], dtype=np.int64)
-    tried, best = start.copy(), start.copy()
+    gaps = Gaps(arm_clearance.contact, GAP_RANGE_MM)
+    moment = np.array([arm_clearance.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)
+    trial, best = start.copy(), start.copy()
     objective = np.full(points.beads, np.inf)
-    reach, left = np.full(points.beads, REACH), np.ones(points.beads, dtype=bool)
+    reach, pending = np.full(points.beads, REACH), np.ones(points.beads, dtype=bool)
     reason, iterations = [STOPPED] * points.beads, [0] * points.beads
-    for _ in range(LOOKS):
-        state = state_of(task, points, thresholds, tried, slopes=False)
-        value, gap, slope = _looked(task, gaps, points, tried, moment, left)
+    for _ in range(MAX_LINEARIZATIONS):
+        state = state_of(task, points, thresholds, trial, slopes=False)
+        value, gap, slope = _looked(task, gaps, points, trial, moment, pending)
         clear = points.worst(gap.min(axis=0)) >= 0.0
         good = clear & (state.constraints >= -KEPT).all(axis=1) & np.isfinite(state.objective)
-        better = left & good & ~(state.objective > objective * (1.0 - UNCHANGED))
-        best[better], objective[better] = tried[better], state.objective[better]
-        left &= better | ~clear
+        better = pending & good & ~(state.objective > objective * (1.0 - UNCHANGED))
+        best[better], objective[better] = trial[better], state.objective[better]
+        pending &= better | ~clear
         reach[~better] *= 0.5
-        for bead in np.flatnonzero(left):
-            part, chosen = points.only(int(bead))
-            more = Linear(
-                value[chosen],
-                np.where(gap[:, chosen] < WITHIN, (gap[:, chosen] - SLACK) / WITHIN, FAR_OFF),
-                slope[:, chosen] / WITHIN,
+        for bead in np.flatnonzero(pending):
+            bead_points, point_rows = points.only(int(bead))
+            clearance_rows = Linear(
+                value[point_rows],
+                np.where(
+                    gap[:, point_rows] < GAP_RANGE_MM,
+                    (gap[:, point_rows] - EXTRA_GAP_MM) / GAP_RANGE_MM,
+                    FAR_OFF,
+                ),
+                slope[:, point_rows] / GAP_RANGE_MM,
                 reach[bead],
             )
-            found, why, count = refine_along(
-                task, part, thresholds[chosen], tried[bead], directions[bead], more
+            refined, why, count = refine_along(
+                task,
+                bead_points,
+                thresholds[point_rows],
+                trial[bead],
+                directions[bead],
+                clearance_rows,
             )
             reason[bead], iterations[bead] = why, iterations[bead] + count
-            left[bead] = bool(
-                np.abs(part.polynomial((found - tried[bead])[None])).max() > UNCHANGED
+            pending[bead] = bool(
+                np.abs(bead_points.polynomial((refined - trial[bead])[None])).max() > UNCHANGED
             )
-            tried[bead] = found
-        if not left.any():
+            trial[bead] = refined
+        if not pending.any():
             break
     return Refined(best, objective, tuple(reason), tuple(iterations))
 
 
 def _looked(
-    task: Task, gaps: Gaps, points: Points, coefficients: Array, moment: Index, asked: Mask
+    task: Task, gaps: Gaps, points: Points, coefficients: Array, moment: Index, selected: Mask
 ) -> tuple[Array, Array, Array]:
     """Of beads asked about (B,): the values (T,) of their polynomials, and by how much all pairs are clear at all points,
     mm, and how that changes with these values, both (pairs, T)."""
@@ -84,10 +93,15 @@ def _looked(
     joints = task.joints(points, phi)
     shape = len(gaps.pairs), len(points)
     gap, slope = np.full(shape, gaps.reach), np.zeros(shape)
-    some = np.flatnonzero(asked[points.bead] & np.isfinite(joints).all(axis=1))
-    rates, _ = task.rotation_rates(points.frames.of(some), phi[some], joints[some])
-    wanted = np.ones((len(gaps.pairs), len(some)), dtype=bool)
-    gap[:, some], slope[:, some] = gaps.at(
-        joints[some], rates * phi_rate[some, None], moment[points.bead[some]], wanted
+    reachable_rows = np.flatnonzero(selected[points.bead] & np.isfinite(joints).all(axis=1))
+    rates, _ = task.rotation_rates(
+        points.frames.of(reachable_rows), phi[reachable_rows], joints[reachable_rows]
+    )
+    all_pairs = np.ones((len(gaps.pairs), len(reachable_rows)), dtype=bool)
+    gap[:, reachable_rows], slope[:, reachable_rows] = gaps.at(
+        joints[reachable_rows],
+        rates * phi_rate[reachable_rows, None],
+        moment[points.bead[reachable_rows]],
+        all_pairs,
     )
     return value, gap, slope

@@ -15,22 +15,24 @@ from ...types import Array, Index, Integers
 from ..joint_path import BeadPath
 from ..task import Task
 
-INSIDE = np.array([0.25, 0.5, 0.75])
-MORE = (
+INNER_SHARES = np.array([0.25, 0.5, 0.75])
+FINE_SHARES = (
     np.array([1.0, 2.0, 4.0, 5.0]) / 6.0
 )  # of segments that use up more than half of the chord error
-# what the polynomials through both ends, where the tip is on the bead, and INSIDE are there: (4, 3)
-BETWEEN = np.array(
+# what the polynomials through both ends, where the tip is on the bead, and INNER_SHARES are there: (4, 3)
+INTERPOLATION = np.array(
     [
         [
-            np.prod([(x - node) / (own - node) for node in (0.0, *INSIDE, 1.0) if node != own])
-            for own in INSIDE
+            np.prod(
+                [(x - node) / (own - node) for node in (0.0, *INNER_SHARES, 1.0) if node != own]
+            )
+            for own in INNER_SHARES
         ]
-        for x in MORE
+        for x in FINE_SHARES
     ]
 )
 ROUNDS = 8
-TOGETHER = 4096  # points of beads that are looked at together, about
+POINTS_PER_BATCH = 4096  # points of beads that are looked at together, about
 # rounding room: beads of revolution use their chord error up by themselves, mm
 ROUNDING = 1e-6
 
@@ -70,18 +72,20 @@ def all_refined(
     reachable = [k for k, path in enumerate(paths) if path.reachable]
     ends = np.cumsum([len(paths[k].bead) for k in reachable])
     bent: set[int] = set()
-    for together in np.split(np.array(reachable), np.flatnonzero(np.diff(ends // TOGETHER)) + 1):
-        some = [paths[k] for k in together.tolist()]
-        if not some:
+    for together in np.split(
+        np.array(reachable), np.flatnonzero(np.diff(ends // POINTS_PER_BATCH)) + 1
+    ):
+        batch_paths = [paths[k] for k in together.tolist()]
+        if not batch_paths:
             continue
-        last = np.cumsum([len(path.bead) for path in some]) - 1
+        last_points = np.cumsum([len(path.bead) for path in batch_paths]) - 1
         points, joints = (
             np.concatenate(rows)
-            for rows in zip(*((path.bead.points, path.joints) for path in some))
+            for rows in zip(*((path.bead.points, path.joints) for path in batch_paths))
         )
-        segments = np.delete(np.arange(len(points)), last)
+        segments = np.delete(np.arange(len(points)), last_points)
         off = _deviation(task, points, joints, segments, chord_error) > chord_error + ROUNDING
-        bent.update(together[np.searchsorted(last, segments[off])].tolist())
+        bent.update(together[np.searchsorted(last_points, segments[off])].tolist())
     return [
         refined_to_chord_error(task, path, chord_error) if k in bent else (path, [])
         for k, path in enumerate(paths)
@@ -97,59 +101,67 @@ def _deviation(
     task: Task, points: Array, joints: Array, segments: Index, chord_error: float
 ) -> Array:
     """(k,) the same of the segments (k,) that begin at those of the points (n, 3) with their joints (n, axes)."""
-    seen = _looked_at(task, points, joints, segments, INSIDE)
-    away: Array = np.maximum.reduce(seen)
+    distances = _looked_at(task, points, joints, segments, INNER_SHARES)
+    deviation: Array = np.maximum.reduce(distances)
     # nearly all leave it evenly, most in the middle: between what was seen it is no more
-    near = np.flatnonzero((away > 0.5 * chord_error) & (np.maximum.reduce(BETWEEN @ seen) > away))
-    if len(near):
-        away[near] = np.maximum.reduce(
-            [away[near], *_looked_at(task, points, joints, segments[near], MORE)]
+    doubtful = np.flatnonzero(
+        (deviation > 0.5 * chord_error) & (np.maximum.reduce(INTERPOLATION @ distances) > deviation)
+    )
+    if len(doubtful):
+        deviation[doubtful] = np.maximum.reduce(
+            [
+                deviation[doubtful],
+                *_looked_at(task, points, joints, segments[doubtful], FINE_SHARES),
+            ]
         )
-    return away
+    return deviation
 
 
 def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
     """(n - 1,) rad, by what angle the tool strays from the directions at the ends of each segment as joints run straight."""
-    way, count = np.diff(joints, axis=0)[:, None], len(INSIDE)
+    joint_step, count = np.diff(joints, axis=0)[:, None], len(INNER_SHARES)
     flange = cell.machine.chain.forward(
-        (joints[:-1, None] + INSIDE[:, None] * way).reshape(-1, joints.shape[1])
+        (joints[:-1, None] + INNER_SHARES[:, None] * joint_step).reshape(-1, joints.shape[1])
     )
     tool = cell.tip_in_part(flange)[1].reshape(-1, count, 3)
-    asked = bead.tool[:-1, None] + INSIDE[:, None] * np.diff(bead.tool, axis=0)[:, None]
-    sine = np.linalg.norm(np.cross(asked, tool), axis=-1)
-    angle: Array = np.arctan2(sine, (asked * tool).sum(-1)).max(axis=1)
+    wanted_tool = bead.tool[:-1, None] + INNER_SHARES[:, None] * np.diff(bead.tool, axis=0)[:, None]
+    sine = np.linalg.norm(np.cross(wanted_tool, tool), axis=-1)
+    angle: Array = np.arctan2(sine, (wanted_tool * tool).sum(-1)).max(axis=1)
     return angle
 
 
 def _looked_at(task: Task, points: Array, joints: Array, segments: Index, shares: Array) -> Array:
     """The same at shares (s,) of their length: (s, k) mm."""
-    start, way = joints[segments], joints[segments + 1] - joints[segments]
-    away = (
-        task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - points[segments, None]
+    start, joint_step = joints[segments], joints[segments + 1] - joints[segments]
+    offset = (
+        task.cell.tip_at(start[:, None] + joint_step[:, None] * shares[:, None])
+        - points[segments, None]
     )
     along = points[segments + 1] - points[segments]
     length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
-    share = np.clip(np.einsum("nki,ni->nk", away, along) / length[:, None], 0.0, 1.0)
-    away -= share[..., None] * along[:, None]
-    distance: Array = np.sqrt(np.einsum("nki,nki->kn", away, away))
+    share = np.clip(np.einsum("nki,ni->nk", offset, along) / length[:, None], 0.0, 1.0)
+    offset -= share[..., None] * along[:, None]
+    distance: Array = np.sqrt(np.einsum("nki,nki->kn", offset, offset))
     return distance
 
 
 def _halved(task: Task, path: BeadPath, segments: Integers) -> BeadPath:
     """The path with a point in the middle of each of the segments."""
-    at = segments + 1
+    insert_rows = segments + 1
 
     def middle(column: Array) -> Array:
-        return np.insert(column, at, 0.5 * (column[segments] + column[at]), axis=0)
+        return np.insert(
+            column, insert_rows, 0.5 * (column[segments] + column[insert_rows]), axis=0
+        )
 
     finer = path.bead.halved(segments)
     phi = middle(path.phi)
-    new = at + np.arange(len(at))
+    new = insert_rows + np.arange(len(insert_rows))
     joints = middle(path.joints)
     flange = task.cell.flange_poses(finer.points[new], finer.tool[new], phi[new], joints[new])
-    found = task.inverse(flange, joints[new])
-    joints[new] = found - 2.0 * np.pi * np.round((found - joints[new]) / (2.0 * np.pi))
-    condition = np.insert(path.condition, at, task.condition_at(flange, joints[new]))
+    solved = task.inverse(flange, joints[new])
+    joints[new] = solved - 2.0 * np.pi * np.round((solved - joints[new]) / (2.0 * np.pi))
+    condition = np.insert(path.condition, insert_rows, task.condition_at(flange, joints[new]))
     return dataclasses.replace(
         path,
         bead=finer,

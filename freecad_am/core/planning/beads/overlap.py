@@ -15,7 +15,7 @@ from ..joint_path import BeadPath
 from ..task import Task
 
 
-def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
+def extend_past_seam(task: Task, path: BeadPath, overlap: float) -> BeadPath:
     """The path of a closed bead with its beginning repeated over `overlap` mm, at most once round; then it is open.
 
     The rotation goes on from where it has come to, and the joints are those it then takes.
@@ -33,13 +33,13 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
         return np.asarray(np.interp(share * np.sign(since[-1]), since * np.sign(since[-1]), column))
 
     phi = again(path.phi) + float(path.phi[-1] - path.phi[0])
-    near = np.stack([again(column) for column in path.joints.T], axis=1)
-    external = task.cell.external_of(near)
+    reference = np.stack([again(column) for column in path.joints.T], axis=1)
+    external = task.cell.external_of(reference)
     if external is not None:
-        own = near.shape[1] - external.shape[1]
-        near[:, own:] = stroke.waiting(task.cell, path.joints[:, own:], external)
-    flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi, near)
-    joints = unwrapped_from(task, path.joints[-1], task.inverse(flange, near))
+        robot_axes = reference.shape[1] - external.shape[1]
+        reference[:, robot_axes:] = stroke.waiting(task.cell, path.joints[:, robot_axes:], external)
+    flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi, reference)
+    joints = unwrapped_from(task, path.joints[-1], task.inverse(flange, reference))
     return longer(task, path, bead, flange, phi, joints, again(path.threshold))
 
 

@@ -44,8 +44,8 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
     (n, 4, 4) and joints (n, axes)."""
     if not path.bead.ends or not path.reachable:
         return path, []
-    first, _, last, _ = path.bead.ends[:4]
-    used = first + last + sum(path.bead.ends[4:])
+    start_length, _, end_length, _ = path.bead.ends[:4]
+    used = start_length + end_length + sum(path.bead.ends[4:])
     along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
     if used > along[-1] + END_MM:
         return path, [
@@ -65,7 +65,7 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
     stretches = _stretches(path.bead, float(along[-1]))
     borders = _borders(stretches, along)
     if len(borders):
-        path = _with_points(cell, path, along, borders, condition_at)
+        path = _insert_points(cell, path, along, borders, condition_at)
         along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
     return dataclasses.replace(path, bead=_timed(path.bead, along, stretches)), []
 
@@ -73,80 +73,100 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
 def _borders(stretches: Sequence[Stretch], along: Array) -> Array:
     """(k,) where points are put in, mm along a bead whose points are `along` (n,) mm of it: at the ends of phases, and at
     those of the steps of ramps where none is near."""
-    known = along
-    for of_phase, apart in ((True, END_MM), (False, STEP_MM)):
-        at = np.unique(
+    existing = along
+    for of_phase, min_distance in ((True, END_MM), (False, STEP_MM)):
+        positions = np.unique(
             [
-                at
-                for one in stretches
-                if (one.phase != MIDDLE) == of_phase
-                for at in (one.begin, one.end)
+                position
+                for stretch in stretches
+                if (stretch.phase != MIDDLE) == of_phase
+                for position in (stretch.begin, stretch.end)
             ]
         )
-        at = at[np.abs(known[:, None] - at).min(axis=0) > apart] if len(at) else at
-        known = np.r_[known, at[np.r_[True, np.diff(at) > apart]] if len(at) else at]
-    return np.sort(known[len(along) :])
+        positions = (
+            positions[np.abs(existing[:, None] - positions).min(axis=0) > min_distance]
+            if len(positions)
+            else positions
+        )
+        existing = np.r_[
+            existing,
+            positions[np.r_[True, np.diff(positions) > min_distance]]
+            if len(positions)
+            else positions,
+        ]
+    return np.sort(existing[len(along) :])
 
 
 def _stretches(bead: Bead, length: float) -> list[Stretch]:
     """What of a bead is at another speed. Steps of ramps are of no phase: what is told at the ends of a bead beside their
     speed is not told there."""
-    first, slow, last, late = bead.ends[:4]
+    start_length, slow, end_length, late = bead.ends[:4]
     up, down = bead.ends[4:] or (0.0, 0.0)
     rising, falling = ramp(up, slow, float(bead.speed[1])), ramp(down, float(bead.speed[-1]), late)
-    found = [Stretch(0.0, first, AT_START, slow), Stretch(length - last, length, AT_END, late)]
-    for begin, size, speeds in ((first, up, rising), (length - last - down, down, falling)):
-        at = begin + np.linspace(0.0, size, len(speeds) + 1)
-        found += [
+    stretches = [
+        Stretch(0.0, start_length, AT_START, slow),
+        Stretch(length - end_length, length, AT_END, late),
+    ]
+    for begin, size, speeds in (
+        (start_length, up, rising),
+        (length - end_length - down, down, falling),
+    ):
+        borders = begin + np.linspace(0.0, size, len(speeds) + 1)
+        stretches += [
             Stretch(float(a), float(b), MIDDLE, float(speed))
-            for a, b, speed in zip(at, at[1:], speeds)
+            for a, b, speed in zip(borders, borders[1:], speeds)
         ]
-    return [one for one in found if one.end > one.begin]
+    return [stretch for stretch in stretches if stretch.end > stretch.begin]
 
 
 def _timed(bead: Bead, along: Array, stretches: Sequence[Stretch]) -> Bead:
     """The bead, points `along` (n,) mm of it, at the speeds of its phases, and which of its segments are in these."""
     phase, speed = np.full(len(along), float(MIDDLE)), np.array(bead.speed)
     middle = 0.5 * (along + np.r_[0.0, along[:-1]])  # of the segment that ends at each point
-    for one in stretches:
-        mine = (middle > one.begin) & (middle < one.end)
-        phase[mine] = one.phase
-        speed[mine] = one.speed or speed[mine]
+    for stretch in stretches:
+        in_stretch = (middle > stretch.begin) & (middle < stretch.end)
+        phase[in_stretch] = stretch.phase
+        speed[in_stretch] = stretch.speed or speed[in_stretch]
     return dataclasses.replace(bead, speed=speed, phase=phase)
 
 
 def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Array:
     """(k,) shares of the turn of the joints at which the tip is so far (k,) mm into segments (k,): it runs unevenly."""
-    start, way = (
+    start, offset = (
         path.bead.points[segment],
         path.bead.points[segment + 1] - path.bead.points[segment],
     )
-    size = lengths(way)
+    size = lengths(offset)
     share = lengths_in / size
     turned = path.joints[segment + 1] - path.joints[segment]
     for _ in range(STEPS):
-        place = cell.tip_in_part(
+        tip = cell.tip_in_part(
             cell.machine.chain.forward(path.joints[segment] + share[:, None] * turned)
         )[0]
-        share = np.clip(share + (lengths_in - dots(place - start, way) / size) / size, 0.0, 1.0)
+        share = np.clip(share + (lengths_in - dots(tip - start, offset) / size) / size, 0.0, 1.0)
     return np.asarray(share)
 
 
-def _with_points(
+def _insert_points(
     cell: Cell, path: BeadPath, along: Array, borders: Array, condition_at: Condition
 ) -> BeadPath:
     """The path with points at `borders` (k,) mm along it, rising, none of which is one of its own."""
     segment = np.searchsorted(along, borders) - 1
     share = _shares(cell, path, segment, borders - along[segment])
-    at = segment + 1
+    insert_rows = segment + 1
 
     def between(column: Array) -> Array:
-        part = share.reshape(-1, *(1,) * (column.ndim - 1))
+        weight = share.reshape(-1, *(1,) * (column.ndim - 1))
         return np.asarray(
-            np.insert(column, at, column[segment] + part * (column[at] - column[segment]), axis=0)
+            np.insert(
+                column,
+                insert_rows,
+                column[segment] + weight * (column[insert_rows] - column[segment]),
+                axis=0,
+            )
         )
 
-    bead, new = path.bead, at + np.arange(len(at))
+    bead, new = path.bead, insert_rows + np.arange(len(insert_rows))
     joints = between(path.joints)
     columns: dict[str, Any] = {
         field.name: between(getattr(bead, field.name))
@@ -156,9 +176,11 @@ def _with_points(
     flange, condition = cell.machine.chain.forward(joints[new]), between(path.condition)
     columns["points"][new], columns["tool"][new] = cell.tip_in_part(flange)
     condition[new] = condition_at(flange, joints[new])
-    columns["speed"][new] = bead.speed[at]
+    columns["speed"][new] = bead.speed[insert_rows]
     if bead.tangents is not None:  # a point within a segment is not a corner
-        columns["tangents"][new] = (bead.tangents[segment, 1] + bead.tangents[at, 0])[:, None]
+        columns["tangents"][new] = (bead.tangents[segment, 1] + bead.tangents[insert_rows, 0])[
+            :, None
+        ]
     for name in _UNIT:
         if name in columns:
             columns[name] /= np.linalg.norm(columns[name], axis=-1, keepdims=True)

@@ -30,29 +30,29 @@ class _Way(NamedTuple):
     def of(self, column: Array) -> Array:
         """(past, ...) a column (n, ...) of the bead on the way back, without its end."""
         back = column[::-1]
-        last = back[self.past - 1] + self.share * (back[self.past] - back[self.past - 1])
-        return np.concatenate([back[1 : self.past], [last]])
+        end_value = back[self.past - 1] + self.share * (back[self.past] - back[self.past - 1])
+        return np.concatenate([back[1 : self.past], [end_value]])
 
 
 def gone_back(bead: Bead, length: float) -> Bead:
     """An open bead whose last `length` mm are laid once more, backwards, at most all of it; a closed one as it is."""
     if length <= 0.0 or bead.closed:
         return bead
-    way = _way(bead, length)
-    at = len(bead) - 1 - way.past  # the segment in which it ends
-    (point,), (tangent,) = bead.outline.at(np.array([at]), 1.0 - way.share)
-    points = way.of(bead.points)
+    retreat = _way(bead, length)
+    end_segment = len(bead) - 1 - retreat.past  # the segment in which it ends
+    (point,), (tangent,) = bead.outline.at(np.array([end_segment]), 1.0 - retreat.share)
+    points = retreat.of(bead.points)
     points[-1] = point
 
     def extended(change: Callable[[Array], Array]) -> Callable[[Array], Array]:
         return lambda column: np.concatenate([column, change(column)])
 
     def directions(column: Array) -> Array:
-        found = way.of(column)
-        return np.asarray(found / lengths(found)[:, None])
+        backward = retreat.of(column)
+        return np.asarray(backward / lengths(backward)[:, None])
 
     def both(column: Array | None) -> Array | None:
-        return None if column is None else extended(way.of)(column)
+        return None if column is None else extended(retreat.of)(column)
 
     # told from here on: a row of points that turns back would be straight next to its end
     tangents = _tangents(bead)
@@ -62,12 +62,12 @@ def gone_back(bead: Bead, length: float) -> Bead:
     return dataclasses.replace(
         bead,
         points=np.concatenate([bead.points, points]),
-        tangents=np.concatenate([tangents[:-1], turning, back[1 : way.past], ends]),
+        tangents=np.concatenate([tangents[:-1], turning, back[1 : retreat.past], ends]),
         build=extended(directions)(bead.build),
         tool=extended(directions)(bead.tool),
         # it goes on in the same sense: how far along a bead is told by it
-        parameter=extended(lambda column: 2.0 * column[-1] - way.of(column))(bead.parameter),
-        speed=np.concatenate([bead.speed, bead.speed[::-1][: way.past]]),
+        parameter=extended(lambda column: 2.0 * column[-1] - retreat.of(column))(bead.parameter),
+        speed=np.concatenate([bead.speed, bead.speed[::-1][: retreat.past]]),
         width=both(bead.width),
         height=both(bead.height),
         external=both(bead.external),
@@ -78,11 +78,11 @@ def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
     """The path of an open bead gone back by `length` mm: by the joints that have led there."""
     if length <= 0.0 or path.bead.closed or not path.reachable:
         return path
-    way, bead, n = _way(path.bead, length), gone_back(path.bead, length), len(path.bead)
-    phi, joints = way.of(path.phi), way.of(path.joints)
+    retreat, bead, n = _way(path.bead, length), gone_back(path.bead, length), len(path.bead)
+    phi, joints = retreat.of(path.phi), retreat.of(path.joints)
     flange = task.cell.flange_poses(bead.points[n:], bead.tool[n:], phi, joints)
     joints[-1:] = unwrapped_from(task, joints[-1], task.inverse(flange[-1:], joints[-1:]))
-    return longer(task, path, bead, flange, phi, joints, way.of(path.threshold))
+    return longer(task, path, bead, flange, phi, joints, retreat.of(path.threshold))
 
 
 def turns_back(bead: Bead) -> Array:
@@ -103,5 +103,5 @@ def _way(bead: Bead, length: float) -> _Way:
     along = np.cumsum(lengths(np.diff(bead.points[::-1], axis=0)))
     length = min(length, float(along[-1]))
     count = int(np.searchsorted(along, length))
-    before = float(along[count - 1]) if count else 0.0
-    return _Way(count + 1, (length - before) / (float(along[count]) - before))
+    length_before = float(along[count - 1]) if count else 0.0
+    return _Way(count + 1, (length - length_before) / (float(along[count]) - length_before))

@@ -20,7 +20,7 @@ from ..joint_path import BeadPath
 SLOWED = "SLOWED"
 JUST = 1.0 - 1e-9  # of what an axis can do
 PILE = 1.0  # of the bead's width: so much too much may lie where the deposit is slowed
-FLAT = 2.0  # a bead's width in layer heights where no model tells it
+DEFAULT_WIDTH_RATIO = 2.0  # a bead's width in layer heights where no model tells it
 
 
 def rings_slowed(
@@ -38,7 +38,7 @@ def rings_slowed(
         radius = lengths(np.diff(bead.points, axis=0)) / np.abs(np.diff(bead.parameter))
         tight = (ratio > 1.0) & (radius < layer_height)
         if tight.any():
-            path = _at(path, np.where(tight, JUST / ratio, 1.0))
+            path = _scale_speeds(path, np.where(tight, JUST / ratio, 1.0))
             slowed.append(path)
         result.append(path)
     if not slowed:
@@ -82,16 +82,16 @@ def corners_slowed(
     bead's width, height and speed follow, None where no model says.
     """
     result: list[BeadPath] = []
-    places: list[_Place] = []
+    slow_sections: list[_Place] = []
     for path in paths:
         ratio = (_axis_speeds(path) / cell.machine.max_speed).max(axis=1)
         if (ratio > 1.0).any():
-            path, found = _slowed(path, ratio, layer_height, law)
-            places += found
+            path, sections = _slowed(path, ratio, layer_height, law)
+            slow_sections += sections
         result.append(path)
-    if not places:
+    if not slow_sections:
         return result, []
-    worst = min(places, key=lambda place: place.speed)
+    worst = min(slow_sections, key=lambda section: section.speed)
     return result, [
         Issue(
             WARNING,
@@ -99,11 +99,11 @@ def corners_slowed(
             Text(
                 "at {} short places, {:.3g} mm in all, the deposit is slowed, here to {:.3g} mm/s, for the axes go no faster; "
                 "up to {:.2g} mm of the bead more than meant lie there{}",
-                len(places),
-                sum(place.length for place in places),
+                len(slow_sections),
+                sum(section.length for section in slow_sections),
                 worst.speed,
-                max(place.pile for place in places),
-                _growth(places, worst, law),
+                max(section.pile for section in slow_sections),
+                _growth(slow_sections, worst, law),
             ),
             worst.path.layer,
             worst.path.index,
@@ -124,8 +124,10 @@ def _slowed(
         speed = _approached(middle, bead.speed[1:], share, law)
         slow = speed < JUST * bead.speed[1:]
         runs = [slice(*ends) for ends in _runs(slow)]
-        more = length * (bead.speed[1:] / speed - 1.0)
-        long = [run for run in runs if more[run].sum() > PILE * _width(bead, run, layer_height)]
+        extra_length = length * (bead.speed[1:] / speed - 1.0)
+        long = [
+            run for run in runs if extra_length[run].sum() > PILE * _width(bead, run, layer_height)
+        ]
         if not long:
             break
         for run in long:
@@ -142,7 +144,7 @@ def _slowed(
             run.start + 1 + int(np.argmin(speed[run])),
             float(length[run].sum()),
             float(speed[run].min()),
-            float(more[run].sum()),
+            float(extra_length[run].sum()),
             float(wider[run.start : run.stop + 1].max()),
             float(higher[run.start : run.stop + 1].max()),
         )
@@ -161,28 +163,33 @@ def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None)
     )
 
 
-def _runs(chosen: Mask) -> list[list[int]]:
+def _runs(mask: Mask) -> list[list[int]]:
     """First and one past the last of each run of true values."""
     ends: list[list[int]] = (
-        np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int))).reshape(-1, 2).tolist()
+        np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int))).reshape(-1, 2).tolist()
     )
     return ends
 
 
-def _gains(before: Bead, after: Bead) -> tuple[Array, Array]:
+def _gains(planned: Bead, slowed: Bead) -> tuple[Array, Array]:
     """By how much (n,) mm a bead is predicted wider and higher, nan where no model tells."""
-    none = np.full(len(before), np.nan)
-    if before.width is None or after.width is None or before.height is None or after.height is None:
+    none = np.full(len(planned), np.nan)
+    if (
+        planned.width is None
+        or slowed.width is None
+        or planned.height is None
+        or slowed.height is None
+    ):
         return none, none
-    return after.width - before.width, after.height - before.height
+    return slowed.width - planned.width, slowed.height - planned.height
 
 
-def _growth(places: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> str:
+def _growth(sections: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> str:
     """What the bead model says of slowed places."""
-    wider = max(place.wider for place in places)
+    wider = max(section.wider for section in sections)
     if law is None or not wider > 0.0:
         return ""
-    higher = max(place.higher for place in places)
+    higher = max(section.higher for section in sections)
     beyond = (
         Text("; slower than {:.3g} mm/s nothing was measured", law.slowest)
         if worst.speed < law.slowest * JUST
@@ -197,10 +204,14 @@ def _growth(places: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> st
 
 
 def _width(bead: Bead, segments: slice, layer_height: float) -> float:
-    return FLAT * layer_height if bead.width is None else float(bead.width[1:][segments].min())
+    return (
+        DEFAULT_WIDTH_RATIO * layer_height
+        if bead.width is None
+        else float(bead.width[1:][segments].min())
+    )
 
 
-def _at(path: BeadPath, share: Array) -> BeadPath:
+def _scale_speeds(path: BeadPath, share: Array) -> BeadPath:
     """The path with its segments at a share (n - 1,) of their speeds."""
     speed = np.r_[path.bead.speed[:1], path.bead.speed[1:] * share]
     return dataclasses.replace(path, bead=dataclasses.replace(path.bead, speed=speed))
@@ -230,7 +241,7 @@ def share_of_speed(cell: Cell, paths: Sequence[BeadPath]) -> float:
 
 def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
     """An issue for every bead on which an axis would have to turn faster than it can."""
-    found = []
+    issues = []
     for path in paths:
         speed = _axis_speeds(path)
         ratio = speed / cell.machine.max_speed
@@ -238,7 +249,7 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
         if ratio[point, axis] > 1.0:
             value, unit = cell.machine.unit_values[axis], cell.machine.units[axis]
             able = path.bead.speed[point + 1] / ratio[point, axis]
-            found.append(
+            issues.append(
                 Issue(
                     ERROR,
                     "SPEED",
@@ -255,7 +266,7 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
                     int(point) + 1,
                 )
             )
-    return found
+    return issues
 
 
 def _advice(bead: Bead, point: int, able: float) -> str:

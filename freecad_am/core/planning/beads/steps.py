@@ -15,8 +15,8 @@ from ...controller import Controller
 from ...motion import Motion
 from ...types import Array, Index, Mask
 
-NEAREST = 0.96  # of the least way, below which a post rejects two points
-OFF = 0.4  # of the chord error, that points left out may lie off
+MIN_STEP_SHARE = 0.96  # of the least way, below which a post rejects two points
+OMITTED_DEVIATION_SHARE = 0.4  # of the chord error, that points left out may lie off
 REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
 
 
@@ -28,7 +28,7 @@ def programmed(
     if not step:
         return motion, np.arange(len(motion))
     rows = np.flatnonzero(
-        _kept(motion, step, 100.0 * blended / blend if blend else 0.0, chord_error)
+        _select_rows(motion, step, 100.0 * blended / blend if blend else 0.0, chord_error)
     )
     columns = {
         field.name: getattr(motion, field.name)[rows] for field in dataclasses.fields(motion)
@@ -40,100 +40,112 @@ def programmed(
     columns["duration"] = np.where(joined, duration, columns["duration"])
     slow = inside & (columns["duration"] < step)
     columns["duration"] = np.where(slow, step, columns["duration"])
-    way = np.linalg.norm(
+    step_lengths = np.linalg.norm(
         np.diff(columns["position"], axis=0, prepend=columns["position"][:1]), axis=1
     )
     columns["speed"] = np.where(
-        joined | slow, way / np.where(inside, columns["duration"], 1.0), columns["speed"]
+        joined | slow, step_lengths / np.where(inside, columns["duration"], 1.0), columns["speed"]
     )
     return Motion(**columns), rows
 
 
-def _kept(motion: Motion, seconds: float, least: float, chord_error: float) -> Mask:
-    """(n,) the rows that stay: ends of beads, rapids, and what comes `seconds` and `least` mm after the one before."""
-    way = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
+def _select_rows(motion: Motion, seconds: float, min_distance: float, chord_error: float) -> Mask:
+    """(n,) the rows that stay: ends of beads, rapids, and what comes `seconds` and `min_distance` mm after the one before."""
+    step_lengths = np.linalg.norm(
+        np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1
+    )
     inside = motion.deposit & (motion.point > 0) & motion.reachable
     steps = np.nan_to_num(motion.duration) / seconds
-    steps = np.where(inside, np.minimum(steps, way / least) if least else steps, 1.0)
-    kept: Mask = np.ones(len(motion), dtype=np.bool_)
-    last = inside & np.append(~inside[1:], True)
+    steps = np.where(
+        inside, np.minimum(steps, step_lengths / min_distance) if min_distance else steps, 1.0
+    )
+    keep: Mask = np.ones(len(motion), dtype=np.bool_)
+    last_points = inside & np.append(~inside[1:], True)
     starts = np.flatnonzero(motion.deposit & (motion.point == 0))
     soon = np.flatnonzero(inside & (steps < 1.0))
     for bead in np.unique(np.searchsorted(starts, soon, side="right") - 1).tolist():
         start = int(starts[bead])
-        rows = slice(start, start + int(np.argmax(last[start:])) + 1)
-        kept[rows] = _sparse(np.r_[0.0, np.cumsum(steps[rows][1:])])
-    kept |= motion.halt
-    kept = _with_needed(motion, kept, OFF * chord_error)
-    return _without_returns(motion, kept, least, OFF * chord_error) if least else kept
+        rows = slice(start, start + int(np.argmax(last_points[start:])) + 1)
+        keep[rows] = _sparse(np.r_[0.0, np.cumsum(steps[rows][1:])])
+    keep |= motion.halt
+    keep = _add_needed(motion, keep, OMITTED_DEVIATION_SHARE * chord_error)
+    return (
+        _remove_returns(motion, keep, min_distance, OMITTED_DEVIATION_SHARE * chord_error)
+        if min_distance
+        else keep
+    )
 
 
-def _without_returns(motion: Motion, kept: Mask, least: float, off: float) -> Mask:
-    """The rows that stay, without those that come back to within `least` mm of the one before, as where a bead turns round in
+def _remove_returns(motion: Motion, keep: Mask, min_distance: float, off: float) -> Mask:
+    """The rows that stay, without those that come back to within `min_distance` mm of the one before, as where a bead turns round in
     less than a blend: the way between two points counts there, not the way along the bead. All rows left out lie within
     `off` mm of the way between those that stay; where that cannot be, the row stays."""
-    kept, tried = kept.copy(), np.zeros(len(kept), dtype=bool)
+    keep, checked = keep.copy(), np.zeros(len(keep), dtype=bool)
     inside = motion.deposit & (motion.point > 0) & motion.reachable
-    last = inside & np.append(~inside[1:], True)
+    last_points = inside & np.append(~inside[1:], True)
     while True:
-        rows = np.flatnonzero(kept)
-        way = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
+        rows = np.flatnonzero(keep)
+        step_lengths = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
         # to the start of a bead there is a rapid, which has no blend of its own
-        near = 1 + np.flatnonzero((way < NEAREST * least) & inside[rows[1:]])
-        pairs = [(rows[k], rows[k - 1]) for k in near.tolist()]
-        pair = next((pair for pair in pairs if not tried[pair[0]]), None)
+        close_rows = 1 + np.flatnonzero(
+            (step_lengths < MIN_STEP_SHARE * min_distance) & inside[rows[1:]]
+        )
+        pairs = [(rows[k], rows[k - 1]) for k in close_rows.tolist()]
+        pair = next((pair for pair in pairs if not checked[pair[0]]), None)
         if pair is None:
-            return kept
-        tried[pair[0]] = True
+            return keep
+        checked[pair[0]] = True
         for row in pair:
-            if motion.halt[row] or last[row] or not inside[row]:
+            if motion.halt[row] or last_points[row] or not inside[row]:
                 continue
-            place = int(np.searchsorted(rows, row))
-            start, end = int(rows[place - 1]), int(rows[place + 1])
+            position = int(np.searchsorted(rows, row))
+            start, end = int(rows[position - 1]), int(rows[position + 1])
             gone = np.arange(start + 1, end)
             ends = np.full(len(gone), start), np.full(len(gone), end)
             if (_off_way(motion, *ends, gone) <= off).all():
-                kept[row] = False
+                keep[row] = False
                 break
 
 
 def _sparse(clock: Array) -> Mask:
     """Which points (n,) of a bead stay where none may come less than 1 after another on a clock; both ends stay."""
-    kept: Mask = np.r_[True, np.diff(np.floor(clock)) > 0.0] & (clock <= clock[-1] - 1.0)
-    kept[0] = kept[-1] = True
-    rows = np.flatnonzero(kept)
-    near = np.r_[False, np.diff(clock[rows]) < 1.0]
-    near[-1] = False
-    kept[rows[near]] = False
-    return kept
+    keep: Mask = np.r_[True, np.diff(np.floor(clock)) > 0.0] & (clock <= clock[-1] - 1.0)
+    keep[0] = keep[-1] = True
+    rows = np.flatnonzero(keep)
+    too_close = np.r_[False, np.diff(clock[rows]) < 1.0]
+    too_close[-1] = False
+    keep[rows[too_close]] = False
+    return keep
 
 
-def _with_needed(motion: Motion, kept: Mask, off: float) -> Mask:
+def _add_needed(motion: Motion, keep: Mask, off: float) -> Mask:
     """The rows that stay, and of the others as few as it takes that all lie within `off` mm of the way between these, and
     that axes do not turn so far that they would leave it in between."""
-    kept = kept.copy()
+    keep = keep.copy()
     while True:
-        gone = np.flatnonzero(~kept)
-        rows = np.flatnonzero(kept)
-        after = np.searchsorted(rows, gone)
-        start, end = rows[after - 1], rows[after]
-        away = _off_way(motion, start, end, gone)
-        far = away > off
-        if not far.any():
-            return kept
+        gone = np.flatnonzero(~keep)
+        rows = np.flatnonzero(keep)
+        next_rows = np.searchsorted(rows, gone)
+        start, end = rows[next_rows - 1], rows[next_rows]
+        deviation = _off_way(motion, start, end, gone)
+        exceeds = deviation > off
+        if not exceeds.any():
+            return keep
         # the farthest of each gap, which often is enough for its neighbours
-        order = np.lexsort((away[far], start[far]))
-        last = np.flatnonzero(np.diff(start[far][order], append=-1))
-        kept[gone[far][order[last]]] = True
+        order = np.lexsort((deviation[exceeds], start[exceeds]))
+        farthest_rows = np.flatnonzero(np.diff(start[exceeds][order], append=-1))
+        keep[gone[exceeds][order[farthest_rows]]] = True
 
 
 def _off_way(motion: Motion, start: Index, end: Index, gone: Index) -> Array:
     """How far (k,) mm rows left out lie off the straight way between two rows, or as far as axes that turn between these would
     leave it."""
-    way = motion.position[end] - motion.position[start]
+    chord = motion.position[end] - motion.position[start]
     offset = motion.position[gone] - motion.position[start]
-    share = np.einsum("nk,nk->n", offset, way) / np.maximum(np.einsum("nk,nk->n", way, way), 1e-300)
-    away = np.linalg.norm(offset - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
+    share = np.einsum("nk,nk->n", offset, chord) / np.maximum(
+        np.einsum("nk,nk->n", chord, chord), 1e-300
+    )
+    distance = np.linalg.norm(offset - np.clip(share, 0.0, 1.0)[:, None] * chord, axis=1)
     turn = np.linalg.norm(motion.joints[end] - motion.joints[start], axis=1)
-    found: Array = np.maximum(away, 0.125 * REACH * turn * turn)
-    return found
+    deviation: Array = np.maximum(distance, 0.125 * REACH * turn * turn)
+    return deviation

@@ -27,7 +27,7 @@ from . import course, least_ahead
 from .lattice import Lattice, lattice
 from .point_bounds import point_bound
 
-CLOSE = 0.005  # share of the objective at which a bound is near enough
+BOUND_TOLERANCE = 0.005  # share of the objective at which a bound is near enough
 ROTATIONS = (
     180,
     360,
@@ -36,7 +36,7 @@ ROTATIONS = (
 )  # of a turn at every point, the finer where the coarser are not near enough
 BETWEEN_BEADS = 180  # of a turn where whole jobs are looked at
 PIECE = 100_000  # rotations at points that are held together
-FEWEST = 4  # groups of steps of a bead
+MIN_GROUPS = 4  # groups of steps of a bead
 GROUPED = 0.002  # of the objective, what may be lost by looking at groups of steps
 
 
@@ -71,19 +71,25 @@ def summed(
         ]
     displacement = task.parameters.objective == "displacement"
     share = 0.6 if displacement and len(paths) > 1 else 1.0
-    found = certified(task, paths, lambda done: report(share * done))
-    worst = paths[int(found.gaps.argmax())]
-    shown: dict[str, object] = _figures(float(found.objective.sum()), float(found.bound.sum()))
-    shown["worst"] = {"layer": worst.layer, "bead": worst.index, "gap": float(found.gaps.max())}
-    shown["beads"] = [
+    certificate = certified(task, paths, lambda fraction: report(share * fraction))
+    worst = paths[int(certificate.gaps.argmax())]
+    figures: dict[str, object] = _figures(
+        float(certificate.objective.sum()), float(certificate.bound.sum())
+    )
+    figures["worst"] = {
+        "layer": worst.layer,
+        "bead": worst.index,
+        "gap": float(certificate.gaps.max()),
+    }
+    figures["beads"] = [
         {"layer": path.layer, "bead": path.index, **_figures(float(objective), float(bound))}
-        for path, objective, bound in zip(paths, found.objective, found.bound)
+        for path, objective, bound in zip(paths, certificate.objective, certificate.bound)
     ]
     if displacement:
-        shown["with_ways_between"] = _figures(
-            *whole_job(task, paths, lambda done: report(share + (1.0 - share) * done))
+        figures["with_ways_between"] = _figures(
+            *whole_job(task, paths, lambda fraction: report(share + (1.0 - share) * fraction))
         )
-    return shown, []
+    return figures, []
 
 
 def _figures(objective: float, bound: float) -> dict[str, object]:
@@ -110,7 +116,7 @@ def certified(
             objective[number] = path.objective
             bound[number] = min(path.objective, point_bound(task, points, path.threshold))
             continue
-        objective[number] = _taken(task, points, path)
+        objective[number] = _displacement_cost(task, points, path)
         bound[number] = _displacement_bound(task, points, path, objective[number])
     return Optimality(objective, bound)
 
@@ -120,27 +126,27 @@ def whole_job(
 ) -> tuple[float, float]:
     """Eq. 17 of all beads and of the steps from each bead's end to the next one's beginning together, and what it cannot go
     below."""
-    every = [gather([path.bead], task.cell) for path in paths]
-    taken = [_taken(task, points, path) for points, path in zip(every, paths)]
-    ways = np.array(
-        [after.joints[0] - before.joints[-1] for before, after in zip(paths, paths[1:])]
+    bead_points = [gather([path.bead], task.cell) for path in paths]
+    costs = [_displacement_cost(task, points, path) for points, path in zip(bead_points, paths)]
+    step_costs = np.array(
+        [next_path.joints[0] - path.joints[-1] for path, next_path in zip(paths, paths[1:])]
     )
-    ways = (ways * ways) @ task.weights if len(ways) else np.zeros(0)
-    objective = float(sum(taken) + ways.sum())
+    step_costs = (step_costs * step_costs) @ task.weights if len(step_costs) else np.zeros(0)
+    objective = float(sum(costs) + step_costs.sum())
     value, following = np.zeros(BETWEEN_BEADS), None
     for number in range(len(paths) - 1, -1, -1):
         report(1.0 - (number + 1) / len(paths))
         # what a step may take before it is no longer looked at by itself: more than it takes to reach any better course
-        far = max([taken[number], *ways[max(0, number - 1) : number + 1]])
-        value, first = _through(
-            task, every[number], paths[number], BETWEEN_BEADS, far, value, following
+        max_cost = max([costs[number], *step_costs[max(0, number - 1) : number + 1]])
+        value, first_lattice = _through(
+            task, bead_points[number], paths[number], BETWEEN_BEADS, max_cost, value, following
         )
-        following = first
+        following = first_lattice
     assert following is not None
     return objective, min(objective, least_ahead.least_of(value, following))
 
 
-def _taken(task: Task, points: Points, path: BeadPath) -> float:
+def _displacement_cost(task: Task, points: Points, path: BeadPath) -> float:
     """Eq. 17 of one bead."""
     step = steps(path.joints, points)
     return float(((step * step) @ task.weights).sum())
@@ -148,34 +154,36 @@ def _taken(task: Task, points: Points, path: BeadPath) -> float:
 
 def _displacement_bound(task: Task, points: Points, path: BeadPath, objective: float) -> float:
     """What eq. 17 of one bead cannot go below; `objective` is what its path takes."""
-    near, best = (1.0 - CLOSE) * objective, 0.0
+    target, best = (1.0 - BOUND_TOLERANCE) * objective, 0.0
     for number, count in enumerate(ROTATIONS):
-        value, first = _through(task, points, path, count, objective, np.zeros(count), None)
-        before, best = best, max(best, min(objective, least_ahead.least_of(value, first)))
+        value, first_lattice = _through(task, points, path, count, objective, np.zeros(count), None)
+        previous, best = best, max(best, min(objective, least_ahead.least_of(value, first_lattice)))
         # half as far between rotations is an error of a sixteenth
-        if best >= near or (before > 0.0 and best - before < 8.0 * CLOSE * objective):
+        if best >= target or (
+            previous > 0.0 and best - previous < 8.0 * BOUND_TOLERANCE * objective
+        ):
             break
         if number == 0:
-            near = min(near, _best_known(task, points, path) - CLOSE * objective)
-            if best >= near:
+            target = min(target, _best_known(task, points, path) - BOUND_TOLERANCE * objective)
+            if best >= target:
                 break
     return best
 
 
 def _best_known(task: Task, points: Points, path: BeadPath) -> float:
     """What the best course of the rotation takes that is found from that of the path."""
-    at = _grouped(steps(path.joints, points), task.weights)
-    chosen, scale, threshold = (
-        points.each(at),
-        task.weights / np.diff(at)[:, None],
-        path.threshold[at],
+    groups = _grouped(steps(path.joints, points), task.weights)
+    group_points, scale, threshold = (
+        points.each(groups),
+        task.weights / np.diff(groups)[:, None],
+        path.threshold[groups],
     )
 
     def broken(phi: Array, joints: Array) -> Mask:
-        return course.broken_by(task, chosen, threshold, phi, joints)
+        return course.broken_by(task, group_points, threshold, phi, joints)
 
     return course.best(
-        lambda phi: task.raw_joints(chosen, phi), scale, path.phi[at], False, broken
+        lambda phi: task.raw_joints(group_points, phi), scale, path.phi[groups], False, broken
     )[1]
 
 
@@ -184,36 +192,41 @@ def _through(
     points: Points,
     path: BeadPath,
     count: int,
-    far: float,
+    max_cost: float,
     value: Array,
     following: Lattice | None,
 ) -> tuple[Array, Lattice]:
     """(count,) the least sum from every rotation at the first point of a bead on, and the lattice of that point; value
     (count,): from the first point of the bead after it on, whose lattice is `following`, or from this one's end on."""
-    at = _grouped(steps(path.joints, points), task.weights)
-    each = max(2, PIECE // count)
-    after, last = following, 1.0  # the step to the point after
-    for end in range(len(at), 0, -each):
-        some = at[max(0, end - each) : end]
-        piece = lattice(task, points, some, path.threshold[some], count)
-        if after is not None:
-            value = least_ahead.before(piece, len(some) - 1, after, 0, value, last, far)
-        value = least_ahead.ahead(piece, value, np.diff(some), far)
-        after, last = piece.first, float(some[0] - at[max(0, end - each) - 1])
-    assert after is not None
-    return value, after
+    groups = _grouped(steps(path.joints, points), task.weights)
+    chunk_size = max(2, PIECE // count)
+    next_lattice, step_count = following, 1.0  # the step to the point after
+    for end in range(len(groups), 0, -chunk_size):
+        rows = groups[max(0, end - chunk_size) : end]
+        chunk = lattice(task, points, rows, path.threshold[rows], count)
+        if next_lattice is not None:
+            value = least_ahead.before(
+                chunk, len(rows) - 1, next_lattice, 0, value, step_count, max_cost
+            )
+        value = least_ahead.ahead(chunk, value, np.diff(rows), max_cost)
+        next_lattice, step_count = (
+            chunk.first,
+            float(rows[0] - groups[max(0, end - chunk_size) - 1]),
+        )
+    assert next_lattice is not None
+    return value, next_lattice
 
 
 def _grouped(step: Array, weights: Array) -> Index:
     """The points between which steps are looked at together, so that little of the objective is lost by it."""
     count = len(step) - 1
-    whole, way = float(((step * step) @ weights).sum()), np.cumsum(step, axis=0)
-    groups = FEWEST
+    total, travel = float(((step * step) @ weights).sum()), np.cumsum(step, axis=0)
+    groups = MIN_GROUPS
     while groups < count:
-        at: Index = np.unique(np.round(np.linspace(0, count, groups + 1)).astype(np.int64))
-        moved = np.diff(way[at], axis=0)
-        kept = float(((moved * moved) @ weights / np.diff(at)).sum())
-        if kept >= whole * (1.0 - GROUPED) and np.abs(moved).max() < 0.4 * TURN:
-            return at
+        rows: Index = np.unique(np.round(np.linspace(0, count, groups + 1)).astype(np.int64))
+        moved = np.diff(travel[rows], axis=0)
+        preserved = float(((moved * moved) @ weights / np.diff(rows)).sum())
+        if preserved >= total * (1.0 - GROUPED) and np.abs(moved).max() < 0.4 * TURN:
+            return rows
         groups *= 2
     return np.arange(count + 1, dtype=np.int64)

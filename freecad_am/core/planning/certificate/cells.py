@@ -22,8 +22,8 @@ def whole_turn() -> tuple[Array, float]:
 
 def divided(phi: Array, half: float) -> Array:
     """(PARTS n,) the middles of the parts of cells phi (n,) +- half, those of one cell side by side."""
-    parts = (2.0 * np.arange(PARTS) - (PARTS - 1)) * half / PARTS
-    return np.asarray((phi[:, None] + parts).ravel())
+    offsets = (2.0 * np.arange(PARTS) - (PARTS - 1)) * half / PARTS
+    return np.asarray((phi[:, None] + offsets).ravel())
 
 
 def possible(
@@ -37,15 +37,15 @@ def possible(
         index, phi, half
     )  # where the end of the cell before is not the beginning of this one
     sampled = np.concatenate([phi[begins] - half[begins], phi, phi + half])
-    looked = points.each(np.concatenate([index[begins], index, index]))
-    joints, first = task.raw_joints(looked, sampled), int(begins.sum())
-    rows = first + np.arange(2 * count).reshape(2, count)
+    sampled_points = points.each(np.concatenate([index[begins], index, index]))
+    joints, begin_count = task.raw_joints(sampled_points, sampled), int(begins.sum())
+    rows = begin_count + np.arange(2 * count).reshape(2, count)
     rows = np.stack([np.where(begins, np.cumsum(begins) - 1, rows[1] - 1), *rows])
-    before, middle, after = joints[rows]
-    ahead, behind = _short(after - middle), _short(middle - before)
+    previous, middle, following = joints[rows]
+    ahead, behind = _short(following - middle), _short(middle - previous)
     # a cell at the edge of reach goes on beyond the edge as it does before it
-    lost_ahead, lost_behind = (np.isnan(one).any(axis=1) for one in (ahead, behind))
-    found = np.isfinite(middle).all(axis=1) & ~(lost_ahead & lost_behind)
+    lost_ahead, lost_behind = (np.isnan(difference).any(axis=1) for difference in (ahead, behind))
+    feasible = np.isfinite(middle).all(axis=1) & ~(lost_ahead & lost_behind)
     ahead, behind = (
         np.where(lost_ahead[:, None], behind, ahead),
         np.where(lost_behind[:, None], ahead, behind),
@@ -54,25 +54,27 @@ def possible(
     # of a parabola the line through its ends, a quarter of the second difference away, is off by as much: twice that here
     off = 0.5 * bend + (half**2)[:, None] * turned.max(axis=1, keepdims=True)
     off = np.where((lost_ahead ^ lost_behind)[:, None], 0.5 * np.abs(ahead), off)
-    found &= _within(task, middle, turned + off + bend)
-    open_ = np.flatnonzero(found)
-    once, which = np.unique(rows[:, open_], return_inverse=True)
-    least = np.empty(len(once))
-    least[which.ravel()] = np.tile(threshold[open_], 3)
-    ratio = _condition(task, looked, sampled, joints, once, least)[which].reshape(3, -1)
-    found[open_] = 2.0 * ratio.max(axis=0) - ratio.min(axis=0) >= threshold[open_]
-    return np.asarray(found)
+    feasible &= _within_limits(task, middle, turned + off + bend)
+    open_ = np.flatnonzero(feasible)
+    once, inverse_rows = np.unique(rows[:, open_], return_inverse=True)
+    thresholds = np.empty(len(once))
+    thresholds[inverse_rows.ravel()] = np.tile(threshold[open_], 3)
+    ratio = _condition(task, sampled_points, sampled, joints, once, thresholds)[
+        inverse_rows
+    ].reshape(3, -1)
+    feasible[open_] = 2.0 * ratio.max(axis=0) - ratio.min(axis=0) >= threshold[open_]
+    return np.asarray(feasible)
 
 
 def _goes_on(index: Index, phi: Array, half: Array) -> Mask:
     """(n,) whether a cell phi +- half at a point begins where the one before it ends, at the same point."""
-    found = np.zeros(len(phi), dtype=bool)
-    apart = np.abs(phi[1:] - phi[:-1] - half[1:] - half[:-1])
-    found[1:] = (index[1:] == index[:-1]) & (apart < 1e-6 * half[1:])
-    return found
+    continues = np.zeros(len(phi), dtype=bool)
+    gap = np.abs(phi[1:] - phi[:-1] - half[1:] - half[:-1])
+    continues[1:] = (index[1:] == index[:-1]) & (gap < 1e-6 * half[1:])
+    return continues
 
 
-def _within(task: Task, joints: Array, reach: Array) -> Mask:
+def _within_limits(task: Task, joints: Array, reach: Array) -> Mask:
     """Whether joints (n, axes), moved by up to `reach` and by whole turns, can be within the limits of each axis."""
     limits = task.cell.limits
     beyond = np.abs(_short(joints - task.middle)) - np.where(
@@ -90,8 +92,8 @@ def _condition(
     matrix = task.jacobian_at(points.frames.of(rows[good]), phi[rows[good]], joints[rows[good]])
     length = task.parameters.characteristic_length
     bound = jac.condition_bound(matrix, length)
-    near = bound < 2.0 * threshold[good]
-    bound[near] = jac.condition(matrix[near], length)
+    uncertain = bound < 2.0 * threshold[good]
+    bound[uncertain] = jac.condition(matrix[uncertain], length)
     ratio[good] = bound
     return ratio
 

@@ -16,11 +16,11 @@ from ..rotation import given
 from ..task import Task, condition_margin
 from . import course
 
-FOUND = "each point free"
-WORTH = 1e-3  # share of the objective that has to be won, else the polynomial stays
+POINTWISE_REASON = "each point free"
+MIN_GAIN = 1e-3  # share of the objective that has to be won, else the polynomial stays
 
 
-def where_asked(
+def close_gaps(
     task: Task, paths: list[tuple[BeadPath, list[Issue]]]
 ) -> list[tuple[BeadPath, list[Issue]]]:
     """The paths and what was found about each, with their gaps closed where the task asks for it, and on their new courses
@@ -55,9 +55,11 @@ def closed(task: Task, path: BeadPath) -> BeadPath:
         return task.raw_joints(points, phi)
 
     scale = np.broadcast_to(task.weights, (len(path.phi) - 1, len(task.weights)))
-    phi, least = course.best(joints_at, scale, path.phi, task.joined and path.bead.closed, broken)
+    phi, objective = course.best(
+        joints_at, scale, path.phi, task.joined and path.bead.closed, broken
+    )
     step = steps(path.joints, points)
-    if not least < (1.0 - WORTH) * float(((step * step) @ task.weights).sum()):
+    if not objective < (1.0 - MIN_GAIN) * float(((step * step) @ task.weights).sum()):
         return path
     joints, condition = task.joints(points, phi), task.condition(points, phi, joints_at(phi))
     if task.kept is not None:
@@ -70,8 +72,8 @@ def closed(task: Task, path: BeadPath) -> BeadPath:
         phi=phi,
         joints=joints,
         condition=condition,
-        objective=least,
+        objective=objective,
         margin=float(margin.min()),
         coefficients=None,
-        reason=FOUND,
+        reason=POINTWISE_REASON,
     )

@@ -13,17 +13,17 @@ from ..points import Points
 from ..task import FITS, Task
 
 STEPS = 30
-STARTS, EQUAL = (
+STARTS, VALUE_TOLERANCE = (
     24,
     1e-6,
 )  # courses about a turn, and the share by which one has to be better than those before it
-APART = 1e-5  # rad, between the rotations of which a slope is taken
-HELD, HOLDS = (
+DIFFERENCE_STEP_RAD = 1e-5  # rad, between the rotations of which a slope is taken
+MAX_ACTIVE_SETS, HOLD_STIFFNESS = (
     6,
     1e9,
 )  # groups of points that are held, and times the largest curvature of those that are not
-SHORTEST = 0.02  # of a Newton step that is still tried
-DONE = 1e-7  # share of the value by which a step has to lower it
+MIN_STEP_SHARE = 0.02  # of a Newton step that is still tried
+MIN_DECREASE = 1e-7  # share of the value by which a step has to lower it
 
 
 Joints = Callable[[Array], Array]
@@ -35,7 +35,7 @@ def none_broken(phi: Array, joints: Array) -> Mask:
     return np.zeros(len(phi), dtype=bool)
 
 
-def found(
+def descend(
     joints_at: Joints, scale: Array, phi: Array, joined: bool, broken: Broken = none_broken
 ) -> tuple[Array, float]:
     """Rotations (n,) with the least sum of `scale` (n - 1, axes) times squared steps that is found from phi (n,) on, and
@@ -45,49 +45,51 @@ def found(
     broken: points (n,) where rotations and their joints may not be; where those known may not they are returned, and
     the sum is infinite.
     """
-    here = joints_at(phi)
-    if broken(phi, here).any():
+    joints = joints_at(phi)
+    if broken(phi, joints).any():
         return phi, np.inf
-    moved = _steps(here)
+    moved = _steps(joints)
     value = float((moved * moved * scale).sum())
     for _ in range(STEPS):
-        slope = shortest(joints_at(phi + APART) - joints_at(phi - APART)) / (2.0 * APART)
+        slope = shortest(
+            joints_at(phi + DIFFERENCE_STEP_RAD) - joints_at(phi - DIFFERENCE_STEP_RAD)
+        ) / (2.0 * DIFFERENCE_STEP_RAD)
         if not (np.isfinite(slope).all() and np.isfinite(moved).all()):
             break
-        lower = _stepped(joints_at, scale, phi, (moved, slope), joined, broken)
+        lower = _take_step(joints_at, scale, phi, (moved, slope), joined, broken)
         if lower is None:
             break
         phi, moved = lower
-        before, value = value, float((moved * moved * scale).sum())
-        if value > (1.0 - DONE) * before:
+        previous, value = value, float((moved * moved * scale).sum())
+        if value > (1.0 - MIN_DECREASE) * previous:
             break
     return phi, value
 
 
-def _stepped(
+def _take_step(
     joints_at: Joints,
     scale: Array,
     phi: Array,
-    known: tuple[Array, Array],
+    current: tuple[Array, Array],
     joined: bool,
     broken: Broken,
 ) -> tuple[Array, Array] | None:
     """Rotations that take less and may be, and their steps; None where no step of Newton's leads to any. Points that are at
     what they may not be beyond are held, one group after the other, and the others go on."""
-    value, held = float((known[0] ** 2 * scale).sum()), np.zeros(len(phi), dtype=bool)
-    for _ in range(HELD):
-        change = _newton(*known, scale, joined, held)
-        size, stopped = 1.0, held
-        while size > SHORTEST:
-            tried = phi + size * change
-            joints = joints_at(tried)
-            steps, stopped = _steps(joints), broken(tried, joints)
+    value, blocked = float((current[0] ** 2 * scale).sum()), np.zeros(len(phi), dtype=bool)
+    for _ in range(MAX_ACTIVE_SETS):
+        change = _newton(*current, scale, joined, blocked)
+        size, stopped = 1.0, blocked
+        while size > MIN_STEP_SHARE:
+            trial = phi + size * change
+            joints = joints_at(trial)
+            steps, stopped = _steps(joints), broken(trial, joints)
             if not stopped.any() and float((steps * steps * scale).sum()) < value:
-                return tried, steps
+                return trial, steps
             size *= 0.25
-        if not (stopped & ~held).any():
+        if not (stopped & ~blocked).any():
             return None
-        held |= stopped
+        blocked |= stopped
     return None
 
 
@@ -98,14 +100,14 @@ def best(
     joined: bool,
     broken: Broken = none_broken,
 ) -> tuple[Array, float]:
-    """The best of what is `found` from phi (n,) on and from the same turned by parts of a turn, of those that may be: the
+    """The best of what is `descend` from phi (n,) on and from the same turned by parts of a turn, of those that may be: the
     rotations and the sum, infinite where none may."""
-    kept, least = phi, np.inf
+    best_phi, best_value = phi, np.inf
     for turned in TURN / STARTS * np.arange(STARTS):
-        course, value = found(joints_at, scale, phi + turned, joined, broken)
-        if value < least * (1.0 - EQUAL):
-            kept, least = course, value
-    return kept, least
+        course, value = descend(joints_at, scale, phi + turned, joined, broken)
+        if value < best_value * (1.0 - VALUE_TOLERANCE):
+            best_phi, best_value = course, value
+    return best_phi, best_value
 
 
 def _newton(moved: Array, slope: Array, scale: Array, joined: bool, held: Mask) -> Array:
@@ -121,7 +123,7 @@ def _newton(moved: Array, slope: Array, scale: Array, joined: bool, held: Mask) 
     rate = np.zeros(len(slope))
     rate[:-1] -= (moved * slope[:-1] * scale).sum(axis=1)
     rate[1:] += (moved * slope[1:] * scale).sum(axis=1)
-    bands[1, held] = HOLDS * bands[1].max()
+    bands[1, held] = HOLD_STIFFNESS * bands[1].max()
     rate[held] = 0.0
     sides = rate[:, None]
     if joined:  # what holds both ends together is a multiplier
@@ -142,9 +144,9 @@ def _newton(moved: Array, slope: Array, scale: Array, joined: bool, held: Mask) 
 def broken_by(task: Task, points: Points, threshold: Array, phi: Array, joints: Array) -> Mask:
     """(n,) where limits, condition (threshold (n,)) or the range of the rotation are not kept by rotations phi (n,) and
     their joints (n, axes), as the inverse gives these, at points one after the other."""
-    lost = ~np.isfinite(joints).all(axis=1)
-    if lost.any():
-        return np.asarray(lost)
+    unreachable = ~np.isfinite(joints).all(axis=1)
+    if unreachable.any():
+        return np.asarray(unreachable)
     run = joints[0] + np.concatenate(
         [np.zeros((1, joints.shape[1])), np.cumsum(_steps(joints), axis=0)]
     )

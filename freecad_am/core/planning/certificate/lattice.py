@@ -75,8 +75,8 @@ class Lattice:
             to_left = to_left & np.roll(self.whole, by + 1, axis=1)
             right += to_right
             left += to_left
-        least, most = 2 - left, right - 2
-        return np.where(least <= most, np.clip(0, least, np.maximum(least, most)), NO_FIVE)
+        lowest, highest = 2 - left, right - 2
+        return np.where(lowest <= highest, np.clip(0, lowest, np.maximum(lowest, highest)), NO_FIVE)
 
     @cached_property
     def rate(self) -> Array:
@@ -86,8 +86,8 @@ class Lattice:
 
     def moved(self, start: Array, end: Array) -> Array:
         """(..., axes) the short ways between joints."""
-        way = end - start
-        return np.where(self.turning, shortest(way), way)
+        difference = end - start
+        return np.where(self.turning, shortest(difference), difference)
 
     @property
     def first(self) -> Lattice:
@@ -103,37 +103,37 @@ class Lattice:
     def flat(self) -> Array:
         """(m, COARSE, 2 axes) coordinates that lie as far apart as the joints at each of COARSE rotations, or less: eq. 17
         of a step is not below the square of their distance."""
-        some, scale = self.joints[:, :: self.count // COARSE], np.sqrt(self.weights)
+        samples, scale = self.joints[:, :: self.count // COARSE], np.sqrt(self.weights)
         return np.concatenate(
             [
-                np.where(self.turning, np.cos(some), some) * scale,
-                np.where(self.turning, np.sin(some), 0.0) * scale,
+                np.where(self.turning, np.cos(samples), samples) * scale,
+                np.where(self.turning, np.sin(samples), 0.0) * scale,
             ],
             axis=2,
         )
 
 
-def lattice(task: Task, points: Points, at: Index, threshold: Array, count: int) -> Lattice:
-    """The lattice of points `at` (m,) with `count` rotations; threshold (m,) is the smallest condition allowed there."""
-    ends = _rotations(task, points, at, count)
+def lattice(task: Task, points: Points, rows: Index, threshold: Array, count: int) -> Lattice:
+    """The lattice of points `rows` (m,) with `count` rotations; threshold (m,) is the smallest condition allowed there."""
+    ends = _rotations(task, points, rows, count)
     joints = task.raw_joints(
-        points.each(np.repeat(at, count)), np.tile(ends[:-1], len(at))
-    ).reshape(len(at), count, -1)
+        points.each(np.repeat(rows, count)), np.tile(ends[:-1], len(rows))
+    ).reshape(len(rows), count, -1)
     return Lattice(
         joints,
-        _possible(task, points, at, threshold, ends),
+        _possible(task, points, rows, threshold, ends),
         task.weights,
         ~task.cell.machine.chain.sliding,
     )
 
 
-def _rotations(task: Task, points: Points, at: Index, count: int) -> Array:
+def _rotations(task: Task, points: Points, rows: Index, count: int) -> Array:
     """(count + 1,) rotations of a turn, the last a turn after the first, the nearer to each other the more joints move there
     at one of the points."""
     phi = -np.pi + TURN / RATE_SAMPLES * np.arange(RATE_SAMPLES)
-    joints = task.raw_joints(points.each(np.repeat(at, len(phi))), np.tile(phi, len(at))).reshape(
-        len(at), len(phi), -1
-    )
+    joints = task.raw_joints(
+        points.each(np.repeat(rows, len(phi))), np.tile(phi, len(rows))
+    ).reshape(len(rows), len(phi), -1)
     moved = np.nan_to_num(shortest(np.roll(joints, -1, axis=1) - joints))
     rate = np.sqrt(((moved * moved) @ task.weights).max(axis=0))
     if not rate.any():
@@ -154,27 +154,27 @@ def _rotations(task: Task, points: Points, at: Index, count: int) -> Array:
         wave = np.exp(1j * phi[:, None] * order) * factor
         return phi + (wave / (1j * order)).real.sum(axis=1), 1.0 + wave.real.sum(axis=1)
 
-    known = np.linspace(-np.pi, np.pi, KNOWN + 1)
-    up_to = cumulative(known)[0]
-    wanted = up_to[0] + TURN * np.arange(count + 1) / count
-    found = np.interp(wanted, up_to, known)
+    samples = np.linspace(-np.pi, np.pi, KNOWN + 1)
+    up_to = cumulative(samples)[0]
+    targets = up_to[0] + TURN * np.arange(count + 1) / count
+    rotations = np.interp(targets, up_to, samples)
     for _ in range(3):
-        value, slope = cumulative(found)
-        found -= (value - wanted) / slope
-    return found
+        value, slope = cumulative(rotations)
+        rotations -= (value - targets) / slope
+    return rotations
 
 
-def _possible(task: Task, points: Points, at: Index, threshold: Array, ends: Array) -> Mask:
+def _possible(task: Task, points: Points, rows: Index, threshold: Array, ends: Array) -> Mask:
     def looked(point: Index, cell: Index, ends: Array) -> Mask:
         middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
-        return possible(task, points, at[point], middle[cell], half[cell], threshold[point])
+        return possible(task, points, rows[point], middle[cell], half[cell], threshold[point])
 
-    parts = (len(ends) - 1) // COARSE
-    point, cell = np.divmod(np.arange(len(at) * COARSE), COARSE)
-    coarse = looked(point, cell, ends[::parts]).reshape(len(at), COARSE)
-    fine = np.repeat(coarse, parts, axis=1)
+    stride = (len(ends) - 1) // COARSE
+    point, cell = np.divmod(np.arange(len(rows) * COARSE), COARSE)
+    coarse = looked(point, cell, ends[::stride]).reshape(len(rows), COARSE)
+    fine = np.repeat(coarse, stride, axis=1)
     inside = coarse & np.roll(coarse, 1, axis=1) & np.roll(coarse, -1, axis=1)
-    edge = np.nonzero(np.repeat(coarse & ~inside, parts, axis=1))
+    edge = np.nonzero(np.repeat(coarse & ~inside, stride, axis=1))
     if len(edge[0]):
         fine[edge] = looked(edge[0], edge[1], ends)
     return fine

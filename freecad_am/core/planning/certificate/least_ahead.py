@@ -17,10 +17,10 @@ from ...types import Array, Index, Mask
 from .lattice import COARSE, NO_FIVE, Lattice
 
 # of a fourth difference, which makes a 96th of itself within a step of the middle of five, a 24th further out: twice that
-OFF, FURTHER_OFF = 2.0 / 96.0, 2.0 / 24.0
+INNER_ERROR, OUTER_ERROR = 2.0 / 96.0, 2.0 / 24.0
 MOST_STEPS = 9.0  # steps of the lattice, more than there are about one
 NEWTON = 3  # steps to the least of polynomials, and as often again about the rotation that is the nearest then
-APART = 3  # rotations, from which two least sums are looked at both
+MIN_SEPARATION = 3  # rotations, from which two least sums are looked at both
 FAR_ABOVE = 2.0  # times what is known to be possible
 # the powers of 1, x, .. x^4 (rows) in the polynomial that is 1 at one of -2 .. 2 (columns) and 0 at the others
 POWERS = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), 5, increasing=True))
@@ -28,158 +28,181 @@ FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 TORN = 1e-4  # of a sum: where what is ahead may be off by more, it is looked at by lines too
 
 
-def ahead(lattice: Lattice, last: Array, counts: Array, far: float) -> Array:
+def ahead(lattice: Lattice, end_values: Array, counts: Array, max_cost: float) -> Array:
     """(N,) the least sum from every rotation at the first point on, infinite where none can be; last (N,): from the last
-    point on. counts (m - 1,): of how many steps each of the lattice's stands; steps that take more than `far` are not
+    point on. counts (m - 1,): of how many steps each of the lattice's stands; steps that take more than `max_cost` are not
     looked at one by one."""
-    value = np.where(lattice.passable[-1], last, np.inf)
+    value = np.where(lattice.passable[-1], end_values, np.inf)
     for j in range(len(lattice.joints) - 2, -1, -1):
-        value = before(lattice, j, lattice, j + 1, value, float(counts[j]), far)
+        value = before(lattice, j, lattice, j + 1, value, float(counts[j]), max_cost)
     return value
 
 
 def before(
-    one: Lattice, i: int, other: Lattice, j: int, value: Array, count: float, far: float
+    lattice: Lattice,
+    i: int,
+    next_lattice: Lattice,
+    j: int,
+    value: Array,
+    count: float,
+    max_cost: float,
 ) -> Array:
     """(N,) the least sum from every rotation at point i of a lattice on, of a step, which stands for `count` of them, to
     point j of another with `value` (N,) there."""
-    offsets = _neighbours(one, i, other, j, count * far)
-    columns: Index = (np.arange(one.count)[:, None] + offsets) % one.count
-    total, weights = value[columns], one.weights / count
+    offsets = _neighbours(lattice, i, next_lattice, j, count * max_cost)
+    columns: Index = (np.arange(lattice.count)[:, None] + offsets) % lattice.count
+    total, weights = value[columns], lattice.weights / count
     for axis, weight in enumerate(weights):
-        way = other.joints[j, :, axis][columns] - one.joints[i, :, axis][:, None]
-        if one.turning[axis] and np.nanmax(np.abs(way), initial=0.0) > 0.5 * TURN:
-            way -= TURN * np.round(way / TURN)
-        total += weight * way * way
+        difference = next_lattice.joints[j, :, axis][columns] - lattice.joints[i, :, axis][:, None]
+        if lattice.turning[axis] and np.nanmax(np.abs(difference), initial=0.0) > 0.5 * TURN:
+            difference -= TURN * np.round(difference / TURN)
+        total += weight * difference * difference
     total[np.isnan(total)] = np.inf
-    least = _least(total, columns, one.joints[i], other, j, value, weights)
-    if len(offsets) < one.count:  # whatever step is not looked at takes `far` at least
-        least = np.minimum(least, far + value[other.passable[j]].min(initial=np.inf))
-    return np.where(one.passable[i], np.maximum(least, 0.0), np.inf)
+    minimum = _least(total, columns, lattice.joints[i], next_lattice, j, value, weights)
+    if len(offsets) < lattice.count:  # whatever step is not looked at takes `far` at least
+        minimum = np.minimum(
+            minimum, max_cost + value[next_lattice.passable[j]].min(initial=np.inf)
+        )
+    return np.where(lattice.passable[i], np.maximum(minimum, 0.0), np.inf)
 
 
-def least_of(value: Array, first: Lattice) -> float:
+def least_of(value: Array, lattice: Lattice) -> float:
     """The least of sums (N,) at the rotations of the first point of a lattice, between them too."""
-    columns = np.arange(-1, first.count + 1)[None] % first.count
+    columns = np.arange(-1, lattice.count + 1)[None] % lattice.count
     return float(
         _least(
             value[columns],
             columns,
-            first.joints[0, :1],
-            first,
+            lattice.joints[0, :1],
+            lattice,
             0,
             value,
-            np.zeros_like(first.weights),
+            np.zeros_like(lattice.weights),
         )[0]
     )
 
 
 def _least(
-    total: Array, columns: Index, start: Array, other: Lattice, j: int, value: Array, weights: Array
+    total: Array,
+    columns: Index,
+    start: Array,
+    next_lattice: Lattice,
+    j: int,
+    value: Array,
+    weights: Array,
 ) -> Array:
     """(n,) what sums (n, k) at rotations `columns` (n, k) of a point of a lattice, the outer two only beside others, are at
     least, between them too; of steps from joints start (n, axes)."""
     inner = columns[:, 1:-1]
-    low, high = (side[j][inner] for side in other.about)
-    guess, to = _parabolas(total, low, high, other.passable[j][inner])
-    known = np.where(other.passable[j][inner], total[:, 1:-1], np.inf).min(axis=1, initial=np.inf)
-    least = _at_best(guess, to, known, inner, start, other, j, value, weights)
-    ragged = other.ragged[j]
+    low, high = (side[j][inner] for side in next_lattice.about)
+    guess, to = _parabolas(total, low, high, next_lattice.passable[j][inner])
+    sampled_min = np.where(next_lattice.passable[j][inner], total[:, 1:-1], np.inf).min(
+        axis=1, initial=np.inf
+    )
+    minimum = _at_best(guess, to, sampled_min, inner, start, next_lattice, j, value, weights)
+    ragged = next_lattice.ragged[j]
     if ragged.any():  # sums go on beyond the edge of reach as they come to it
-        here = total[:, 1:-1]
+        inner_total = total[:, 1:-1]
         jumps = [
-            np.where(np.isfinite(one), np.abs(here - one), 0.0)
-            for one in (total[:, 2:], total[:, :-2])
+            np.where(np.isfinite(outer_total), np.abs(inner_total - outer_total), 0.0)
+            for outer_total in (total[:, 2:], total[:, :-2])
         ]
         with np.errstate(invalid="ignore"):
-            beyond = np.where(ragged[inner] & np.isfinite(here), here - np.maximum(*jumps), np.inf)
-        least = np.minimum(least, beyond.min(axis=1))
-    return least
+            beyond = np.where(
+                ragged[inner] & np.isfinite(inner_total), inner_total - np.maximum(*jumps), np.inf
+            )
+        minimum = np.minimum(minimum, beyond.min(axis=1))
+    return minimum
 
 
-def _neighbours(one: Lattice, i: int, other: Lattice, j: int, far: float) -> Index:
-    """By how many rotations a step may go on that takes less than `far`, and one more at both ends."""
-    cell = one.count // COARSE
-    near = np.sqrt(far) + 0.5 * cell * (one.rate[i] + other.rate[j])
-    from_, to = one.flat[i], other.flat[j]
-    apart = np.nan_to_num(
+def _neighbours(lattice: Lattice, i: int, next_lattice: Lattice, j: int, max_cost: float) -> Index:
+    """By how many rotations a step may go on that takes less than `max_cost`, and one more at both ends."""
+    cell = lattice.count // COARSE
+    radius = np.sqrt(max_cost) + 0.5 * cell * (lattice.rate[i] + next_lattice.rate[j])
+    from_, to = lattice.flat[i], next_lattice.flat[j]
+    squared_distance = np.nan_to_num(
         (from_ * from_).sum(axis=1)[:, None] + (to * to).sum(axis=1) - 2.0 * from_ @ to.T
     )
-    there = (
-        (apart < near * near) & _any(one.possible[i], cell)[:, None] & _any(other.possible[j], cell)
+    close = (
+        (squared_distance < radius * radius)
+        & _any(lattice.possible[i], cell)[:, None]
+        & _any(next_lattice.possible[j], cell)
     )
-    start, end = np.nonzero(there)
+    start, end = np.nonzero(close)
     met = np.unique((end - start) % COARSE) if len(start) else np.zeros(1, dtype=np.int64)
     # what is left out is the widest part of the turn in which no step ends
     gaps = np.diff(np.append(met, met[0] + COARSE))
     widest = int(gaps.argmax())
-    first, last = met[(widest + 1) % len(met)] - 1, met[widest] + 1
-    last += COARSE if last < first else 0
+    first_cell, last_cell = met[(widest + 1) % len(met)] - 1, met[widest] + 1
+    last_cell += COARSE if last_cell < first_cell else 0
     if gaps[widest] <= 3:  # one more at both ends leaves none out
-        return np.arange(-1, one.count + 1)
-    return np.arange(first * cell - 1, last * cell + 2)
+        return np.arange(-1, lattice.count + 1)
+    return np.arange(first_cell * cell - 1, last_cell * cell + 2)
 
 
 def _any(possible: Mask, cell: int) -> Mask:
     """(COARSE,) whether one of the cells on both sides of each coarse rotation is possible."""
-    after = possible.reshape(COARSE, cell).any(axis=1)
-    return np.asarray(after | np.roll(after, 1))
+    cells = possible.reshape(COARSE, cell).any(axis=1)
+    return np.asarray(cells | np.roll(cells, 1))
 
 
-def _parabolas(total: Array, low: Array, high: Array, there: Mask) -> tuple[Array, Array]:
+def _parabolas(total: Array, low: Array, high: Array, available: Mask) -> tuple[Array, Array]:
     """(n, k) about what sums (n, k + 2) take at least from `low` to `high` steps of the lattice (n, k) beside each rotation
-    but the outer two, infinite where it is not `there` (n, k); and how far beside it."""
-    here, after, first = total[:, 1:-1], total[:, 2:], total[:, :-2]
+    but the outer two, infinite where it is not `available` (n, k); and how far beside it."""
+    centre, next_total, previous_total = total[:, 1:-1], total[:, 2:], total[:, :-2]
     with np.errstate(invalid="ignore", over="ignore"):
-        slope, bend = 0.5 * (after - first), after - 2.0 * here + first
+        slope, bend = (
+            0.5 * (next_total - previous_total),
+            next_total - 2.0 * centre + previous_total,
+        )
         to = np.where(
             bend > 0.0, -slope / np.where(bend > 0.0, bend, 1.0), np.where(slope > 0.0, -1.0, 1.0)
         )
         to = np.clip(to, low, high)
-        guess = here + to * (slope + 0.5 * to * bend)
-    known = np.isfinite(guess)
-    return np.where(there, np.where(known, guess, here), np.inf), np.where(known, to, 0.0)
+        guess = centre + to * (slope + 0.5 * to * bend)
+    finite = np.isfinite(guess)
+    return np.where(available, np.where(finite, guess, centre), np.inf), np.where(finite, to, 0.0)
 
 
 def _at_best(
     guess: Array,
     to: Array,
-    known: Array,
+    sampled_min: Array,
     columns: Index,
     start: Array,
-    other: Lattice,
+    next_lattice: Lattice,
     j: int,
     value: Array,
     weights: Array,
 ) -> Array:
     """(n,) the least near the best of guesses (n, k), which are about rotations `columns` (n, k) and lie `to` from them, and
-    near all others that are better than those beside them; no more than what is `known` (n,) of a rotation itself."""
+    near all others that are better than those beside them; no more than what is `sampled_min` (n,) of a rotation itself."""
     rows, number = np.arange(len(guess)), np.arange(guess.shape[1])
-    first = guess.argmin(axis=1)
+    best_column = guess.argmin(axis=1)
     edge = np.full((len(guess), 1), np.inf)
     neighbours = np.minimum(np.c_[edge, guess[:, :-1]], np.c_[guess[:, 1:], edge])
     # one that is far above what is known, by more than guesses are off, cannot be the least
-    worth, others = np.nonzero(
+    worth, minima = np.nonzero(
         (guess <= neighbours)
-        & (guess < FAR_ABOVE * known[:, None])
-        & (np.abs(number - first[:, None]) >= APART)
+        & (guess < FAR_ABOVE * sampled_min[:, None])
+        & (np.abs(number - best_column[:, None]) >= MIN_SEPARATION)
     )
-    row, best = np.concatenate([rows, worth]), np.concatenate([first, others])
+    row, best = np.concatenate([rows, worth]), np.concatenate([best_column, minima])
     column, step = columns[row, best], to[row, best]
-    near = _near(column, start[row], other, j, value)
-    finer, step, doubt = near.least(step, weights)
+    model = _near(column, start[row], next_lattice, j, value)
+    finer, step, doubt = model.least(step, weights)
     nearest = np.nan_to_num(np.round(step)).astype(np.int64)
-    near = _near((column + nearest) % len(value), start[row], other, j, value)
-    finer, step, doubt = near.least(
+    model = _near((column + nearest) % len(value), start[row], next_lattice, j, value)
+    finer, step, doubt = model.least(
         step - nearest, weights
     )  # about the rotation that is the nearest then
     torn = np.flatnonzero(doubt > TORN * np.abs(finer))
     if len(torn):
-        finer[torn] = np.maximum(finer[torn], near.of(torn).least_by_lines(weights))
+        finer[torn] = np.maximum(finer[torn], model.of(torn).least_by_lines(weights))
     sure = np.where(np.isfinite(finer), finer, guess[row, best])
-    least = np.minimum(sure[: len(rows)], known)
-    np.minimum.at(least, worth, sure[len(rows) :])
-    return np.where(np.isfinite(guess[rows, first]), least, np.inf)
+    minimum = np.minimum(sure[: len(rows)], sampled_min)
+    np.minimum.at(minimum, worth, sure[len(rows) :])
+    return np.where(np.isfinite(guess[rows, best_column]), minimum, np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +238,7 @@ class _Near:
         """(n,) the least sum from `to` beside each rotation on, NaN where not known, where it is and by how much what is
         ahead may be off in it."""
         x = self._minimised(to - self.shift, self.later, self.low, self.high, weights)
-        doubt = np.where(np.abs(x) <= 1.0, OFF, FURTHER_OFF) * self.doubt
+        doubt = np.where(np.abs(x) <= 1.0, INNER_ERROR, OUTER_ERROR) * self.doubt
         with np.errstate(invalid="ignore", over="ignore"):
             return (
                 self._step(x, weights) + _polynomial(self.later, x, 0) - doubt,
@@ -226,48 +249,56 @@ class _Near:
     def least_by_lines(self, weights: Array) -> Array:
         """(n,) the least sum where polynomials say little of what is ahead, as beside rotations from which nothing leads
         on: in a cell it is not below its ends, but for a dip, which is not below the lines that lead down into it."""
-        least = np.full(len(self.low), np.inf)
-        for first, (before_, here, after, last) in (
+        minimum = np.full(len(self.low), np.inf)
+        for offset, (before_, centre, next_value, far_value) in (
             (-1.0, self.around.T[:4]),
             (0.0, self.around.T[1:]),
         ):
-            begin = first - self.shift
+            begin = offset - self.shift
             low, high = np.maximum(self.low, begin), np.minimum(self.high, begin + 1.0)
             with np.errstate(invalid="ignore"):
                 down = [
-                    np.nan_to_num(one - other, posinf=0.0, neginf=0.0)
-                    for one, other in ((here, before_), (last, after))
+                    np.nan_to_num(inner - outer, posinf=0.0, neginf=0.0)
+                    for inner, outer in ((centre, before_), (far_value, next_value))
                 ]
-            dip = (down[0] < 0.0) & ((down[1] > 0.0) | ~np.isfinite(last)) | (
+            dip = (down[0] < 0.0) & ((down[1] > 0.0) | ~np.isfinite(far_value)) | (
                 down[1] > 0.0
             ) & ~np.isfinite(before_)
-            found = np.full(len(least), -np.inf)
-            for value, slope, at in ((here, down[0], begin), (after, down[1], begin + 1.0)):
+            bound = np.full(len(minimum), -np.inf)
+            for value, slope, position in (
+                (centre, down[0], begin),
+                (next_value, down[1], begin + 1.0),
+            ):
                 slope = np.where(dip, slope, 0.0)
                 line = np.zeros_like(self.later)
-                line[1], line[0] = slope, np.where(dip, value, np.minimum(here, after)) - slope * at
+                line[1], line[0] = (
+                    slope,
+                    np.where(dip, value, np.minimum(centre, next_value)) - slope * position,
+                )
                 sums = self._step(
                     x := self._minimised(0.5 * (low + high), line, low, high, weights), weights
                 )
-                found = np.fmax(
-                    found, np.where(dip & (slope == 0.0), -np.inf, sums + line[0] + line[1] * x)
+                bound = np.fmax(
+                    bound, np.where(dip & (slope == 0.0), -np.inf, sums + line[0] + line[1] * x)
                 )
-            least = np.minimum(least, np.where(low < high, found, np.inf))
-        return np.where(np.isfinite(least), least, -np.inf)
+            minimum = np.minimum(minimum, np.where(low < high, bound, np.inf))
+        return np.where(np.isfinite(minimum), minimum, -np.inf)
 
     def _step(self, x: Array, weights: Array) -> Array:
-        off = np.where(np.abs(x) <= 1.0, OFF, FURTHER_OFF)[:, None] * self.off
-        apart = np.maximum(np.abs(_polynomial(self.moved, x[:, None], 0)) - off, 0.0)
-        return np.asarray((apart * apart) @ weights)
+        off = np.where(np.abs(x) <= 1.0, INNER_ERROR, OUTER_ERROR)[:, None] * self.off
+        distance = np.maximum(np.abs(_polynomial(self.moved, x[:, None], 0)) - off, 0.0)
+        return np.asarray((distance * distance) @ weights)
 
     def _minimised(self, x: Array, later: Array, low: Array, high: Array, weights: Array) -> Array:
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
             for _ in range(NEWTON):
-                here, slope, bend = (
+                displacement, slope, bend = (
                     _polynomial(self.moved, x[:, None], order) for order in range(3)
                 )
-                rate = 2.0 * (here * slope) @ weights + _polynomial(later, x, 1)
-                curve = 2.0 * (slope * slope + here * bend) @ weights + _polynomial(later, x, 2)
+                rate = 2.0 * (displacement * slope) @ weights + _polynomial(later, x, 1)
+                curve = 2.0 * (slope * slope + displacement * bend) @ weights + _polynomial(
+                    later, x, 2
+                )
                 down = np.where(
                     curve > 0.0,
                     rate / np.where(curve > 0.0, curve, 1.0),
@@ -277,15 +308,18 @@ class _Near:
         return x
 
 
-def _near(column: Index, start: Array, other: Lattice, j: int, value: Array) -> _Near:
+def _near(column: Index, start: Array, next_lattice: Lattice, j: int, value: Array) -> _Near:
     """Of steps from joints start (n, axes) to rotations near `column` (n,) at a point of a lattice, with sums value (N,)."""
-    joints, shift, count = other.joints[j], other.shift[j][column], len(value)
+    joints, shift, count = next_lattice.joints[j], next_lattice.shift[j][column], len(value)
     five = (column + np.where(shift == NO_FIVE, 0, shift))[:, None] + np.arange(-2, 3)
     five %= count
     middle = joints[column]
-    to_five = other.moved(middle[:, None], joints[five]) + other.moved(start, middle)[:, None]
+    to_five = (
+        next_lattice.moved(middle[:, None], joints[five])
+        + next_lattice.moved(start, middle)[:, None]
+    )
     ahead_ = np.where((shift == NO_FIVE)[:, None], np.nan, value[five])
-    whole = other.whole[j]
+    whole_cells = next_lattice.whole[j]
     with np.errstate(invalid="ignore"):
         return _Near(
             np.einsum("pk,nka->pna", POWERS, to_five),
@@ -293,8 +327,8 @@ def _near(column: Index, start: Array, other: Lattice, j: int, value: Array) -> 
             np.abs(np.einsum("k,nka->na", FOURTH, to_five)),
             np.abs(ahead_ @ FOURTH),
             shift,
-            np.where(whole[column - 1], -1.0, 0.0) - shift,
-            np.where(whole[column], 1.0, 0.0) - shift,
+            np.where(whole_cells[column - 1], -1.0, 0.0) - shift,
+            np.where(whole_cells[column], 1.0, 0.0) - shift,
             value[(column[:, None] + np.arange(-2, 3)) % count],
         )
 

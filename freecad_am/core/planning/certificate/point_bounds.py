@@ -13,7 +13,7 @@ from ..task import Task
 from .cells import CELLS, divided, possible, whole_turn
 
 LEVELS = 4
-CLOSE = 1e-3  # share of a point's value at which its bound is near enough
+BOUND_TOLERANCE = 1e-3  # share of a point's value at which its bound is near enough
 
 
 def point_bound(task: Task, points: Points, threshold: Array) -> float:
@@ -33,14 +33,16 @@ def point_bound(task: Task, points: Points, threshold: Array) -> float:
         lower = np.maximum(np.nanmin(three, axis=0) - bend, 0.0)
         bound = np.full(count, np.inf)
         np.minimum.at(bound, index, lower)
-        known = np.full(count, np.inf)
-        np.minimum.at(known, index, three[1])
-        open_ = (bound < (1.0 - CLOSE) * known)[index] & (lower < known[index])
+        sampled_min = np.full(count, np.inf)
+        np.minimum.at(sampled_min, index, three[1])
+        open_ = (bound < (1.0 - BOUND_TOLERANCE) * sampled_min)[index] & (
+            lower < sampled_min[index]
+        )
         if level + 1 == LEVELS or not open_.any():
             break
-        done = np.bincount(index[open_], minlength=count) == 0
-        kept = open_ | (done[index] & (lower <= bound[index]))
-        index, phi = np.repeat(index[kept], 3), divided(phi[kept], half)
+        settled = np.bincount(index[open_], minlength=count) == 0
+        retained = open_ | (settled[index] & (lower <= bound[index]))
+        index, phi = np.repeat(index[retained], 3), divided(phi[retained], half)
         half /= 3.0
     if task.parameters.objective == "limits-klein":
         return float(bound.max())
@@ -49,17 +51,17 @@ def point_bound(task: Task, points: Points, threshold: Array) -> float:
 
 def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
     """(n,) what the objective says of rotations phi (n,) at chosen points; NaN out of reach."""
-    name, chosen = task.parameters.objective, points.each(index)
-    joints = task.raw_joints(chosen, phi)
+    name, selected = task.parameters.objective, points.each(index)
+    joints = task.raw_joints(selected, phi)
     if name not in ("manipulability", "condition"):
-        near = joints - task.middle
-        offset = np.abs(task.given_rows.offset(task.middle + shortest(near)))
+        centred = joints - task.middle
+        offset = np.abs(task.given_rows.offset(task.middle + shortest(centred)))
         if name == "limits-klein":
             return np.asarray(0.5 * offset.max(axis=1))
         return np.asarray((offset**2).sum(axis=1) * (0.25 if name == "limits-fournier" else 1.0))
     worth = np.full(len(phi), np.nan)
     good = np.flatnonzero(np.isfinite(joints).all(axis=1))
-    matrix = task.jacobian_at(chosen.frames.of(good), phi[good], joints[good])
+    matrix = task.jacobian_at(selected.frames.of(good), phi[good], joints[good])
     measure = jac.manipulability if name == "manipulability" else jac.condition
     worth[good] = 1.0 / np.maximum(measure(matrix, task.parameters.characteristic_length), 1e-300)
     return worth

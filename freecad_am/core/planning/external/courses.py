@@ -17,7 +17,7 @@ from ..turns import rotary_courses
 STEPS = 200  # of the search for the middle of directions
 
 
-def on_face(cell: Cell, tool: Array) -> Array:
+def directions_on_face(cell: Cell, tool: Array) -> Array:
     """Tool axes (n, 3) of the part as seen from the face that carries it."""
     turned = cell.station[:3, :3] @ cell.mount[:3, :3].T
     return np.asarray(tool @ turned.T)
@@ -45,30 +45,30 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
         return [
             np.unwrap(rotary_pair.nearest(external.turning[0], source, external.up).angle)[:, None]
         ]
-    first, second = external.turning
-    found = rotary_pair.between(
-        first, second, rotary_courses.onto_pole(source, second), external.up
+    first_axis, second_axis = external.turning
+    solutions = rotary_pair.between(
+        first_axis, second_axis, rotary_courses.onto_pole(source, second_axis), external.up
     )
     if not np.isfinite(
-        found.first + found.second
+        solutions.first + solutions.second
     ).all():  # axes that are not at right angles reach no farther
-        angle = rotary_pair.nearest(second, source, external.up).angle
+        angle = rotary_pair.nearest(second_axis, source, external.up).angle
         return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]
-    return rotary_courses.courses(found)
+    return rotary_courses.courses(solutions)
 
 
-def chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
+def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
     """Of all courses and whole turns the one within the limits that moves least, then the one that starts nearest to the
     values before (k,)."""
     rows, lower, upper = limits_of(cell)
-    speed, every = (
+    speed, all_axes = (
         cell.machine.max_speed[cell.robot.chain.axes + rows],
         np.ones(len(rows), dtype=bool),
     )
     best = rotary_courses.chosen(
-        courses, before[rows], lower, upper, speed, every, least_motion=True
+        courses, previous[rows], lower, upper, speed, all_axes, least_motion=True
     )
-    values = np.tile(before, (len(best), 1))
+    values = np.tile(previous, (len(best), 1))
     values[:, rows] = best
     return values
 

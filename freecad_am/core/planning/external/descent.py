@@ -18,7 +18,7 @@ ITERATIONS, TOLERANCE = 80, 1e-7
 # step across a singularity, from which it does not return; whether it does depends on the last bits of the processor.
 CLOSER = (0.5, 0.1)
 VIOLATION = 1e-5  # of a constraint, no more than the start's own violation, that still counts as an end within
-LOST = 1e3  # the objective out of reach, in those of the start
+UNREACHABLE_OBJECTIVE = 1e3  # the objective out of reach, in those of the start
 
 
 class Seen:
@@ -37,24 +37,24 @@ class Seen:
 
 def least_objective(freedom: Freedom, start: Array, margin: float) -> tuple[Array, int]:
     """The changes (v,) with the least objective of all with a margin, and after how many iterations."""
-    seen = Seen(freedom)
-    first = seen.at(start)
-    scale = 1.0 if first is None else max(first.objective, 1e-12)
+    cache = Seen(freedom)
+    initial = cache.at(start)
+    scale = 1.0 if initial is None else max(initial.objective, 1e-12)
 
     def value(z: Array) -> tuple[float, Array]:
-        found = seen.at(z)
+        state = cache.at(z)
         return (
-            (LOST, np.zeros(len(z)))
-            if found is None
-            else (found.objective / scale, np.nan_to_num(found.slope) / scale)
+            (UNREACHABLE_OBJECTIVE, np.zeros(len(z)))
+            if state is None
+            else (state.objective / scale, np.nan_to_num(state.slope) / scale)
         )
 
-    def kept(found: Bound, z: Array) -> tuple[Array, Array]:
-        return np.concatenate([found.margins - margin, found.hard]), np.concatenate(
-            [found.margin_slopes, found.hard_slopes]
+    def constraint_values(state: Bound, z: Array) -> tuple[Array, Array]:
+        return np.concatenate([state.margins - margin, state.hard]), np.concatenate(
+            [state.margin_slopes, state.hard_slopes]
         )
 
-    return _solved(seen, start, start, value, kept)
+    return _solved(cache, start, start, value, constraint_values)
 
 
 def largest_margin(
@@ -62,62 +62,64 @@ def largest_margin(
 ) -> tuple[Array, int]:
     """The changes (v,) with the largest margin, `enough` at most, of all with no more than an objective, and after how many
     iterations."""
-    seen, v = Seen(freedom), len(start)
-    first = seen.at(start)
-    if first is None or first.margins.min() >= enough:
+    cache, v = Seen(freedom), len(start)
+    initial = cache.at(start)
+    if initial is None or initial.margins.min() >= enough:
         return start, 0
     scale = max(objective, 1e-12)
 
     def value(z: Array) -> tuple[float, Array]:
         return float(-z[-1]), np.concatenate([np.zeros(v), [-1.0]])
 
-    def kept(found: Bound, z: Array) -> tuple[Array, Array]:
+    def constraint_values(state: Bound, z: Array) -> tuple[Array, Array]:
         values = np.concatenate(
             [
-                found.margins - z[-1],
-                found.hard,
-                [(objective - found.objective) / scale, enough - z[-1]],
+                state.margins - z[-1],
+                state.hard,
+                [(objective - state.objective) / scale, enough - z[-1]],
             ]
         )
         slopes = np.zeros((len(values), v + 1))
-        count = len(found.margins)
-        slopes[:count, :v], slopes[:count, v] = found.margin_slopes, -1.0
-        slopes[count : count + len(found.hard), :v] = found.hard_slopes
-        slopes[-2, :v], slopes[-1, v] = -np.nan_to_num(found.slope) / scale, -1.0
+        count = len(state.margins)
+        slopes[:count, :v], slopes[:count, v] = state.margin_slopes, -1.0
+        slopes[count : count + len(state.hard), :v] = state.hard_slopes
+        slopes[-2, :v], slopes[-1, v] = -np.nan_to_num(state.slope) / scale, -1.0
         return values, slopes
 
-    z, count = _solved(seen, start, np.append(start, first.margins.min()), value, kept)
+    z, count = _solved(
+        cache, start, np.append(start, initial.margins.min()), value, constraint_values
+    )
     return z[:v], count
 
 
 def _solved(
-    seen: Seen,
+    cache: Seen,
     start: Array,
     z: Array,
     value: Callable[[Array], tuple[float, Array]],
-    kept: Callable[[Bound, Array], tuple[Array, Array]],
+    constraint_values: Callable[[Bound, Array], tuple[Array, Array]],
 ) -> tuple[Array, int]:
     """The best z that SLSQP finds; run again where it came upon constraints that it had not been told of."""
     from scipy.optimize import minimize  # slow to import, and most jobs never need it
 
     v, count, rows = len(start), 0, np.zeros(0, dtype=np.int64)
     for _ in range(ROUNDS):
-        here = seen.at(z[:v])
-        if here is None:
+        current = cache.at(z[:v])
+        if current is None:
             break
-        before, values = len(rows), kept(here, z)[0]
+        previous_count, values = len(rows), constraint_values(current, z)[0]
         rows = np.union1d(
-            rows, np.flatnonzero(values < ACTIVE if not before else values < 0.1 * ACTIVE)
+            rows, np.flatnonzero(values < ACTIVE if not previous_count else values < 0.1 * ACTIVE)
         )
-        if len(rows) == before and before:
+        if len(rows) == previous_count and previous_count:
             break
         reported = rows
 
         def constraints(z: Array, reported: Index = reported) -> tuple[Array, Array]:
-            found = seen.at(z[:v])
-            if found is None:
+            state = cache.at(z[:v])
+            if state is None:
                 return np.full(len(reported), -1.0), np.zeros((len(reported), len(z)))
-            values, slopes = kept(found, z)
+            values, slopes = constraint_values(state, z)
             return values[reported], np.nan_to_num(slopes[reported])
 
         for reach in (np.inf, *CLOSER):
@@ -143,7 +145,7 @@ def _solved(
                 -VIOLATION, constraints(z)[0].min(initial=0.0)
             ):
                 break
-        if seen.at(result.x[:v]) is None:
+        if cache.at(result.x[:v]) is None:
             break
         z = result.x
     return z, count

@@ -23,8 +23,10 @@ from .. import criteria
 from ..points import Points
 from ..task import Task
 
-AMPLE = 0.75  # a margin to the condition that nobody asks for: its derivatives are not told
-STEEP = 0.9  # of its largest speed, what an external axis may be asked for
+IRRELEVANT_MARGIN = (
+    0.75  # a margin to the condition that nobody asks for: its derivatives are not told
+)
+MAX_SPEED_SHARE = 0.9  # of its largest speed, what an external axis may be asked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +60,9 @@ class Freedom:
     @property
     def external(self) -> ExternalAxes:
         """The external axes."""
-        found = self.task.cell.external
-        assert found is not None
-        return found
+        external_axes = self.task.cell.external
+        assert external_axes is not None
+        return external_axes
 
     @cached_property
     def shape(self) -> Array:
@@ -70,8 +72,8 @@ class Freedom:
     @cached_property
     def unit(self) -> Array:
         """(k,) rad or mm of external axes per unit of a number: one rad is a characteristic length."""
-        own = self.task.cell.robot.chain.axes
-        sliding = self.task.cell.machine.chain.sliding[own:]
+        robot_axes = self.task.cell.robot.chain.axes
+        sliding = self.task.cell.machine.chain.sliding[robot_axes:]
         return np.where(sliding, self.task.parameters.characteristic_length, 1.0)
 
     def values(self, x: Array) -> tuple[Array, Array]:
@@ -86,7 +88,7 @@ class Freedom:
         """What holds with changes x (v,); None where a point is out of reach."""
         task = self.task
         coefficients, values = self.values(x)
-        points = moved(self.points, task.cell, values)
+        points = set_external_values(self.points, task.cell, values)
         phi, phi_rate = task.rotation(points, points.polynomial(coefficients[None]))
         joints = task.joints(points, phi)
         if np.isnan(joints).any():
@@ -95,14 +97,17 @@ class Freedom:
         rates = [
             rate * phi_rate[:, None],
             *(
-                one * unit
-                for one, unit in zip(
+                joint_rate * unit
+                for joint_rate, unit in zip(
                     external_rates(task.cell, points.position, joints), self.unit, strict=True
                 )
             ),
         ]
         slope = np.concatenate(
-            [criteria.rate(task, points, joints, one, matrix) @ self.shape for one in rates]
+            [
+                criteria.rate(task, points, joints, joint_rate, matrix) @ self.shape
+                for joint_rate in rates
+            ]
         )
         margins, margin_slopes = self._margins(joints, rates, matrix)
         hard, hard_slopes = self._hard(values, phi, phi_rate)
@@ -122,62 +127,70 @@ class Freedom:
         values = np.concatenate(
             [1.0 - offset, 1.0 + offset, (1.0 - self.thresholds / ratio)[:, None]], axis=1
         )
-        near, slopes = values[:, -1] < AMPLE, []
-        for one in rates:
-            along, turned = one @ rows.matrix.T / rows.half, np.zeros(len(ratio))
-            if near.any():
+        close_rows, slopes = values[:, -1] < IRRELEVANT_MARGIN, []
+        for joint_rate in rates:
+            along, turned = joint_rate @ rows.matrix.T / rows.half, np.zeros(len(ratio))
+            if close_rows.any():
                 change = np.nan_to_num(
-                    criteria.condition_rate(self.task, joints[near], one[near], matrix[near])
+                    criteria.condition_rate(
+                        self.task, joints[close_rows], joint_rate[close_rows], matrix[close_rows]
+                    )
                 )
-                turned[near] = change * self.thresholds[near] / ratio[near] ** 2
+                turned[close_rows] = change * self.thresholds[close_rows] / ratio[close_rows] ** 2
             slopes.append(self._by_number(np.concatenate([-along, along, turned[:, None]], axis=1)))
         return values.T.ravel(), np.concatenate(slopes, axis=1)
 
     def _hard(self, values: Array, phi: Array, phi_rate: Array) -> tuple[Array, Array]:
         """Tool near enough to the vertical, rotation in its range, external axes fast enough."""
-        found, count = [], 1 + self.external.axes
+        constraints, count = [], 1 + self.external.axes
         if self.allowed < np.pi - 1e-9:
-            found.append(self._tilts(values))
+            constraints.append(self._tilts(values))
         low, high = self.task.parameters.rotation_range
         if high - low < 2.0 * np.pi - 1e-9:
             share = (phi - 0.5 * (low + high)) / (0.5 * (high - low))
             rate = phi_rate / (0.5 * (high - low))
             none = [np.zeros((len(phi), 2))] * (count - 1)
-            found.append(
+            constraints.append(
                 (
                     np.concatenate([1.0 - share, 1.0 + share]),
                     np.concatenate(
-                        [self._by_number(one) for one in (np.stack([-rate, rate], axis=1), *none)],
+                        [
+                            self._by_number(column)
+                            for column in (np.stack([-rate, rate], axis=1), *none)
+                        ],
                         axis=1,
                     ),
                 )
             )
-        found.append(self._speeds(values))
-        return np.concatenate([value for value, _ in found]), np.concatenate(
-            [slope for _, slope in found]
+        constraints.append(self._speeds(values))
+        return np.concatenate([value for value, _ in constraints]), np.concatenate(
+            [slope for _, slope in constraints]
         )
 
     def _tilts(self, values: Array) -> tuple[Array, Array]:
         external = self.external
         upright = external.upright(self.directions, values)
         slopes = [np.zeros((len(upright), 1)) for _ in range(1 + external.axes)]
-        for axis, which in zip(axes_in_world(external, values), external.turned, strict=True):
-            slopes[1 + which] = (np.cross(axis, upright) @ external.up)[:, None] * self.unit[which]
+        for axis, axis_index in zip(axes_in_world(external, values), external.turned, strict=True):
+            slopes[1 + axis_index] = (np.cross(axis, upright) @ external.up)[:, None] * self.unit[
+                axis_index
+            ]
         value = upright @ external.up - np.cos(self.allowed)
-        return value, np.concatenate([self._by_number(one) for one in slopes], axis=1)
+        return value, np.concatenate([self._by_number(slope) for slope in slopes], axis=1)
 
     def _speeds(self, values: Array) -> tuple[Array, Array]:
-        own, k = self.task.cell.robot.chain.axes, self.external.axes
+        robot_axes, k = self.task.cell.robot.chain.axes, self.external.axes
         assert self.points.external is not None
-        fastest = self.task.cell.machine.max_speed[own:]
-        most = np.maximum(
-            STEEP * fastest * self.times[1:, None], np.abs(np.diff(self.points.external, axis=0))
+        fastest = self.task.cell.machine.max_speed[robot_axes:]
+        max_step = np.maximum(
+            MAX_SPEED_SHARE * fastest * self.times[1:, None],
+            np.abs(np.diff(self.points.external, axis=0)),
         )
-        step, change = np.diff(values, axis=0) / most, np.diff(self.shape, axis=0)
+        step, change = np.diff(values, axis=0) / max_step, np.diff(self.shape, axis=0)
         slopes = np.zeros((k, len(step), (1 + k) * self.shape.shape[1]))
         for j in range(k):
-            at = slice((1 + j) * self.shape.shape[1], (2 + j) * self.shape.shape[1])
-            slopes[j, :, at] = change * self.unit[j] / most[:, j : j + 1]
+            columns = slice((1 + j) * self.shape.shape[1], (2 + j) * self.shape.shape[1])
+            slopes[j, :, columns] = change * self.unit[j] / max_step[:, j : j + 1]
         rates = slopes.reshape(-1, slopes.shape[-1])
         step = step.T.ravel()
         return np.concatenate([1.0 - step, 1.0 + step]), np.concatenate([-rates, rates])
@@ -187,7 +200,7 @@ class Freedom:
         return np.asarray((slopes.T[:, :, None] * self.shape).reshape(-1, self.shape.shape[1]))
 
 
-def moved(points: Points, cell: Cell, values: Array) -> Points:
+def set_external_values(points: Points, cell: Cell, values: Array) -> Points:
     """The same points with the external axes at other values (T, k)."""
     return dataclasses.replace(
         points, external=values, frames=cell.pose_frames(points.position, points.tool, values)
@@ -197,30 +210,32 @@ def moved(points: Points, cell: Cell, values: Array) -> Points:
 def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
     """For each external axis d q / d e (T, axes), the tool staying where it is on the part; position (T, 3) in the part,
     joints (T, axes)."""
-    own, count = cell.robot.chain.axes, cell.machine.chain.axes
+    robot_axes, count = cell.robot.chain.axes, cell.machine.chain.axes
     stands = cell.station @ frames.inverse(cell.mount)
-    whole = jac.jacobian(cell.machine.chain, joints, position @ stands[:3, :3].T + stands[:3, 3])
-    robot, external = whole[:, :, :own], whole[:, :, own:]
+    jacobian = jac.jacobian(cell.machine.chain, joints, position @ stands[:3, :3].T + stands[:3, 3])
+    robot, external = jacobian[:, :, :robot_axes], jacobian[:, :, robot_axes:]
     try:
         follows = -np.linalg.solve(robot, external)
     except np.linalg.LinAlgError:
         follows = -np.linalg.pinv(robot) @ external
     rates = []
-    for j in range(count - own):
+    for j in range(count - robot_axes):
         rate = np.zeros((len(joints), count))
-        rate[:, :own], rate[:, own + j] = follows[:, :, j], 1.0
+        rate[:, :robot_axes], rate[:, robot_axes + j] = follows[:, :, j], 1.0
         rates.append(rate)
     return rates
 
 
 def axes_in_world(external: ExternalAxes, values: Array) -> list[Array]:
     """(T, 3) where each turning axis of the positioner points in the world, from the floor on, with values (T, k)."""
-    found = []
+    world_axes = []
     for number, axis in enumerate(external.turning):
-        seen = np.tile(axis, (len(values), 1))
-        for before, which in reversed(
+        direction = np.tile(axis, (len(values), 1))
+        for earlier_axis, row in reversed(
             list(zip(external.turning[:number], external.turned[:number], strict=True))
         ):
-            seen = np.einsum("nij,nj->ni", frames.rotation_about(before, values[:, which]), seen)
-        found.append(seen)
-    return found
+            direction = np.einsum(
+                "nij,nj->ni", frames.rotation_about(earlier_axis, values[:, row]), direction
+            )
+        world_axes.append(direction)
+    return world_axes

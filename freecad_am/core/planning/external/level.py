@@ -23,7 +23,7 @@ from ..joint_path import BeadPath, JointPath
 from ..task import Parts
 from ..turns.unwrap import is_otherwise, seam_notes
 from . import courses, stroke
-from .courses import middle, on_face
+from .courses import directions_on_face, middle
 from .stroke import ROUNDING
 
 Place = tuple[int, int]
@@ -40,11 +40,11 @@ def ways(cell: Cell, toolpath: Toolpath) -> Iterator[Levelled]:
             standing(cell, toolpath),
         )
         return
-    first = levelled(cell, toolpath)
-    yield first
+    initial = levelled(cell, toolpath)
+    yield initial
     again = levelled(cell, toolpath, whole_turns=True)
     if [(len(bead), *bead.points[0]) for bead in again[0]] != [
-        (len(bead), *bead.points[0]) for bead in first[0]
+        (len(bead), *bead.points[0]) for bead in initial[0]
     ]:
         yield again
 
@@ -57,38 +57,39 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
     external = cell.external
     assert external is not None
     allowed = allowed_by_layer(toolpath.parts)
-    seen = [on_face(cell, bead.tool) for _, _, bead in toolpath]
-    before, hold = _standing_all(
-        external, cell, seen, min(allowed[layer] for layer, _, _ in toolpath)
+    bead_directions = [directions_on_face(cell, bead.tool) for _, _, bead in toolpath]
+    previous, hold = _standing_all(
+        external, cell, bead_directions, min(allowed[layer] for layer, _, _ in toolpath)
     )
-    done: list[Bead] = []
-    places: list[Place] = []
+    levelled_beads: list[Bead] = []
+    bead_ids: list[Place] = []
     issues: list[Issue] = []
     helped: tuple[list[int], list[int]] = [], []
-    for (layer, index, bead), directions in zip(toolpath, seen, strict=True):
-        most = allowed[layer]
+    for (layer, index, bead), directions in zip(toolpath, bead_directions, strict=True):
+        max_lean = allowed[layer]
         values = (
-            np.tile(before, (len(bead), 1))
+            np.tile(previous, (len(bead), 1))
             if hold
-            else _followed(external, cell, directions, most, before)
+            else _follow_directions(external, cell, directions, max_lean, previous)
         )
-        pieces = [dataclasses.replace(bead, external=values)]
+        sections = [dataclasses.replace(bead, external=values)]
         if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(
-            cell, pieces[0], most, toolpath.overlap
+            cell, sections[0], max_lean, toolpath.overlap
         ):
-            pieces = stroke.found(cell, bead, most, before, toolpath.overlap) or pieces
-        for piece in pieces:
-            assert piece.external is not None
+            sections = stroke.found(cell, bead, max_lean, previous, toolpath.overlap) or sections
+        for section in sections:
+            assert section.external is not None
             tilt = tilt_from(
-                external.upright(on_face(cell, piece.tool), piece.external), external.up
+                external.upright(directions_on_face(cell, section.tool), section.external),
+                external.up,
             )
-            issues += _not_level(bool(external.turning), tilt, most, (layer, index))
-            before = piece.external[-1]
-        done += pieces
-        places += [(layer, index)] * len(pieces)
-        if is_otherwise(bead, pieces):
-            helped[len(pieces) > 1].append(layer)
-    return done, places, [*issues, *seam_notes(*helped)]
+            issues += _not_level(bool(external.turning), tilt, max_lean, (layer, index))
+            previous = section.external[-1]
+        levelled_beads += sections
+        bead_ids += [(layer, index)] * len(sections)
+        if is_otherwise(bead, sections):
+            helped[len(sections) > 1].append(layer)
+    return levelled_beads, bead_ids, [*issues, *seam_notes(*helped)]
 
 
 def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
@@ -96,23 +97,25 @@ def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
     up, issues = cell.machine.base[:3, :3] @ cell.up, list[Issue]()
     allowed = allowed_by_layer(toolpath.parts)
     for layer, index, bead in toolpath:
-        most = allowed[layer]
-        if most >= math.pi:
+        max_lean = allowed[layer]
+        if max_lean >= math.pi:
             continue
         directions = (
-            cell.station[None, :3, 2] if cell.arrangement.carries_part else on_face(cell, bead.tool)
+            cell.station[None, :3, 2]
+            if cell.arrangement.carries_part
+            else directions_on_face(cell, bead.tool)
         )
-        issues += _not_level(False, tilt_from(directions, up), most, (layer, index))
+        issues += _not_level(False, tilt_from(directions, up), max_lean, (layer, index))
     return issues
 
 
-def _not_level(turning: bool, tilt: Array, most: float, place: Place) -> list[Issue]:
+def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> list[Issue]:
     """That tool axes, tilt (n,) rad from the vertical, lean more than they may at a bead, where they lean most; none where
     they do not. turning: whether an axis turns the part."""
     worst = int(tilt.argmax())
-    if not tilt[worst] > most + ROUNDING:
+    if not tilt[worst] > max_lean + ROUNDING:
         return []
-    leans, allowed = math.degrees(tilt[worst]), math.degrees(most)
+    leans, allowed = math.degrees(tilt[worst]), math.degrees(max_lean)
     if not turning:
         return [
             Issue(
@@ -125,7 +128,7 @@ def _not_level(turning: bool, tilt: Array, most: float, place: Place) -> list[Is
                     leans,
                     allowed,
                 ),
-                *place,
+                *bead_id,
                 worst,
             )
         ]
@@ -139,7 +142,7 @@ def _not_level(turning: bool, tilt: Array, most: float, place: Place) -> list[Is
                 leans,
                 allowed,
             ),
-            *place,
+            *bead_id,
             worst,
         )
     ]
@@ -156,11 +159,11 @@ def farthest_from_vertical(cell: Cell, paths: Sequence[BeadPath]) -> float:
     """rad, how far the tool axis is from the vertical at most."""
     external, farthest = cell.external, 0.0
     assert external is not None
-    for one in paths:
-        values = cell.external_of(one.joints)
-        if values is None or not one.reachable:
+    for path in paths:
+        values = cell.external_of(path.joints)
+        if values is None or not path.reachable:
             continue
-        upright = external.upright(on_face(cell, one.bead.tool), values)
+        upright = external.upright(directions_on_face(cell, path.bead.tool), values)
         farthest = max(farthest, float(tilt_from(upright, external.up).max()))
     return farthest
 
@@ -170,52 +173,59 @@ def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
     external = cell.external
     assert external is not None
     turned = np.zeros(external.axes)
-    for one in paths:
-        values = cell.external_of(one.joints)
-        if values is not None and one.reachable:
+    for path in paths:
+        values = cell.external_of(path.joints)
+        if values is not None and path.reachable:
             turned += np.abs(np.diff(values, axis=0)).sum(axis=0)
     names, slides = cell.machine.axes[-len(turned) :], external.slides
     return {
         "turned_deg": {
-            names[k]: math.degrees(way) for k, way in enumerate(turned.tolist()) if k != slides
+            names[k]: math.degrees(distance)
+            for k, distance in enumerate(turned.tolist())
+            if k != slides
         },
         **({} if slides is None else {"moved_mm": {names[slides]: float(turned[slides])}}),
     }
 
 
-def allowed_by_layer(parts: Parts) -> dict[int, float]:
+def allowed_by_layer(features: Parts) -> dict[int, float]:
     """The largest angle to the vertical, rad, of each layer."""
-    return {int(layer): part.max_from_vertical for part, layers in parts for layer in layers}
+    return {
+        int(layer): feature.max_from_vertical for feature, layers in features for layer in layers
+    }
 
 
 def _standing_all(
-    external: ExternalAxes, cell: Cell, seen: Sequence[Array], most: float
+    external: ExternalAxes, cell: Cell, bead_directions: Sequence[Array], max_lean: float
 ) -> tuple[Array, bool]:
     """Values (k,) of the external axes to begin with, and whether they serve the whole job."""
     zero = np.zeros(external.axes)
     if not external.turning:
         return zero, True
-    directions = np.concatenate(seen)
-    one = middle(directions)
-    if one is None or float(tilt_from(directions, one).max()) > most:
+    directions = np.concatenate(bead_directions)
+    mean_direction = middle(directions)
+    if mean_direction is None or float(tilt_from(directions, mean_direction).max()) > max_lean:
         return zero, False
-    values = _standing(external, cell, one, zero)
+    values = _standing(external, cell, mean_direction, zero)
     return (zero, False) if stroke.lacks(cell, values[None]) else (values, True)
 
 
-def _standing(external: ExternalAxes, cell: Cell, direction: Array, before: Array) -> Array:
+def _standing(external: ExternalAxes, cell: Cell, direction: Array, previous: Array) -> Array:
     """Values (k,) with a direction (3,) upright, the nearest to those before."""
-    return np.asarray(courses.chosen(cell, courses.upright(external, direction[None]), before)[0])
+    return np.asarray(courses.chosen(cell, courses.upright(external, direction[None]), previous)[0])
 
 
-def _followed(
-    external: ExternalAxes, cell: Cell, directions: Array, most: float, before: Array
+def _follow_directions(
+    external: ExternalAxes, cell: Cell, directions: Array, max_lean: float, previous: Array
 ) -> Array:
     """Values (n, k) along a bead: one and the same where that is near enough, else each direction upright."""
-    one = middle(directions)
-    if one is not None and float(tilt_from(directions, one).max()) <= most:
-        values = np.tile(before, (len(directions), 1))
-        if float(tilt_from(external.upright(directions, values), external.up).max()) <= most:
+    mean_direction = middle(directions)
+    if (
+        mean_direction is not None
+        and float(tilt_from(directions, mean_direction).max()) <= max_lean
+    ):
+        values = np.tile(previous, (len(directions), 1))
+        if float(tilt_from(external.upright(directions, values), external.up).max()) <= max_lean:
             return values
-        return np.tile(_standing(external, cell, one, before), (len(directions), 1))
-    return courses.chosen(cell, courses.upright(external, directions), before)
+        return np.tile(_standing(external, cell, mean_direction, previous), (len(directions), 1))
+    return courses.chosen(cell, courses.upright(external, directions), previous)

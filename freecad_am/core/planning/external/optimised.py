@@ -25,12 +25,12 @@ from ..rotation.evaluation import judged
 from ..rotation.given import GIVEN
 from ..task import Task
 from .descent import largest_margin, least_objective
-from .freedom import Freedom, moved
+from .freedom import Freedom, set_external_values
 
 OPTIMISED = "rotation and external axes together"
 POINTS_PER_BEAD = 40
 GIVEN_BACK = 0.25  # of what the objective gained, for a larger margin
-ENOUGH = 0.5  # a margin that need not be larger: half way from the limit to the middle
+SUFFICIENT_MARGIN = 0.5  # a margin that need not be larger: half way from the limit to the middle
 TRIES = 2  # of a bead that leans too far between the points looked at
 SPARE = 1e-4  # of margin and angle, so that what lies between the points keeps them too
 STANDING = 12  # places of an axis that is free to stand anywhere
@@ -67,13 +67,15 @@ def optimised(
     return result
 
 
-def better(one: BeadPath, other: BeadPath) -> bool:
+def better(path: BeadPath, reference: BeadPath) -> bool:
     """Whether a path keeps its limits with less objective and no less margin than another, or the other does not."""
-    if not one.reachable or one.margin < 0.0 or not np.isfinite(one.objective):
+    if not path.reachable or path.margin < 0.0 or not np.isfinite(path.objective):
         return False
-    if not other.reachable or other.margin < 0.0:
+    if not reference.reachable or reference.margin < 0.0:
         return True
-    return one.objective <= other.objective and one.margin >= min(other.margin, ENOUGH)
+    return path.objective <= reference.objective and path.margin >= min(
+        reference.margin, SUFFICIENT_MARGIN
+    )
 
 
 Start = tuple[Array, Array]  # shift (k,) of the external axes, coefficients of the rotation
@@ -90,20 +92,30 @@ def _elsewhere(
     assert external is not None
     beads = [path.bead for path in paths]
     points = gather(beads, task.cell, search.POINTS_PER_BEAD)
-    most = np.array([allowed[path.layer] for path in paths])
+    max_lean = np.array([allowed[path.layer] for path in paths])
     thresholds = np.concatenate(
         [path.threshold[thinned(path.bead, search.POINTS_PER_BEAD)] for path in paths]
     )
-    best = _here(task, points, thresholds, most, directions, np.zeros((len(paths), external.axes)))
+    best = _evaluate_shifts(
+        task, points, thresholds, max_lean, directions, np.zeros((len(paths), external.axes))
+    )
     for axis in reversed(range(external.axes)):
-        tried = [best]
-        for step in _steps(task, axis, float(most.max())):
+        candidates = [best]
+        for step in _steps(task, axis, float(max_lean.max())):
             shifts = best[0].copy()
             shifts[:, axis] += step
-            tried.append(_here(task, points, thresholds, most, directions, shifts))
-        rank = np.argmin([np.where(one[3] >= 0.0, one[2], 1e6 - one[3]) for one in tried], axis=0)
+            candidates.append(
+                _evaluate_shifts(task, points, thresholds, max_lean, directions, shifts)
+            )
+        rank = np.argmin(
+            [
+                np.where(candidate[3] >= 0.0, candidate[2], 1e6 - candidate[3])
+                for candidate in candidates
+            ],
+            axis=0,
+        )
         best = tuple(  # type: ignore[assignment]
-            np.stack([tried[r][part][k] for k, r in enumerate(rank)]) for part in range(4)
+            np.stack([candidates[r][field][k] for k, r in enumerate(rank)]) for field in range(4)
         )
     return [
         (best[0][k], best[1][k]) if best[3][k] >= 0.0 and best[0][k].any() else None
@@ -111,37 +123,47 @@ def _elsewhere(
     ]
 
 
-def _here(
+def _evaluate_shifts(
     task: Task,
     points: Points,
     thresholds: Array,
-    most: Array,
+    max_lean: Array,
     directions: Callable[[Array], Array],
     shifts: Array,
 ) -> tuple[Array, Array, Array, Array]:
     """Of each bead with its external axes shifted by (B, k): these, the best coefficients, objective and margin there."""
     assert points.external is not None
     values = points.external + shifts[points.bead]
-    found = search.everywhere(task, moved(points, task.cell, values), thresholds, best_alone=True)
-    best, each = found.best(), np.arange(points.beads)
-    margin = found.margin[best, each]
+    candidates = search.everywhere(
+        task, set_external_values(points, task.cell, values), thresholds, best_alone=True
+    )
+    best, bead_rows = candidates.best(), np.arange(points.beads)
+    margin = candidates.margin[best, bead_rows]
     if task.cell.external is not None and task.cell.external.turning:
         external = task.cell.external
         upright = external.upright(directions(points.tool), values) @ external.up
-        before = external.upright(directions(points.tool), points.external) @ external.up
-        keeps = points.worst(upright - np.minimum(np.cos(most)[points.bead], before)) >= -1e-9
+        upright_before = external.upright(directions(points.tool), points.external) @ external.up
+        keeps = (
+            points.worst(upright - np.minimum(np.cos(max_lean)[points.bead], upright_before))
+            >= -1e-9
+        )
         margin = np.where(keeps, margin, -np.inf)
-    return shifts, found.coefficients[best, each], found.objective[best, each], margin
+    return (
+        shifts,
+        candidates.coefficients[best, bead_rows],
+        candidates.objective[best, bead_rows],
+        margin,
+    )
 
 
-def _steps(task: Task, axis: int, most: float) -> Array:
+def _steps(task: Task, axis: int, max_lean: float) -> Array:
     """By how much an external axis is shifted to see whether it should stand elsewhere."""
     external, arm = task.cell.external, task.cell.robot.arm
     assert external is not None and arm is not None
     if axis == external.slides:
         return SLIDING * arm.reach
-    if most < math.radians(90.0):
-        return LEANING * most
+    if max_lean < math.radians(90.0):
+        return LEANING * max_lean
     turn = 2.0 * math.pi / STANDING
     return np.asarray((np.arange(1, STANDING) - STANDING // 2) * turn)
 
@@ -159,13 +181,13 @@ def _bead(
         assert coefficients is not None and path.bead.external is not None
         values = path.bead.external if shift is None else path.bead.external + shift
         shifted = dataclasses.replace(path, bead=dataclasses.replace(path.bead, external=values))
-        found = _upright_enough(task, path, shifted, coefficients, directions, allowed)
+        candidate = _upright_enough(task, path, shifted, coefficients, directions, allowed)
         if (
-            found is not None
-            and better(found, best)
-            and (best is path or found.objective < best.objective)
+            candidate is not None
+            and better(candidate, best)
+            and (best is path or candidate.objective < best.objective)
         ):
-            best = found
+            best = candidate
     return best
 
 
@@ -182,14 +204,14 @@ def _upright_enough(
     assert external is not None
     for _ in range(TRIES):
         freedom = _freedom(task, shifted, coefficients, directions, allowed - spare)
-        found = _judged(task, shifted, *_climbed(freedom, path))
-        assert found.bead.external is not None
+        candidate = _evaluate_path(task, shifted, *_climbed(freedom, path))
+        assert candidate.bead.external is not None
         leans = tilt_from(
-            external.upright(directions(found.bead.tool), found.bead.external), external.up
+            external.upright(directions(candidate.bead.tool), candidate.bead.external), external.up
         )
         over = float(leans.max()) - allowed
         if over <= 0.0:
-            return found
+            return candidate
         spare += 2.0 * over
     return None
 
@@ -207,14 +229,16 @@ def _freedom(
     full[: len(coefficients)] = coefficients
     changes = basis.changes(task, points, len(full) - 1)[0]
     changes = changes[:, np.abs(changes).any(axis=0)]
-    way = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1) / path.bead.speed[1:]
-    times = np.diff(np.concatenate([[0.0], np.cumsum(way)])[thin], prepend=0.0)
+    durations = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1) / path.bead.speed[1:]
+    times = np.diff(np.concatenate([[0.0], np.cumsum(durations)])[thin], prepend=0.0)
     return Freedom(
         task, points, path.threshold[thin], full, changes, allowed, directions(points.tool), times
     )
 
 
-def _judged(task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: int) -> BeadPath:
+def _evaluate_path(
+    task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: int
+) -> BeadPath:
     """The path of a bead with changes x, at all its points."""
     coefficients, _ = freedom.values(x)
     points = gather([path.bead], task.cell)
@@ -226,7 +250,7 @@ def _judged(task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: 
     )
     points = gather([bead], task.cell)
     why = refine.Refined(coefficients[None], np.zeros(1), (OPTIMISED,), (iterations,))
-    (found,) = judged(
+    (result,) = judged(
         task,
         [bead],
         [(path.layer, path.index)],
@@ -235,25 +259,25 @@ def _judged(task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: 
         coefficients[None],
         why,
     )
-    return found
+    return result
 
 
 def _climbed(freedom: Freedom, path: BeadPath) -> tuple[Freedom, Array, int]:
     """Least objective with no less margin than the path, then the largest margin that gives back little of the gain."""
     x = np.zeros((1 + freedom.external.axes) * freedom.shape.shape[1])
-    here = freedom.look(x)
-    if here is None:
+    state = freedom.look(x)
+    if state is None:
         return freedom, x, 0
     sound = path.reachable and path.margin >= 0.0
-    wanted = min(max(path.margin, 0.0), ENOUGH) if sound else 0.0
-    x, count = least_objective(freedom, x, wanted + SPARE)
-    here = freedom.look(x)
-    if here is None:
+    margin = min(max(path.margin, 0.0), SUFFICIENT_MARGIN) if sound else 0.0
+    x, count = least_objective(freedom, x, margin + SPARE)
+    state = freedom.look(x)
+    if state is None:
         return freedom, x, count
-    most = (
-        here.objective + GIVEN_BACK * max(0.0, path.objective - here.objective)
+    max_objective = (
+        state.objective + GIVEN_BACK * max(0.0, path.objective - state.objective)
         if sound
-        else 2.0 * here.objective
+        else 2.0 * state.objective
     )
-    x, more = largest_margin(freedom, x, most, ENOUGH)
-    return freedom, x, count + more
+    x, more_iterations = largest_margin(freedom, x, max_objective, SUFFICIENT_MARGIN)
+    return freedom, x, count + more_iterations

@@ -28,32 +28,33 @@ Cells = Iterator[tuple[str, CellParameters]]
 
 # of the arm's reach, how far the face is ahead of the shoulder, and, mm, higher than it is
 AHEAD = ((0.75, 0.0), (0.6, 0.0), (0.9, 0.0), (0.75, 300.0), (0.6, -300.0))
-TRIED = 2  # positioners, the likeliest
+MAX_POSITIONERS = 2  # positioners, the likeliest
 TRACK_SHARE = 0.6  # of the reach; along a part as long as that a track may help
 NOT_LEVEL, AUTO = "NOT_LEVEL", "{} and `cell.branch: auto`"
 
 
-def moved(settings: CellParameters, folders: Sequence[str]) -> Cells:
+def move_positioner(settings: CellParameters, folders: Sequence[str]) -> Cells:
     """The positioner, with all that carries the part, nearer to the robot, or farther off; nothing of a cell without one."""
     named = externals(settings.external)
-    carriers = [k for k, one in enumerate(named) if one.carries == PART]
+    carriers = [k for k, mechanism in enumerate(named) if mechanism.carries == PART]
     robot = machines.load(settings.machine, tuple(folders))
     if not carriers or robot.arm is None:
         return
-    last = named[carriers[-1]]
-    face = _face(external.load(last.machine, tuple(folders)), last.pose)
-    for place in _before(robot, face[:2], float(face[2])):
-        others = list(named)
+    last_carrier = named[carriers[-1]]
+    face = _face(external.load(last_carrier.machine, tuple(folders)), last_carrier.pose)
+    for position in _before(robot, face[:2], float(face[2])):
+        changed = list(named)
         for k in carriers:
             x, y, z, a, b, c = named[k].pose
-            moved = np.round((x, y, z) + (place - face))
-            others[k] = dataclasses.replace(
+            moved = np.round((x, y, z) + (position - face))
+            changed[k] = dataclasses.replace(
                 named[k], pose=(float(moved[0]), float(moved[1]), float(moved[2]), a, b, c)
             )
         remedy = Text.joined(
-            " and ", (Text("`{}[{}].pose: {}`", WHERE, k, _shown(others[k].pose)) for k in carriers)
+            " and ",
+            (Text("`{}[{}].pose: {}`", WHERE, k, _format_pose(changed[k].pose)) for k in carriers),
         )
-        yield remedy, dataclasses.replace(settings, external=_text(others))
+        yield remedy, dataclasses.replace(settings, external=_text(changed))
 
 
 def added(
@@ -71,18 +72,20 @@ def added(
     platform = np.array(settings.deposition_point[:3])
     points = np.concatenate([bead.points for _, _, bead in toolpath])
     if NOT_LEVEL in codes:
-        seen = frames.inverse(toolpath.frame)
-        radius = float(np.linalg.norm((points @ seen[:3, :3].T + seen[:3, 3])[:, :2], axis=1).max())
-        for suited in offered.positioners(robot, mass, radius, folders)[:TRIED]:
+        to_part = frames.inverse(toolpath.frame)
+        radius = float(
+            np.linalg.norm((points @ to_part[:3, :3].T + to_part[:3, 3])[:, :2], axis=1).max()
+        )
+        for suited in offered.positioners(robot, mass, radius, folders)[:MAX_POSITIONERS]:
             face = _face(suited, (0.0,) * 6)
-            for place in _before(robot, platform[:2], float(face[2]))[:3]:
-                x, y, _ = place - face
-                one = External(
+            for position in _before(robot, platform[:2], float(face[2]))[:3]:
+                x, y, _ = position - face
+                mechanism = External(
                     suited.id, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART
                 )
                 yield (
-                    Text(AUTO, _key_text(one)),
-                    dataclasses.replace(settings, external=_text([one]), branch="auto"),
+                    Text(AUTO, _key_text(mechanism)),
+                    dataclasses.replace(settings, external=_text([mechanism]), branch="auto"),
                 )
         return
     spans = np.ptp(points, axis=0)
@@ -93,10 +96,10 @@ def added(
     turn = math.atan2(along[1], along[0]) if math.hypot(along[0], along[1]) > 0.5 else 0.5 * math.pi
     for track in offered.tracks(robot, folders)[:1]:
         height = float(track.chain.forward(np.zeros(1))[2, 3])
-        one = External(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
+        mechanism = External(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
         yield (
-            Text(AUTO, _key_text(one)),
-            dataclasses.replace(settings, external=_text([one]), branch="auto"),
+            Text(AUTO, _key_text(mechanism)),
+            dataclasses.replace(settings, external=_text([mechanism]), branch="auto"),
         )
 
 
@@ -115,12 +118,12 @@ def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
 
 def _face(mechanism: Machine, pose: Pose) -> Array:
     """(3,) where its face is in the world at zero, mm."""
-    at = (
+    face_pose = (
         frames.bryant(pose)
         @ frames.inverse(mechanism.base)
         @ mechanism.chain.forward(np.zeros(mechanism.chain.axes))
     )
-    return np.asarray(at[:3, 3])
+    return np.asarray(face_pose[:3, 3])
 
 
 def _before(robot: Machine, towards: Array, height: float) -> list[Array]:
@@ -139,12 +142,10 @@ def _text(named: Sequence[External]) -> str:
     return f"{MORE} ".join(map(str, named))
 
 
-def _key_text(one: External) -> str:
-    return (
-        f"`{WHERE}: [{{machine: {one.machine}, pose: {_shown(one.pose)}, carries: {one.carries}}}]`"
-    )
+def _key_text(mechanism: External) -> str:
+    return f"`{WHERE}: [{{machine: {mechanism.machine}, pose: {_format_pose(mechanism.pose)}, carries: {mechanism.carries}}}]`"
 
 
-def _shown(pose: Any) -> str:
+def _format_pose(pose: Any) -> str:
     values = (*pose[:3], *(math.degrees(angle) for angle in pose[3:]))
     return f"[{', '.join(f'{value + 0.0:.10g}' for value in values)}]"

@@ -12,7 +12,7 @@ from ...kinematics.cell import Cell
 from ...parameters.joints import LEVEL, JointParameters
 from ..joint_path import BeadPath
 from ..task import Task, condition_margin
-from .courses import on_face
+from .courses import directions_on_face
 from .level import allowed_by_layer, axes_figures
 
 Found = tuple[list[BeadPath], list[Issue]]
@@ -64,7 +64,11 @@ def bettered(
 
     paths = list(planned)
     tried = optimised(
-        task, paths, lambda tool: on_face(task.cell, tool), allowed_by_layer(task.parts), report
+        task,
+        paths,
+        lambda tool: directions_on_face(task.cell, tool),
+        allowed_by_layer(task.parts),
+        report,
     )
     found = finish(tried)
     if not _better(task, found, level):

@@ -22,7 +22,7 @@ from ...kinematics.external import ExternalAxes, tilt_from
 from ...toolpath import Bead
 from ...types import Array, Index, Mask
 from ..reserve import RESERVE
-from .courses import chosen, limits_of, middle, on_face, upright
+from .courses import chosen, directions_on_face, limits_of, middle, upright
 
 ROUNDING = 1e-9
 ROUNDS = 6  # of points between those of a bead
@@ -109,7 +109,9 @@ def runs_on(cell: Cell, bead: Bead, most: float, overlap: float) -> bool:
     count = _run_on(bead, 0, overlap) + 1
     beginning = bead.external[:count]
     values = waiting(cell, bead.external, beginning)
-    tilt = tilt_from(external.upright(on_face(cell, bead.tool[:count]), values), external.up)
+    tilt = tilt_from(
+        external.upright(directions_on_face(cell, bead.tool[:count]), values), external.up
+    )
     return values is beginning or bool((tilt <= most).all())
 
 
@@ -148,7 +150,7 @@ class _Ways:
     def along(cls, cell: Cell, bead: Bead, most: float) -> _Ways:
         external, (rows, lower, upper) = cell.external, limits_of(cell)
         assert external is not None
-        directions = on_face(cell, bead.tool)
+        directions = directions_on_face(cell, bead.tool)
         if bead.closed:
             directions = np.concatenate([directions[:-1], directions[:-1], directions])
         values, held, fits = [], [], []

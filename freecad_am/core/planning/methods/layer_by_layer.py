@@ -66,7 +66,7 @@ def _searched(
     if task.kept is not None:
         progress(0.2, "keeping the arm clear")
         looked = gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
-        found = arm_clear.without_touching(task, task.kept, looked, places, found)
+        found = arm_clear.exclude_touching(task, task.kept, looked, places, found)
     best, each = found.best(), np.arange(len(beads))
     start = found.coefficients[best, each]
     # a bead that no rotation serves from its own seam may do from another: cheaper to try than a local search

@@ -17,7 +17,7 @@ from ...motion import APPROACH, RETRACT, TRAVEL
 from ...parameters.joints import JointParameters
 from ...types import Array, Integers, Mask
 from .. import nozzle_obstacles
-from ..arm.kept import Cylinders, clearance_issue, contact_of, on_moves
+from ..arm.kept import Cylinders, check_moves, clearance_issue, contact_of
 from ..joint_path import BeadPath, JointPath
 from .attempts import Attempt, attempts
 from .clearance import Moves, RapidObstacles
@@ -173,7 +173,7 @@ class RapidWays:
             met |= nozzle_obstacles.met(self.cell, moves.start, moves.end).any(axis=0)
         left = np.flatnonzero(~met)
         if self.arm is not None and len(left):
-            move, touched = on_moves(self.arm, *moves.of(left))
+            move, touched = check_moves(self.arm, *moves.of(left))
             met[left[move[touched.any]]] = True
         return ~met
 
@@ -272,7 +272,7 @@ class RapidWays:
         """What a link comes too near on way k, where one does."""
         if self.arm is None:
             return None
-        _, touched = on_moves(self.arm, *self._moves(k, self.ways[k]))
+        _, touched = check_moves(self.arm, *self._moves(k, self.ways[k]))
         if not touched.any.any():
             return None
         first, path = int(np.argmax(touched.any)), self.place(k)
