@@ -20,9 +20,9 @@ ROUNDING = 1e-9
 
 def findings(task: Task, path: BeadPath) -> list[Issue]:
     """At most one issue of a kind and axis for the bead, at the point where it is worst."""
-    place = {"layer": path.layer, "bead": path.index}
-    lost = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
-    if len(lost) and not task.cell.machine.free:
+    bead_fields = {"layer": path.layer, "bead": path.index}
+    unreachable = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
+    if len(unreachable) and not task.cell.machine.free:
         return [
             Issue(
                 ERROR,
@@ -30,16 +30,18 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
                 Text(
                     "{} of {} directions cannot be turned to the torch by this machine; tilt less, or "
                     "mount the part otherwise",
-                    len(lost),
+                    len(unreachable),
                     len(path.joints),
                 ),
-                point=int(lost[0]),
-                **place,
+                point=int(unreachable[0]),
+                **bead_fields,
             )
         ]
-    if len(lost):
+    if len(unreachable):
         count = Text(
-            "{} of {} points cannot be reached with this branch; ", len(lost), len(path.joints)
+            "{} of {} points cannot be reached with this branch; ",
+            len(unreachable),
+            len(path.joints),
         )
         external = task.cell.external
         return [
@@ -51,14 +53,14 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
                 else Text(
                     "{}move the deposition point, choose another branch or tilt less", Word(count)
                 ),
-                point=int(lost[0]),
-                **place,
+                point=int(unreachable[0]),
+                **bead_fields,
             )
         ]
     return (
-        _limit_findings(task, path, place)
-        + _condition_findings(path, place)
-        + _range_findings(task, path, place)
+        _limit_findings(task, path, bead_fields)
+        + _condition_findings(path, bead_fields)
+        + _range_findings(task, path, bead_fields)
     )
 
 
@@ -78,18 +80,18 @@ def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
         values = path.bead.external
         if values is None:
             return []
-        seen = frames.inverse(external.base(values)) @ frames.pose(
+        to_part = frames.inverse(external.base(values)) @ frames.pose(
             np.eye(3), cell.on_carrier(path.bead.points)
         )
-        ahead = np.hypot(seen[:, 0, 3], seen[:, 1, 3]) - shoulder
-        nearest = min(nearest, float(np.hypot(ahead, seen[:, 2, 3] - height).min()))
+        ahead = np.hypot(to_part[:, 0, 3], to_part[:, 1, 3]) - shoulder
+        nearest = min(nearest, float(np.hypot(ahead, to_part[:, 2, 3] - height).min()))
     lengths = (
         *cell.robot.chain.origins[4:, :3, 3],
         cell.robot.chain.flange[:3, 3],
         cell.carried[:3, 3],
     )
-    most = arm.reach + sum(float(np.linalg.norm(length)) for length in lengths)
-    if nearest <= most:
+    reach = arm.reach + sum(float(np.linalg.norm(length)) for length in lengths)
+    if nearest <= reach:
         return []
     return [
         Issue(
@@ -99,22 +101,22 @@ def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
                 "the positioner is out of the robot's reach: the nearest point of the part is {:.0f} mm "
                 "from the shoulder, arm and tool stretch {:.0f} mm at most; put the positioner nearer (cell.external)",
                 nearest,
-                most,
+                reach,
             ),
         )
     ]
 
 
-def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[Issue]:
+def _limit_findings(task: Task, path: BeadPath, bead_fields: dict[str, int]) -> list[Issue]:
     rows = task.given_rows
     values = path.joints @ rows.matrix.T
     over = np.maximum(rows.lower - values, values - rows.upper)
-    found = []
+    issues = []
     for row in np.flatnonzero((over > ROUNDING).any(axis=0)):
         point = int(over[:, row].argmax())
         value = values[point, row]
         limit = rows.lower[row] if value < rows.lower[row] else rows.upper[row]
-        unit, of = (
+        unit, factor = (
             ("mm", 1.0)
             if (rows.matrix[row] @ task.cell.machine.chain.sliding).any()
             else ("deg", math.radians(1.0))
@@ -122,12 +124,12 @@ def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
         text = Text(
             "{} would be at {:.2f} {}, its limit is {:g} {}",
             rows.labels[row],
-            value / of,
+            value / factor,
             unit,
-            limit / of,
+            limit / factor,
             unit,
         )
-        found.append(
+        issues.append(
             Issue(
                 ERROR,
                 "LIMIT",
@@ -135,13 +137,13 @@ def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
                 if task.cell.machine.free
                 else Text("{}; move the part on the table", Word(text)),
                 point=point,
-                **place,
+                **bead_fields,
             )
         )
-    return found
+    return issues
 
 
-def _condition_findings(path: BeadPath, place: dict[str, int]) -> list[Issue]:
+def _condition_findings(path: BeadPath, bead_fields: dict[str, int]) -> list[Issue]:
     short = path.threshold - path.condition
     point = int(short.argmax())
     if not short[point] > ROUNDING:  # or nothing is free, and there is no condition
@@ -156,12 +158,12 @@ def _condition_findings(path: BeadPath, place: dict[str, int]) -> list[Issue]:
                 path.threshold[point],
             ),
             point=point,
-            **place,
+            **bead_fields,
         )
     ]
 
 
-def _range_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[Issue]:
+def _range_findings(task: Task, path: BeadPath, bead_fields: dict[str, int]) -> list[Issue]:
     low, high = task.parameters.rotation_range
     if high - low >= 2.0 * np.pi - 1e-9:
         return []
@@ -178,6 +180,6 @@ def _range_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
                 math.degrees(path.phi[point]),
             ),
             point=point,
-            **place,
+            **bead_fields,
         )
     ]

@@ -70,7 +70,7 @@ def assemble(
     mm, how high beads are that do not tell it. cylinders: of each link of the robot, kept clear as the nozzle is where
     `cell.arm_clearance` asks for it.
     """
-    ways = RapidWays(
+    rapids = RapidWays(
         joint_path,
         cell,
         process.between_layers.lift,
@@ -80,14 +80,17 @@ def assemble(
         layer_height,
         cylinders,
     )
-    parts: list[_Rows] = []
+    row_groups: list[_Rows] = []
     for number, path in enumerate(joint_path.beads):
-        parts += [_rapid(path, ways.ways[number], ways.legs[2 * number], cell), _deposit(path)]
-    if len(ways.ways[-1].joints):
-        last = 2 * len(joint_path.beads) - 1
-        parts.append(_retract(joint_path.beads[-1], ways.ways[-1], ways.legs[last]))
-    motion = _joined(parts, cell, process)
-    return motion, (*findings(ways), *nozzle_obstacles.findings(motion, cell))
+        row_groups += [
+            _rapid(path, rapids.ways[number], rapids.legs[2 * number], cell),
+            _deposit(path),
+        ]
+    if len(rapids.ways[-1].joints):
+        last_leg = 2 * len(joint_path.beads) - 1
+        row_groups.append(_retract(joint_path.beads[-1], rapids.ways[-1], rapids.legs[last_leg]))
+    motion = _join_rows(row_groups, cell, process)
+    return motion, (*findings(rapids), *nozzle_obstacles.findings(motion, cell))
 
 
 def _place(path: BeadPath) -> tuple[int, int, int]:
@@ -95,38 +98,41 @@ def _place(path: BeadPath) -> tuple[int, int, int]:
     return path.layer, path.index, number_of(path.bead.bead_class)
 
 
-def _rapid(path: BeadPath, way: Way, onto: Leg | None, cell: Cell) -> _Rows:
-    joints = way.joints
+def _rapid(path: BeadPath, rapid: Way, onto: Leg | None, cell: Cell) -> _Rows:
+    joints = rapid.joints
     flange = cell.machine.chain.forward(np.nan_to_num(joints))
     position, tool = cell.tip_in_part(flange)
-    lost = np.isnan(joints).any(axis=1)
+    unreachable = np.isnan(joints).any(axis=1)
     height = 0.0 if onto is None else onto.height
-    position[lost], tool[lost] = path.bead.points[0] + height * path.bead.tool[0], path.bead.tool[0]
+    position[unreachable], tool[unreachable] = (
+        path.bead.points[0] + height * path.bead.tool[0],
+        path.bead.tool[0],
+    )
     position[-1], tool[-1] = path.bead.points[0], path.bead.tool[0]
     build = tool.copy()
     build[-1] = path.bead.build[0]
     none, zero = np.full(len(joints), np.nan), np.zeros(len(joints))
     return _Rows(
-        way.role, *_place(path), position, build, tool, none, none, joints, none, none, zero, zero
+        rapid.role, *_place(path), position, build, tool, none, none, joints, none, none, zero, zero
     )
 
 
-def _retract(path: BeadPath, way: Way, away: Leg | None) -> _Rows:
-    assert away is not None
-    count = len(way.joints)
+def _retract(path: BeadPath, rapid: Way, leg: Leg | None) -> _Rows:
+    assert leg is not None
+    count = len(rapid.joints)
     tool, build = (
         np.repeat(column[-1:], count, axis=0) for column in (path.bead.tool, path.bead.build)
     )
     none, zero = np.full(count, np.nan), np.zeros(count)
     return _Rows(
-        way.role,
+        rapid.role,
         *_place(path),
-        away.position,
+        leg.position,
         build,
         tool,
         none,
         none,
-        way.joints,
+        rapid.joints,
         none,
         none,
         zero,
@@ -156,19 +162,19 @@ def _deposit(path: BeadPath) -> _Rows:
     )
 
 
-def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> Motion:
-    counts = [len(part.joints) for part in parts]
+def _join_rows(row_groups: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> Motion:
+    counts = [len(rows.joints) for rows in row_groups]
     columns = {
-        field.name: np.concatenate([getattr(part, field.name) for part in parts])
+        field.name: np.concatenate([getattr(rows, field.name) for rows in row_groups])
         for field in fields(_Rows)
         if field.name not in OF_ALL
     }
     joints, position, duration = columns["joints"], columns["position"], columns["duration"]
     speed = columns["speed"]
     rapid = np.flatnonzero(np.isnan(duration))
-    before = np.maximum(rapid - 1, 0)
-    distance = np.linalg.norm(position[rapid] - position[before], axis=1)
-    turned = np.abs(joints[rapid] - joints[before])
+    previous = np.maximum(rapid - 1, 0)
+    distance = np.linalg.norm(position[rapid] - position[previous], axis=1)
+    turned = np.abs(joints[rapid] - joints[previous])
     by_axes = np.nan_to_num(turned / (RAPID_SHARE * cell.machine.max_speed)).max(axis=1)
     shortest = np.maximum(np.maximum(distance / process.rapid_speed, by_axes), SHORTEST_RAPID)
     duration[rapid], speed[rapid] = shortest, distance / np.maximum(shortest, 1e-12)
@@ -176,7 +182,8 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
         speed[0] = process.rapid_speed
     duration[0] = 0.0
     number = {
-        name: np.repeat([int(getattr(part, name)) for part in parts], counts) for name in OF_ALL
+        name: np.repeat([int(getattr(rows, name)) for rows in row_groups], counts)
+        for name in OF_ALL
     }
     return Motion(
         deposit=columns["role"] == DEPOSIT,

@@ -24,22 +24,22 @@ PIECE = 4096  # moves, or looks, that are done together
 
 def in_the_way(cell: Cell) -> tuple[str, ...]:
     """What is looked at, by the names that messages have: obstacles, then the links beside the robot."""
-    return (*(body.name for body in cell.obstacles), *(one.name for one in cell.external_links))
+    return (*(body.name for body in cell.obstacles), *(link.name for link in cell.external_links))
 
 
 def findings(motion: Motion, cell: Cell) -> list[Issue]:
     """An error for each of these that the nozzle meets while it deposits, at the first bead where it does."""
     rows = 1 + np.flatnonzero(motion.deposit[1:])
-    met_there, found = met(cell, motion.joints[rows - 1], motion.joints[rows]), []
-    for number, (name, here) in enumerate(zip(in_the_way(cell), met_there, strict=True)):
-        laying = rows[here]
+    met_there, issues = find_contacts(cell, motion.joints[rows - 1], motion.joints[rows]), []
+    for number, (name, hits) in enumerate(zip(in_the_way(cell), met_there, strict=True)):
+        laying = rows[hits]
         remedy = (
             "move it in cell.obstacles, or the part"
             if number < len(cell.obstacles)
             else ("lift the part over it by cell.platform, or move it in cell.external")
         )
         if len(laying):
-            found.append(
+            issues.append(
                 Issue(
                     ERROR,
                     ON_BEADS,
@@ -53,55 +53,57 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
                     int(motion.bead[laying[0]]),
                 )
             )
-    return found
+    return issues
 
 
-def met(cell: Cell, start: Array, end: Array) -> Mask:
+def find_contacts(cell: Cell, start: Array, end: Array) -> Mask:
     """(k, n) which of what is `in_the_way` a nozzle meets on n moves straight in the joints (n, axes); none where these are
     NaN."""
-    found = np.zeros((len(in_the_way(cell)), len(start)), dtype=bool)
-    if cell.torch_stands or not len(found):
-        return found
-    known = np.flatnonzero(np.isfinite(start + end).all(axis=1))
-    for first in range(0, len(known), PIECE):
-        rows = known[first : first + PIECE]
-        found[:, rows] = _met(cell, start[rows], end[rows])
-    return found
+    hits = np.zeros((len(in_the_way(cell)), len(start)), dtype=bool)
+    if cell.torch_stands or not len(hits):
+        return hits
+    reachable = np.flatnonzero(np.isfinite(start + end).all(axis=1))
+    for begin in range(0, len(reachable), PIECE):
+        rows = reachable[begin : begin + PIECE]
+        hits[:, rows] = _find_batch_contacts(cell, start[rows], end[rows])
+    return hits
 
 
-def _met(cell: Cell, start: Array, end: Array) -> Mask:
+def _find_batch_contacts(cell: Cell, start: Array, end: Array) -> Mask:
     nozzle, turned, obstacles = cell.nozzle, end - start, len(cell.obstacles)
-    found = np.zeros((obstacles + len(cell.external_links), len(start)), dtype=bool)
-    far = np.abs(turned / np.where(cell.machine.chain.sliding, SLIDE, STEP)).max(
+    hits = np.zeros((obstacles + len(cell.external_links), len(start)), dtype=bool)
+    joint_steps = np.abs(turned / np.where(cell.machine.chain.sliding, SLIDE, STEP)).max(
         axis=1, initial=0.0
     )
-    (tip, axis), (last, leant) = (_in_world(cell, joints) for joints in (start, end))
-    way = np.linalg.norm(last - tip, axis=1) + nozzle.length * np.linalg.norm(leant - axis, axis=1)
-    move, share = evenly(1 + np.ceil(np.maximum(far, way / WAY)).astype(np.intp))
+    (tip, axis), (end_tip, leant) = (_in_world(cell, joints) for joints in (start, end))
+    tip_travel = np.linalg.norm(end_tip - tip, axis=1) + nozzle.length * np.linalg.norm(
+        leant - axis, axis=1
+    )
+    move, share = evenly(1 + np.ceil(np.maximum(joint_steps, tip_travel / WAY)).astype(np.intp))
     cone = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, 0.0)
-    for first in range(0, len(move), PIECE):
-        some = slice(first, first + PIECE)
-        joints = start[move[some]] + share[some, None] * turned[move[some]]
+    for begin in range(0, len(move), PIECE):
+        batch = slice(begin, begin + PIECE)
+        joints = start[move[batch]] + share[batch, None] * turned[move[batch]]
         tip, axis = _in_world(cell, joints)
         for number, body in enumerate(cell.obstacles):
             hit = scene((body,), tip, cone.reach).touched(cone, tip, axis)
-            found[number, move[some][hit]] = True
+            hits[number, move[batch][hit]] = True
         to_world = frames.inverse(cell.world(joints))[:, None] @ cell.external_link_frames(joints)
-        for number, one in enumerate(cell.external_links):
-            hit = one.solid.touched(
-                cone.bodies, *_seen(frames.inverse(to_world[:, number]), tip, axis)
+        for number, link in enumerate(cell.external_links):
+            hit = link.solid.touched(
+                cone.bodies, *_transform(frames.inverse(to_world[:, number]), tip, axis)
             )
-            found[obstacles + number, move[some][hit]] = True
-    return found
+            hits[obstacles + number, move[batch][hit]] = True
+    return hits
 
 
 def _in_world(cell: Cell, joints: Array) -> tuple[Array, Array]:
     """Tip and axis (n, 3) of a nozzle that the flange carries, in the maker's base frame."""
     to_world = frames.inverse(cell.world(joints)) @ (cell.station @ frames.inverse(cell.mount))
-    return _seen(to_world, *cell.tip_in_part(cell.machine.chain.forward(joints)))
+    return _transform(to_world, *cell.tip_in_part(cell.machine.chain.forward(joints)))
 
 
-def _seen(pose: Array, tip: Array, axis: Array) -> tuple[Array, Array]:
+def _transform(pose: Array, tip: Array, axis: Array) -> tuple[Array, Array]:
     """Points and directions (n, 3) seen through poses (n, 4, 4)."""
     turn = pose[:, :3, :3]
     return np.einsum("nij,nj->ni", turn, tip) + pose[:, :3, 3], np.einsum("nij,nj->ni", turn, axis)

@@ -35,7 +35,7 @@ SHIFTS = (
 )  # of the deposition point, ahead of the robot and up, mm
 
 
-def with_cell(job: Tried, remedy: str, **values: object) -> Tried:
+def change_cell(job: Tried, remedy: str, **values: object) -> Tried:
     """The job in its cell with other values."""
     settings = dataclasses.replace(job.settings, **values)  # type: ignore[arg-type]
     return dataclasses.replace(job, settings=settings, remedy=remedy)
@@ -46,17 +46,19 @@ def clear_of_arm(job: Tried, codes: set[str]) -> Iterator[Tried]:
     with a clearance of the arm, and both."""
     if codes.isdisjoint(COLLISIONS):
         return
-    held = held_by_clamp(job)
-    if held is not None:
-        yield held
-    for one in (job, held):
-        if one is not None and one.settings.arm_clearance is None:
+    clamped = held_by_clamp(job)
+    if clamped is not None:
+        yield clamped
+    for candidate in (job, clamped):
+        if candidate is not None and candidate.settings.arm_clearance is None:
             remedy = Text("`cell.arm_clearance: {:g} mm`", CLEARANCE)
-            if one is held:
-                remedy = Text("{} and `cell.arm_clearance: {:g} mm`", one.remedy, CLEARANCE)
-            yield with_cell(one, remedy, arm_clearance=CLEARANCE)
-    if held is not None and job.settings.branch != "auto":
-        yield with_cell(held, Text("{} and `cell.branch: auto`", held.remedy), branch="auto")
+            if candidate is clamped:
+                remedy = Text("{} and `cell.arm_clearance: {:g} mm`", candidate.remedy, CLEARANCE)
+            yield change_cell(candidate, remedy, arm_clearance=CLEARANCE)
+    if clamped is not None and job.settings.branch != "auto":
+        yield change_cell(
+            clamped, Text("{} and `cell.branch: auto`", clamped.remedy), branch="auto"
+        )
 
 
 def held_by_clamp(job: Tried) -> Tried | None:
@@ -76,15 +78,15 @@ def held_by_clamp(job: Tried) -> Tried | None:
     shift = [*np.round(-0.5 * (low[:2] + high[:2]), 1), math.ceil(-low[2])]
     on_point = not (of_setup(settings.setup).carries_part or externals(settings.external))
     pose = settings.deposition_point if on_point else settings.platform
-    before = (0.0, 0.0, pose, 0.0, 0.0, 0.0) if isinstance(pose, (int, float)) else pose
-    x, y, z = (frames.bryant(before) @ np.array([*shift, 1.0]))[:3].round(3).tolist()
-    there = (x + 0.0, y + 0.0, z, *before[3:])
-    values = {"deposition_point" if on_point else "platform": there, "platform_diameter": 0.0}
+    old_pose = (0.0, 0.0, pose, 0.0, 0.0, 0.0) if isinstance(pose, (int, float)) else pose
+    x, y, z = (frames.bryant(old_pose) @ np.array([*shift, 1.0]))[:3].round(3).tolist()
+    new_pose = (x + 0.0, y + 0.0, z, *old_pose[3:])
+    values = {"deposition_point" if on_point else "platform": new_pose, "platform_diameter": 0.0}
     remedy = Text(
         "{} and `cell.platform_diameter: 0`",
-        _shown(there, "cell.deposition_point" if on_point else "cell.platform"),
+        _format_pose(new_pose, "cell.deposition_point" if on_point else "cell.platform"),
     )
-    return with_cell(job, remedy, **values)
+    return change_cell(job, remedy, **values)
 
 
 def branches(job: Tried) -> Iterator[Tried]:
@@ -102,7 +104,7 @@ def branches(job: Tried) -> Iterator[Tried]:
     for branch in best_branches(beads, cell, job.joints, toolpath.family != "revolution"):
         words = opw.branch_name(branch)
         if words != job.settings.branch:
-            yield with_cell(job, f"`cell.branch: [{', '.join(words)}]`", branch=words)
+            yield change_cell(job, f"`cell.branch: [{', '.join(words)}]`", branch=words)
 
 
 def points(job: Tried) -> Iterator[Tried]:
@@ -113,9 +115,9 @@ def points(job: Tried) -> Iterator[Tried]:
     best = proposed_cell.proposed(job.settings, job.folders)
     if best.deposition_point != job.settings.deposition_point:
         words = best.branch if isinstance(best.branch, str) else f"[{', '.join(best.branch)}]"
-        yield with_cell(
+        yield change_cell(
             job,
-            Text("{} and `cell.branch: {}`", _shown(best.deposition_point), words),
+            Text("{} and `cell.branch: {}`", _format_pose(best.deposition_point), words),
             deposition_point=best.deposition_point,
             branch=best.branch,
         )
@@ -124,9 +126,9 @@ def points(job: Tried) -> Iterator[Tried]:
         if not of_setup(job.settings.setup).carries_part
         else _adjacent(job.settings.deposition_point)
     ):
-        yield with_cell(
+        yield change_cell(
             job,
-            Text("{} and `cell.branch: auto`", _shown(point)),
+            Text("{} and `cell.branch: auto`", _format_pose(point)),
             deposition_point=point,
             branch="auto",
         )
@@ -145,16 +147,16 @@ def external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
 
 
 def _adjacent(point: Pose) -> list[Pose]:
-    x, y, *rest = point
+    x, y, *height_and_angles = point
     ahead = math.hypot(x, y) or 1.0
     return [
         (
             round(x + out * x / ahead, 3),
             round(y + out * y / ahead, 3),
-            round(rest[0] + up, 3),
-            rest[1],
-            rest[2],
-            rest[3],
+            round(height_and_angles[0] + up, 3),
+            height_and_angles[1],
+            height_and_angles[2],
+            height_and_angles[3],
         )
         for out, up in SHIFTS
     ]
@@ -180,7 +182,7 @@ def _before(job: Tried) -> list[Pose]:
     ]
 
 
-def _shown(point: Pose, key: str = "cell.deposition_point") -> str:
+def _format_pose(point: Pose, key: str = "cell.deposition_point") -> str:
     angles = [math.degrees(angle) for angle in point[3:]]
     numbers = ", ".join(f"{value + 0.0:.10g}" for value in (*point[:3], *angles))
     return f"`{key}: [{numbers}]`"

@@ -90,40 +90,42 @@ def plan_joints(
     clear where `cell.arm_clearance` asks for it. Raises InputError NOT_FOR_SETUP for what only rotary axes can do.
     """
     lock, (parameters, not_used) = lock_of(cell, parameters, toolpath), _used(cell, parameters)
-    parts = toolpath.parts
-    joined, kept = (
-        all(part.family != REVOLUTION for part, _ in parts),
+    features = toolpath.parts
+    joined, arm_clearance = (
+        all(feature.family != REVOLUTION for feature, _ in features),
         build_arm_clearance(toolpath, cell, cylinders),
     )
-    wanted = _branch_wanted(cell, parameters)
-    among = range(BRANCHES) if wanted is None else (wanted,)
-    asked = Task(
+    requested_branch = _branch_wanted(cell, parameters)
+    among = range(BRANCHES) if requested_branch is None else (requested_branch,)
+    task = Task(
         cell,
         0,
         parameters,
         joined,
-        kept,
+        arm_clearance,
         lock,
         toolpath.chord_error,
         toolpath.overlap,
         toolpath.retreat,
-        parts,
+        features,
     )
 
-    def served(some: Sequence[Bead]) -> float:
-        return -_ranked(some, places, asked, among)[0][0] / min(len(some), SCREENED)
+    def served(sampled_beads: Sequence[Bead]) -> float:
+        return -_ranked(sampled_beads, bead_ids, task, among)[0][0] / min(
+            len(sampled_beads), SCREENED
+        )
 
     planned: JointPath | None = None
-    for beads, places, tilted in ways(cell, toolpath):
-        for moved in track.placed(beads, cell, served):
+    for beads, bead_ids, tilted in ways(cell, toolpath):
+        for moved in track.place_track(beads, cell, served):
             branches = (
-                [wanted]
-                if wanted is not None
-                else best_branches(moved, cell, parameters, joined, kept, places)
+                [requested_branch]
+                if requested_branch is not None
+                else best_branches(moved, cell, parameters, joined, arm_clearance, bead_ids)
             )
-            found = _in_branches((moved, places), tilted, asked, branches, progress)
-            if planned is None or found.feasible:
-                planned = found
+            joint_path = _in_branches((moved, bead_ids), tilted, task, branches, progress)
+            if planned is None or joint_path.feasible:
+                planned = joint_path
             if planned.feasible:
                 return dataclasses.replace(planned, issues=(*planned.issues, *not_used))
     assert planned is not None  # there is one way at least
@@ -153,29 +155,29 @@ def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
 def _in_branches(
     placed: tuple[list[Bead], list[Place]],
     tilted: list[Issue],
-    asked: Task,
+    base_task: Task,
     branches: Sequence[int],
     progress: Progress,
 ) -> JointPath:
     """The joint path, external axes as the beads have them, in the first of the branches that serves."""
-    (beads, places), cell, parameters = placed, asked.cell, asked.parameters
+    (beads, bead_ids), cell, parameters = placed, base_task.cell, base_task.parameters
     together, notes = external_rule.asked(parameters, cell)
-    task = dataclasses.replace(asked, branch=branches[0])
-    paths, issues = _planned(task, beads, places, progress)
-    failed = _failed(paths, issues, places)
+    task = dataclasses.replace(base_task, branch=branches[0])
+    paths, issues = _planned(task, beads, bead_ids, progress)
+    failed = _failed(paths, issues, bead_ids)
     for branch in branches[1:] if has_errors(issues) else ():
-        other = dataclasses.replace(asked, branch=branch)
+        branch_task = dataclasses.replace(base_task, branch=branch)
         # most branches fail at the same beads: these alone are soon planned
-        some = [beads[k] for k in failed], [places[k] for k in failed]
-        if failed and has_errors(_planned(other, *some, progress)[1]):
+        failed_beads = [beads[k] for k in failed], [bead_ids[k] for k in failed]
+        if failed and has_errors(_planned(branch_task, *failed_beads, progress)[1]):
             continue
-        found = _planned(other, beads, places, progress)
-        if not has_errors(found[1]):
-            task, (paths, issues) = other, found
+        outcome = _planned(branch_task, beads, bead_ids, progress)
+        if not has_errors(outcome[1]):
+            task, (paths, issues) = branch_task, outcome
             break
     level = None
     if together:
-        (paths, issues), level = _bettered(task, beads, places, (paths, issues), progress)
+        (paths, issues), level = _bettered(task, beads, bead_ids, (paths, issues), progress)
     issues = [*tilted, *issues, *notes]
     if cell.robot.arm is not None and cell.robot.arm.followed:
         issues = [
@@ -188,7 +190,7 @@ def _in_branches(
             ),
         ]
     comparisons = tuple(
-        _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
+        _compared(task, beads, bead_ids, method, progress) for method in _compare_order(parameters)
     )
     optimality = None
     if parameters.certificate and not has_errors(issues):
@@ -210,16 +212,21 @@ def _in_branches(
 
 
 def _failed(
-    paths: Sequence[BeadPath], issues: Sequence[Issue], places: Sequence[tuple[int, int]]
+    paths: Sequence[BeadPath], issues: Sequence[Issue], bead_ids: Sequence[tuple[int, int]]
 ) -> list[int]:
     """Which beads have errors, SCREENED of them at most; where some were divided, those of their layers."""
     wrong = {(issue.layer, issue.bead) for issue in issues if issue.level == ERROR}
-    if len(paths) != len(set(places)):
-        wrong = {place for place in places if place[0] in {layer for layer, _ in wrong}}
-    found = [k for k, place in enumerate(places) if place in wrong]
+    if len(paths) != len(set(bead_ids)):
+        wrong = {bead_id for bead_id in bead_ids if bead_id[0] in {layer for layer, _ in wrong}}
+    failed = [k for k, bead_id in enumerate(bead_ids) if bead_id in wrong]
     return (
-        [found[k] for k in sorted({round(at) for at in np.linspace(0, len(found) - 1, SCREENED)})]
-        if found
+        [
+            failed[k]
+            for k in sorted(
+                {round(position) for position in np.linspace(0, len(failed) - 1, SCREENED)}
+            )
+        ]
+        if failed
         else []
     )
 
@@ -229,16 +236,16 @@ def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, lis
     if cell.machine.free:
         return parameters, []
     usual = JointParameters()
-    chosen = [
+    ignored = [
         f"joints.{name}" for name in OF_ROBOTS if getattr(parameters, name) != getattr(usual, name)
     ]
     parameters = dataclasses.replace(
         parameters, **{name: getattr(usual, name) for name in OF_ROBOTS}
     )
-    chosen += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
-    chosen += ["cell.obstacles"] if cell.obstacles else []
-    chosen += ["cell.nozzle.shape"] if cell.nozzle.shape != NO_SHAPE else []
-    if not chosen:
+    ignored += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
+    ignored += ["cell.obstacles"] if cell.obstacles else []
+    ignored += ["cell.nozzle.shape"] if cell.nozzle.shape != NO_SHAPE else []
+    if not ignored:
         return parameters, []
     return parameters, [
         Issue(
@@ -247,7 +254,7 @@ def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, lis
             Text(
                 "{}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool "
                 "to choose; leave out what is meant for robots",
-                ", ".join(chosen),
+                ", ".join(ignored),
             ),
         )
     ]
@@ -258,38 +265,43 @@ def best_branches(
     cell: Cell,
     parameters: JointParameters,
     joined: bool = False,
-    kept: ArmKept | None = None,
-    places: Sequence[Place] = (),
+    arm_clearance: ArmKept | None = None,
+    bead_ids: Sequence[Place] = (),
 ) -> list[int]:
     """The branches worth planning, the best first: those that serve as many beads as any, by objective, then margin.
 
     A few beads from the first to the last are looked at; what they promise, the planning has to keep.
     """
-    ranks = _ranked(beads, places, Task(cell, 0, parameters, joined, kept), range(BRANCHES))
+    ranks = _ranked(
+        beads, bead_ids, Task(cell, 0, parameters, joined, arm_clearance), range(BRANCHES)
+    )
     return [rank[-1] for rank in ranks if rank[0] == ranks[0][0]][:TRIED]
 
 
 def _ranked(
-    beads: Sequence[Bead], places: Sequence[Place], asked: Task, among: Sequence[int]
+    beads: Sequence[Bead], bead_ids: Sequence[Place], base_task: Task, among: Sequence[int]
 ) -> list[tuple[int, int, float, float, int]]:
     """Of each branch what ranks it, the best first: beads looked at that it serves (less than 0), those that it would serve
     if no link came too near (less than 0), objective, margin (less than 0), and itself."""
-    some = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
-    points = gather([beads[k] for k in some], asked.cell, search.POINTS_PER_BEAD)
+    sampled = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
+    points = gather([beads[k] for k in sampled], base_task.cell, search.POINTS_PER_BEAD)
     ranks = []
     for branch in among:
-        task = dataclasses.replace(asked, branch=branch)
-        found = search.everywhere(
+        task = dataclasses.replace(base_task, branch=branch)
+        candidates = search.everywhere(
             task, points, task.thresholds(points), best_alone=task.kept is None
         )
         within = 0
         if task.kept is not None:
-            within = int((found.margin.max(axis=0) >= 0.0).sum())
-            found = arm_clear.exclude_touching(
-                task, task.kept, points, [places[k] for k in some], found
+            within = int((candidates.margin.max(axis=0) >= 0.0).sum())
+            candidates = arm_clear.exclude_touching(
+                task, task.kept, points, [bead_ids[k] for k in sampled], candidates
             )
-        best, each = found.best(), np.arange(len(some))
-        margin, objective = found.margin[best, each], found.objective[best, each]
+        best, bead_rows = candidates.best(), np.arange(len(sampled))
+        margin, objective = (
+            candidates.margin[best, bead_rows],
+            candidates.objective[best, bead_rows],
+        )
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
         # rounded, so that of branches that are mirror images the same comes first everywhere
@@ -312,27 +324,27 @@ def _compare_order(parameters: JointParameters) -> list[str]:
 
 
 def _planned(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], progress: Progress
+    task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    paths, issues = ALL_METHODS[_choices(task)[0]](task, beads, places, progress)
-    paths, found = _finished(task, paths)
-    return paths, given.not_used(task.parameters, places) + issues + found
+    paths, issues = ALL_METHODS[_choices(task)[0]](task, beads, bead_ids, progress)
+    paths, issues_found = _finished(task, paths)
+    return paths, given.not_used(task.parameters, bead_ids) + issues + issues_found
 
 
 def _bettered(
     task: Task,
     beads: Sequence[Bead],
-    places: Sequence[Place],
+    bead_ids: Sequence[Place],
     level: tuple[list[BeadPath], list[Issue]],
     progress: Progress,
 ) -> tuple[tuple[list[BeadPath], list[Issue]], dict[str, object]]:
     """The same with the external axes optimised, and the figures of `level`."""
-    planned, issues = METHODS[task.parameters.method](task, beads, places, _silent)
-    before = given.not_used(task.parameters, places) + issues
+    planned, issues = METHODS[task.parameters.method](task, beads, bead_ids, _silent)
+    first_issues = given.not_used(task.parameters, bead_ids) + issues
 
     def finish(paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
-        done, found = _finished(task, paths)
-        return done, before + found
+        finished, issues_found = _finished(task, paths)
+        return finished, first_issues + issues_found
 
     return external_rule.bettered(
         task,
@@ -351,7 +363,7 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
     phased = [phases.phased(task.cell, path, task.condition_at) for path in paths]
     paths, issues = (
         [path for path, _ in phased],
-        notes + [issue for _, found in (*phased, *straight) for issue in found],
+        notes + [issue for _, issues_found in (*phased, *straight) for issue in issues_found],
     )
     for path in paths:
         issues += findings(task, path)
@@ -359,8 +371,8 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
     if task.kept is not None:
         issues += arm_clear.findings(task.kept, paths)
     if not has_errors(issues):
-        paths, found = _slowed(task.cell, paths, task.parts)
-        issues = issues + found
+        paths, issues_found = _slowed(task.cell, paths, task.parts)
+        issues = issues + issues_found
     return paths, issues
 
 
@@ -377,44 +389,46 @@ def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[
 
 
 def _slowed(
-    cell: Cell, paths: Sequence[BeadPath], parts: Parts
+    cell: Cell, paths: Sequence[BeadPath], features: Parts
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
-    done, notes = list(paths), []
-    for part, layers in parts:
-        own = set(layers.tolist())
-        rows = [k for k, path in enumerate(paths) if path.layer in own]
-        some = [paths[k] for k in rows]
-        if not some:
+    slowed, notes = list(paths), []
+    for feature, layers in features:
+        feature_layers = set(layers.tolist())
+        rows = [k for k, path in enumerate(paths) if path.layer in feature_layers]
+        feature_paths = [paths[k] for k in rows]
+        if not feature_paths:
             continue
-        if part.filled:
-            some, found = corners_slowed(cell, some, part.layer_height, part.law)
+        if feature.filled:
+            feature_paths, issues_found = corners_slowed(
+                cell, feature_paths, feature.layer_height, feature.law
+            )
         else:
-            some, found = rings_slowed(cell, some, part.layer_height)
-        notes += found
-        for k, path in zip(rows, some, strict=True):
-            done[k] = path
-    return done, notes + too_fast(cell, done)
+            feature_paths, issues_found = rings_slowed(cell, feature_paths, feature.layer_height)
+        notes += issues_found
+        for k, path in zip(rows, feature_paths, strict=True):
+            slowed[k] = path
+    return slowed, notes + too_fast(cell, slowed)
 
 
 def _compared(
     task: Task,
     beads: Sequence[Bead],
-    places: Sequence[tuple[int, int]],
+    bead_ids: Sequence[tuple[int, int]],
     method: str,
     progress: Progress,
 ) -> dict[str, object]:
     started = time.perf_counter()
-    other = dataclasses.replace(
+    compared_task = dataclasses.replace(
         task, parameters=dataclasses.replace(task.parameters, method=method)
     )
-    paths, issues = METHODS[method](other, beads, places, progress)
+    paths, issues = METHODS[method](compared_task, beads, bead_ids, progress)
     for path in paths:
-        issues += findings(other, path)
+        issues += findings(compared_task, path)
     return {
         "method": method,
         "feasible": not has_errors(issues),
-        **comparison.figures(other, paths),
+        **comparison.figures(compared_task, paths),
         "planning_time_s": time.perf_counter() - started,
         "issues": [issue.as_dict() for issue in issues if issue.level != WARNING][:20],
     }

@@ -74,20 +74,20 @@ class Points:
     def only(self, bead: int) -> tuple[Points, slice]:
         """The points of one bead alone, and where they stand among all."""
         ends = np.append(self.first, len(self))
-        chosen = slice(int(ends[bead]), int(ends[bead + 1]))
-        none = np.zeros(chosen.stop - chosen.start, dtype=np.int64)
-        part = Points(
-            self.position[chosen],
-            self.tool[chosen],
-            self.parameter[chosen],
+        rows = slice(int(ends[bead]), int(ends[bead + 1]))
+        none = np.zeros(rows.stop - rows.start, dtype=np.int64)
+        points = Points(
+            self.position[rows],
+            self.tool[rows],
+            self.parameter[rows],
             none[:1],
             none,
             self.closed[bead : bead + 1],
-            self.frames.of(chosen),
-            None if self.external is None else self.external[chosen],
+            self.frames.of(rows),
+            None if self.external is None else self.external[rows],
             self.sliding,
         )
-        return part, chosen
+        return points, rows
 
     def powers(self, degree: int) -> Array:
         """(T, degree + 1) powers of the parameter, the constant first."""
@@ -116,27 +116,23 @@ class Points:
 
 
 def gather(
-    beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bool = True
+    beads: Sequence[Bead], cell: Cell, max_points: int | None = None, posed: bool = True
 ) -> Points:
-    """The points of the beads, thinned to `most` per bead and turn about the axis, both ends kept; with frames of none where
+    """The points of the beads, thinned to `max_points` per bead and turn about the axis, both ends kept; with frames of none where
     they are not posed."""
-    chosen = [thinned(bead, most) for bead in beads]
-    counts = np.array([len(index) for index in chosen])
-    position = np.concatenate([bead.points[index] for bead, index in zip(beads, chosen)])
-    tool = np.concatenate([bead.tool[index] for bead, index in zip(beads, chosen)])
+    rows = [thinned(bead, max_points) for bead in beads]
+    counts = np.array([len(index) for index in rows])
+    position = np.concatenate([bead.points[index] for bead, index in zip(beads, rows)])
+    tool = np.concatenate([bead.tool[index] for bead, index in zip(beads, rows)])
     external = None
     if cell.external is not None:
         external = np.concatenate(
-            [
-                bead.external[index]
-                for bead, index in zip(beads, chosen)
-                if bead.external is not None
-            ]
+            [bead.external[index] for bead, index in zip(beads, rows) if bead.external is not None]
         )
     return Points(
         position=position,
         tool=tool,
-        parameter=np.concatenate([bead.parameter[index] for bead, index in zip(beads, chosen)]),
+        parameter=np.concatenate([bead.parameter[index] for bead, index in zip(beads, rows)]),
         first=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
         bead=np.repeat(np.arange(len(beads)), counts),
         closed=np.array([bead.closed for bead in beads], dtype=bool),
@@ -153,34 +149,40 @@ def in_pieces(count: int) -> list[slice]:
 
 def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None) -> PoseFrames:
     """`cell.pose_frames`, piece by piece: what they are made of is many times as large as they are."""
-    parts = [
-        cell.pose_frames(position[some], tool[some], None if external is None else external[some])
-        for some in in_pieces(len(position))
+    frame_groups = [
+        cell.pose_frames(position[rows], tool[rows], None if external is None else external[rows])
+        for rows in in_pieces(len(position))
     ]
     if cell.arrangement.carries_part:
         return PoseFrames(
-            parts[0].left, parts[0].sign, np.concatenate([part.right for part in parts])
+            frame_groups[0].left,
+            frame_groups[0].sign,
+            np.concatenate([group.right for group in frame_groups]),
         )
-    return PoseFrames(np.concatenate([part.left for part in parts]), parts[0].sign, parts[0].right)
+    return PoseFrames(
+        np.concatenate([group.left for group in frame_groups]),
+        frame_groups[0].sign,
+        frame_groups[0].right,
+    )
 
 
-def thinned(bead: Bead, most: int | None) -> Integers:
-    """Which points of a bead are looked at, `most` per turn about the axis: all with None."""
-    if most is None:
+def thinned(bead: Bead, max_points: int | None) -> Integers:
+    """Which points of a bead are looked at, `max_points` per turn about the axis: all with None."""
+    if max_points is None:
         return np.arange(len(bead))
     turns = abs(bead.parameter[-1] - bead.parameter[0]) / TURN
-    most = max(most, int(np.ceil((most - 1) * turns)) + 1)
-    if len(bead) <= most:
+    max_points = max(max_points, int(np.ceil((max_points - 1) * turns)) + 1)
+    if len(bead) <= max_points:
         return np.arange(len(bead))
-    return _evenly(len(bead), most)
+    return _evenly(len(bead), max_points)
 
 
 @lru_cache(maxsize=64)
-def _evenly(count: int, most: int) -> Integers:
+def _evenly(count: int, max_points: int) -> Integers:
     """So many of a count of points, both ends among them: beads have the same counts again and again."""
-    chosen: Integers = np.unique(np.round(np.linspace(0, count - 1, most)).astype(np.int64))
-    chosen.flags.writeable = False
-    return chosen
+    rows: Integers = np.unique(np.round(np.linspace(0, count - 1, max_points)).astype(np.int64))
+    rows.flags.writeable = False
+    return rows
 
 
 def steps(joints: Array, points: Points) -> Array:
@@ -202,16 +204,16 @@ def steps(joints: Array, points: Points) -> Array:
 def unwrapped(joints: Array, points: Points) -> Array:
     """(..., T, axes) joint values counted on from the first point of each bead, NaN from its first point without any on."""
     rising = steps(joints, points)
-    lost = np.isnan(rising)
-    some = bool(lost.any())
-    if some:
-        rising[lost] = 0.0
-        lost = np.cumsum(lost, axis=-2)
-        lost = lost > points.spread(lost[..., points.first, :])
+    unreachable = np.isnan(rising)
+    any_lost = bool(unreachable.any())
+    if any_lost:
+        rising[unreachable] = 0.0
+        unreachable = np.cumsum(unreachable, axis=-2)
+        unreachable = unreachable > points.spread(unreachable[..., points.first, :])
     np.cumsum(rising, axis=-2, out=rising)
     rising += points.spread(joints[..., points.first, :] - rising[..., points.first, :])
-    if some:
-        rising[lost] = np.nan
+    if any_lost:
+        rising[unreachable] = np.nan
     return rising
 
 
@@ -219,15 +221,17 @@ def unwrapped_by_turns(joints: Array, points: Points) -> Array:
     """`unwrapped` but for the last bits, of joints that are all within reach: by whole turns, of the axes alone that take
     any, in a third of its time."""
     step = np.diff(joints, axis=-2)
-    every = tuple(range(step.ndim - 1))
-    far = (
-        np.maximum(step.max(axis=every, initial=0.0), -step.min(axis=every, initial=0.0))
+    leading_axes = tuple(range(step.ndim - 1))
+    takes_turns = (
+        np.maximum(
+            step.max(axis=leading_axes, initial=0.0), -step.min(axis=leading_axes, initial=0.0)
+        )
         > 0.5 * TURN
     )
     if points.sliding is not None:
-        far &= ~points.sliding
+        takes_turns &= ~points.sliding
     result = joints.copy(order="K")
-    for axis in np.flatnonzero(far).tolist():
+    for axis in np.flatnonzero(takes_turns).tolist():
         result[..., axis] -= whole_turns(step[..., axis], points)
     return result
 
@@ -240,5 +244,5 @@ def whole_turns(step: Array, points: Points) -> Array:
     turns[..., points.first] = 0
     np.cumsum(turns, axis=-1, out=turns)
     turns -= turns[..., points.first][..., points.bead]
-    found: Array = TURN * turns
-    return found
+    angles: Array = TURN * turns
+    return angles

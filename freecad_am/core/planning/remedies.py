@@ -176,7 +176,7 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
         fixed = dataclasses.replace(job, toolpath=job.fixed.make, remedy=job.fixed.remedy)
         yield fixed
         if free and job.settings.branch != "auto":
-            yield other_cells.with_cell(
+            yield other_cells.change_cell(
                 fixed, Text("{} and `cell.branch: auto`", fixed.remedy), branch="auto"
             )
     if not left_out and free:

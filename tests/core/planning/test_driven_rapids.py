@@ -364,7 +364,7 @@ def test_few_looks_find_what_all_of_them_do(on_table, monkeypatch):
     moves = clearance.Moves(*ends, np.full(80, 300))
     met = obstacles.met(moves)
     few = sum(asked)
-    every = clearance._driven(cell, moves, clearance.FINE)
+    every = clearance._evaluate_looks(cell, moves, clearance.FINE)
     hit = touched(obstacles, obstacles._nozzle(moves, every), every, moves)
     assert (met == (np.bincount(every.move, hit, minlength=80) > 0)).all()
     assert 20 < met.sum() < 70 and few < 0.25 * len(every.move)

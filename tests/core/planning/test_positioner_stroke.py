@@ -193,7 +193,7 @@ def test_beads_that_begin_elsewhere_and_the_last_pieces_run_on_as_asked(sliced, 
 
 def test_a_wide_axis_is_left_alone(hemisphere, cell_with, monkeypatch):
     """What fits, or fits from another seam after the planning, is never looked at anew."""
-    monkeypatch.setattr(stroke, "found", None)
+    monkeypatch.setattr(stroke, "find_room", None)
     for turn in (185.0, 400.0):
         beads, places, issues = level.levelled(cell_with(hemisphere, 134.0, turn), hemisphere)
         assert (len(beads), issues) == (len(hemisphere.layers), [])
@@ -216,8 +216,8 @@ def test_what_no_cut_helps_is_refused_by_name(sliced, cell_with, tilt, turn, axi
 
 def test_no_pieces_where_no_way_leads_on(hemisphere, cell_with):
     cell, bead = cell_with(hemisphere, 134.0, 30.0), hemisphere.layers[2].beads[0]
-    assert stroke.found(cell, bead, math.radians(MOST), np.zeros(2), 0.0) == []
-    assert len(stroke.found(cell, bead, math.radians(60.0), np.zeros(2), 0.0)) > 0
+    assert stroke.find_room(cell, bead, math.radians(MOST), np.zeros(2), 0.0) == []
+    assert len(stroke.find_room(cell, bead, math.radians(60.0), np.zeros(2), 0.0)) > 0
 
 
 def test_pieces_are_as_few_and_as_equal_as_may_be():

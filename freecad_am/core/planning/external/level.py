@@ -76,7 +76,9 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
         if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(
             cell, sections[0], max_lean, toolpath.overlap
         ):
-            sections = stroke.found(cell, bead, max_lean, previous, toolpath.overlap) or sections
+            sections = (
+                stroke.find_room(cell, bead, max_lean, previous, toolpath.overlap) or sections
+            )
         for section in sections:
             assert section.external is not None
             tilt = tilt_from(

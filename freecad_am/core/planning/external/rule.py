@@ -63,34 +63,34 @@ def bettered(
     from .optimised import optimised  # few jobs have external axes
 
     paths = list(planned)
-    tried = optimised(
+    candidate = optimised(
         task,
         paths,
         lambda tool: directions_on_face(task.cell, tool),
         allowed_by_layer(task.parts),
         report,
     )
-    found = finish(tried)
-    if not _better(task, found, level):
-        wrong = _worse(task, found, level)
-        found = finish(
+    result = finish(candidate)
+    if not _better(task, result, level):
+        wrong = _worse(task, result, level)
+        result = finish(
             [
                 old if (new.layer, new.index) in wrong else new
-                for old, new in zip(paths, tried, strict=True)
+                for old, new in zip(paths, candidate, strict=True)
             ]
         )
-    return (found if _better(task, found, level) else level), figures(task, level[0])
+    return (result if _better(task, result, level) else level), figures(task, level[0])
 
 
-def _worse(task: Task, found: Found, level: Found) -> set[tuple[int | None, int | None]]:
+def _worse(task: Task, result: Found, level: Found) -> set[tuple[int | None, int | None]]:
     """Places of beads that have errors, or less margin than any of `level`, once turns are counted."""
-    wrong = {(issue.layer, issue.bead) for issue in found[1] if issue.level == ERROR}
+    wrong = {(issue.layer, issue.bead) for issue in result[1] if issue.level == ERROR}
     if not has_errors(level[1]):
-        least = least_margin(task, level[0])
+        smallest_margin = least_margin(task, level[0])
         wrong |= {
             (path.layer, path.index)
-            for path in found[0]
-            if path.reachable and least_margin(task, [path]) < least
+            for path in result[0]
+            if path.reachable and least_margin(task, [path]) < smallest_margin
         }
     return wrong
 
@@ -98,10 +98,10 @@ def _worse(task: Task, found: Found, level: Found) -> set[tuple[int | None, int 
 def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
     """What paths are compared by: objective, least margin to a limit or the condition asked for, as shares, least condition,
     and how far external axes go."""
-    whole = all(path.reachable for path in paths)
+    complete = all(path.reachable for path in paths)
     return {
-        "objective_value": float(sum(path.objective for path in paths)) if whole else None,
-        "least_margin": least_margin(task, paths) if whole else None,
+        "objective_value": float(sum(path.objective for path in paths)) if complete else None,
+        "least_margin": least_margin(task, paths) if complete else None,
         "condition_min": float(min(path.condition.min() for path in paths)),
         **axes_figures(task.cell, paths),
     }
@@ -119,10 +119,10 @@ def least_margin(task: Task, paths: Sequence[BeadPath]) -> float:
     return float(min(margins))
 
 
-def _better(task: Task, found: Found, level: Found) -> bool:
-    if has_errors(found[1]):
+def _better(task: Task, result: Found, level: Found) -> bool:
+    if has_errors(result[1]):
         return False
     if has_errors(level[1]):
         return True
-    less = sum(path.objective for path in found[0]) <= sum(path.objective for path in level[0])
-    return less and least_margin(task, found[0]) >= least_margin(task, level[0])
+    less = sum(path.objective for path in result[0]) <= sum(path.objective for path in level[0])
+    return less and least_margin(task, result[0]) >= least_margin(task, level[0])

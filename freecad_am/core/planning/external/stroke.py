@@ -37,82 +37,89 @@ def lacks(cell: Cell, values: Array, whole_turns: bool = False) -> bool:
     return bool((over[:, whole_turns | (upper - lower < TURN)] > ROUNDING).any())
 
 
-def found(cell: Cell, bead: Bead, most: float, before: Array, overlap: float) -> list[Bead]:
+def find_room(
+    cell: Cell, bead: Bead, max_lean: float, previous: Array, overlap: float
+) -> list[Bead]:
     """The bead with values of the external axes that have room, from another seam or in the fewest pieces; empty where
-    neither helps. most: rad from the vertical; before: values (k,) where the axes are; overlap: mm that a closed bead runs
+    neither helps. max_lean: rad from the vertical; previous: values (k,) where the axes are; overlap: mm that a closed bead runs
     on. It gets points where seams, or ends of pieces, have room between its own."""
-    moved = _begun_elsewhere(cell, bead, most, before, overlap) if bead.closed else None
+    moved = _begun_elsewhere(cell, bead, max_lean, previous, overlap) if bead.closed else None
     if moved is not None:
         return [moved]
     for _ in range(ROUNDS):
-        ways = _Ways.along(cell, bead, most)
-        if cuts := _cuts(ways.reach, 0, ways.last(0, overlap)):
-            return _pieces(ways, cuts, before, overlap)
-        if not ways.fits.any(axis=0).all():
+        solutions = _Ways.along(cell, bead, max_lean)
+        if cuts := _cuts(solutions.reach, 0, solutions.last(0, overlap)):
+            return _split_bead(solutions, cuts, previous, overlap)
+        if not solutions.fits.any(axis=0).all():
             break
         count = len(bead) - 1
-        bead = bead.halved(np.flatnonzero(ways.reach[:count] <= np.arange(count)))
+        bead = bead.halved(np.flatnonzero(solutions.reach[:count] <= np.arange(count)))
     return []
 
 
 def _begun_elsewhere(
-    cell: Cell, bead: Bead, most: float, before: Array, overlap: float
+    cell: Cell, bead: Bead, max_lean: float, previous: Array, overlap: float
 ) -> Bead | None:
     """A closed bead from a seam that leaves room for all of it."""
     for _ in range(ROUNDS):
-        ways, count = _Ways.along(cell, bead, most), len(bead) - 1
-        for start, values in ways.seams(count, before):
-            moved = _with(bead.started_at(start), values, before, ways.rows)
-            if runs_on(cell, moved, most, overlap):
+        solutions, count = _Ways.along(cell, bead, max_lean), len(bead) - 1
+        for start, values in solutions.seams(count, previous):
+            moved = _set_external(bead.started_at(start), values, previous, solutions.rows)
+            if runs_on(cell, moved, max_lean, overlap):
                 return moved
-        ends = ways.nearly_round(count)
+        ends = solutions.nearly_round(count)
         if not len(ends):
             break
         bead = bead.halved(ends)
     return None
 
 
-def _pieces(ways: _Ways, cuts: Sequence[int], before: Array, overlap: float) -> list[Bead]:
+def _split_bead(
+    solutions: _Ways, cuts: Sequence[int], previous: Array, overlap: float
+) -> list[Bead]:
     """A bead in pieces, cut at points that serve, or of a closed one from where fewer do; the last one runs on."""
-    bead = ways.bead
+    bead = solutions.bead
     starts = [0, *(cut % (len(bead) - 1) for cut in cuts[1:-1] if bead.closed)]
-    tried = [_cuts(ways.reach, start, ways.last(start, overlap)) for start in starts]
-    cuts = _balanced(ways.reach, min(filter(None, tried), key=len))
-    whole = (bead.started_at(cuts[0]) if cuts[0] else bead).run_on(overlap)
-    pieces = list[Bead]()
+    cut_lists = [_cuts(solutions.reach, start, solutions.last(start, overlap)) for start in starts]
+    cuts = _balanced(solutions.reach, min(filter(None, cut_lists), key=len))
+    extended = (bead.started_at(cuts[0]) if cuts[0] else bead).run_on(overlap)
+    sections = list[Bead]()
     for low, high in itertools.pairwise(cuts):
-        values = ways.taken(low, high, before)
-        piece = whole.part(slice(low - cuts[0], high + 1 - cuts[0]))
+        values = solutions.taken(low, high, previous)
+        section = extended.part(slice(low - cuts[0], high + 1 - cuts[0]))
         if high == cuts[-1] and overlap > 0.0:
-            values[-1] = values[-2] + _share(bead, high, piece) * (values[-1] - values[-2])
-        pieces.append(_with(piece, values, before, ways.rows))
-        before = np.array(before)
-        before[ways.rows] = values[-1]
-    return pieces
+            values[-1] = values[-2] + _share(bead, high, section) * (values[-1] - values[-2])
+        sections.append(_set_external(section, values, previous, solutions.rows))
+        previous = np.array(previous)
+        previous[solutions.rows] = values[-1]
+    return sections
 
 
-def _share(bead: Bead, last: int, piece: Bead) -> float:
-    """Where the end of a piece is in the segment of a bead that ends at its point `last`, counted on round after round."""
+def _share(bead: Bead, last_point: int, section: Bead) -> float:
+    """Where the end of a piece is in the segment of a bead that ends at its point `last_point`, counted on round after round."""
     if not bead.closed:
         return 1.0
-    end = 1 + (last - 1) % (len(bead) - 1)
-    deposited, whole = piece.points[-1] - piece.points[-2], bead.points[end] - bead.points[end - 1]
-    return float(np.linalg.norm(deposited) / np.linalg.norm(whole))
+    end = 1 + (last_point - 1) % (len(bead) - 1)
+    deposited, segment = (
+        section.points[-1] - section.points[-2],
+        bead.points[end] - bead.points[end - 1],
+    )
+    return float(np.linalg.norm(deposited) / np.linalg.norm(segment))
 
 
-def runs_on(cell: Cell, bead: Bead, most: float, overlap: float) -> bool:
+def runs_on(cell: Cell, bead: Bead, max_lean: float, overlap: float) -> bool:
     """Whether a bead with external axes, where it is closed, leans no more than it may where it runs on so many mm."""
     external = cell.external
     if overlap <= 0.0 or not bead.closed:
         return True
     assert external is not None and bead.external is not None
-    count = _run_on(bead, 0, overlap) + 1
+    count = _overlap_points(bead, 0, overlap) + 1
     beginning = bead.external[:count]
     values = waiting(cell, bead.external, beginning)
     tilt = tilt_from(
         external.upright(directions_on_face(cell, bead.tool[:count]), values), external.up
     )
-    return values is beginning or bool((tilt <= most).all())
+    return values is beginning or bool((tilt <= max_lean).all())
 
 
 def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
@@ -120,9 +127,9 @@ def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
     axis, whole turns aside, those of its end: there the axes wait. values: (n, k) of the bead."""
     rows, lower, upper = limits_of(cell)
     turned = beginning[:, rows] + TURN * np.round((values[-1, rows] - values[0, rows]) / TURN)
-    every = np.concatenate([values[:, rows], turned])
-    fewest = np.ceil((lower - every.min(axis=0)) / TURN - ROUNDING)
-    greatest = np.floor((upper - every.max(axis=0)) / TURN + ROUNDING)
+    all_values = np.concatenate([values[:, rows], turned])
+    fewest = np.ceil((lower - all_values.min(axis=0)) / TURN - ROUNDING)
+    greatest = np.floor((upper - all_values.max(axis=0)) / TURN + ROUNDING)
     return (
         beginning
         if (fewest <= greatest).all()
@@ -147,25 +154,29 @@ class _Ways:
     fits: Mask
 
     @classmethod
-    def along(cls, cell: Cell, bead: Bead, most: float) -> _Ways:
+    def along(cls, cell: Cell, bead: Bead, max_lean: float) -> _Ways:
         external, (rows, lower, upper) = cell.external, limits_of(cell)
         assert external is not None
         directions = directions_on_face(cell, bead.tool)
         if bead.closed:
             directions = np.concatenate([directions[:-1], directions[:-1], directions])
-        values, held, fits = [], [], []
+        values, clamped, fits = [], [], []
         for course in upright(external, directions):
-            for turned in _turned(course, lower - most, upper + most):
+            for turned in _whole_turn_copies(course, lower - max_lean, upper + max_lean):
                 inside = ((turned >= lower) & (turned <= upper)).all(axis=1)
                 clipped = np.where(
                     inside[:, None], turned, np.clip(turned, lower + WAITS, upper - WAITS)
                 )
-                every = np.zeros((len(clipped), external.axes))
-                every[:, rows] = clipped
+                external_values = np.zeros((len(clipped), external.axes))
+                external_values[:, rows] = clipped
                 values.append(clipped)
-                held.append(np.abs(clipped - turned).sum(axis=1))
+                clamped.append(np.abs(clipped - turned).sum(axis=1))
                 fits.append(
-                    inside | (tilt_from(external.upright(directions, every), external.up) <= most)
+                    inside
+                    | (
+                        tilt_from(external.upright(directions, external_values), external.up)
+                        <= max_lean
+                    )
                 )
         count = len(directions)
         return cls(
@@ -173,10 +184,10 @@ class _Ways:
             bead,
             external,
             directions,
-            most,
+            max_lean,
             rows,
             np.array(values).reshape(-1, count, len(rows)),
-            np.array(held).reshape(-1, count),
+            np.array(clamped).reshape(-1, count),
             np.array(fits, dtype=bool).reshape(-1, count),
         )
 
@@ -198,50 +209,57 @@ class _Ways:
             start
             + len(self.bead)
             - 1
-            + (_run_on(self.bead, start, overlap) if self.bead.closed else 0)
+            + (_overlap_points(self.bead, start, overlap) if self.bead.closed else 0)
         )
 
     def nearly_round(self, count: int) -> Index:
         """Segments of a closed bead in which what a way has room for ends, where all but these two are in it."""
-        way, start = np.nonzero(self.fits[:, 1 : count + 1] & ~self.fits[:, :count])
-        end = self.furthest[way, start + 1]
-        near = (
+        course, start = np.nonzero(self.fits[:, 1 : count + 1] & ~self.fits[:, :count])
+        end = self.furthest[course, start + 1]
+        nearly_complete = (
             end - start > count - 2
         )  # and so with a share of the segments at both ends perhaps all round
-        return np.asarray(np.unique(np.concatenate([start[near], end[near] % count])))
+        return np.asarray(
+            np.unique(np.concatenate([start[nearly_complete], end[nearly_complete] % count]))
+        )
 
-    def seams(self, count: int, before: Array) -> Iterator[tuple[int, Array]]:
+    def seams(self, count: int, previous: Array) -> Iterator[tuple[int, Array]]:
         """Points of a closed bead of so many segments from which a way has room all round, with its values (count + 1, k):
         those first that hold an axis back least, then the nearest to the seam, then to where the axes are."""
-        way, start = np.nonzero(self.furthest[:, :count] >= np.arange(count) + count)
+        course, start = np.nonzero(self.furthest[:, :count] >= np.arange(count) + count)
         so_far = np.cumsum(np.pad(self.held, ((0, 0), (1, 0))), axis=1)
-        held = np.round(so_far[way, start + count + 1] - so_far[way, start], 6)
-        away = self._away(self.values[way, start], before)
-        for k in np.lexsort((away, np.minimum(start, count - start), held)):
-            yield int(start[k]), self.values[way[k], start[k] : start[k] + count + 1]
+        clamped = np.round(so_far[course, start + count + 1] - so_far[course, start], 6)
+        distances = self._away(self.values[course, start], previous)
+        for k in np.lexsort((distances, np.minimum(start, count - start), clamped)):
+            yield int(start[k]), self.values[course[k], start[k] : start[k] + count + 1]
 
-    def taken(self, low: int, high: int, before: Array) -> Array:
+    def taken(self, low: int, high: int, previous: Array) -> Array:
         """Values (n, k) from one point to another: one and the same where that serves, else of the ways that have room the
         one that holds the axes back least, then moves least, then starts nearest to where they are."""
         directions = self.directions[low : high + 1]
-        one = middle(directions)
-        if one is not None and float(tilt_from(directions, one).max()) <= self.most:
-            standing = chosen(self.cell, upright(self.external, one[None]), before)
+        mean_direction = middle(directions)
+        if (
+            mean_direction is not None
+            and float(tilt_from(directions, mean_direction).max()) <= self.most
+        ):
+            standing = chosen(self.cell, upright(self.external, mean_direction[None]), previous)
             if not lacks(self.cell, standing):
                 return np.asarray(np.tile(standing[:, self.rows], (len(directions), 1)))
         able = np.flatnonzero(self.furthest[:, low] >= high)
         values = self.values[able, low : high + 1]
-        held = np.round(self.held[able, low : high + 1].sum(axis=1), 6)
+        clamped = np.round(self.held[able, low : high + 1].sum(axis=1), 6)
         motion = np.round(np.abs(np.diff(values, axis=1)).sum(axis=(1, 2)), 6)
-        return np.asarray(values[np.lexsort((self._away(values[:, 0], before), motion, held))[0]])
+        return np.asarray(
+            values[np.lexsort((self._away(values[:, 0], previous), motion, clamped))[0]]
+        )
 
-    def _away(self, values: Array, before: Array) -> Array:
+    def _away(self, values: Array, previous: Array) -> Array:
         """(m,) s from where the axes are to values (m, k), told to the microsecond."""
         speed = self.cell.machine.max_speed[self.cell.robot.chain.axes + self.rows]
-        return np.asarray(np.round((np.abs(values - before[self.rows]) / speed).max(axis=1), 6))
+        return np.asarray(np.round((np.abs(values - previous[self.rows]) / speed).max(axis=1), 6))
 
 
-def _run_on(bead: Bead, start: int, overlap: float) -> int:
+def _overlap_points(bead: Bead, start: int, overlap: float) -> int:
     """How many points a closed bead, begun at one of its own, has where it runs on."""
     if overlap <= 0.0:
         return 0
@@ -249,7 +267,7 @@ def _run_on(bead: Bead, start: int, overlap: float) -> int:
     return 1 + int(np.searchsorted(along[:-1], overlap))
 
 
-def _turned(course: Array, lower: Array, upper: Array) -> Iterator[Array]:
+def _whole_turn_copies(course: Array, lower: Array, upper: Array) -> Iterator[Array]:
     """A course (n, k) moved by all whole turns that bring it between limits somewhere; by none of axes without limits."""
     with np.errstate(invalid="ignore"):
         fewest = np.ceil((lower - course.max(axis=0)) / TURN)
@@ -262,9 +280,9 @@ def _turned(course: Array, lower: Array, upper: Array) -> Iterator[Array]:
         yield course + TURN * np.array(turns, float)
 
 
-def _with(bead: Bead, values: Array, before: Array, rows: Index) -> Bead:
+def _set_external(bead: Bead, values: Array, previous: Array, rows: Index) -> Bead:
     """The bead with values (n, k) of the axes that turn the part, and of others (k,) as they were."""
-    external = np.tile(before, (len(bead), 1))
+    external = np.tile(previous, (len(bead), 1))
     external[:, rows] = values
     return dataclasses.replace(bead, external=external)
 
@@ -273,10 +291,10 @@ def _cuts(reach: Index, low: int, high: int) -> list[int]:
     """Where the fewest pieces from one point to another end, each going as far as it can; empty where there is no way."""
     cuts = [low]
     while cuts[-1] < high:
-        far = min(int(reach[cuts[-1]]), high)
-        if far <= cuts[-1]:
+        furthest = min(int(reach[cuts[-1]]), high)
+        if furthest <= cuts[-1]:
             return []
-        cuts.append(far)
+        cuts.append(furthest)
     return cuts
 
 
@@ -287,8 +305,8 @@ def _balanced(reach: Index, cuts: Sequence[int]) -> list[int]:
     earliest = [high]
     for _ in range(count - 1):
         earliest.append(low + int(np.searchsorted(reach[low : high + 1], earliest[-1])))
-    wanted = np.round(np.linspace(low, high, count + 1)).astype(int).tolist()
+    equal_cuts = np.round(np.linspace(low, high, count + 1)).astype(int).tolist()
     ends = [low]
-    for first, equal in zip(reversed(earliest[1:]), wanted[1:-1], strict=True):
-        ends.append(min(int(reach[ends[-1]]), max(first, equal)))
+    for earliest_end, equal in zip(reversed(earliest[1:]), equal_cuts[1:-1], strict=True):
+        ends.append(min(int(reach[ends[-1]]), max(earliest_end, equal)))
     return [*ends, high]

@@ -26,7 +26,7 @@ OFFSETS = (0.0, 0.4, -0.4)
 MAX_TRIALS = 3  # that are worth planning
 
 
-def placed(
+def place_track(
     beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]], float]
 ) -> Iterator[list[Bead]]:
     """The beads with the values of the track at their points, in the ways worth planning, MOST of them, those with less
@@ -35,22 +35,24 @@ def placed(
     if external is None or external.slides is None:
         yield list(beads)
         return
-    ways = [_at_points(bead, cell) for bead in beads]
+    track_positions = [_at_points(bead, cell) for bead in beads]
     arm = cell.robot.arm
     assert arm is not None  # resolve() refuses other machines
-    given, best, most = 0, list(beads), -1.0
+    yielded, best, best_share = 0, list(beads), -1.0
     for window in WINDOWS:
         for offset in OFFSETS:
-            moved = _along(beads, ways, cell, window * arm.reach, offset * arm.reach)
+            moved = _follow_track(
+                beads, track_positions, cell, window * arm.reach, offset * arm.reach
+            )
             share = served(moved)
-            if share > most:
-                best, most = moved, share
+            if share > best_share:
+                best, best_share = moved, share
             if share == 1.0:
                 yield moved
-                given += 1
-            if given == MAX_TRIALS:
+                yielded += 1
+            if yielded == MAX_TRIALS:
                 return
-    if not given:
+    if not yielded:
         yield best
 
 
@@ -63,12 +65,16 @@ def _at_points(bead: Bead, cell: Cell) -> Array:
     world = external.base(at_zero) @ cell.robot.base
     stands = cell.station @ frames.inverse(cell.mount)
     point = bead.points @ stands[:3, :3].T + stands[:3, 3]
-    seen = np.einsum("nji,nj->ni", world[:, :3, :3], point - world[:, :3, 3])
-    return np.asarray(seen @ external.along)
+    on_track = np.einsum("nji,nj->ni", world[:, :3, :3], point - world[:, :3, 3])
+    return np.asarray(on_track @ external.along)
 
 
-def _along(
-    beads: Sequence[Bead], ways: Sequence[Array], cell: Cell, window: float, offset: float
+def _follow_track(
+    beads: Sequence[Bead],
+    track_positions: Sequence[Array],
+    cell: Cell,
+    window: float,
+    offset: float,
 ) -> list[Bead]:
     """The beads with the robot at most half a window from `offset` the deposit along the track, all mm, as far as the track
     goes."""
@@ -76,15 +82,18 @@ def _along(
     assert external is not None and external.slides is not None
     axis = cell.robot.chain.axes + external.slides
     lower, upper = cell.limits.lower[axis] + RESERVE, cell.limits.upper[axis] - RESERVE
-    low, high = min(float(way.min()) for way in ways), max(float(way.max()) for way in ways)
-    whole = max(high - low, 1e-9)
-    share = min(max(0.0, 1.0 - window / whole), (upper - lower) / whole)
-    margin = 0.5 * share * whole
+    low, high = (
+        min(float(positions.min()) for positions in track_positions),
+        max(float(positions.max()) for positions in track_positions),
+    )
+    span = max(high - low, 1e-9)
+    share = min(max(0.0, 1.0 - window / span), (upper - lower) / span)
+    margin = 0.5 * share * span
     middle = float(np.clip(0.5 * (low + high) - offset, lower + margin, upper - margin))
     moved = []
-    for bead, way in zip(beads, ways, strict=True):
+    for bead, positions in zip(beads, track_positions, strict=True):
         assert bead.external is not None
         values = bead.external.copy()
-        values[:, external.slides] = middle + share * (way - 0.5 * (low + high))
+        values[:, external.slides] = middle + share * (positions - 0.5 * (low + high))
         moved.append(dataclasses.replace(bead, external=values))
     return moved

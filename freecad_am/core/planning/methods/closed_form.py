@@ -40,7 +40,7 @@ ROUNDS = 10
 STRAY = math.radians(
     0.5
 )  # between two points the tool may lean this far from the direction asked for
-KEPT = 1e-9  # a limit met exactly is kept, rad and mm
+LIMIT_TOLERANCE = 1e-9  # a limit met exactly is kept, rad and mm
 # rad; how near to a pole directions count as on it, tried in turn where an axis would race round beside it; less than STRAY
 POLES = (AT_POLE, math.radians(0.2), math.radians(0.4))
 RACES = 2.0  # times its largest speed at which an axis does; below that the bead is slowed
@@ -57,7 +57,7 @@ class _Run(NamedTuple):
 
 
 def plan(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], progress: Progress
+    task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths of all beads as they are run, with points added where axes running straight would leave them, and findings.
 
@@ -66,50 +66,50 @@ def plan(
     paths: list[BeadPath] = []
     issues: list[Issue] = []
     helped: tuple[list[int], list[int]] = [], []
-    before, index = np.zeros(task.cell.machine.chain.axes), 0
-    for number, (bead, (layer, _)) in enumerate(zip(beads, places, strict=True)):
+    previous, index = np.zeros(task.cell.machine.chain.axes), 0
+    for number, (bead, (layer, _)) in enumerate(zip(beads, bead_ids, strict=True)):
         progress(number / len(beads), Text("bead {} of {}", number + 1, len(beads)))
         index = index if paths and paths[-1].layer == layer else 0
-        runs = _within_stroke(task, bead, before)
+        runs = _within_stroke(task, bead, previous)
         if is_otherwise(bead, [run.bead for run in runs]):
             helped[len(runs) > 1].append(layer)
         for run in runs:
             paths.append(_path(task, run, (layer, index)))
             if run.bent is not None:
                 issues.append(_not_straight(*run.bent, layer, index))
-            before, index = run.axes[-1] if paths[-1].reachable else before, index + 1
+            previous, index = run.axes[-1] if paths[-1].reachable else previous, index + 1
     return paths, [*issues, *seam_notes(*helped)]
 
 
-def _within_stroke(task: Task, bead: Bead, before: Array) -> list[_Run]:
+def _within_stroke(task: Task, bead: Bead, previous: Array) -> list[_Run]:
     """The bead as it is, or where a turning axis has no room for it, from another seam or in pieces."""
-    whole = _run(task, bead, before)
-    if whole.fits or not _short_of_turns(task, whole.axes):
-        return [whole]
-    for parts in _ways(task, bead):
-        runs, last = list[_Run](), before
-        for part in parts:
-            runs.append(_run(task, part, last))
-            last = runs[-1].axes[-1]
+    unsplit = _run(task, bead, previous)
+    if unsplit.fits or not _short_of_turns(task, unsplit.axes):
+        return [unsplit]
+    for sections in _ways(task, bead):
+        runs, current = list[_Run](), previous
+        for section in sections:
+            runs.append(_run(task, section, current))
+            current = runs[-1].axes[-1]
             if not runs[-1].fits:
                 break
         else:
             return runs
-    return [whole]
+    return [unsplit]
 
 
-def _run(task: Task, bead: Bead, before: Array) -> _Run:
+def _run(task: Task, bead: Bead, previous: Array) -> _Run:
     """The bead in the turns and the branch that suit best after axes (5,), past poles with the directions asked for where
     that can be run."""
     runs: list[tuple[bool, bool, float, _Run]] = []
     for pole in POLES[:1] if task.lock is not None else POLES:
-        run = _finer(task, bead, before, pole)
+        run = _finer(task, bead, previous, pole)
         race = _race(task, run)
         # straight on through a pole a tilting axis changes its side, for which it may have no room
         if run.bent is None and race <= RACES and (run.fits or not runs):
             return run
         runs.append((run.bent is not None, not run.fits, race, run))
-    return min(runs, key=lambda one: one[:3])[3]
+    return min(runs, key=lambda candidate: candidate[:3])[3]
 
 
 def _race(task: Task, run: _Run) -> float:
@@ -121,34 +121,34 @@ def _race(task: Task, run: _Run) -> float:
     return float((fastest / np.maximum(time, 1e-300)).max(initial=0.0, where=time > 0.0))
 
 
-def _finer(task: Task, bead: Bead, before: Array, pole: float) -> _Run:
+def _finer(task: Task, bead: Bead, previous: Array, pole: float) -> _Run:
     """The bead with directions within `pole` rad of a pole on it, finer where it must be."""
-    cell, looked, axes = task.cell, bead, before
+    cell, checked, axes = task.cell, bead, previous
     bead = gone_back(bead, task.retreat).run_on(task.overlap)
     for _ in range(ROUNDS):
         # all of it anew: near a pole the shorter way on shows only with more points
-        axes = directed.chosen(cell, directed.courses(cell, task.lock, bead, pole), before)
+        axes = directed.chosen(cell, directed.courses(cell, task.lock, bead, pole), previous)
         if not np.isfinite(axes).all():
             return _Run(bead, axes, False)
-        away, leans = deviation(task, bead, axes, task.chord_error), leaning(cell, bead, axes)
+        deviations, leans = deviation(task, bead, axes, task.chord_error), leaning(cell, bead, axes)
         # with an axis locked the tool leans anyhow; that is told once for all
-        off = (away > task.chord_error + ROUNDING) | ((leans > STRAY) & (task.lock is None))
+        off = (deviations > task.chord_error + ROUNDING) | ((leans > STRAY) & (task.lock is None))
         if not off.any():
-            return _Run(bead, axes, not cell.limits.exceeded(axes, KEPT).any())
-        looked, bead = bead, bead.halved(np.flatnonzero(off))
+            return _Run(bead, axes, not cell.limits.exceeded(axes, LIMIT_TOLERANCE).any())
+        checked, bead = bead, bead.halved(np.flatnonzero(off))
     return _Run(
-        looked, axes, False, (int(np.argmax(off)) + 1, float(away.max()), float(leans.max()))
+        checked, axes, False, (int(np.argmax(off)) + 1, float(deviations.max()), float(leans.max()))
     )
 
 
-def _not_straight(point: int, away: float, leans: float, layer: int, bead: int) -> Issue:
+def _not_straight(point: int, distance: float, leans: float, layer: int, bead: int) -> Issue:
     return Issue(
         ERROR,
         "NOT_STRAIGHT",
         Text(
             "the axes leave the bead by {:.3g} mm, its direction by {:.3g} deg between two points "
             "however many are added: near a pole; tilt away from it",
-            away,
+            distance,
             math.degrees(leans),
         ),
         layer,
@@ -157,7 +157,7 @@ def _not_straight(point: int, away: float, leans: float, layer: int, bead: int) 
     )
 
 
-def _path(task: Task, run: _Run, place: Place) -> BeadPath:
+def _path(task: Task, run: _Run, bead_id: Place) -> BeadPath:
     """The run as a path. There is no condition to keep: poles are told apart by the courses."""
     none, limits = np.full(len(run.bead), np.nan), task.cell.limits
     half = 0.5 * (limits.upper - limits.lower)
@@ -166,7 +166,7 @@ def _path(task: Task, run: _Run, place: Place) -> BeadPath:
         float(limits.smallest_share(run.axes).min()) if np.isfinite(run.axes).all() else -math.inf
     )
     return BeadPath(
-        *place,
+        *bead_id,
         run.bead,
         np.zeros(len(run.bead)),
         run.axes,
@@ -181,7 +181,10 @@ def _path(task: Task, run: _Run, place: Place) -> BeadPath:
 def _short_of_turns(task: Task, joints: Array) -> bool:
     """Whether it is a turning axis that runs out of its stroke on axis values (n, 5)."""
     limits, turning = task.cell.limits, ~task.cell.machine.chain.sliding
-    over = np.maximum(limits.lower + RESERVE - joints, joints - limits.upper + RESERVE) > KEPT
+    over = (
+        np.maximum(limits.lower + RESERVE - joints, joints - limits.upper + RESERVE)
+        > LIMIT_TOLERANCE
+    )
     return bool(over[:, turning].any())
 
 
@@ -197,11 +200,12 @@ def _ways(task: Task, bead: Bead) -> Iterator[list[Bead]]:
                 )
                 if start:
                     yield [bead.started_at(start)]
-    whole = bead.run_on(task.overlap)
-    for count in range(2, min(MOST_PIECES, (len(whole) - 1) // (FEWEST_POINTS - 1)) + 1):
-        cuts = np.round(np.linspace(0, len(whole) - 1, count + 1)).astype(int).tolist()
+    extended = bead.run_on(task.overlap)
+    for count in range(2, min(MOST_PIECES, (len(extended) - 1) // (FEWEST_POINTS - 1)) + 1):
+        cuts = np.round(np.linspace(0, len(extended) - 1, count + 1)).astype(int).tolist()
         yield [
-            whole.part(slice(low, high + 1)) for low, high in zip(cuts[:-1], cuts[1:], strict=True)
+            extended.part(slice(low, high + 1))
+            for low, high in zip(cuts[:-1], cuts[1:], strict=True)
         ]
 
 
@@ -211,9 +215,9 @@ def _start(angles: Array, low: float, high: float) -> int:
     turn = angles[-1] - angles[0]
     twice = np.concatenate([angles[:-1], angles + turn])
     windows = np.lib.stride_tricks.sliding_window_view(twice, n + 1)[:n]
-    least, most = windows.min(axis=1), windows.max(axis=1)
-    off = shortest(0.5 * (least + most) - 0.5 * (low + high))
-    over = np.maximum(np.abs(off) + 0.5 * (most - least) - 0.5 * (high - low), 0.0)
+    lowest, highest = windows.min(axis=1), windows.max(axis=1)
+    off = shortest(0.5 * (lowest + highest) - 0.5 * (low + high))
+    over = np.maximum(np.abs(off) + 0.5 * (highest - lowest) - 0.5 * (high - low), 0.0)
     # rounded, so that the same point is taken everywhere; of those that fit, the nearest to the seam
     fits = np.flatnonzero(over <= 0.0)
     if len(fits):

@@ -21,25 +21,25 @@ from ..task import Task, condition_margin
 
 Progress = Callable[[float, str], None]
 
-TRIED, FINE = 360, 21
+RZ_CANDIDATES, RZ_FINE_CANDIDATES = 360, 21
 LOOKED = 72  # of these, at which links are looked at, where they are kept clear
-EVERY = 8  # a point in so many is looked at before the others
+POINT_STRIDE = 8  # a point in so many is looked at before the others
 
 Clear = Callable[[float], bool]  # whether no link comes too near with an RZ, rad
 
 
 def plan(
-    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
+    task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths of all beads with the RZ of the job, or the one with the largest smallest margin when it is 'auto'."""
-    wanted = task.parameters.rz
+    requested = task.parameters.rz
     full = gather(beads, task.cell)
     threshold = task.thresholds(full)
     issues: list[Issue] = []
-    if isinstance(wanted, str):
+    if isinstance(requested, str):
         coarse = gather(beads, task.cell, search.POINTS_PER_BEAD)
         progress(0.1, "searching one RZ for all")
-        clear = None if task.kept is None else _keeps_clear(task, beads, places)
+        clear = None if task.kept is None else _keeps_clear(task, beads, bead_ids)
         rz, margin, served = best_rz(task, coarse, task.thresholds(coarse), clear)
         if not served:
             issues.append(
@@ -61,15 +61,15 @@ def plan(
                     Text(
                         "none of {} values of RZ serves for the whole job; the nearest to "
                         "it is {:.1f} deg",
-                        TRIED,
+                        RZ_CANDIDATES,
                         np.degrees(rz),
                     ),
                 )
             )
     else:
-        rz = float(wanted)
+        rz = float(requested)
     progress(0.7, "following the beads")
-    return _paths(task, beads, places, full, threshold, rz), issues
+    return _paths(task, beads, bead_ids, full, threshold, rz), issues
 
 
 def best_rz(
@@ -77,39 +77,45 @@ def best_rz(
 ) -> tuple[float, float, bool]:
     """The RZ (rad) with the largest smallest margin over all points, of those with which links are clear, and that margin
     (negative: none is feasible); and whether there are such that links are clear with."""
-    rough = np.linspace(-np.pi, np.pi, TRIED, endpoint=False)
-    there = margins(task, points, thresholds, rough)
-    best, served = int(first_most(there)), True
-    if clear is not None and there[best] >= 0.0 and not clear(rough[best]):
-        some = np.arange(0, TRIED, TRIED // LOOKED)
-        order = some[np.argsort(-there[some], kind="stable")]
-        found = next((k for k in order.tolist() if there[k] >= 0.0 and clear(rough[k])), None)
-        best, served = (best, False) if found is None else (found, True)
-    near: Array = rough[best] + np.linspace(-1.0, 1.0, FINE) * (TURN / TRIED)
-    fine = margins(task, points, thresholds, near)
+    rough = np.linspace(-np.pi, np.pi, RZ_CANDIDATES, endpoint=False)
+    rough_margins = margins(task, points, thresholds, rough)
+    best, served = int(first_most(rough_margins)), True
+    if clear is not None and rough_margins[best] >= 0.0 and not clear(rough[best]):
+        spread_rows = np.arange(0, RZ_CANDIDATES, RZ_CANDIDATES // LOOKED)
+        order = spread_rows[np.argsort(-rough_margins[spread_rows], kind="stable")]
+        first_clear = next(
+            (k for k in order.tolist() if rough_margins[k] >= 0.0 and clear(rough[k])), None
+        )
+        best, served = (best, False) if first_clear is None else (first_clear, True)
+    fine_values: Array = rough[best] + np.linspace(-1.0, 1.0, RZ_FINE_CANDIDATES) * (
+        TURN / RZ_CANDIDATES
+    )
+    fine = margins(task, points, thresholds, fine_values)
     if (
         clear is not None
         and served
         and fine.max() >= 0.0
-        and not clear(near[int(first_most(fine))])
+        and not clear(fine_values[int(first_most(fine))])
     ):
-        return float(rough[best]), float(there[best]), True
-    return float(near[int(first_most(fine))]), float(fine.max()), served
+        return float(rough[best]), float(rough_margins[best]), True
+    return float(fine_values[int(first_most(fine))]), float(fine.max()), served
 
 
-def _keeps_clear(task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]]) -> Clear:
+def _keeps_clear(task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]]) -> Clear:
     """Whether no link comes too near with an RZ at points of the beads, a few of them first."""
     assert task.kept is not None
-    kept, points = task.kept, gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
-    few = np.zeros(len(points), dtype=bool)
-    few[::EVERY] = True
+    arm_clearance, points = task.kept, gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
+    few_points = np.zeros(len(points), dtype=bool)
+    few_points[::POINT_STRIDE] = True
 
     def clear(rz: float) -> bool:
         phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
         joints = task.joints(points, phi)
         return not any(
-            kept.touches(np.where(some[:, None], joints, np.nan), points, places).any.any()
-            for some in (few, ~few)
+            arm_clearance.touches(
+                np.where(subset[:, None], joints, np.nan), points, bead_ids
+            ).any.any()
+            for subset in (few_points, ~few_points)
         )
 
     return clear
@@ -132,7 +138,7 @@ def margins(task: Task, points: Points, thresholds: Array, values: Array) -> Arr
 def _paths(
     task: Task,
     beads: Sequence[Bead],
-    places: Sequence[tuple[int, int]],
+    bead_ids: Sequence[tuple[int, int]],
     points: Points,
     threshold: Array,
     rz: float,
@@ -141,14 +147,21 @@ def _paths(
     phi = _unwrapped(phi, points)
     joints = task.joints(points, phi)
     return bead_paths(
-        task, beads, places, points, threshold, phi, joints, f"constant RZ {np.degrees(rz):.4f} deg"
+        task,
+        beads,
+        bead_ids,
+        points,
+        threshold,
+        phi,
+        joints,
+        f"constant RZ {np.degrees(rz):.4f} deg",
     )
 
 
 def bead_paths(
     task: Task,
     beads: Sequence[Bead],
-    places: Sequence[tuple[int, int]],
+    bead_ids: Sequence[tuple[int, int]],
     points: Points,
     threshold: Array,
     phi: Array,
@@ -178,7 +191,7 @@ def bead_paths(
                 reason,
             )
             for k, (bead, (layer, index), a, b) in enumerate(
-                zip(beads, places, ends[:-1], ends[1:])
+                zip(beads, bead_ids, ends[:-1], ends[1:])
             )
         ]
     )

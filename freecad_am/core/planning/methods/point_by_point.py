@@ -30,29 +30,30 @@ STEPS = 2
 
 
 def plan(
-    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
+    task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths of all beads, each point judged against the point before."""
     points = gather(beads, task.cell)
     threshold = task.thresholds(points)
     counts = np.diff(np.append(points.first, len(points)))
-    kept = task.kept
+    arm_clearance = task.kept
     deposited = np.array(
-        [0 if kept is None else kept.moment(place) for place in places], dtype=np.int64
+        [0 if arm_clearance is None else arm_clearance.moment(bead_id) for bead_id in bead_ids],
+        dtype=np.int64,
     )
     phi = np.zeros(len(points))
     joints = np.full((len(points), len(task.weights)), np.nan)
     for number in range(counts.max()):
         index = points.first[counts > number] + number
-        at = points.each(index)
+        current = points.each(index)
         if number == 0:
             phi[index], joints[index] = _searched(
-                task, at, threshold[index], deposited[points.bead[index]], None
+                task, current, threshold[index], deposited[points.bead[index]], None
             )
             continue
         phi[index], joints[index] = _step(
             task,
-            at,
+            current,
             threshold[index],
             deposited[points.bead[index]],
             phi[index - 1],
@@ -61,74 +62,74 @@ def plan(
         if number % 20 == 0:
             progress(0.1 + 0.8 * number / counts.max(), "going from point to point")
     joints = task.in_range(unwrapped(joints, points), points)
-    return bead_paths(task, beads, places, points, threshold, phi, joints, "point by point"), []
+    return bead_paths(task, beads, bead_ids, points, threshold, phi, joints, "point by point"), []
 
 
 def _step(
-    task: Task, at: Points, threshold: Array, deposited: Index, phi: Array, before: Array
+    task: Task, points: Points, threshold: Array, deposited: Index, phi: Array, previous: Array
 ) -> tuple[Array, Array]:
     phi = phi.copy()
     for _ in range(STEPS):
-        joints = _near(task, at, phi, before)
+        joints = _near(task, points, phi, previous)
         good = np.isfinite(joints).all(axis=1)
         if not good.any():
             break
-        part = at.each(np.flatnonzero(good))
-        rates, _ = task.rotation_rates(part.frames, phi[good], joints[good])
-        away = joints[good] - before[good]
+        reachable = points.each(np.flatnonzero(good))
+        rates, _ = task.rotation_rates(reachable.frames, phi[good], joints[good])
+        motion = joints[good] - previous[good]
         curvature = (rates * rates) @ task.weights
         phi[good] -= np.clip(
-            ((away * rates) @ task.weights) / np.maximum(curvature, 1e-15), -0.2, 0.2
+            ((motion * rates) @ task.weights) / np.maximum(curvature, 1e-15), -0.2, 0.2
         )
-    joints = _near(task, at, phi, before)
-    bad = _margin(task, at, phi, joints, threshold) < 0.0
+    joints = _near(task, points, phi, previous)
+    bad = _margin(task, points, phi, joints, threshold) < 0.0
     if task.kept is not None:
         bad |= task.kept.contact.touches(joints, deposited).any
     if bad.any():
         phi[bad], joints[bad] = _searched(
-            task, at.each(np.flatnonzero(bad)), threshold[bad], deposited[bad], before[bad]
+            task, points.each(np.flatnonzero(bad)), threshold[bad], deposited[bad], previous[bad]
         )
     return phi, joints
 
 
-def _near(task: Task, at: Points, phi: Array, before: Array) -> Array:
+def _near(task: Task, points: Points, phi: Array, previous: Array) -> Array:
     """Joints at phi in the turns nearest to the joints before; NaN where unreachable."""
-    joints = task.raw_joints(at, phi, before)
-    joints -= TURN * np.nan_to_num(np.round((joints - before) / TURN))
+    joints = task.raw_joints(points, phi, previous)
+    joints -= TURN * np.nan_to_num(np.round((joints - previous) / TURN))
     return joints
 
 
-def _margin(task: Task, at: Points, phi: Array, joints: Array, threshold: Array) -> Array:
-    condition = task.condition(at, phi, joints)
+def _margin(task: Task, points: Points, phi: Array, joints: Array, threshold: Array) -> Array:
+    condition = task.condition(points, phi, joints)
     return np.minimum(task.rows.margin(joints), condition_margin(condition, threshold))
 
 
 def _searched(
-    task: Task, at: Points, threshold: Array, deposited: Index, before: Array | None
+    task: Task, points: Points, threshold: Array, deposited: Index, previous: Array | None
 ) -> tuple[Array, Array]:
     """The best of a whole turn of candidates: the least motion among the feasible, of these among those with which links are
     clear, where there are any; else the largest margin. laid: (k,) how many points of the deposit are there."""
     turn = np.arange(CANDIDATES) * (TURN / CANDIDATES) - np.pi
-    phi = np.repeat(turn[:, None], len(at), axis=1)
-    joints = task.raw_joints(at, phi, before)
-    if before is None:
-        joints = task.in_range(joints, at)
+    phi = np.repeat(turn[:, None], len(points), axis=1)
+    joints = task.raw_joints(points, phi, previous)
+    if previous is None:
+        joints = task.in_range(joints, points)
     else:
-        joints -= TURN * np.nan_to_num(np.round((joints - before) / TURN))
+        joints -= TURN * np.nan_to_num(np.round((joints - previous) / TURN))
     margin = np.minimum(
-        task.rows.margin(joints), condition_margin(task.condition(at, phi, joints), threshold)
+        task.rows.margin(joints), condition_margin(task.condition(points, phi, joints), threshold)
     )
     if task.kept is not None:
-        looked = np.where((margin >= 0.0)[..., None], joints, np.nan)
-        near = task.kept.contact.touches(
-            looked.reshape(-1, looked.shape[2]), np.tile(deposited, CANDIDATES)
+        feasible_joints = np.where((margin >= 0.0)[..., None], joints, np.nan)
+        touching = task.kept.contact.touches(
+            feasible_joints.reshape(-1, feasible_joints.shape[2]), np.tile(deposited, CANDIDATES)
         ).any
-        clear = (margin >= 0.0) & ~near.reshape(margin.shape)
+        clear = (margin >= 0.0) & ~touching.reshape(margin.shape)
         margin = np.where(clear.any(axis=0) & ~clear, UNREACHABLE, margin)
     best = first_most(margin, axis=0)
-    if before is not None:
-        away = joints - before
-        motion = np.where(margin >= 0.0, (away * away) @ task.weights, np.inf)
+    if previous is not None:
+        moved = joints - previous
+        motion = np.where(margin >= 0.0, (moved * moved) @ task.weights, np.inf)
         best = np.where((margin >= 0.0).any(axis=0), first_least(motion, axis=0), best)
-    each = np.arange(len(at))
-    return phi[best, each], joints[best, each]
+    point_rows = np.arange(len(points))
+    return phi[best, point_rows], joints[best, point_rows]

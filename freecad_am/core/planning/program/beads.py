@@ -29,7 +29,7 @@ def deposited(
     """The blocks of a bead of the class `name` with runs of its moves and the schedule of each. InputError NO_SCHEDULE where
     it has none and others have, or the arc instruction needs one; SCHEDULE for another one within the bead that is not told
     by an output."""
-    own, by = process.for_class(name), parameters.schedule.by
+    bead_process, by = process.for_class(name), parameters.schedule.by
     moves, numbers = zip(*runs, strict=True)
     if None in numbers and (process.scheduled or by == ARC):
         raise InputError(
@@ -54,35 +54,46 @@ def deposited(
             "end out",
         )
     schedule = numbers[0] if by == ARC and not parameters.dry_run else None
-    before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead
+    schedule_before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead
     # what waits, or is told where the machine stands before, is not ahead of anything
     on = DepositOn(
-        own.lead_on,
+        bead_process.lead_on,
         None if moves[0].wire is None else float(moves[0].wire[0]),
         schedule,
-        None if own.lead_on or before else lead,
+        None if bead_process.lead_on or schedule_before else lead,
     )
-    weave = [Weave(own.weave)] if own.weave else []  # a dry run has it too: it is motion
-    blocks: list[Block] = [*before, on, *weave, moves[0]]
+    weave = (
+        [Weave(bead_process.weave)] if bead_process.weave else []
+    )  # a dry run has it too: it is motion
+    blocks: list[Block] = [*schedule_before, on, *weave, moves[0]]
     for run, number in runs[
         1:
     ]:  # posts may stop between runs, so that there are no more of them than schedules
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
     off, still = (
-        DepositOff(own.lead_off, schedule, None if own.lead_off else lead),
+        DepositOff(bead_process.lead_off, schedule, None if bead_process.lead_off else lead),
         [Weave(0)] if weave else [],
     )
     # one that is ahead comes while the last move is still woven
     return [*blocks, *still, off] if off.ahead is None else [*blocks, off, *still]
 
 
-def parted(phase: Integers, own: ProcessParameters) -> list[tuple[slice, int | None]]:
-    """Stretches of the moves of a bead, by the phase (n,) of each, that have one schedule, and this. own: the process of the
+def split_by_schedule(
+    phase: Integers, bead_process: ProcessParameters
+) -> list[tuple[slice, int | None]]:
+    """Stretches of the moves of a bead, by the phase (n,) of each, that have one schedule, and this. bead_process: the process of the
     bead's class."""
-    of_phase = {MIDDLE: own.schedule, AT_START: own.start.schedule, AT_END: own.end.schedule}
-    numbers = [own.schedule if of_phase[one] is None else of_phase[one] for one in phase.tolist()]
+    of_phase = {
+        MIDDLE: bead_process.schedule,
+        AT_START: bead_process.start.schedule,
+        AT_END: bead_process.end.schedule,
+    }
+    numbers = [
+        bead_process.schedule if of_phase[point_phase] is None else of_phase[point_phase]
+        for point_phase in phase.tolist()
+    ]
     cuts = [0, *(k for k in range(1, len(numbers)) if numbers[k] != numbers[k - 1]), len(numbers)]
-    return [(slice(first, end), numbers[first]) for first, end in zip(cuts, cuts[1:])]
+    return [(slice(begin, end), numbers[begin]) for begin, end in zip(cuts, cuts[1:])]
 
 
 def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:

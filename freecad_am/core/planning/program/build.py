@@ -45,7 +45,7 @@ from ...toolpath import Toolpath
 from ...types import Integers, Mask
 from ..joint_path import BeadPath
 from . import linear_approach
-from .beads import ARC, deposited, parted, standing
+from .beads import ARC, deposited, split_by_schedule, standing
 from .remarks import frames_of, remarks_of, six_of
 
 # what the rows of a motion are for, by its numbers
@@ -233,7 +233,7 @@ class _Blocks:
     def _bead(self, number: int, rows: Integers) -> list[Block]:
         """A bead, switched on and off, by the group of rows of that number."""
         kind = _class_of(self.motion, int(rows[0]))
-        parts = parted(self.motion.phase[rows[1:]], self.process.for_class(kind))
+        parts = split_by_schedule(self.motion.phase[rows[1:]], self.process.for_class(kind))
         runs = [(self._moves(rows[1:][part], DEPOSIT), number) for part, number in parts]
         return deposited(runs, kind, self.process, self.parameters)
 

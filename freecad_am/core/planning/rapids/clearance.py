@@ -87,11 +87,11 @@ class RapidObstacles:
     def met(self, moves: Moves) -> Mask:
         """(k,) whether the nozzle meets anything on each of the moves; not on those whose joints are NaN."""
         met = np.zeros(len(moves.start), dtype=bool)
-        known = np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1))
-        for first in range(0, len(known), MOVES):
-            rows = known[first : first + MOVES]
-            some = moves.of(rows)
-            met[rows] = self._met(some, functools.partial(self._touched, moves=some))
+        reachable = np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1))
+        for begin in range(0, len(reachable), MOVES):
+            rows = reachable[begin : begin + MOVES]
+            batch = moves.of(rows)
+            met[rows] = self._met(batch, functools.partial(self._touched, moves=batch))
         return met
 
     def names(self, moves: Moves) -> list[str]:
@@ -99,7 +99,7 @@ class RapidObstacles:
         moves = moves.of(np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1)))
         if not len(moves.start):
             return []
-        tip = _driven(self.cell, moves, COARSE).tip
+        tip = _evaluate_looks(self.cell, moves, COARSE).tip
         reach = self._reach + COARSE
         touching: dict[str, Touching] = {
             "the deposit": functools.partial(self._deposit_touched, moves=moves)
@@ -113,7 +113,7 @@ class RapidObstacles:
     def _met(self, moves: Moves, touching: Touching) -> Mask:
         """(k,) whether anything is met on each of the moves: `touching` tells of what, and at which looks."""
         met = np.zeros(len(moves.start), dtype=bool)
-        looks = _driven(self.cell, moves, COARSE)
+        looks = _evaluate_looks(self.cell, moves, COARSE)
         nozzle = self._nozzle(moves, looks)
 
         def mark(rows: Index) -> None:
@@ -121,36 +121,44 @@ class RapidObstacles:
 
         # most moves on which anything is met run deep into it: few looks tell that
         mark(np.arange(0, len(looks.move), STRIDE))
-        left = np.flatnonzero(~met[looks.move])
-        near = np.zeros(len(looks.move), dtype=bool)
-        near[left] = touching(_thicker(nozzle, 0.5 * COARSE).rows(left), looks.of(left))
-        mark(np.flatnonzero(near))
-        before = np.flatnonzero(
-            (looks.move[1:] == looks.move[:-1]) & (near[1:] | near[:-1]) & ~met[looks.move[:-1]]
+        pending = np.flatnonzero(~met[looks.move])
+        close_looks = np.zeros(len(looks.move), dtype=bool)
+        close_looks[pending] = touching(
+            _thicker(nozzle, 0.5 * COARSE).rows(pending), looks.of(pending)
         )
-        parts = int(np.ceil(COARSE / FINE))
-        step = np.linspace(0.0, 1.0, parts + 1)
+        mark(np.flatnonzero(close_looks))
+        segments = np.flatnonzero(
+            (looks.move[1:] == looks.move[:-1])
+            & (close_looks[1:] | close_looks[:-1])
+            & ~met[looks.move[:-1]]
+        )
+        pieces_per_step = int(np.ceil(COARSE / FINE))
+        step = np.linspace(0.0, 1.0, pieces_per_step + 1)
         share = (
-            looks.share[before, None]
-            + step * (looks.share[before + 1] - looks.share[before])[:, None]
+            looks.share[segments, None]
+            + step * (looks.share[segments + 1] - looks.share[segments])[:, None]
         )
-        close = _looks(self.cell, moves, np.repeat(looks.move[before], parts + 1), share.ravel())
+        close = _looks(
+            self.cell, moves, np.repeat(looks.move[segments], pieces_per_step + 1), share.ravel()
+        )
         touched = touching(self._nozzle(moves, close), close)
         return met | (np.bincount(close.move, touched, minlength=len(moves.start)) > 0)
 
     def _touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
-        found = self._deposit_touched(nozzle, looks, moves)
-        rows = np.flatnonzero(~found)
+        touched = self._deposit_touched(nozzle, looks, moves)
+        rows = np.flatnonzero(~touched)
         if len(rows):
             tip = looks.tip[rows]
-            found[rows] = self._around(tip).touched(nozzle.bodies.rows(rows), tip, looks.axis[rows])
-        return found
+            touched[rows] = self._around(tip).touched(
+                nozzle.bodies.rows(rows), tip, looks.axis[rows]
+            )
+        return touched
 
     def _deposit_touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
-        found: Mask = self.deposited.touched(
+        touched: Mask = self.deposited.touched(
             nozzle.deposit, looks.tip, looks.axis, moves.deposited[looks.move]
         )
-        return found
+        return touched
 
     @property
     def _reach(self) -> float:
@@ -163,11 +171,14 @@ class RapidObstacles:
         low, high = tip.min(axis=0), tip.max(axis=0)
         if (low < self._box[0]).any() or (high > self._box[1]).any():
             # larger at once by half where it is too small, so that it seldom is again
-            known = np.isfinite(self._box).all()
-            more = 0.5 * (high - low) if known else np.zeros(3)
-            least, most = self._box
+            is_known = np.isfinite(self._box).all()
+            extra = 0.5 * (high - low) if is_known else np.zeros(3)
+            lowest, highest = self._box
             self._box = np.array(
-                [np.where(low < least, low - more, least), np.where(high > most, high + more, most)]
+                [
+                    np.where(low < lowest, low - extra, lowest),
+                    np.where(high > highest, high + extra, highest),
+                ]
             )
             self._bodies = scene(self.bodies, self._box, self._reach).bodies
         return self._bodies
@@ -177,7 +188,7 @@ class RapidObstacles:
         return self._ends.nozzle(looks.tip, moves.deposited[looks.move])
 
 
-def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
+def _evaluate_looks(cell: Cell, moves: Moves, largest: float) -> Looks:
     """Looks along all moves, between which no point of the nozzle goes farther than the largest way, mm."""
     chain = cell.machine.chain
     steps = np.where(chain.sliding, SLIDE, STEP)
@@ -185,13 +196,13 @@ def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
     looks = _evenly(cell, moves, count)
     # an arm's tip goes far while its axes hardly turn
     same = looks.move[1:] == looks.move[:-1]
-    way = np.linalg.norm(np.diff(looks.tip, axis=0), axis=1) + cell.nozzle.length * np.linalg.norm(
-        np.diff(looks.axis, axis=0), axis=1
-    )
+    travel = np.linalg.norm(
+        np.diff(looks.tip, axis=0), axis=1
+    ) + cell.nozzle.length * np.linalg.norm(np.diff(looks.axis, axis=0), axis=1)
     longest = np.zeros(len(count))
-    np.maximum.at(longest, looks.move[1:][same], way[same])
-    more = count * step_counts(longest, largest)
-    return looks if (more == count).all() else _evenly(cell, moves, more)
+    np.maximum.at(longest, looks.move[1:][same], travel[same])
+    finer_count = count * step_counts(longest, largest)
+    return looks if (finer_count == count).all() else _evenly(cell, moves, finer_count)
 
 
 def _evenly(cell: Cell, moves: Moves, count: Index) -> Looks:
@@ -216,15 +227,15 @@ def _body_touched(bodies: Bodies, nozzle: Nozzle, looks: Looks) -> Mask:
     return bodies.touched(nozzle.bodies, looks.tip, looks.axis)
 
 
-def _thicker(nozzle: Nozzle, more: float) -> Nozzle:
+def _thicker(nozzle: Nozzle, thickness: float) -> Nozzle:
     """A nozzle that holds all that is no farther than so many mm from the nozzle."""
     return Nozzle(
         *(
             replace(
                 solid,
-                radius=solid.radius + more * np.hypot(1.0, solid.slope),
-                low=solid.low - more,
-                high=solid.high + more,
+                radius=solid.radius + thickness * np.hypot(1.0, solid.slope),
+                low=solid.low - thickness,
+                high=solid.high + thickness,
             )
             for solid in (nozzle.bodies, nozzle.deposit)
         )

@@ -8,20 +8,20 @@ from collections.abc import Sequence
 from ...issues import ERROR, NOTE, Issue, Text
 from ...kinematics.cell import Cell
 from ..joint_path import BeadPath
-from .retract_ways import ASKED, LIMIT, SINGULAR, Failure, Leg
+from .retract_ways import DEFAULT_CHOICE, LIMIT, SINGULAR, Failure, Leg
 from .ways import RapidWays
 
 
-def findings(ways: RapidWays) -> tuple[Issue, ...]:
+def findings(rapids: RapidWays) -> tuple[Issue, ...]:
     """An error for each bead that cannot be come to or left, and notes about what was taken in place of what was asked."""
     met: list[Issue] = []
-    for k in ways.met:
-        names, arm = ways.reasons(k), ways.arm_issue(k)
+    for k in rapids.met:
+        names, arm = rapids.reasons(k), rapids.arm_issue(k)
         if names or arm is None:
-            met.append(_collision(names, ways.place(k).layer, ways.place(k).index))
+            met.append(_collision(names, rapids.place(k).layer, rapids.place(k).index))
         if arm is not None:
             met.append(arm)
-    return (*met, *_failures(ways), *_raised(ways), *_others(ways))
+    return (*met, *_failures(rapids), *_raised(rapids), *_others(rapids))
 
 
 def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
@@ -39,18 +39,18 @@ def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
     )
 
 
-def _failures(ways: RapidWays) -> list[Issue]:
+def _failures(rapids: RapidWays) -> list[Issue]:
     """One issue for each bead, for its first reason."""
-    found: dict[tuple[int, int], Issue] = {}
-    failed = [(ways.beads[end // 2], failure) for end, failure in sorted(ways.failures.items())]
+    first_issues: dict[tuple[int, int], Issue] = {}
+    failed = [(rapids.beads[end // 2], failure) for end, failure in sorted(rapids.failures.items())]
     failed += [
-        (ways.place(k), Failure(SINGULAR, 0, way.singular, ways.retracts.floor))
-        for k, way in enumerate(ways.ways)
-        if way.singular is not None and ways.retracts.sound[ways.ends(k)].all()
+        (rapids.place(k), Failure(SINGULAR, 0, rapid.singular, rapids.retracts.floor))
+        for k, rapid in enumerate(rapids.ways)
+        if rapid.singular is not None and rapids.retracts.sound[rapids.ends(k)].all()
     ]
     for path, failure in failed:
-        found.setdefault((path.layer, path.index), _failed(failure, path, ways.cell))
-    return list(found.values())
+        first_issues.setdefault((path.layer, path.index), _failed(failure, path, rapids.cell))
+    return list(first_issues.values())
 
 
 def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
@@ -87,17 +87,17 @@ def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
     return Issue(ERROR, f"RAPID_{failure.kind}", text, path.layer, path.index)
 
 
-def _raised(ways: RapidWays) -> list[Issue]:
+def _raised(rapids: RapidWays) -> list[Issue]:
     """Notes about other ways taken because something was met."""
     raised, aside, highest = [], [], 0.0
-    for k in sorted(ways.raised):
-        legs = [leg for end in ways.ends(k) if (leg := ways.legs[end]) is not None]
+    for k in sorted(rapids.raised):
+        legs = [leg for end in rapids.ends(k) if (leg := rapids.legs[end]) is not None]
         height = max((leg.height for leg in legs), default=0.0)
-        if height > ways.retract:
-            raised.append(ways.place(k).layer)
+        if height > rapids.retract:
+            raised.append(rapids.place(k).layer)
             highest = max(highest, height)
-        if any(leg.choice != ASKED for leg in legs):
-            aside.append(ways.place(k).layer)
+        if any(leg.choice != DEFAULT_CHOICE for leg in legs):
+            aside.append(rapids.place(k).layer)
     notes = []
     if raised:
         notes.append(
@@ -109,7 +109,7 @@ def _raised(ways: RapidWays) -> list[Issue]:
                     "clear",
                     len(raised),
                     highest,
-                    ways.retract,
+                    rapids.retract,
                 ),
                 raised[0],
             )
@@ -127,7 +127,7 @@ def _raised(ways: RapidWays) -> list[Issue]:
                 aside[0],
             )
         )
-    if ways.led.ways:
+    if rapids.led.ways:
         notes.append(
             Issue(
                 NOTE,
@@ -135,28 +135,29 @@ def _raised(ways: RapidWays) -> list[Issue]:
                 Text(
                     "before {} beads the rapid way is led round what is in the way of all retracts, by "
                     "places between",
-                    len(ways.led.ways),
+                    len(rapids.led.ways),
                 ),
-                ways.place(ways.led.ways[0]).layer,
+                rapids.place(rapids.led.ways[0]).layer,
             )
         )
     return notes
 
 
-def _others(ways: RapidWays) -> list[Issue]:
+def _others(rapids: RapidWays) -> list[Issue]:
     """A note about other ways taken because the machine cannot go those asked for."""
-    cleared = {end for k in (*ways.raised, *ways.led.ways) for end in ways.ends(k)}
-    other: list[tuple[int, Leg]] = [
+    cleared = {end for k in (*rapids.raised, *rapids.led.ways) for end in rapids.ends(k)}
+    changed_legs: list[tuple[int, Leg]] = [
         (end, leg)
-        for end, leg in ways.legs.items()
-        if leg is not None and leg.choice != ASKED and end not in cleared
+        for end, leg in rapids.legs.items()
+        if leg is not None and leg.choice != DEFAULT_CHOICE and end not in cleared
     ]
-    if not other:
+    if not changed_legs:
         return []
-    heights = [leg.height for _, leg in other]
-    leaning = sum(leg.choice.direction != ASKED.direction for _, leg in other)
+    heights = [leg.height for _, leg in changed_legs]
+    leaning = sum(leg.choice.direction != DEFAULT_CHOICE.direction for _, leg in changed_legs)
     turning = sum(
-        (leg.choice.turn, leg.choice.lean) != (ASKED.turn, ASKED.lean) for _, leg in other
+        (leg.choice.turn, leg.choice.lean) != (DEFAULT_CHOICE.turn, DEFAULT_CHOICE.lean)
+        for _, leg in changed_legs
     )
     return [
         Issue(
@@ -166,13 +167,13 @@ def _others(ways: RapidWays) -> list[Issue]:
                 "at {} ends of beads the retract of {:g} mm would leave limits, reach or condition; it is "
                 "{:.3g} to {:.3g} mm there, {} times in another direction than along the tool axis and {} times with the tool "
                 "turned",
-                len(other),
-                ways.retract,
+                len(changed_legs),
+                rapids.retract,
                 min(heights),
                 max(heights),
                 leaning,
                 turning,
             ),
-            ways.beads[other[0][0] // 2].layer,
+            rapids.beads[changed_legs[0][0] // 2].layer,
         )
     ]

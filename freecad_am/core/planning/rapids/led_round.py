@@ -18,7 +18,7 @@ from .way_round import Ranges, way_round
 
 # largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
 LARGEST_TURN = np.radians(170.0)
-LOST = 3  # ways for which none is found, after which no more are looked for: looking takes seconds, and the job is none
+MAX_FAILED_DETOURS = 3  # ways for which none is found, after which no more are looked for: looking takes seconds, and the job is none
 KNOWN = 8  # ways found before that are tried first
 
 Legs = dict[int, Leg | None]
@@ -44,60 +44,66 @@ class LedRound:
     ) -> tuple[Legs, Array] | None:
         """Legs off the ends of beads, with the joints (axes,) at the ends by their number, and the places (m, axes) by which
         a way leads from one to the other, so many points being laid; None where there is none. legs: those tried before."""
-        if not ends or self._lost >= LOST:
+        if not ends or self._lost >= MAX_FAILED_DETOURS:
             return None
-        own: Legs = {}
-        far: list[Array] = []
+        new_legs: Legs = {}
+        far_ends: list[Array] = []
         for end, joints in ends.items():
             off = self._off(end, joints, legs[end], attempts, deposited)
             if off is not None:
-                own[end] = off[0]
-                far.append(off[1])
-        places = self._between(far[0], far[1], deposited) if len(far) == len(ends) else None
-        if places is None:
+                new_legs[end] = off[0]
+                far_ends.append(off[1])
+        via_points = (
+            self._between(far_ends[0], far_ends[1], deposited)
+            if len(far_ends) == len(ends)
+            else None
+        )
+        if via_points is None:
             self._lost += 1
             return None
-        self._known = [places, places[::-1], *self._known][:KNOWN]
-        return own, places
+        self._known = [via_points, via_points[::-1], *self._known][:KNOWN]
+        return new_legs, via_points
 
     def _off(
         self,
         end: int,
         joints: Array,
-        before: Leg | None,
+        tried_leg: Leg | None,
         attempts: Sequence[Attempt],
         deposited: int,
     ) -> tuple[Leg | None, Array] | None:
         """A clear way off the end of a bead, none where it needs none, and where that leads to; None without any."""
-        if before is None and self._clear(joints[None], joints[None], deposited)[0]:
+        if tried_leg is None and self._clear(joints[None], joints[None], deposited)[0]:
             return None, joints
-        for leg in self._others(end, before, attempts):
+        for leg in self._others(end, tried_leg, attempts):
             rows = np.vstack([joints, leg.joints])
             if self._clear(rows[:-1], rows[1:], deposited).all():
                 return leg, leg.joints[-1]
         return None
 
-    def _others(self, end: int, before: Leg | None, attempts: Sequence[Attempt]) -> Iterator[Leg]:
+    def _others(
+        self, end: int, tried_leg: Leg | None, attempts: Sequence[Attempt]
+    ) -> Iterator[Leg]:
         """The leg tried before, and those of all attempts."""
-        if before is not None:
-            yield before
+        if tried_leg is not None:
+            yield tried_leg
         for attempt in attempts:
-            found, _ = self.retracts.found(
+            legs, _ = self.retracts.found(
                 np.array([end]),
                 np.array([attempt.height]),
                 attempt.direction,
                 attempt.tolerance,
                 thorough=False,
             )
-            if found[0] is not None:
-                yield found[0]
+            if legs[0] is not None:
+                yield legs[0]
 
     def _between(self, start: Array, goal: Array, deposited: int) -> Array | None:
         """The places of a way round."""
-        for known in self._known:
-            whole = np.vstack([start, known, goal])
-            if self._clear(whole[:-1], whole[1:], deposited).all():
-                return known
+        for via_points in self._known:
+            route = np.vstack([start, via_points, goal])
+            if self._clear(route[:-1], route[1:], deposited).all():
+                return via_points
         return way_round(
             start,
             goal,
@@ -119,12 +125,12 @@ class LedRound:
     def _ranges(self, start: Array, goal: Array) -> Ranges:
         """Robots move within their limits, axes without end half a turn further than both ends, external axes no
         further than from one to the other."""
-        limits, own = self.cell.limits, self.cell.robot.chain.axes
-        least, most = np.minimum(start, goal), np.maximum(start, goal)
-        kept = self.retracts.kept(RESERVE)[: limits.axes]
-        low = np.where(limits.continuous, least - np.pi, limits.lower + kept)
-        high = np.where(limits.continuous, most + np.pi, limits.upper - kept)
-        low[own:], high[own:] = least[own:], most[own:]
+        limits, robot_axes = self.cell.limits, self.cell.robot.chain.axes
+        lowest, highest = np.minimum(start, goal), np.maximum(start, goal)
+        reserve = self.retracts.kept(RESERVE)[: limits.axes]
+        low = np.where(limits.continuous, lowest - np.pi, limits.lower + reserve)
+        high = np.where(limits.continuous, highest + np.pi, limits.upper - reserve)
+        low[robot_axes:], high[robot_axes:] = lowest[robot_axes:], highest[robot_axes:]
         return Ranges(low, high, self.cell.machine.max_speed)
 
     def _fits(self, joints: Array) -> Mask:

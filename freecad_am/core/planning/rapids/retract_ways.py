@@ -38,7 +38,7 @@ class Choice(NamedTuple):
     lean: int = 0
 
 
-ASKED = Choice()
+DEFAULT_CHOICE = Choice()
 
 
 def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
@@ -49,18 +49,22 @@ def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
             tuple(Choice(1.0, direction, turn) for turn in _TURNS),
             tuple(Choice(1.0, direction, 0.0, lean) for lean in _LEANS),
         )
-    others = tuple(k for k in DIRECTIONS if k != direction)
+    other_directions = tuple(k for k in DIRECTIONS if k != direction)
     return (
         (Choice(1.0, direction),),
         tuple(Choice(share, direction) for share in _HEIGHTS),
-        tuple(Choice(share, other) for other in others for share in (1.0, *_HEIGHTS)),
+        tuple(
+            Choice(share, alternative)
+            for alternative in other_directions
+            for share in (1.0, *_HEIGHTS)
+        ),
         tuple(Choice(share, direction, turn) for share in (1.0, 0.5, 0.1, 2.0) for turn in _TURNS),
         tuple(
             Choice(share, direction, 0.0, lean) for share in (1.0, 0.5, 0.1, 2.0) for lean in _LEANS
         ),
         tuple(
-            Choice(share, other, turn)
-            for other in others
+            Choice(share, alternative, turn)
+            for alternative in other_directions
             for share in (1.0, 0.25)
             for turn in _TURNS
         ),
@@ -127,11 +131,11 @@ class Ends:
     @classmethod
     def of(cls, beads: Sequence[BeadPath]) -> Ends:
         """The ends of the beads of a joint path."""
-        both = [0, -1]
+        both_ends = [0, -1]
         return cls(
-            np.concatenate([path.bead.points[both] for path in beads]),
-            np.concatenate([path.bead.tool[both] for path in beads]),
-            np.concatenate([path.bead.build[both] for path in beads]),
-            np.concatenate([path.phi[both] for path in beads]),
-            np.concatenate([path.joints[both] for path in beads]),
+            np.concatenate([path.bead.points[both_ends] for path in beads]),
+            np.concatenate([path.bead.tool[both_ends] for path in beads]),
+            np.concatenate([path.bead.build[both_ends] for path in beads]),
+            np.concatenate([path.phi[both_ends] for path in beads]),
+            np.concatenate([path.joints[both_ends] for path in beads]),
         )

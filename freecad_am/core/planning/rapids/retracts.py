@@ -27,7 +27,7 @@ from ..reserve import RESERVE
 from ..task import CONDITION_FLOOR
 from ..turns import configurations as following
 from .retract_ways import (
-    ASKED,
+    DEFAULT_CHOICE,
     LEANS_RAD,
     LIMIT,
     SIDES,
@@ -71,18 +71,18 @@ class Retracts:
         tool, build = self.ends.tool, self.ends.build
         normal = np.broadcast_to(self.cell.mount[:3, 2], tool.shape)
         sides = (tool + self._sides(2.0 * np.pi * k / 4) for k in range(4))
-        ways: Array = np.stack(
+        directions: Array = np.stack(
             [tool, tool + build, build, tool + normal, normal, build + normal, *sides]
         )
-        size = np.linalg.norm(ways, axis=2, keepdims=True)
-        ways[1:] = np.where(size > SAME_DIRECTION, ways / np.maximum(size, SAME_DIRECTION), np.nan)[
-            1:
-        ]
-        for k in range(1, len(ways)):
-            apart = np.linalg.norm(ways[:k] - ways[k], axis=2)
-            useless = np.nanmin(apart, axis=0) < SAME_DIRECTION
-            ways[k, useless | ~((ways[k] * tool).sum(axis=1) > AWAY)] = np.nan
-        return ways
+        size = np.linalg.norm(directions, axis=2, keepdims=True)
+        directions[1:] = np.where(
+            size > SAME_DIRECTION, directions / np.maximum(size, SAME_DIRECTION), np.nan
+        )[1:]
+        for k in range(1, len(directions)):
+            separation = np.linalg.norm(directions[:k] - directions[k], axis=2)
+            useless = np.nanmin(separation, axis=0) < SAME_DIRECTION
+            directions[k, useless | ~((directions[k] * tool).sum(axis=1) > AWAY)] = np.nan
+        return directions
 
     @cached_property
     def _across(self) -> tuple[Array, Array]:
@@ -90,14 +90,14 @@ class Retracts:
         tool = self.ends.tool
         x, y = self.cell.mount[:3, 0], self.cell.mount[:3, 1]
         # where two choices are as good, rounding must not choose
-        one = np.cross(tool, np.where((np.abs(tool @ x) < 0.8)[:, None], x, y))
-        one /= np.linalg.norm(one, axis=1, keepdims=True)
-        return one, np.cross(tool, one)
+        across = np.cross(tool, np.where((np.abs(tool @ x) < 0.8)[:, None], x, y))
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        return across, np.cross(tool, across)
 
     def _sides(self, angle: float) -> Array:
         """(n, 3) unit vectors across the tool axes, at an angle (rad) about them from the first of these."""
-        one, other = self._across
-        side: Array = math.cos(angle) * one + math.sin(angle) * other
+        across, across_both = self._across
+        side: Array = math.cos(angle) * across + math.sin(angle) * across_both
         return side
 
     @cached_property
@@ -111,91 +111,102 @@ class Retracts:
     @cached_property
     def sound(self) -> Mask:
         """(n,) whether the end itself is reached within limits; where it is not, the bead has an issue of its own."""
-        known = np.flatnonzero(np.isfinite(self.ends.joints).all(axis=1))
+        reachable = np.flatnonzero(np.isfinite(self.ends.joints).all(axis=1))
         sound = np.zeros(len(self.ends.phi), dtype=bool)
-        sound[known] = (self.cell.limits.margin(self.ends.joints[known]) >= -ROUNDING_RAD).all(
-            axis=1
-        )
+        sound[reachable] = (
+            self.cell.limits.margin(self.ends.joints[reachable]) >= -ROUNDING_RAD
+        ).all(axis=1)
         return sound
 
     @cached_property
     def floor(self) -> float:
         """The least condition of a way's rows."""
-        wanted = self.parameters.min_condition
-        return CONDITION_FLOOR if isinstance(wanted, str) else float(wanted)
+        requested = self.parameters.min_condition
+        return CONDITION_FLOOR if isinstance(requested, str) else float(requested)
 
     def found(
         self,
-        some: Index,
+        end_numbers: Index,
         height: Array,
         direction: int = 0,
         tolerance: float = STRAY_MM,
         thorough: bool = True,
     ) -> tuple[list[Leg | None], list[Failure | None]]:
-        """The ways off the ends `some` (k,) by the heights (k,) mm along a direction, or what comes nearest to that; and
+        """The ways off the ends `end_numbers` (k,) by the heights (k,) mm along a direction, or what comes nearest to that; and
         where there is none at all, None and why the one asked for is none. Not `thorough`: by other rotations alone."""
-        legs: list[Leg | None] = [None] * len(some)
-        failures: list[Failure | None] = [None] * len(some)
+        legs: list[Leg | None] = [None] * len(end_numbers)
+        failures: list[Failure | None] = [None] * len(end_numbers)
         # the way asked for is left as it is wherever it can be gone
-        asked = True
+        is_default = True
         for reserve in (RESERVE, LAST_DIGIT_RAD) if thorough else (RESERVE,):
             for group in groups(direction, thorough):
                 rows = np.array([k for k, leg in enumerate(legs) if leg is None], dtype=np.intp)
                 if not len(rows):
                     return legs, failures
-                kept = self.kept(LAST_DIGIT_RAD if asked else reserve)
+                reserved = self.kept(LAST_DIGIT_RAD if is_default else reserve)
                 for k, leg in zip(
-                    rows.tolist(), self._first(some[rows], height[rows], group, tolerance, kept)
+                    rows.tolist(),
+                    self._first(end_numbers[rows], height[rows], group, tolerance, reserved),
                 ):
                     legs[k] = leg
-                if asked:
-                    lost = [k for k in rows.tolist() if legs[k] is None]
-                    for k, why in zip(lost, self._why(some[lost], height[lost], direction, kept)):
+                if is_default:
+                    failed = [k for k in rows.tolist() if legs[k] is None]
+                    for k, why in zip(
+                        failed, self._why(end_numbers[failed], height[failed], direction, reserved)
+                    ):
                         failures[k] = why
-                asked = False
+                is_default = False
         return legs, failures
 
-    def asked(self, some: Index, height: Array) -> list[Leg]:
+    def asked(self, end_numbers: Index, height: Array) -> list[Leg]:
         """The ways asked for, whether the machine can go them or not; NaN where they cannot be reached."""
-        joints, position = self._courses(self._ways(some, height, (ASKED,)), 1)
-        return [Leg(joints[k], position[k], float(height[k]), ASKED) for k in range(len(some))]
+        joints, position = self._courses(self._ways(end_numbers, height, (DEFAULT_CHOICE,)), 1)
+        return [
+            Leg(joints[k], position[k], float(height[k]), DEFAULT_CHOICE)
+            for k in range(len(end_numbers))
+        ]
 
     def _first(
-        self, some: Index, height: Array, group: Sequence[Choice], tolerance: float, kept: Array
+        self,
+        end_numbers: Index,
+        height: Array,
+        group: Sequence[Choice],
+        tolerance: float,
+        reserved: Array,
     ) -> list[Leg | None]:
         """The first way of the group that fits, of each end."""
         count = len(group)
-        ways = self._ways(some, height, group)
-        legs: list[Leg | None] = [None] * len(some)
-        best = np.full(len(some), count)
-        left = np.flatnonzero(self._possible(ways))
+        candidates = self._ways(end_numbers, height, group)
+        legs: list[Leg | None] = [None] * len(end_numbers)
+        best = np.full(len(end_numbers), count)
+        pending = np.flatnonzero(self._possible(candidates))
         moves = 1
-        while len(left) and moves <= MOST_MOVES:
+        while len(pending) and moves <= MOST_MOVES:
             # no more is looked at of a way than it takes to see that it is none, and of none after one that is found
-            ready = left[(np.abs(ways.turn[left]) <= MOVE_TURN_RAD * moves)]
-            left = left[np.abs(ways.turn[left]) > MOVE_TURN_RAD * moves]
-            joints, position = self._courses(ways.of(ready), moves)
-            able = np.flatnonzero(self.fits(joints[:, -1:], kept))
-            stray = self._stray(ways.of(ready[able]), joints[able]) > tolerance
-            left = np.union1d(left, ready[able[stray]])
+            ready = pending[(np.abs(candidates.turn[pending]) <= MOVE_TURN_RAD * moves)]
+            pending = pending[np.abs(candidates.turn[pending]) > MOVE_TURN_RAD * moves]
+            joints, position = self._courses(candidates.of(ready), moves)
+            able = np.flatnonzero(self.fits(joints[:, -1:], reserved))
+            stray = self._stray(candidates.of(ready[able]), joints[able]) > tolerance
+            pending = np.union1d(pending, ready[able[stray]])
             able = able[~stray]
-            for k in able[self.fits(joints[able], kept)].tolist():
+            for k in able[self.fits(joints[able], reserved)].tolist():
                 number, choice = divmod(int(ready[k]), count)
                 if choice < best[number]:
                     best[number] = choice
                     legs[number] = Leg(
-                        joints[k], position[k], float(ways.height[ready[k]]), group[choice]
+                        joints[k], position[k], float(candidates.height[ready[k]]), group[choice]
                     )
-            left = left[left % count < best[left // count]]
+            pending = pending[pending % count < best[pending // count]]
             moves *= 2
         return legs
 
-    def _ways(self, some: Index, height: Array, group: Sequence[Choice]) -> Ways:
+    def _ways(self, end_numbers: Index, height: Array, group: Sequence[Choice]) -> Ways:
         """All ways of a group of all ends, those of an end together."""
         count = len(group)
-        end = np.repeat(some, count)
+        end = np.repeat(end_numbers, count)
         column = {
-            name: np.tile([getattr(choice, name) for choice in group], len(some))
+            name: np.tile([getattr(choice, name) for choice in group], len(end_numbers))
             for name in Choice._fields
         }
         return Ways(
@@ -206,30 +217,31 @@ class Retracts:
             self.leaning[column["lean"], end],
         )
 
-    def _possible(self, ways: Ways) -> Mask:
+    def _possible(self, candidates: Ways) -> Mask:
         """Which ways lead away, and turn no further than the rotation about the tool axis may; five axes leave no turn."""
-        turned = (ways.turn != 0.0) | (ways.lean != 0.0).any(axis=1)
-        possible: Mask = np.isfinite(ways.direction).all(axis=1)
+        turned = (candidates.turn != 0.0) | (candidates.lean != 0.0).any(axis=1)
+        possible: Mask = np.isfinite(candidates.direction).all(axis=1)
         if self.branch is None:
             return np.asarray(possible & ~turned)
         low, high = self.parameters.rotation_range
         if high - low >= TURN - 1e-9:
             return possible
-        phi = self.ends.phi[ways.end] + ways.turn
+        phi = self.ends.phi[candidates.end] + candidates.turn
         return np.asarray(possible & (~turned | (phi >= low) & (phi <= high)))
 
-    def _courses(self, ways: Ways, moves: int) -> tuple[Array, Array]:
+    def _courses(self, candidates: Ways, moves: int) -> tuple[Array, Array]:
         """Joints (k, moves, axes) at the ends of so many equal moves, each in the turns of the one before, and the tip there
         (k, moves, 3); joints NaN where the machine does not reach."""
         share = np.arange(1, moves + 1) / moves
         point, tool, joints = (
-            column[ways.end] for column in (self.ends.point, self.ends.tool, self.ends.joints)
+            column[candidates.end] for column in (self.ends.point, self.ends.tool, self.ends.joints)
         )
         tip = (
-            point[:, None] + (share[:, None] * ways.height[:, None, None]) * ways.direction[:, None]
+            point[:, None]
+            + (share[:, None] * candidates.height[:, None, None]) * candidates.direction[:, None]
         )
         tools = np.repeat(tool, moves, axis=0)
-        lean = (share[:, None] * ways.lean[:, None]).reshape(-1, 3)
+        lean = (share[:, None] * candidates.lean[:, None]).reshape(-1, 3)
         leans = (lean != 0.0).any(axis=1)
         tools[leans] += lean[leans]
         tools[leans] /= np.linalg.norm(tools[leans], axis=1, keepdims=True)
@@ -240,50 +252,54 @@ class Retracts:
             return five.placed(
                 np.repeat(joints[:, list(five.turning)], moves, axis=0), above, self.cell.station
             ).reshape(shape), tip
-        arm, own = self.cell.robot.arm, self.cell.robot.chain.axes
+        arm, robot_axes = self.cell.robot.arm, self.cell.robot.chain.axes
         assert arm is not None
-        phi = self.ends.phi[ways.end, None] + share * ways.turn[:, None]
+        phi = self.ends.phi[candidates.end, None] + share * candidates.turn[:, None]
         # external axes stand still on these ways
-        held = np.repeat(joints[:, None], moves, axis=1)
+        external = np.repeat(joints[:, None], moves, axis=1)
         flange = self.cell.flange_poses(
-            tip.reshape(-1, 3), tools, phi.ravel(), held.reshape(-1, shape[2])
+            tip.reshape(-1, 3), tools, phi.ravel(), external.reshape(-1, shape[2])
         )
         if arm.followed:
             raw = following.step_by_step(
-                arm, flange.reshape(*shape[:2], 4, 4), self.branch, joints[:, :own]
+                arm, flange.reshape(*shape[:2], 4, 4), self.branch, joints[:, :robot_axes]
             )
         else:
-            raw = arm.inverse_branch(flange, self.branch).reshape(*shape[:2], own)
-        raw = np.concatenate([raw, held[..., own:]], axis=2)
-        before = np.concatenate([joints[:, None], raw[:, :-1]], axis=1)
-        return raw + TURN * np.cumsum(np.round((before - raw) / TURN), axis=1), tip
+            raw = arm.inverse_branch(flange, self.branch).reshape(*shape[:2], robot_axes)
+        raw = np.concatenate([raw, external[..., robot_axes:]], axis=2)
+        previous = np.concatenate([joints[:, None], raw[:, :-1]], axis=1)
+        return raw + TURN * np.cumsum(np.round((previous - raw) / TURN), axis=1), tip
 
-    def _stray(self, ways: Ways, joints: Array) -> Array:
+    def _stray(self, candidates: Ways, joints: Array) -> Array:
         """How far (k,) mm the tip leaves the straight way while the machine runs straight in its joints."""
-        whole = np.concatenate([self.ends.joints[ways.end, None], joints], axis=1)
-        between = whole[:, :-1, None] + BETWEEN[:, None] * np.diff(whole, axis=1)[:, :, None]
+        course = np.concatenate([self.ends.joints[candidates.end, None], joints], axis=1)
+        between = course[:, :-1, None] + BETWEEN[:, None] * np.diff(course, axis=1)[:, :, None]
         chain = self.cell.machine.chain
         tip, _ = self.cell.tip_in_part(chain.forward(between.reshape(-1, chain.axes)))
         offset = (
-            tip.reshape(len(whole), joints.shape[1] * len(BETWEEN), 3)
-            - self.ends.point[ways.end, None]
+            tip.reshape(len(course), joints.shape[1] * len(BETWEEN), 3)
+            - self.ends.point[candidates.end, None]
         )
-        along = np.clip((offset * ways.direction[:, None]).sum(axis=2), 0.0, ways.height[:, None])
-        away: Array = np.linalg.norm(
-            offset - along[..., None] * ways.direction[:, None], axis=2
+        along = np.clip(
+            (offset * candidates.direction[:, None]).sum(axis=2), 0.0, candidates.height[:, None]
+        )
+        deviation: Array = np.linalg.norm(
+            offset - along[..., None] * candidates.direction[:, None], axis=2
         ).max(axis=1, initial=0.0)
-        return away
+        return deviation
 
-    def fits(self, joints: Array, kept: Array) -> Mask:
+    def fits(self, joints: Array, reserved: Array) -> Mask:
         """Whether all rows of the ways (k, m, axes) are reached, keep this much free beside every limit, and are not below
         the least condition."""
         with np.errstate(invalid="ignore"):
-            fits: Mask = (self.cell.limits.margin(joints) >= kept - ROUNDING_RAD).all(axis=(1, 2))
-        some = np.flatnonzero(fits)
-        if len(some):
-            fits[some] = (
-                (self.condition(joints[some].reshape(-1, joints.shape[2])) >= self.floor)
-                .reshape(len(some), joints.shape[1])
+            fits: Mask = (self.cell.limits.margin(joints) >= reserved - ROUNDING_RAD).all(
+                axis=(1, 2)
+            )
+        within_limits = np.flatnonzero(fits)
+        if len(within_limits):
+            fits[within_limits] = (
+                (self.condition(joints[within_limits].reshape(-1, joints.shape[2])) >= self.floor)
+                .reshape(len(within_limits), joints.shape[1])
                 .all(axis=1)
             )
         return fits
@@ -312,21 +328,25 @@ class Retracts:
     def kept(self, reserve: float) -> Array:
         return np.maximum(self._least, reserve)
 
-    def _why(self, some: Index, height: Array, direction: int, kept: Array) -> list[Failure]:
+    def _why(
+        self, end_numbers: Index, height: Array, direction: int, reserved: Array
+    ) -> list[Failure]:
         """What is wrong with the ways asked for."""
-        found = []
-        joints = self._courses(self._ways(some, height, (Choice(1.0, direction),)), 1)[0][:, 0]
+        failures = []
+        joints = self._courses(self._ways(end_numbers, height, (Choice(1.0, direction),)), 1)[0][
+            :, 0
+        ]
         limits = self.cell.limits
         for row in joints:
             if not np.isfinite(row).all():
-                found.append(Failure(UNREACHABLE))
+                failures.append(Failure(UNREACHABLE))
                 continue
-            margin = limits.margin(row) - kept
+            margin = limits.margin(row) - reserved
             worst = int(margin.argmin())
             if margin[worst] >= 0.0:
                 value = float(self.condition(row[None])[0])
                 # the way there may be what is wrong, not its end
-                found.append(
+                failures.append(
                     Failure(SINGULAR, 0, value, self.floor)
                     if value < self.floor
                     else Failure(UNREACHABLE)
@@ -334,17 +354,17 @@ class Retracts:
                 continue
             values = np.concatenate([row, limits.coefficients @ row])
             lower, upper = (
-                np.concatenate(both)
-                for both in (
+                np.concatenate(bounds)
+                for bounds in (
                     (limits.lower, limits.coupled_lower),
                     (limits.upper, limits.coupled_upper),
                 )
             )
             low = values[worst] - lower[worst] < upper[worst] - values[worst]
-            found.append(
+            failures.append(
                 Failure(LIMIT, worst, float(values[worst]), float((lower if low else upper)[worst]))
             )
-        return found
+        return failures
 
 
 def branch_of(words: Sequence[str]) -> int | None:

@@ -24,7 +24,7 @@ Free = Callable[
 Fits = Callable[[Array], Mask]  # (k,) whether the machine may stand with joints (k, axes)
 
 BATCH, ROUNDS = 32, 30  # samples that trees grow by at once, and how often
-WIDER = (
+FULL_RANGE_ROUND = (
     10  # rounds until samples are of the whole ranges; the first are of a part next to both ends
 )
 STEP = 0.2  # longest move that a tree grows by, as a share of the ranges
@@ -42,8 +42,8 @@ class Ranges:
 
     def lasts(self, start: Array, end: Array) -> Array:
         """(...) s that moves from (..., axes) to (..., axes) take, by the axis that takes longest."""
-        found: Array = (np.abs(end - start) / self.speed).max(axis=-1)
-        return found
+        seconds: Array = (np.abs(end - start) / self.speed).max(axis=-1)
+        return seconds
 
 
 class _Tree:
@@ -64,74 +64,76 @@ class _Tree:
 
     def back(self, number: int) -> list[Array]:
         """The places from one of its own to the first."""
-        found = []
+        route = []
         while number >= 0:
-            found.append(self.place[number])
+            route.append(self.place[number])
             number = int(self.parent[number])
-        return found
+        return route
 
 
 def way_round(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
     """The places (m, axes) between two others by which clear moves lead from one to the other; None where none are found."""
-    found = _joined(start, end, ranges, free, fits)
-    if found is None:
+    route = _connect(start, end, ranges, free, fits)
+    if route is None:
         return None
-    found = _shortest(found, ranges, free)
+    route = _shortest(route, ranges, free)
     for _ in range(SHORTENED):
-        if len(found) > 2:
-            found = _pulled(found, ranges, free, fits)
-    return _shortest(found, ranges, free)[1:-1]
+        if len(route) > 2:
+            route = _pulled(route, ranges, free, fits)
+    return _shortest(route, ranges, free)[1:-1]
 
 
-def _joined(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
+def _connect(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
     """Places (m, axes) from the start to the end that clear moves join, both among them."""
     if free(start[None], end[None])[0]:
         return np.stack([start, end])
     trees = _Tree(start), _Tree(end)
-    whole = spread(BATCH * ROUNDS, len(start))
+    all_samples = spread(BATCH * ROUNDS, len(start))
     for round_ in range(ROUNDS):
-        far = min(1.0, (round_ + 1) / WIDER) * (ranges.high - ranges.low)
-        low = np.maximum(np.minimum(start, end) - far, ranges.low)
-        high = np.minimum(np.maximum(start, end) + far, ranges.high)
-        samples = low + whole[BATCH * round_ : BATCH * (round_ + 1)] * (high - low)
-        for own, other in (trees, trees[::-1]):
-            added = _grow(own, samples, ranges, free, fits)
-            meeting = _met(own, other, added, ranges, free)
+        margin = min(1.0, (round_ + 1) / FULL_RANGE_ROUND) * (ranges.high - ranges.low)
+        low = np.maximum(np.minimum(start, end) - margin, ranges.low)
+        high = np.minimum(np.maximum(start, end) + margin, ranges.high)
+        samples = low + all_samples[BATCH * round_ : BATCH * (round_ + 1)] * (high - low)
+        for tree, opposite in (trees, trees[::-1]):
+            added = _grow(tree, samples, ranges, free, fits)
+            meeting = _find_meeting(tree, opposite, added, ranges, free)
             if meeting is not None:
-                first, last = own.back(meeting[0])[::-1], other.back(meeting[1])
-                way = np.array([*first, *last])
-                return way if own is trees[0] else way[::-1]
+                from_tree, from_opposite = tree.back(meeting[0])[::-1], opposite.back(meeting[1])
+                route = np.array([*from_tree, *from_opposite])
+                return route if tree is trees[0] else route[::-1]
     return None
 
 
 def _grow(tree: _Tree, samples: Array, ranges: Ranges, free: Free, fits: Fits) -> Index:
     """Grows a tree towards samples; the numbers of the places added."""
     parent = tree.nearest(ranges, samples)
-    way = samples - tree.place[parent]
-    share = (np.abs(way) / np.maximum(ranges.high - ranges.low, 1e-9)).max(axis=1)
-    place = tree.place[parent] + way * np.minimum(1.0, STEP / np.maximum(share, 1e-9))[:, None]
-    rows = np.flatnonzero(fits(place))
-    rows = rows[free(tree.place[parent[rows]], place[rows])]
-    before = len(tree.place)
-    tree.grown(place[rows], parent[rows], ranges.lasts(tree.place[parent[rows]], place[rows]))
-    return np.arange(before, len(tree.place))
+    offset = samples - tree.place[parent]
+    share = (np.abs(offset) / np.maximum(ranges.high - ranges.low, 1e-9)).max(axis=1)
+    target = tree.place[parent] + offset * np.minimum(1.0, STEP / np.maximum(share, 1e-9))[:, None]
+    rows = np.flatnonzero(fits(target))
+    rows = rows[free(tree.place[parent[rows]], target[rows])]
+    old_count = len(tree.place)
+    tree.grown(target[rows], parent[rows], ranges.lasts(tree.place[parent[rows]], target[rows]))
+    return np.arange(old_count, len(tree.place))
 
 
-def _met(
-    own: _Tree, other: _Tree, added: Index, ranges: Ranges, free: Free
+def _find_meeting(
+    tree: _Tree, opposite: _Tree, added: Index, ranges: Ranges, free: Free
 ) -> tuple[int, int] | None:
     """The numbers of a place added to one tree and of one of the other that a clear move joins, by which it is soonest."""
     if not len(added):
         return None
-    there = other.nearest(ranges, own.place[added])
-    rows = np.flatnonzero(free(own.place[added], other.place[there]))
+    nearest = opposite.nearest(ranges, tree.place[added])
+    rows = np.flatnonzero(free(tree.place[added], opposite.place[nearest]))
     if not len(rows):
         return None
     lasts = (
-        own.lasts[added] + other.lasts[there] + ranges.lasts(own.place[added], other.place[there])
+        tree.lasts[added]
+        + opposite.lasts[nearest]
+        + ranges.lasts(tree.place[added], opposite.place[nearest])
     )
     best = int(rows[lasts[rows].argmin()])
-    return int(added[best]), int(there[best])
+    return int(added[best]), int(nearest[best])
 
 
 def _shortest(way: Array, ranges: Ranges, free: Free) -> Array:

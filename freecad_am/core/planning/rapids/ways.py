@@ -170,7 +170,7 @@ class RapidWays:
         """(k,) whether nothing is met on moves."""
         met = self.obstacles.met(moves)
         if self.cell.part_moves or self.cell.external_links:
-            met |= nozzle_obstacles.met(self.cell, moves.start, moves.end).any(axis=0)
+            met |= nozzle_obstacles.find_contacts(self.cell, moves.start, moves.end).any(axis=0)
         left = np.flatnonzero(~met)
         if self.arm is not None and len(left):
             move, touched = check_moves(self.arm, *moves.of(left))
@@ -259,7 +259,7 @@ class RapidWays:
         moves = self._moves(k, self.ways[k])
         found = self.obstacles.names(moves)
         if self.cell.part_moves or self.cell.external_links:
-            met = nozzle_obstacles.met(self.cell, moves.start, moves.end)
+            met = nozzle_obstacles.find_contacts(self.cell, moves.start, moves.end)
             adjacent = [
                 name
                 for name, here in zip(nozzle_obstacles.in_the_way(self.cell), met)
