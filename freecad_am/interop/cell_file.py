@@ -9,7 +9,7 @@ import math
 import os
 from typing import Any
 
-from ..core.kinematics.arrangement import of_setup
+from ..core.kinematics.arrangement import arrangement_of
 from ..core.kinematics.machines import calibration
 from ..core.kinematics.urdf import reference as urdf_reference
 from ..core.parameters import external, obstacles, touched
@@ -27,7 +27,7 @@ def text(cell: CellParameters, folder: str) -> str:
     usual = CellParameters()
     for field in dataclasses.fields(cell):
         value = getattr(cell, field.name)
-        kept = field.name in PROPOSED and of_setup(cell.setup).free > 0
+        kept = field.name in PROPOSED and arrangement_of(cell.setup).free > 0
         if field.name in SHOWN_APART or (value == getattr(usual, field.name) and not kept):
             continue
         lines.append(f"{field.name}: {_shown(value, f.spec_of(field).kind)}")

@@ -11,7 +11,7 @@ import FreeCAD as App
 
 from ..core.issues import ERROR, InfeasibleError, InputError
 from ..core.kinematics import cell as cells
-from ..core.kinematics.arrangement import of_setup
+from ..core.kinematics.arrangement import arrangement_of
 from ..core.kinematics.proposed_cell import proposed
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.filled import SolidParameters
@@ -92,7 +92,7 @@ def is_held_apart(cell: Any, toolpath: Any) -> bool:
     """Whether part and substrate of a toolpath stay out of the platform of a cell."""
     made, folders = toolpath.Proxy.value(toolpath), tuple(user_machines.folders())
     settings = cell.Proxy.value(cell)
-    if not of_setup(settings.setup).planned:
+    if not arrangement_of(settings.setup).planned:
         return True
     return not in_platform(cells.resolve(settings, made.frame, made.family, folders), made)
 

@@ -69,22 +69,24 @@ OF_FIVE_AXES = (_FIVE_AXIS,)
 _ALL = {one.setup: one for one in (*OF_ROBOTS, *OF_FIVE_AXES)}
 
 
-def of_setup(setup: str) -> Arrangement:
+def arrangement_of(setup: str) -> Arrangement:
     """The record of a value of `cell.setup`; KeyError for any other."""
     return _ALL[setup]
 
 
 def planned_of(setup: str) -> Arrangement:
     """The same; InputError NOT_YET for what jobs cannot have yet."""
-    found = _ALL.get(setup)
-    if found is None or not found.planned:
-        *first, last = (one.setup for one in _ALL.values() if one.planned)
+    arrangement = _ALL.get(setup)
+    if arrangement is None or not arrangement.planned:
+        *other_setups, last_setup = (
+            candidate.setup for candidate in _ALL.values() if candidate.planned
+        )
         raise InputError(
             "NOT_YET",
             "cell.setup",
             "{} cannot be planned yet; use {} or {}",
             setup,
-            ", ".join(first),
-            last,
+            ", ".join(other_setups),
+            last_setup,
         )
-    return found
+    return arrangement

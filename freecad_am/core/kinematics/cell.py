@@ -22,7 +22,7 @@ from ..issues import InputError, Text, Word
 from ..parameters.cell import CellParameters, NozzleParameters
 from ..parameters.external import externals
 from ..types import Array
-from .arrangement import Arrangement, of_setup, planned_of
+from .arrangement import Arrangement, arrangement_of, planned_of
 from .external import ExternalAxes, coupled, upward
 from .inverse import opw
 from .limits import Limits
@@ -87,9 +87,9 @@ class Cell:
         external = self.external_of(joints)
         if self.external is None or external is None:
             return self.machine.chain.links(joints)
-        own = self.robot.chain
-        moved: Array = self.external.base(external)[..., None, :, :] @ own.links(
-            joints[..., : own.axes]
+        robot_chain = self.robot.chain
+        moved: Array = self.external.base(external)[..., None, :, :] @ robot_chain.links(
+            joints[..., : robot_chain.axes]
         )
         return moved
 
@@ -103,8 +103,8 @@ class Cell:
             self.external.slides is not None
         ):  # where its track is at zero the robot stands in the world as it does without
             values[:, self.external.slides] = 0.0
-        found: Array = self.external.base(values) @ self.robot.base
-        return found
+        base_frames: Array = self.external.base(values) @ self.robot.base
+        return base_frames
 
     def external_link_frames(self, joints: Array) -> Array:
         """(n, links, 4, 4) the frames of the links `has_external`, seen from where the machine's chain begins, for joints
@@ -114,14 +114,14 @@ class Cell:
             return np.zeros((len(joints), 0, 4, 4))
         links = self.external.links(values)
         in_world = np.stack(
-            [links[one.mechanism][:, one.link] for one in self.external_links], axis=1
+            [links[link.mechanism][:, link.link] for link in self.external_links], axis=1
         )
         return np.asarray(self.world(joints)[:, None] @ in_world)
 
     @property
     def arrangement(self) -> Arrangement:
         """What hangs on the flange, and what follows from it."""
-        return of_setup(self.setup)
+        return arrangement_of(self.setup)
 
     @property
     def part_moves(self) -> bool:
@@ -170,15 +170,15 @@ class Cell:
 
     def on_carrier(self, position: Array) -> Array:
         """Points (n, 3) mm of the part as seen from the flange or the face that carries it; there are `carriers`."""
-        seen = (self.carried if self.arrangement.carries_part else self.station) @ frames.inverse(
-            self.mount
-        )
-        return np.asarray(position @ seen[:3, :3].T + seen[:3, 3])
+        to_carrier = (
+            self.carried if self.arrangement.carries_part else self.station
+        ) @ frames.inverse(self.mount)
+        return np.asarray(position @ to_carrier[:3, :3].T + to_carrier[:3, 3])
 
     def on_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
         """Points (n, 3) and tool axes (n, 3) of the part as seen from the flange that carries it."""
-        seen = self.carried @ frames.inverse(self.mount)
-        return position @ seen[:3, :3].T + seen[:3, 3], tool @ seen[:3, :3].T
+        to_flange = self.carried @ frames.inverse(self.mount)
+        return position @ to_flange[:3, :3].T + to_flange[:3, 3], tool @ to_flange[:3, :3].T
 
     def flange_poses(
         self, position: Array, tool: Array, phi: Array, joints: Array | None = None
@@ -196,10 +196,10 @@ class Cell:
         """
         if self.torch_stands:
             platform = flange @ self.carried
-            seen = frames.inverse(platform) @ self.station
+            in_platform = frames.inverse(platform) @ self.station
         else:
-            seen = frames.inverse(self.station) @ (flange @ self.carried @ _TURNED)
-        in_part = self.mount @ seen
+            in_platform = frames.inverse(self.station) @ (flange @ self.carried @ _TURNED)
+        in_part = self.mount @ in_platform
         return in_part[:, :3, 3], in_part[:, :3, 2]
 
     def tip_at(self, joints: Array) -> Array:
@@ -249,16 +249,16 @@ class Cell:
         x, y, z = columns(frames.smallest_rotation(t, UP)[:, 0])
         x, y = cos * x - sin * y, sin * x + cos * y
         cos_y, sin_y = np.where(cx > 0.0, t[:, 2], 1.0) / level, sy / level
-        first = cos_y * x + sin_y * z, cx * y - sx * (cos_y * z - sin_y * x)
-        return np.arctan2(first[1], first[0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
+        first_row = cos_y * x + sin_y * z, cx * y - sx * (cos_y * z - sin_y * x)
+        return np.arctan2(first_row[1], first_row[0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
 
     def rz_of_phi(self, tool: Array, phi: Array) -> Array:
         """The paper's RZ (n,) rad of the rotations phi (n,) about the tool axes (n, 3) in part coordinates."""
         t = tool @ self.mount[:3, :3]
         upright = frames.smallest_rotation(t, UP)
-        first = np.cos(phi)[:, None] * upright[:, 0] - np.sin(phi)[:, None] * upright[:, 1]
+        first_row = np.cos(phi)[:, None] * upright[:, 0] - np.sin(phi)[:, None] * upright[:, 1]
         side = np.where(t[:, 2] < 0.0, -1.0, 1.0)
-        rz: Array = np.arctan2(-first[:, 1] * side, first[:, 0] * side)
+        rz: Array = np.arctan2(-first_row[:, 1] * side, first_row[:, 0] * side)
         return rz
 
 
@@ -329,14 +329,16 @@ def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: 
     not known."""
     if arrangement not in machine.arrangements:
         kind = "is a robot" if machine.free else "has sliding axes"
-        wanted = Text.joined(" or ", (one.setup for one in machine.arrangements if one.planned))
+        setups = Text.joined(
+            " or ", (candidate.setup for candidate in machine.arrangements if candidate.planned)
+        )
         raise InputError(
             "WRONG_SETUP",
             "cell.setup",
             "{} {}; use {}, or choose another machine",
             machine.title,
             Word(kind),
-            wanted,
+            setups,
         )
     if machine.no_arm:
         raise InputError("NO_CLOSED_FORM", "cell.machine", "{}: {}", machine.title, machine.no_arm)

@@ -54,9 +54,9 @@ class Chain:
         to_axis = frames.pose(
             frames.smallest_rotation((0.0, 0.0, 1.0), self.directions), np.zeros(3)
         )
-        before = np.concatenate((np.eye(4)[None], frames.inverse(to_axis)))
-        after = np.concatenate((self.origins @ to_axis, self.flange[None]))
-        object.__setattr__(self, "_links", before @ after)
+        from_axis = np.concatenate((np.eye(4)[None], frames.inverse(to_axis)))
+        to_next = np.concatenate((self.origins @ to_axis, self.flange[None]))
+        object.__setattr__(self, "_links", from_axis @ to_next)
         for array in (
             self.origins,
             self.directions,
@@ -78,8 +78,8 @@ class Chain:
         by_joint = self._by_joint(angles)
         flange = _upright(by_joint.shape[1])
         for start in range(0, len(flange), PIECE):
-            piece = slice(start, start + PIECE)
-            self._run_piece(by_joint[:, piece], None, flange[piece])
+            rows = slice(start, start + PIECE)
+            self._run_piece(by_joint[:, rows], None, flange[rows])
         return flange.reshape(angles.shape[:-1] + (4, 4))
 
     def frames(self, q: ArrayLike) -> JointFrames:
@@ -106,12 +106,12 @@ class Chain:
         count = by_joint.shape[1]
         directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
         for start in range(0, count, PIECE):
-            piece = slice(start, start + PIECE)
-            axes = directions[:, :, piece], origins[:, :, piece]
-            self._run_piece(by_joint[:, piece], axes, None if flange is None else flange[piece])
+            rows = slice(start, start + PIECE)
+            axes = directions[:, :, rows], origins[:, :, rows]
+            self._run_piece(by_joint[:, rows], axes, None if flange is None else flange[rows])
         if self._is_mixed:
-            place = np.argsort(self.order)
-            directions, origins = directions[place], origins[place]
+            positions = np.argsort(self.order)
+            directions, origins = directions[positions], origins[positions]
         return directions, origins
 
     def seen(self, q: ArrayLike, point: Array) -> Array:
@@ -135,9 +135,9 @@ class Chain:
                 if self.sliding[self.order[joint]]
                 else (frames.rotation_about(direction, value), np.zeros(3))
             )
-            before = result[..., joint, :, :]
-            still = (before.reshape(-1, 4) @ self.origins[joint]).reshape(
-                before.shape
+            link_frame = result[..., joint, :, :]
+            still = (link_frame.reshape(-1, 4) @ self.origins[joint]).reshape(
+                link_frame.shape
             )  # one product, not one each
             result[..., joint + 1, :, :] = still @ frames.pose(*moved)
         return result
@@ -149,26 +149,26 @@ class Chain:
         sense in which they turn or against it. A point alone takes a third of the time that a frame does."""
         angles = np.asarray(q, float)
         by_joint = self._by_joint(angles)
-        found = np.empty((by_joint.shape[1], 3))
-        first = links[0, :3, :3] @ point + links[0, :3, 3]
-        for start in range(0, len(found), PIECE):
-            piece = by_joint[:, start : start + PIECE]
-            sines, cosines = sense * np.sin(piece), np.cos(piece)
-            place = np.empty((3, piece.shape[1]))
-            place[:] = first[:, None]
+        points = np.empty((by_joint.shape[1], 3))
+        start_point = links[0, :3, :3] @ point + links[0, :3, 3]
+        for start in range(0, len(points), PIECE):
+            values = by_joint[:, start : start + PIECE]
+            sines, cosines = sense * np.sin(values), np.cos(values)
+            point_now = np.empty((3, values.shape[1]))
+            point_now[:] = start_point[:, None]
             for joint, link in zip(order, links[1:], strict=True):
                 if self.sliding[self.order[joint]]:
-                    place[2] += sense * piece[joint]
+                    point_now[2] += sense * values[joint]
                 else:
-                    across = place[0] * cosines[joint]
-                    across -= place[1] * sines[joint]
-                    place[1] *= cosines[joint]
-                    place[1] += place[0] * sines[joint]
-                    place[0] = across
-                place = link[:3, :3] @ place
-                place += link[:3, 3:]
-            found[start : start + PIECE] = place.T
-        return found.reshape(angles.shape[:-1] + (3,))
+                    across = point_now[0] * cosines[joint]
+                    across -= point_now[1] * sines[joint]
+                    point_now[1] *= cosines[joint]
+                    point_now[1] += point_now[0] * sines[joint]
+                    point_now[0] = across
+                point_now = link[:3, :3] @ point_now
+                point_now += link[:3, 3:]
+            points[start : start + PIECE] = point_now.T
+        return points.reshape(angles.shape[:-1] + (3,))
 
     @property
     def _is_mixed(self) -> bool:
@@ -232,11 +232,11 @@ def _advance(columns: Array, position: Array, link: Array) -> tuple[Array, Array
 
 def _turn(columns: Array, sine: Array, cosine: Array) -> None:
     """Turn the frames whose columns (3, 3, n) are given about their own Z, in place."""
-    first = columns[0] * cosine
-    first += columns[1] * sine
+    first_column = columns[0] * cosine
+    first_column += columns[1] * sine
     columns[1] *= cosine
     columns[1] -= columns[0] * sine
-    columns[0] = first
+    columns[0] = first_column
 
 
 class Piece(NamedTuple):
@@ -248,21 +248,21 @@ class Piece(NamedTuple):
     values: Index
 
 
-def joined(pieces: Sequence[Piece], end: Array) -> Chain:
+def join_chains(sections: Sequence[Piece], end: Array) -> Chain:
     """One chain of pieces in a row; `end` (4, 4) is its flange as seen from that of the last."""
     origins: list[Array] = []
-    before = np.eye(4)
-    for piece in pieces:
-        origins += [before @ piece.start @ piece.chain.origins[0], *piece.chain.origins[1:]]
-        before = piece.chain.flange
-    order = np.concatenate([piece.values[piece.chain.order] for piece in pieces])
+    flange = np.eye(4)
+    for section in sections:
+        origins += [flange @ section.start @ section.chain.origins[0], *section.chain.origins[1:]]
+        flange = section.chain.flange
+    order = np.concatenate([section.values[section.chain.order] for section in sections])
     sliding = np.zeros(len(order), dtype=bool)
-    for piece in pieces:
-        sliding[piece.values] = piece.chain.sliding
+    for section in sections:
+        sliding[section.values] = section.chain.sliding
     return Chain(
         np.stack(origins),
-        np.concatenate([piece.chain.directions for piece in pieces]),
-        before @ end,
+        np.concatenate([section.chain.directions for section in sections]),
+        flange @ end,
         sliding,
         order,
     )

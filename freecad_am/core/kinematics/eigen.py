@@ -13,7 +13,7 @@ import numpy as np
 from ..types import Array
 
 # fewer matrices than this are done faster one at a time
-MANY = 400
+BATCH_THRESHOLD = 400
 ITERATIONS = 60
 TOLERANCE = 1e-10
 
@@ -21,7 +21,7 @@ TOLERANCE = 1e-10
 def extremes(matrices: Array) -> tuple[Array, Array]:
     """The smallest and largest eigenvalues (n,) of positive semidefinite matrices (k, k, n), to about 1e-15 of the
     largest."""
-    if matrices.shape[2] < MANY:
+    if matrices.shape[2] < BATCH_THRESHOLD:
         values = np.linalg.eigvalsh(matrices.transpose(2, 0, 1))
         return np.asarray(values[:, 0]), np.asarray(values[:, -1])
     diagonal, squares = _tridiagonal(matrices)
@@ -39,7 +39,7 @@ def extremes(matrices: Array) -> tuple[Array, Array]:
 def _iterate(diagonal: Array, squares: Array, roots: Array) -> None:
     """Laguerre's iteration from starts outside all roots (2, n) to the nearest ones, in place."""
     size = len(diagonal)
-    current, places = roots.copy(), np.arange(roots.shape[1])
+    current, columns = roots.copy(), np.arange(roots.shape[1])
     for _ in range(ITERATIONS):
         value, slope, curve = _polynomial(diagonal, squares, current)
         radicand = ((size - 1) ** 2 * slope) * slope
@@ -48,63 +48,63 @@ def _iterate(diagonal: Array, squares: Array, roots: Array) -> None:
         step = size * value / np.where(slope == 0.0, 1.0, slope)
         current -= step
         going = (np.abs(step) > TOLERANCE).any(axis=0)
-        left = np.count_nonzero(going)
-        if 2 * left < len(places):
+        remaining = np.count_nonzero(going)
+        if 2 * remaining < len(columns):
             # most are there: go on with the others alone
-            roots[:, places] = current
-            if not left:
+            roots[:, columns] = current
+            if not remaining:
                 return
-            current, places = current[:, going], places[going]
+            current, columns = current[:, going], columns[going]
             diagonal, squares = diagonal[:, going], squares[:, going]
-    roots[:, places] = current
+    roots[:, columns] = current
 
 
 def _tridiagonal(matrices: Array) -> tuple[Array, Array]:
     """Diagonal (k, n) and squares of the subdiagonal (k - 1, n) of similar tridiagonal matrices."""
     size, _, count = matrices.shape
     diagonal, squares = np.empty((size, count)), np.empty((size - 1, count))
-    rest = matrices
+    block = matrices
     for step in range(size - 2):
-        diagonal[step] = rest[0, 0]
-        column = rest[1:, 0].copy()
+        diagonal[step] = block[0, 0]
+        column = block[1:, 0].copy()
         squares[step] = np.einsum("in,in->n", column, column)
-        first = column[0].copy()
-        column[0] += np.copysign(np.sqrt(squares[step]), first)
-        half = squares[step] + np.abs(first) * np.sqrt(squares[step])
+        head = column[0].copy()
+        column[0] += np.copysign(np.sqrt(squares[step]), head)
+        half = squares[step] + np.abs(head) * np.sqrt(squares[step])
         inverse = np.where(half > 0.0, 1.0 / np.where(half > 0.0, half, 1.0), 0.0)
-        inner = rest[1:, 1:]
+        inner = block[1:, 1:]
         product = np.einsum("ijn,jn->in", inner, column) * inverse
         product -= (0.5 * inverse * np.einsum("in,in->n", product, column)) * column
         update = column[:, None] * product
-        rest = inner - update
-        rest -= update.transpose(1, 0, 2)
-    diagonal[-2:] = rest[0, 0], rest[1, 1]
-    squares[-1] = np.square(rest[1, 0])
+        block = inner - update
+        block -= update.transpose(1, 0, 2)
+    diagonal[-2:] = block[0, 0], block[1, 1]
+    squares[-1] = np.square(block[1, 0])
     return diagonal, squares
 
 
 def _polynomial(diagonal: Array, squares: Array, x: Array) -> tuple[Array, Array, Array]:
     """The characteristic polynomial of tridiagonal matrices at `x` with its first and second derivative."""
     # of degree 2, then up by the recurrence of the leading minors; half the second derivative saves a factor
-    before, factor = diagonal[0] - x, diagonal[1] - x
-    value, slope, curve = factor * before - squares[0], -factor - before, np.ones_like(x)
+    previous, factor = diagonal[0] - x, diagonal[1] - x
+    value, slope, curve = factor * previous - squares[0], -factor - previous, np.ones_like(x)
     slope_before, curve_before, spare = np.full_like(x, -1.0), np.zeros_like(x), np.empty_like(x)
     for row in range(2, len(diagonal)):
         np.subtract(diagonal[row], x, out=factor)
         square = squares[row - 1]
         # the new minor takes the place of the one before the last
-        for older, last, lower in (
+        for older, current, lower in (
             (curve_before, curve, slope),
             (slope_before, slope, value),
-            (before, value, None),
+            (previous, value, None),
         ):
             older *= square
-            np.multiply(factor, last, out=spare)
+            np.multiply(factor, current, out=spare)
             np.subtract(spare, older, out=older)
             if lower is not None:
                 older -= lower
-        value, before, slope, slope_before, curve, curve_before = (
-            before,
+        value, previous, slope, slope_before, curve, curve_before = (
+            previous,
             value,
             slope_before,
             slope,

@@ -21,7 +21,7 @@ from ..geometry import frames
 from ..issues import InputError
 from ..parameters.external import PART, ROBOT, WHERE, External
 from ..types import Array, Index
-from .chain import Chain, Piece, joined
+from .chain import Chain, Piece, join_chains
 from .limits import Limits
 from .machines import machine as machines
 from .machines.machine import MAKER, Machine
@@ -74,17 +74,17 @@ class ExternalAxes:
 
     def links(self, values: Array) -> list[Array]:
         """(n, axes + 1, 4, 4) the frames of each mechanism's links in the world, its base first, for values (n, k)."""
-        found: list[Array] = []
-        for one in self.mechanisms:
-            start = one.place
-            if one.under is not None:
+        link_frames: list[Array] = []
+        for mechanism in self.mechanisms:
+            start = mechanism.place
+            if mechanism.under is not None:
                 start = (
-                    found[one.under][:, -1:]
-                    @ self.mechanisms[one.under].machine.chain.flange
+                    link_frames[mechanism.under][:, -1:]
+                    @ self.mechanisms[mechanism.under].machine.chain.flange
                     @ start
                 )
-            found.append(start @ one.machine.chain.links(values[:, one.values]))
-        return found
+            link_frames.append(start @ mechanism.machine.chain.links(values[:, mechanism.values]))
+        return link_frames
 
     def upright(self, directions: Array, values: Array) -> Array:
         """(n, 3) unit vectors seen from where the part stands (n, 3) in the world, for values (n, k) rad and mm."""
@@ -106,36 +106,36 @@ def coupled(
     Joint values are the robot's and then those of the mechanisms in the order of `named`; `up` (3,) is against gravity.
     Raises InputError NOT_YET for what cannot be planned, UNKNOWN_MACHINE, BAD_MACHINE.
     """
-    found = [(one, load(one.machine, folders)) for one in named]
-    _check_names(robot, found)
-    _check(found)
-    axes, ends = robot.chain.axes, np.cumsum([0, *(machine.chain.axes for _, machine in found)])
+    loaded = [(named_axis, load(named_axis.machine, folders)) for named_axis in named]
+    _check_names(robot, loaded)
+    _check(loaded)
+    axes, ends = robot.chain.axes, np.cumsum([0, *(machine.chain.axes for _, machine in loaded)])
     values, count = (
-        [np.arange(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)],
+        [np.arange(begin, end) for begin, end in zip(ends[:-1], ends[1:], strict=True)],
         int(ends[-1]),
     )
-    carriers = [k for k, (one, _) in enumerate(found) if one.carries == PART]
+    carriers = [k for k, (named_axis, _) in enumerate(loaded) if named_axis.carries == PART]
     in_world = frames.inverse(robot.base)
-    pieces, face, turned = [], np.eye(4), np.zeros(0, dtype=np.intp)
+    sections, face, turned = [], np.eye(4), np.zeros(0, dtype=np.intp)
     turning: tuple[Array, ...] = ()
     if carriers:
-        to_face, face = _chain([found[k] for k in carriers])
+        to_face, face = _chain([loaded[k] for k in carriers])
         turned = np.concatenate([values[k] for k in carriers])
-        pieces = [Piece(np.eye(4), to_face.reversed(), turned)]
+        sections = [Piece(np.eye(4), to_face.reversed(), turned)]
         turning = tuple(to_face.frames(np.zeros(len(turned))).directions)
     along, slides = None, None
-    for k, (one, machine) in enumerate(found):
-        if one.carries == ROBOT:
-            start = frames.bryant(one.pose) @ frames.inverse(machine.base)
+    for k, (named_axis, machine) in enumerate(loaded):
+        if named_axis.carries == ROBOT:
+            start = frames.bryant(named_axis.pose) @ frames.inverse(machine.base)
             # at zero the robot's base is that of the world
             in_world = frames.inverse(start @ machine.chain.forward(np.zeros(1))) @ in_world
-            pieces.append(Piece(start, machine.chain, values[k]))
+            sections.append(Piece(start, machine.chain, values[k]))
             along, slides = (
                 start[:3, :3] @ machine.chain.frames(np.zeros(1)).directions[0],
                 int(values[k][0]),
             )
-    to_robot = joined(pieces, in_world)
-    whole = joined(
+    to_robot = join_chains(sections, in_world)
+    coupled_chain = join_chains(
         [
             Piece(np.eye(4), to_robot, axes + np.arange(count)),
             Piece(np.eye(4), robot.chain, np.arange(axes)),
@@ -151,16 +151,20 @@ def coupled(
         face[:3, :3],
         along,
         slides,
-        tuple(found[k][1] for k in carriers),
-        _mechanisms(found, values),
+        tuple(loaded[k][1] for k in carriers),
+        _mechanisms(loaded, values),
     )
-    others = [machine for _, machine in found]
-    return _together(robot, others, whole), _limits(limits, others), external
+    machines_beside = [machine for _, machine in loaded]
+    return (
+        _together(robot, machines_beside, coupled_chain),
+        _limits(limits, machines_beside),
+        external,
+    )
 
 
-def _check(found: Sequence[tuple[External, Machine]]) -> None:
+def _check(loaded: Sequence[tuple[External, Machine]]) -> None:
     """Refuse what cannot be planned."""
-    tracks = [machine for one, machine in found if one.carries == ROBOT]
+    tracks = [machine for named_axis, machine in loaded if named_axis.carries == ROBOT]
     for machine in tracks:
         if machine.chain.axes != 1 or not machine.chain.sliding.all():
             raise InputError(
@@ -174,8 +178,8 @@ def _check(found: Sequence[tuple[External, Machine]]) -> None:
         raise InputError(
             "NOT_YET", WHERE, "{} mechanisms carry the robot; give one track", len(tracks)
         )
-    others = [machine for one, machine in found if one.carries == PART]
-    for machine in others:
+    carriers = [machine for named_axis, machine in loaded if named_axis.carries == PART]
+    for machine in carriers:
         if machine.chain.sliding.any():
             raise InputError(
                 "NOT_YET",
@@ -184,17 +188,17 @@ def _check(found: Sequence[tuple[External, Machine]]) -> None:
                 "yet; use turning axes",
                 machine.title,
             )
-    count = sum(machine.chain.axes for machine in others)
+    count = sum(machine.chain.axes for machine in carriers)
     if count > 2:
         raise InputError(
             "NOT_YET", WHERE, "{} axes carry the part; give one or two turning axes", count
         )
 
 
-def _check_names(robot: Machine, found: Sequence[tuple[External, Machine]]) -> None:
+def _check_names(robot: Machine, loaded: Sequence[tuple[External, Machine]]) -> None:
     """Refuse mechanisms that are the robot itself, or each other."""
-    for k, (one, machine) in enumerate(found):
-        if machine.id == robot.id or (_alike(machine, robot) and one.carries == ROBOT):
+    for k, (named_axis, machine) in enumerate(loaded):
+        if machine.id == robot.id or (_alike(machine, robot) and named_axis.carries == ROBOT):
             raise InputError(
                 "BAD_VALUE",
                 WHERE,
@@ -202,20 +206,20 @@ def _check_names(robot: Machine, found: Sequence[tuple[External, Machine]]) -> N
                 "stands beside it",
                 machine.title,
             )
-        for other, before in found[:k]:
-            if machine.id != before.id:
+        for earlier_axis, earlier_machine in loaded[:k]:
+            if machine.id != earlier_machine.id:
                 continue
-            if not _alike(machine, before):
+            if not _alike(machine, earlier_machine):
                 raise InputError(
                     "BAD_VALUE",
                     WHERE,
                     "{} and {} are two mechanisms of one name, {!r}; give one of the files "
                     "another id",
-                    one.machine,
-                    other.machine,
+                    named_axis.machine,
+                    earlier_axis.machine,
                     machine.id,
                 )
-            if one.pose == other.pose or one.carries != other.carries:
+            if named_axis.pose == earlier_axis.pose or named_axis.carries != earlier_axis.carries:
                 raise InputError(
                     "BAD_VALUE",
                     WHERE,
@@ -225,9 +229,9 @@ def _check_names(robot: Machine, found: Sequence[tuple[External, Machine]]) -> N
                 )
 
 
-def _alike(one: Machine, other: Machine) -> bool:
-    return one.chain.axes == other.chain.axes and np.array_equal(
-        one.chain.origins, other.chain.origins
+def _alike(machine: Machine, reference: Machine) -> bool:
+    return machine.chain.axes == reference.chain.axes and np.array_equal(
+        machine.chain.origins, reference.chain.origins
     )
 
 
@@ -236,25 +240,25 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
 
     Raises InputError UNKNOWN_MACHINE, BAD_MACHINE, BAD_URDF.
     """
-    meant = reference(name)
-    if meant is not None:
-        found = urdf_machine.chain_of(meant)
-        called = f"{found.name} {' - '.join(found.joints)}"  # a file may describe several
+    description = reference(name)
+    if description is not None:
+        urdf_chain = urdf_machine.chain_of(description)
+        called = f"{urdf_chain.name} {' - '.join(urdf_chain.joints)}"  # a file may describe several
         return dataclasses.replace(
-            machines.of_description(name, found, None), id=called, title=called
+            machines.of_description(name, urdf_chain, None), id=called, title=called
         )
     try:
         return machines.load(name, (*folders, MECHANISMS))
     except InputError as error:
         if error.code != "UNKNOWN_MACHINE":
             raise
-        known = ", ".join(sorted(path.stem for path in MECHANISMS.glob("*.json")))
+        built_in = ", ".join(sorted(path.stem for path in MECHANISMS.glob("*.json")))
         raise InputError(
             "UNKNOWN_MACHINE",
             WHERE,
             "{!r} is not known; built in are {}; or give the path of a machine file or a URDF",
             name,
-            known,
+            built_in,
         ) from None
 
 
@@ -264,35 +268,35 @@ def upward(up: Sequence[float]) -> Array:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
-def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
+def _chain(loaded: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
     """The chain from the world to the face that carries the part, and that face (4, 4) at zero. Poses of mechanisms are
     those they stand at in the world with all axes at zero."""
-    pieces: list[Piece] = []
-    before, first = np.eye(4), 0
-    for one, machine in found:
-        start = frames.bryant(one.pose) @ frames.inverse(machine.base)
-        pieces.append(
+    sections: list[Piece] = []
+    flange, begin = np.eye(4), 0
+    for named_axis, machine in loaded:
+        start = frames.bryant(named_axis.pose) @ frames.inverse(machine.base)
+        sections.append(
             Piece(
-                frames.inverse(before) @ start, machine.chain, first + np.arange(machine.chain.axes)
+                frames.inverse(flange) @ start, machine.chain, begin + np.arange(machine.chain.axes)
             )
         )
-        before, first = (
+        flange, begin = (
             start @ machine.chain.forward(np.zeros(machine.chain.axes)),
-            first + machine.chain.axes,
+            begin + machine.chain.axes,
         )
-    return joined(pieces, np.eye(4)), before
+    return join_chains(sections, np.eye(4)), flange
 
 
 def _mechanisms(
-    found: Sequence[tuple[External, Machine]], values: Sequence[Index]
+    loaded: Sequence[tuple[External, Machine]], values: Sequence[Index]
 ) -> tuple[Mechanism, ...]:
     """The mechanisms where they stand: those that carry the part on one another."""
     adjacent: list[Mechanism] = []
     under: int | None = None
     face = np.eye(4)
-    for k, (one, machine) in enumerate(found):
-        start = frames.bryant(one.pose) @ frames.inverse(machine.base)
-        if one.carries == ROBOT:
+    for k, (named_axis, machine) in enumerate(loaded):
+        start = frames.bryant(named_axis.pose) @ frames.inverse(machine.base)
+        if named_axis.carries == ROBOT:
             adjacent.append(Mechanism(machine, ROBOT, start, values[k], None))
             continue
         adjacent.append(Mechanism(machine, PART, frames.inverse(face) @ start, values[k], under))
@@ -300,58 +304,64 @@ def _mechanisms(
     return tuple(adjacent)
 
 
-def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machine:
+def _together(robot: Machine, machines_beside: Sequence[Machine], chain: Chain) -> Machine:
     """The robot with further axes e1, e2 ...."""
-    count, axes = sum(other.chain.axes for other in others), robot.chain.axes
+    count, axes = sum(machine.chain.axes for machine in machines_beside), robot.chain.axes
     matrix = np.eye(axes + count)
     matrix[:axes, :axes] = robot.controller_matrix
     offset = [robot.controller_offset]
-    at = axes
-    for other in others:
-        more = other.chain.axes
-        matrix[at : at + more, at : at + more] = other.controller_matrix
-        offset.append(other.controller_offset)
-        at += more
-    all_ = (robot, *others)
-    known = all(one.pulses_per_degree for one in all_)
+    row = axes
+    for machine in machines_beside:
+        count_more = machine.chain.axes
+        matrix[row : row + count_more, row : row + count_more] = machine.controller_matrix
+        offset.append(machine.controller_offset)
+        row += count_more
+    all_ = (robot, *machines_beside)
+    has_pulses = all(machine.pulses_per_degree for machine in all_)
     alike = {
-        name: np.concatenate([getattr(one, name) for one in all_])
+        name: np.concatenate([getattr(machine, name) for machine in all_])
         for name in ("max_speed", "max_acceleration", "max_jerk")
     }
     return dataclasses.replace(
         robot,
-        title=" + ".join(one.title for one in (robot, *others)),
+        title=" + ".join(machine.title for machine in (robot, *machines_beside)),
         chain=chain,
         base=np.eye(4),
         external=count,
         axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))),
         controller_matrix=matrix,
         controller_offset=np.concatenate(offset),
-        pulses_per_degree=sum((one.pulses_per_degree for one in all_), ()) if known else (),
+        pulses_per_degree=sum((machine.pulses_per_degree for machine in all_), ())
+        if has_pulses
+        else (),
         **alike,
     )
 
 
-def _limits(robot: Limits, others: Sequence[Machine]) -> Limits:
-    sets = [other.limits(MAKER) for other in others]
-    count = sum(one.axes for one in sets)
+def _limits(robot: Limits, machines_beside: Sequence[Machine]) -> Limits:
+    sets = [machine.limits(MAKER) for machine in machines_beside]
+    count = sum(axis_limits.axes for axis_limits in sets)
     labels = [f"e{number + 1}" for number in range(count)]
     coupled_ = [np.pad(robot.coefficients.reshape(-1, robot.axes), ((0, 0), (0, count)))]
-    at = robot.axes
-    for one in sets:
-        rows = one.coefficients.reshape(-1, one.axes)
-        coupled_.append(np.pad(rows, ((0, 0), (at, robot.axes + count - at - one.axes))))
-        at += one.axes
+    column = robot.axes
+    for axis_limits in sets:
+        rows = axis_limits.coefficients.reshape(-1, axis_limits.axes)
+        coupled_.append(
+            np.pad(rows, ((0, 0), (column, robot.axes + count - column - axis_limits.axes)))
+        )
+        column += axis_limits.axes
     alike = {
-        name: np.concatenate([getattr(one, name) for one in (robot, *sets)])
+        name: np.concatenate([getattr(axis_limits, name) for axis_limits in (robot, *sets)])
         for name in ("lower", "upper", "coupled_lower", "coupled_upper")
     }
-    rest = [label for one in sets for label in one.labels[one.axes :]]
+    extra_labels = [
+        label for axis_limits in sets for label in axis_limits.labels[axis_limits.axes :]
+    ]
     return dataclasses.replace(
         robot,
         coefficients=np.concatenate(coupled_),
-        source="; ".join(one.source for one in (robot, *sets)),
-        labels=(*robot.labels[: robot.axes], *labels, *robot.labels[robot.axes :], *rest),
+        source="; ".join(axis_limits.source for axis_limits in (robot, *sets)),
+        labels=(*robot.labels[: robot.axes], *labels, *robot.labels[robot.axes :], *extra_labels),
         **alike,
     )
 

@@ -24,7 +24,7 @@ from ..geometry.cylinders import Cylinder
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
 from ..types import Array
-from .arrangement import OF_ROBOTS, of_setup
+from .arrangement import OF_ROBOTS, arrangement_of
 from .cell import Cell, resolve
 from .inverse import opw
 from .limits import margins
@@ -75,7 +75,7 @@ def searched(
 ) -> CellParameters:
     """What is `proposed`, looked for."""
     machine = machines.load(parameters.machine, tuple(folders))
-    arrangement = of_setup(parameters.setup)
+    arrangement = arrangement_of(parameters.setup)
     if (
         externals(parameters.external)
         or machine.arm is None

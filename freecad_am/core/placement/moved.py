@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 
 from ..issues import InputError, Text
-from ..kinematics.arrangement import of_setup
+from ..kinematics.arrangement import arrangement_of
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import MORE, PART, externals
 from ..parameters.place import AUTO, PLATFORM, POINT, POSITIONER
@@ -16,7 +16,7 @@ from ..parameters.place import AUTO, PLATFORM, POINT, POSITIONER
 
 def movable(settings: CellParameters) -> tuple[str, ...]:
     """What there is to move in a cell: of POINT, PLATFORM, POSITIONER those it has, the usual one first."""
-    arrangement = of_setup(settings.setup)
+    arrangement = arrangement_of(settings.setup)
     if arrangement.holds_part:
         return (POINT, PLATFORM)
     if arrangement.carries_part:

@@ -14,7 +14,7 @@ from ..geometry import frames
 from ..issues import Text
 from ..kinematics import cell as cells
 from ..kinematics import proposed_cell
-from ..kinematics.arrangement import of_setup
+from ..kinematics.arrangement import arrangement_of
 from ..kinematics.inverse import opw
 from ..parameters.cell import Pose
 from ..parameters.external import externals
@@ -76,7 +76,7 @@ def held_by_clamp(job: Tried) -> Tried | None:
     if low[2] > -BELOW:
         return None
     shift = [*np.round(-0.5 * (low[:2] + high[:2]), 1), math.ceil(-low[2])]
-    on_point = not (of_setup(settings.setup).carries_part or externals(settings.external))
+    on_point = not (arrangement_of(settings.setup).carries_part or externals(settings.external))
     pose = settings.deposition_point if on_point else settings.platform
     old_pose = (0.0, 0.0, pose, 0.0, 0.0, 0.0) if isinstance(pose, (int, float)) else pose
     x, y, z = (frames.bryant(old_pose) @ np.array([*shift, 1.0]))[:3].round(3).tolist()
@@ -123,7 +123,7 @@ def points(job: Tried) -> Iterator[Tried]:
         )
     for point in (
         _before(job)
-        if not of_setup(job.settings.setup).carries_part
+        if not arrangement_of(job.settings.setup).carries_part
         else _adjacent(job.settings.deposition_point)
     ):
         yield change_cell(

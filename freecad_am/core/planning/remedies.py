@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 
 from ..issues import ERROR, NOTE, AmError, Issue, Text, has_errors
 from ..kinematics import cell as cells
-from ..kinematics.arrangement import of_setup
+from ..kinematics.arrangement import arrangement_of
 from ..parameters.cell import CellParameters
 from ..toolpath import Toolpath
 from . import other_cells
@@ -154,7 +154,7 @@ def _failed(issues: Sequence[Issue]) -> list[int]:
 def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[Tried]:
     codes, free = (
         {issue.code for issue in issues if issue.level == ERROR},
-        of_setup(job.settings.setup).free > 0,
+        arrangement_of(job.settings.setup).free > 0,
     )
     if free:
         yield from other_cells.clear_of_arm(job, codes)

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from ..issues import ERROR, AmError, Text
-from ..kinematics.arrangement import of_setup
+from ..kinematics.arrangement import arrangement_of
 from ..parameters.cell import CellParameters
 from ..toolpath import Toolpath
 from . import other_cells
@@ -31,7 +31,7 @@ def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) 
     some = _layers(toolpath, failed_layers)
     left, until = POINTS, time.monotonic() + LONGEST_SEARCH
     errors = _errors(job, some, progress)
-    if not errors or not of_setup(job.settings.setup).free:
+    if not errors or not arrangement_of(job.settings.setup).free:
         return job.settings
     for change in _changes(job, errors):
         left -= some.point_count

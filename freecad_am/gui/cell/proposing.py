@@ -11,7 +11,7 @@ import FreeCAD as App
 import numpy as np
 
 from ...core.issues import AmError, InputError
-from ...core.kinematics.arrangement import of_setup
+from ...core.kinematics.arrangement import arrangement_of
 from ...core.kinematics.machines.machine import Machine
 from ...core.kinematics.proposed_cell import cell_of
 from ...core.parameters.cell import CellParameters
@@ -80,7 +80,7 @@ class ProposingPanel(PreviewPanel):
         for place in self.noted:
             self.tell(place, "")
         self.noted.clear()
-        if not machine.free or not (of_setup(setup).free and of_setup(setup).planned):
+        if not machine.free or not (arrangement_of(setup).free and arrangement_of(setup).planned):
             return
         folders, known, wanted, tool = (
             user_machines.folders(),

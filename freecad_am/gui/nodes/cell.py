@@ -15,7 +15,7 @@ from freecad_am.core.types import Array
 from ...core.geometry import frames
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
-from ...core.kinematics.arrangement import of_setup
+from ...core.kinematics.arrangement import arrangement_of
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.limits import Limits
 from ...core.kinematics.links.cylinders import Mesh
@@ -209,7 +209,9 @@ def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
     return (
         rest.machine.id,
         chain.links(np.zeros(chain.axes)).tobytes(),
-        () if of_setup(value.setup).links_known else (value.platform_diameter, value.nozzle.length),
+        ()
+        if arrangement_of(value.setup).links_known
+        else (value.platform_diameter, value.nozzle.length),
         *(None if mesh is None else hash(mesh[0].tobytes()) for mesh in rest.meshes),
         *((link.name, hash(link.body.vertices.tobytes())) for link in rest.external_links),
     )
@@ -274,7 +276,7 @@ def torch_seen(value: CellParameters) -> Torch | None:
 
 def holder_node(value: CellParameters) -> Any:
     """What holds the nozzle, seen from its tip: from its end to the flange of a robot that carries it, else a short body."""
-    arrangement, length = of_setup(value.setup), value.nozzle.length
+    arrangement, length = arrangement_of(value.setup), value.nozzle.length
     end, flange = np.array([0.0, 0.0, length]), np.array([0.0, 0.0, _BODY * length])
     if not arrangement.carries_part:
         tip = frames.bryant(value.nozzle.tool) @ frames.pose(frames.about_x(np.pi), np.zeros(3))

@@ -10,7 +10,7 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError
-from ...core.kinematics.arrangement import of_setup
+from ...core.kinematics.arrangement import arrangement_of
 from ...core.kinematics.machines import machine as machines
 from ...core.kinematics.machines.machine import Machine
 from ...core.parameters.external import NONE
@@ -91,7 +91,7 @@ class CellPanel(ProposingPanel):
         deposition point, or on the platform of a positioner."""
         if not machine.free:
             without: tuple[str, ...] = OF_ROBOTS
-        elif of_setup(self._widget(SETUP).currentData()).carries_part:
+        elif arrangement_of(self._widget(SETUP).currentData()).carries_part:
             without = _OF_TOOLS
         else:
             without = (PLATFORM,) if self._holds(EXTERNAL) in (NONE, "") else ()

@@ -13,7 +13,7 @@ from freecad_am.core.types import Array
 
 from ...core.geometry import frames
 from ...core.kinematics import cell as cells
-from ...core.kinematics.arrangement import of_setup
+from ...core.kinematics.arrangement import arrangement_of
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.place import PLATFORM, POSITIONER
 from ...core.placement.moved import pose_of
@@ -64,7 +64,7 @@ class Scene:
             links = self.cell.links(self.joints)
             base = frames.inverse(links[0]) @ self.cell.world(self.joints[None])[0]
         else:
-            nozzle = of_setup(self.cell.setup).holds_part and moves != PLATFORM
+            nozzle = arrangement_of(self.cell.setup).holds_part and moves != PLATFORM
             stands = self.rest.nozzle if nozzle else self.rest.platform
             base = stands @ frames.inverse(frames.bryant(pose_of(self.settings, moves)))
         places: Array = (self.to_view @ base @ frames.bryant(poses))[:, :3, 3]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from typing import Any
 
-from ...core.kinematics.arrangement import of_setup
+from ...core.kinematics.arrangement import arrangement_of
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.process import ProcessParameters
@@ -30,7 +30,7 @@ def of_toolpath(
 
     def of(settings: CellParameters) -> CellParameters:
         planned = read()
-        if not of_setup(settings.setup).planned:
+        if not arrangement_of(settings.setup).planned:
             return settings
         cell = cell_obstacles.resolved(settings, planned, folders)
         job = Tried(

@@ -25,7 +25,7 @@ def test_each_zero_is_in_a_step_of_its_own(degree):
         zeros = rng.uniform(0.0, 2.0 * np.pi, (real, 400))
         if real:  # pairs at all distances, down to where rounding parts them no more
             zeros[1] = (zeros[0] + 10.0 ** rng.uniform(-9.0, 0.0, 400)) % (2.0 * np.pi)
-        found = trigonometric.parted(
+        found = trigonometric.isolate_zeros(
             _with_zeros(zeros, rng.uniform(0.0, 2.0 * np.pi, (degree - real // 2, 400)))
         )
         assert (~found.close).sum() > 150

@@ -20,7 +20,7 @@ from .serial_arm import SerialArm
 CHUNK = 2048
 WORDS = 8  # configurations
 STEPS, AGAIN = 16, 4  # steps at most, and after how many the Jacobian is found again
-ASIDE = 5.0  # mm
+START_SHIFT_MM = 5.0  # mm
 TINY = 1e-9
 LENGTH = 500.0  # mm that count as one rad
 CONVERGED = 1e-11  # of the error as an angle, 5e-9 mm; one more step is not worth its time
@@ -59,17 +59,17 @@ class CalibratedArm:
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
         """Joint angles (n, 6) of one configuration; else as `inverse`."""
-        given = np.ascontiguousarray(poses, float)
-        return self._brought(given, branch)
+        targets = np.ascontiguousarray(poses, float)
+        return self._brought(targets, branch)
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
-        given = np.ascontiguousarray(poses, float)
+        targets = np.ascontiguousarray(poses, float)
         if not self.near.followed:
-            solved = np.stack([self._brought(given, words) for words in range(WORDS)])
+            solved = np.stack([self._brought(targets, words) for words in range(WORDS)])
             return solved, np.where(np.isnan(solved[..., 0]), -1, np.arange(WORDS)[:, None])
-        starts, words = self.near.solutions(given)
-        solved = np.stack([self._from(start, given, word) for start, word in zip(starts, words)])
+        starts, words = self.near.solutions(targets)
+        solved = np.stack([self._from(start, targets, word) for start, word in zip(starts, words)])
         return solved, np.where(np.isnan(solved[..., 0]), -1, words)
 
     def branch_of(self, q: ArrayLike) -> Index:
@@ -84,25 +84,27 @@ class CalibratedArm:
         """Angles (n, 6) of those words that give the poses (n, 4, 4), NaN where there are none."""
         result = self._from(self.near.inverse_branch(poses, words), poses, words)
         # where the closed form just does not reach: by what it finds a little nearer to the shoulder, or farther from axis 1
-        for inwards, outwards in ((ASIDE, 0.0), (0.0, ASIDE)):
-            lost = np.flatnonzero(np.isnan(result[:, 0]))
-            if not len(lost):
+        for inwards, outwards in ((START_SHIFT_MM, 0.0), (0.0, START_SHIFT_MM)):
+            unsolved = np.flatnonzero(np.isnan(result[:, 0]))
+            if not len(unsolved):
                 break
-            moved = poses[lost].copy()
-            place = moved[:, :3, 3]
-            ahead = place * (1.0, 1.0, 0.0)
-            place += outwards * ahead / np.linalg.norm(ahead + TINY, axis=1, keepdims=True)
-            towards = place - (0.0, 0.0, self.shoulder[1])
-            place -= inwards * towards / np.linalg.norm(towards + TINY, axis=1, keepdims=True)
-            result[lost] = self._from(self.near.inverse_branch(moved, words), poses[lost], words)
+            moved = poses[unsolved].copy()
+            position = moved[:, :3, 3]
+            ahead = position * (1.0, 1.0, 0.0)
+            position += outwards * ahead / np.linalg.norm(ahead + TINY, axis=1, keepdims=True)
+            towards = position - (0.0, 0.0, self.shoulder[1])
+            position -= inwards * towards / np.linalg.norm(towards + TINY, axis=1, keepdims=True)
+            result[unsolved] = self._from(
+                self.near.inverse_branch(moved, words), poses[unsolved], words
+            )
         return result
 
     def _from(self, start: Array, poses: Array, words: int | Index) -> Array:
         """Angles (n, 6) near `start` (n, 6) that give the poses, NaN where there are none of those words, or words (n,)."""
         result = np.full(start.shape, np.nan)
         reached = np.flatnonzero(np.isfinite(start[:, 0]))
-        for first in range(0, len(reached), CHUNK):
-            rows = reached[first : first + CHUNK]
+        for begin in range(0, len(reached), CHUNK):
+            rows = reached[begin : begin + CHUNK]
             result[rows] = self._newton(start[rows].copy(), poses[rows])
         result = shortest(result)
         result[self.near.branch_of(np.nan_to_num(result)) != words] = np.nan
@@ -113,19 +115,21 @@ class CalibratedArm:
         open_ = np.arange(len(q))
         back = np.empty((len(q), 6, 6))
         for step in range(STEPS):
-            flange, wanted = self.chain.forward(q[open_]), poses[open_]
+            flange, targets = self.chain.forward(q[open_]), poses[open_]
             error = np.empty((len(open_), 6))
-            error[:, :3] = (wanted[:, :3, 3] - flange[:, :3, 3]) / LENGTH
-            turned = wanted[:, :3, :3] @ np.swapaxes(flange[:, :3, :3], 1, 2)
-            for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
-                error[:, 3 + row] = 0.5 * (turned[:, last, following] - turned[:, following, last])
+            error[:, :3] = (targets[:, :3, 3] - flange[:, :3, 3]) / LENGTH
+            turned = targets[:, :3, :3] @ np.swapaxes(flange[:, :3, :3], 1, 2)
+            for row, (following, column) in enumerate(((1, 2), (2, 0), (0, 1))):
+                error[:, 3 + row] = 0.5 * (
+                    turned[:, column, following] - turned[:, following, column]
+                )
             off[open_] = np.sqrt(np.einsum("ni,ni->n", error, error))
-            left = off[open_] > CONVERGED
-            if not left.any():
+            unconverged = off[open_] > CONVERGED
+            if not unconverged.any():
                 break
-            open_, error = open_[left], error[left]
+            open_, error = open_[unconverged], error[unconverged]
             if step % AGAIN == 0:
-                back[open_] = self._inverse_rates(q[open_], flange[left, :3, 3])
+                back[open_] = self._inverse_rates(q[open_], flange[unconverged, :3, 3])
             rates = np.einsum("nij,nj->ni", back[open_], error)
             q[open_] += rates / np.maximum(
                 1.0, np.abs(rates).max(axis=1, keepdims=True)
@@ -141,5 +145,5 @@ class CalibratedArm:
         across = np.swapaxes(rates, 1, 2)
         product = across @ rates
         product[:, range(6), range(6)] += DAMPING
-        found: Array = np.linalg.solve(product, across)
-        return found
+        inverse: Array = np.linalg.solve(product, across)
+        return inverse

@@ -57,44 +57,49 @@ class FiveAxis:
 
     def turns(self, tools: Array, torch: Array) -> rotary_pair.Turns:
         """The turns that bring unit vectors tools (n, 3) on the flange to the unit vector torch (3,) in base_link."""
-        first, second, source, target = self._pair(tools, torch)
-        return rotary_pair.between(first, second, source, target)
+        first_axis, second_axis, source, target = self._pair(tools, torch)
+        return rotary_pair.between(first_axis, second_axis, source, target)
 
     def inverse(self, points: Array, tools: Array, station: Array) -> Solutions:
         """Axis values that hold points (n, 3) mm and tool directions (n, 3), given on the flange, at the torch.
 
         station: (4, 4) the torch's tip in base_link, its Z pointing into the torch.
         """
-        found = self.turns(tools, station[:3, 2])
-        turned = np.stack([found.first, found.second], axis=-1)
+        turns = self.turns(tools, station[:3, 2])
+        turned = np.stack([turns.first, turns.second], axis=-1)
         axes = np.stack([self.placed(branch, points, station) for branch in turned])
-        return Solutions(axes, np.stack([found.first_free, found.second_free], axis=1))
+        return Solutions(axes, np.stack([turns.first_free, turns.second_free], axis=1))
 
     def locked(
-        self, axis: int, at: Array | float, tools: Array, torch: Array
+        self, axis: int, angle: Array | float, tools: Array, torch: Array
     ) -> rotary_pair.Locked:
         """Four axes: the turning axis `axis` (0 or 1) stands at an angle, the other brings the tools as near as it can."""
-        first, second, source, target = self._pair(tools, torch)
+        first_axis, second_axis, source, target = self._pair(tools, torch)
         lock = rotary_pair.with_first_locked if axis == 0 else rotary_pair.with_second_locked
-        return lock(first, second, at, source, target)
+        return lock(first_axis, second_axis, angle, source, target)
 
     def best_lock(self, axis: int, tools: Array, torch: Array, low: float, high: float) -> float:
         """Where between low and high, rad, the turning axis `axis` (0 or 1) leaves the smallest largest residual."""
-        first, second, source, target = self._pair(tools, torch)
-        return rotary_pair.least_residual(first, second, axis, source, target, low, high)
+        first_axis, second_axis, source, target = self._pair(tools, torch)
+        return rotary_pair.least_residual(first_axis, second_axis, axis, source, target, low, high)
 
     def placed(self, turned: Array, points: Array, station: Array) -> Array:
         """Axis values (n, 5) with the turning axes at angles (n, 2) that bring points (n, 3) to the torch's tip."""
         axes = np.zeros((len(points), 5))
         axes[:, self.turning] = turned
-        known = np.isfinite(turned).all(axis=1)
-        at = self.chain.frames(axes[known])
-        here = np.einsum("nij,nj->ni", at.flange[:, :3, :3], points[known]) + at.flange[:, :3, 3]
-        ways = np.swapaxes(at.directions[:, self.sliding], 1, 2)
+        reachable = np.isfinite(turned).all(axis=1)
+        joint_frames = self.chain.frames(axes[reachable])
+        points_now = (
+            np.einsum("nij,nj->ni", joint_frames.flange[:, :3, :3], points[reachable])
+            + joint_frames.flange[:, :3, 3]
+        )
+        slide_directions = np.swapaxes(joint_frames.directions[:, self.sliding], 1, 2)
         slides = np.full((len(points), 3), np.nan)
-        slides[known] = np.linalg.solve(ways, (station[:3, 3] - here)[..., None])[..., 0]
+        slides[reachable] = np.linalg.solve(
+            slide_directions, (station[:3, 3] - points_now)[..., None]
+        )[..., 0]
         axes[:, self.sliding] = slides
-        axes[~known] = np.nan
+        axes[~reachable] = np.nan
         return axes
 
     def _pair(self, tools: Array, torch: Array) -> tuple[Array, Array, Array, Array]:
@@ -103,17 +108,17 @@ class FiveAxis:
         With A, B, C the rotations at zero before, between and after the joints, A Rot(d1) B Rot(d2) C tool = torch is
         Rot(d1) Rot(B d2) (B C tool) = A^T torch.
         """
-        first, second = self.turning
+        first_joint, second_joint = self.turning
         rotations = self.chain.origins[:, :3, :3]
-        before = _product(rotations[: first + 1])
-        between = _product(rotations[first + 1 : second + 1])
-        after = _product(rotations[second + 1 :]) @ self.chain.flange[:3, :3]
-        source = tools @ (between @ after).T
+        rotation_before = _product(rotations[: first_joint + 1])
+        rotation_between = _product(rotations[first_joint + 1 : second_joint + 1])
+        rotation_after = _product(rotations[second_joint + 1 :]) @ self.chain.flange[:3, :3]
+        source = tools @ (rotation_between @ rotation_after).T
         return (
-            self.chain.directions[first],
-            between @ self.chain.directions[second],
+            self.chain.directions[first_joint],
+            rotation_between @ self.chain.directions[second_joint],
             source,
-            before.T @ torch,
+            rotation_before.T @ torch,
         )
 
 

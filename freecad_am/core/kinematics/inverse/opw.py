@@ -123,8 +123,8 @@ class OpwArm:
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
-        found = self.inverse(poses)
-        return found, np.where(np.isnan(found[..., 0]), -1, np.arange(8)[:, None])
+        angles = self.inverse(poses)
+        return angles, np.where(np.isnan(angles[..., 0]), -1, np.arange(8)[:, None])
 
     def branch_of(self, q: ArrayLike) -> Index:
         """The branch index (...) that joint angles `q` (..., 6) are in."""

@@ -15,7 +15,7 @@ from ...geometry import frames
 from ...geometry.obstacles import enclosed
 from ...issues import Text
 from ...kinematics import external, offered
-from ...kinematics.arrangement import of_setup
+from ...kinematics.arrangement import arrangement_of
 from ...kinematics.machines import machine as machines
 from ...kinematics.machines.machine import Machine
 from ...parameters.cell import CellParameters
@@ -67,7 +67,11 @@ def added(
     """A positioner that carries so many kg under a part whose tool axes may not lean, a track along one that is long, of the
     robot's maker where there is one; nothing of a cell with external axes, or a robot that holds the part."""
     robot = machines.load(settings.machine, tuple(folders))
-    if externals(settings.external) or of_setup(settings.setup).carries_part or robot.arm is None:
+    if (
+        externals(settings.external)
+        or arrangement_of(settings.setup).carries_part
+        or robot.arm is None
+    ):
         return
     platform = np.array(settings.deposition_point[:3])
     points = np.concatenate([bead.points for _, _, bead in toolpath])

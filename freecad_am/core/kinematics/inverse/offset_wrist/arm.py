@@ -81,12 +81,12 @@ class OffsetWristArm:
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (16, n) whose words each bears, -1 where there is none."""
-        given = np.asarray(poses, float)
-        result = np.full((MAX_SOLUTIONS, len(given), 6), np.nan)
-        words = np.full((MAX_SOLUTIONS, len(given)), -1, dtype=np.intp)
-        for start in range(0, len(given), CHUNK):
-            piece = slice(start, start + CHUNK)
-            self._solve_piece(given[piece], result[:, piece], words[:, piece])
+        targets = np.asarray(poses, float)
+        result = np.full((MAX_SOLUTIONS, len(targets), 6), np.nan)
+        words = np.full((MAX_SOLUTIONS, len(targets)), -1, dtype=np.intp)
+        for start in range(0, len(targets), CHUNK):
+            rows = slice(start, start + CHUNK)
+            self._solve_piece(targets[rows], result[:, rows], words[:, rows])
         return result, words
 
     def branch_of(self, q: ArrayLike) -> Index:
@@ -95,14 +95,14 @@ class OffsetWristArm:
         flat = angles.reshape(-1, 6)
         back, left = self._sides(flat)
         curves = self._curves(self.chain.forward(flat))
-        each = np.arange(len(flat))
+        rows = np.arange(len(flat))
         side, elbow = np.where(back, -1.0, 1.0), np.where(left, 1.0, -1.0)
         ahead, behind = (
-            search.values(curves, each, flat[:, 5] + step, side, elbow)
+            search.values(curves, rows, flat[:, 5] + step, side, elbow)
             for step in (STEP_RAD, -STEP_RAD)
         )
-        found = self._words(back, left, ahead > behind)
-        return found.reshape(angles.shape[:-1])
+        configurations = self._words(back, left, ahead > behind)
+        return configurations.reshape(angles.shape[:-1])
 
     def bend(self, q: ArrayLike) -> Array:
         """(...) how far angles `q` (..., 6) are from where elbow or wrist is stretched: 0 there, 1 square to it."""
@@ -134,21 +134,21 @@ class OffsetWristArm:
         axis, through = at_rest.directions[5], at_rest.origins[5]
         back = frames.inverse(at_rest.flange)
         moved = poses @ back
-        parts = []
+        circles = []
         for vector, anchor in (
             (self.point - through, through),
             (at_rest.directions[4], np.zeros(3)),
         ):
             along = axis * float(axis @ vector)
             across = vector - along
-            parts.append((along + anchor, across, np.cross(axis, across)))
+            circles.append((along + anchor, across, np.cross(axis, across)))
         rotation = moved[:, :3, :3]
         point = [
-            rotation @ parts[0][0] + moved[:, :3, 3],
-            rotation @ parts[0][1],
-            -(rotation @ parts[0][2]),
+            rotation @ circles[0][0] + moved[:, :3, 3],
+            rotation @ circles[0][1],
+            -(rotation @ circles[0][2]),
         ]
-        five = [rotation @ parts[1][0], rotation @ parts[1][1], -(rotation @ parts[1][2])]
+        five = [rotation @ circles[1][0], rotation @ circles[1][1], -(rotation @ circles[1][2])]
         point[0][:, 2] -= self.above
         square = float(at_rest.directions[3] @ at_rest.directions[4])
         return Curves(
@@ -172,17 +172,17 @@ class OffsetWristArm:
         # the least singular of each configuration first, all others after the eight
         order = np.lexsort((-np.abs(zeros.slope), words, zeros.pose))
         pose, words = zeros.pose[order], words[order]
-        first = np.ones(len(order), dtype=bool)
-        first[1:] = (pose[1:] != pose[:-1]) | (words[1:] != words[:-1])
+        is_first = np.ones(len(order), dtype=bool)
+        is_first[1:] = (pose[1:] != pose[:-1]) | (words[1:] != words[:-1])
         slot = words.copy()
-        further = np.flatnonzero(~first)
+        further = np.flatnonzero(~is_first)
         begins = np.ones(len(further), dtype=bool)
         begins[1:] = pose[further[1:]] != pose[further[:-1]]
         number = np.arange(len(further))
         slot[further] = 8 + number - np.maximum.accumulate(np.where(begins, number, 0))
-        kept = slot < MAX_SOLUTIONS
-        out[slot[kept], pose[kept]] = q[order[kept]]
-        named[slot[kept], pose[kept]] = words[kept]
+        in_range = slot < MAX_SOLUTIONS
+        out[slot[in_range], pose[in_range]] = q[order[in_range]]
+        named[slot[in_range], pose[in_range]] = words[in_range]
 
     def _angles(self, poses: Array, curves: Curves, zeros: Zeros, plane: Array) -> Array:
         """Joint angles (k, 6) of zeros, in [-pi, pi]; sine and cosine (2, k) of the plane, NaN where the point tells it."""
@@ -203,8 +203,8 @@ class OffsetWristArm:
         turned = _less(fore / np.hypot(*fore), self.turns[2])
         normal = z[1] * self.signs[1]
         five, six = (
-            _turned_back(normal, turned, _turned_back(UP, plane, seen))
-            for seen in (np.stack(spot.five), six)
+            _turned_back(normal, turned, _turned_back(UP, plane, direction))
+            for direction in (np.stack(spot.five), six)
         )
         fourth = _towards(z[3], z[4], five)
         six = _turned_back(z[3], fourth / np.hypot(*fourth), six)
@@ -213,9 +213,9 @@ class OffsetWristArm:
         return q.T
 
 
-def _less(one: Array, angle: float) -> Array:
+def _less(sine_cosine: Array, angle: float) -> Array:
     """Sine and cosine (2, k) of angles of which they are given, less an angle."""
-    sine, cosine = one
+    sine, cosine = sine_cosine
     cos, sin = math.cos(angle), math.sin(angle)
     return np.stack([sine * cos - cosine * sin, cosine * cos + sine * sin])
 
@@ -229,9 +229,9 @@ def _turned_back(axis: Array, by: Array, vectors: Array) -> Array:
     return result
 
 
-def _towards(axis: Array, vector: Array, wanted: Array) -> Array:
+def _towards(axis: Array, vector: Array, target: Array) -> Array:
     """Sine and cosine (2, k), of some length, of the angles about an axis (3,) that bring a vector (3,) to those wanted
     (3, k)."""
     across = vector - axis * float(axis @ vector)
-    result: Array = np.stack([np.cross(axis, across), across]) @ wanted
+    result: Array = np.stack([np.cross(axis, across), across]) @ target
     return result

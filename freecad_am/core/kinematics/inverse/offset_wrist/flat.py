@@ -19,12 +19,12 @@ from .plane import Curves
 from .search import SAME_RAD, Zeros
 
 SAMPLES = 24  # of a span, finer where the condition is nearly zero
-LEVEL = 1  # of the search from which steps are divided: samples of a span are as near as those of its first pieces
+SEARCH_LEVEL = 1  # of the search from which steps are divided: samples of a span are as near as those of its first pieces
 
 
 def zeros(curves: Curves, pose: Index, low: Array, high: Array) -> Zeros:
     """All that samples of spans (k,) tell of, on either side of axis 1 and with either elbow, in no order."""
-    pose, low, high = _joined(pose, low, high)
+    pose, low, high = _merge_spans(pose, low, high)
     span = np.repeat(np.arange(len(pose)), 4)
     side, elbow = (
         np.tile(signs, len(pose)) for signs in ([1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0])
@@ -33,17 +33,17 @@ def zeros(curves: Curves, pose: Index, low: Array, high: Array) -> Zeros:
     # one sample more at both ends, for extremes beside them
     share = np.arange(-1, SAMPLES + 2) / SAMPLES
     t = (low[span] - begin)[:, None] + share * (high - low)[span, None]
-    found = search.along(curves, loops, t, LEVEL)
-    reached = np.abs(found.bent[1]) <= 1.0 + EDGE
-    columns: tuple[Any, ...] = found
+    samples = search.along(curves, loops, t, SEARCH_LEVEL)
+    reached = np.abs(samples.bent[1]) <= 1.0 + EDGE
+    columns: tuple[Any, ...] = samples
     return Zeros(*(column[..., reached] for column in columns))
 
 
-def _joined(pose: Index, low: Array, high: Array) -> tuple[Index, Array, Array]:
+def _merge_spans(pose: Index, low: Array, high: Array) -> tuple[Index, Array, Array]:
     """Spans of a pose that meet as one."""
     order = np.lexsort((low, pose))
     pose, low, high = pose[order], low[order], high[order]
-    first = np.ones(len(pose), dtype=bool)
-    first[1:] = (pose[1:] != pose[:-1]) | (low[1:] > high[:-1] + SAME_RAD)
-    at = np.flatnonzero(first)
-    return pose[at], low[at], np.maximum.reduceat(high, at)
+    is_first = np.ones(len(pose), dtype=bool)
+    is_first[1:] = (pose[1:] != pose[:-1]) | (low[1:] > high[:-1] + SAME_RAD)
+    begins = np.flatnonzero(is_first)
+    return pose[begins], low[begins], np.maximum.reduceat(high, begins)

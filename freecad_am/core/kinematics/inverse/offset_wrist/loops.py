@@ -35,10 +35,10 @@ class Loops(NamedTuple):
     mean: Array
     swing: Array
 
-    def of(self, some: Index) -> Loops:
+    def of(self, rows: Index) -> Loops:
         """Some of them."""
         columns: tuple[Any, ...] = self
-        return Loops(*(column[some] for column in columns))
+        return Loops(*(column[rows] for column in columns))
 
 
 def loops_of(curves: Curves) -> Loops:
@@ -46,33 +46,37 @@ def loops_of(curves: Curves) -> Loops:
     if curves.ahead:
         return _offset_loops(curves)
     mean, swing, out = _distances(curves)
-    near = ((curves.upper + curves.fore) ** 2 - mean) / swing
-    far = ((curves.upper - curves.fore) ** 2 - mean) / swing
-    stretched, folded = near < 1.0, far > -1.0
-    reached = (near > -1.0 - EDGE) & (far < 1.0 + EDGE)
-    near_at, far_at = np.arccos(np.clip(near, -1.0, 1.0)), np.arccos(np.clip(far, -1.0, 1.0))
-    whole, both = reached & ~stretched & ~folded, reached & stretched & folded
+    near_cosine = ((curves.upper + curves.fore) ** 2 - mean) / swing
+    far_cosine = ((curves.upper - curves.fore) ** 2 - mean) / swing
+    stretched, folded = near_cosine < 1.0, far_cosine > -1.0
+    reached = (near_cosine > -1.0 - EDGE) & (far_cosine < 1.0 + EDGE)
+    near_at, far_at = (
+        np.arccos(np.clip(near_cosine, -1.0, 1.0)),
+        np.arccos(np.clip(far_cosine, -1.0, 1.0)),
+    )
+    full_circle, two_arcs = reached & ~stretched & ~folded, reached & stretched & folded
     none, middle_of, half_of = (
         np.zeros(len(mean)),
         0.5 * (near_at + far_at),
         0.5 * (far_at - near_at),
     )
     kinds = [
-        (whole, 1.0, out, none),
-        (whole, -1.0, out, none),
+        (full_circle, 1.0, out, none),
+        (full_circle, -1.0, out, none),
         (reached & stretched & ~folded, 0.0, out + math.pi, math.pi - near_at),
         (reached & folded & ~stretched, 0.0, out, far_at),
-        (both, 0.0, out + middle_of, half_of),
-        (both, 0.0, out - middle_of, -half_of),
+        (two_arcs, 0.0, out + middle_of, half_of),
+        (two_arcs, 0.0, out - middle_of, -half_of),
     ]
     loops = []
-    for some, elbow, at, half in kinds:
-        pose = np.flatnonzero(some)
-        one = np.ones(len(pose))
+    for selected, elbow, middles, half in kinds:
+        pose = np.flatnonzero(selected)
+        ones = np.ones(len(pose))
         of_pose = tuple[Any, ...](
-            column[pose] for column in (at, half, near_at, far_at, stretched, folded, mean, swing)
+            column[pose]
+            for column in (middles, half, near_at, far_at, stretched, folded, mean, swing)
         )
-        loops += [Loops(pose, side * one, elbow * one, *of_pose) for side in (1.0, -1.0)]
+        loops += [Loops(pose, side * ones, elbow * ones, *of_pose) for side in (1.0, -1.0)]
     return Loops(*(np.concatenate(columns) for columns in zip(*loops)))
 
 
@@ -96,16 +100,16 @@ def _distances(curves: Curves) -> tuple[Array, Array, Array]:
 
 def _offset_loops(curves: Curves) -> Loops:
     """The loops of all poses, on both sides, of an arm whose axis 2 lies ahead of axis 1."""
-    found = []
+    loops = []
     for side in (1.0, -1.0):
-        pose, begin, end, stretched, folded, whole = shoulder_loops.spans(curves, side)
-        one, zero = np.ones(len(pose)), np.zeros(len(whole))
+        pose, begin, end, stretched, folded, full_circles = shoulder_loops.spans(curves, side)
+        ones, zero = np.ones(len(pose)), np.zeros(len(full_circles))
         no = zero > 0.0
-        none = 0.0 * one
-        found.append(
+        none = 0.0 * ones
+        loops.append(
             Loops(
                 pose,
-                side * one,
+                side * ones,
                 none,
                 0.5 * (begin + end),
                 0.5 * (end - begin),
@@ -117,59 +121,65 @@ def _offset_loops(curves: Curves) -> Loops:
                 none,
             )
         )
-        found += [
-            Loops(whole, zero + side, zero + elbow, *(zero,) * 4, no, no, zero, zero)
+        loops += [
+            Loops(full_circles, zero + side, zero + elbow, *(zero,) * 4, no, no, zero, zero)
             for elbow in (1.0, -1.0)
         ]
-    return Loops(*(np.concatenate(columns) for columns in zip(*found)))
+    return Loops(*(np.concatenate(columns) for columns in zip(*loops)))
 
 
-def angle_along(curves: Curves, at: Loops, t: Array) -> tuple[Array, Array]:
+def angle_along(curves: Curves, loops: Loops, t: Array) -> tuple[Array, Array]:
     """The angle of axis 6 (k,) at t along loops, and sine and cosine (2, k) of the elbow's bend, exact to its last digits
     where the arm is stretched or folded."""
-    whole = at.elbow != 0.0
-    begun, left = np.sin(0.5 * t), np.cos(0.5 * t)
-    course = begun * begun
-    half = np.abs(at.half)
+    full_circle = loops.elbow != 0.0
+    sine_half, cosine_half = np.sin(0.5 * t), np.cos(0.5 * t)
+    course = sine_half * sine_half
+    half = np.abs(loops.half)
     since = 2.0 * half * course
-    angle = np.where(whole, at.middle + t, at.middle - at.half * (1.0 - 2.0 * course))
-    if curves.ahead:
-        elbow = np.where(whole, at.elbow, np.where(begun * left >= 0.0, 1.0, -1.0))
-        # half the way from the nearer end, and whether the arm is stretched there
-        first = course <= 0.5
-        since = np.where(first, at.half * course, -at.half * left * left)
-        ends = np.where(first, at.near, at.far)
-        stretched = np.where(first, at.stretched, ~at.folded)
-        return angle, _bent_from_end(curves, at, angle, elbow, (ends, since, stretched))
-    from_out = np.where(whole, t, np.where(at.stretched, at.near + since, since - half))
-    scale = 1.0 / (2.0 * curves.upper * curves.fore)
-    squared = at.mean + at.swing * np.cos(from_out)
-    begin, end = np.sin(half * course), np.sin(half * left * left)
-    # squared distances to where the arm is stretched, and to where it is folded: differences of cosines as products
-    other = np.where(at.folded, np.sin(0.5 * (from_out + at.near)), end)
-    to_stretched = np.where(
-        at.stretched, 2.0 * at.swing * other * begin, (curves.upper + curves.fore) ** 2 - squared
+    angle = np.where(
+        full_circle, loops.middle + t, loops.middle - loops.half * (1.0 - 2.0 * course)
     )
-    other = np.where(at.stretched, np.sin(0.5 * (from_out + at.far)), begin)
+    if curves.ahead:
+        elbow = np.where(
+            full_circle, loops.elbow, np.where(sine_half * cosine_half >= 0.0, 1.0, -1.0)
+        )
+        # half the way from the nearer end, and whether the arm is stretched there
+        first_half = course <= 0.5
+        since = np.where(first_half, loops.half * course, -loops.half * cosine_half * cosine_half)
+        ends = np.where(first_half, loops.near, loops.far)
+        stretched = np.where(first_half, loops.stretched, ~loops.folded)
+        return angle, _bent_from_end(curves, loops, angle, elbow, (ends, since, stretched))
+    from_out = np.where(full_circle, t, np.where(loops.stretched, loops.near + since, since - half))
+    scale = 1.0 / (2.0 * curves.upper * curves.fore)
+    squared = loops.mean + loops.swing * np.cos(from_out)
+    begin, end = np.sin(half * course), np.sin(half * cosine_half * cosine_half)
+    # squared distances to where the arm is stretched, and to where it is folded: differences of cosines as products
+    factor = np.where(loops.folded, np.sin(0.5 * (from_out + loops.near)), end)
+    to_stretched = np.where(
+        loops.stretched,
+        2.0 * loops.swing * factor * begin,
+        (curves.upper + curves.fore) ** 2 - squared,
+    )
+    factor = np.where(loops.stretched, np.sin(0.5 * (from_out + loops.far)), begin)
     to_folded = np.where(
-        at.folded, 2.0 * at.swing * other * end, squared - (curves.upper - curves.fore) ** 2
+        loops.folded, 2.0 * loops.swing * factor * end, squared - (curves.upper - curves.fore) ** 2
     )
     cosine = 1.0 - to_stretched * scale
     sine = scale * np.sqrt(np.maximum(to_stretched, 0.0) * np.maximum(to_folded, 0.0))
-    sign = np.where(whole, at.elbow, np.where(begun * left >= 0.0, 1.0, -1.0))
+    sign = np.where(full_circle, loops.elbow, np.where(sine_half * cosine_half >= 0.0, 1.0, -1.0))
     return angle, np.stack([sign * sine, cosine])
 
 
 def _bent_from_end(
-    curves: Curves, at: Loops, angle: Array, elbow: Array, end: tuple[Array, Array, Array]
+    curves: Curves, loops: Loops, angle: Array, elbow: Array, end: tuple[Array, Array, Array]
 ) -> Array:
     """Sine and cosine (2, k) of the elbow's bend, exact near the end of a span: its angle, half the way since, and whether
     the arm is stretched there."""
     ends, since, stretched = end
     longest, shortest = (curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2
-    squared = shoulder_loops.squared_distance(curves, at.pose, angle, at.side)
-    nearer = np.abs(shoulder_loops.difference(curves, at.pose, ends, since, at.side))
-    free = at.elbow != 0.0
+    squared = shoulder_loops.squared_distance(curves, loops.pose, angle, loops.side)
+    nearer = np.abs(shoulder_loops.difference(curves, loops.pose, ends, since, loops.side))
+    free = loops.elbow != 0.0
     to_stretched = np.where(free | ~stretched, longest - squared, nearer)
     to_folded = np.where(free | stretched, squared - shortest, nearer)
     scale = 1.0 / (2.0 * curves.upper * curves.fore)

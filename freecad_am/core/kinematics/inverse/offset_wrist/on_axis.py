@@ -33,7 +33,7 @@ def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
     row, angle = _passes(curves, length)
     if not len(row):
         return zeros, np.full((2, len(zeros.pose)), np.nan)
-    found, plane = _solved(
+    solved, plane = _solved(
         curves,
         length,
         np.repeat(row, 4),
@@ -41,39 +41,42 @@ def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
         np.tile([1.0, 1.0, -1.0, -1.0], len(row)),
         np.tile([1.0, -1.0], 2 * len(row)),
     )
-    kept = np.flatnonzero(~_replaced(curves, zeros, found, plane, row, NOISE_SHARE * length))
+    unreplaced = np.flatnonzero(~_replaced(curves, zeros, solved, plane, row, NOISE_SHARE * length))
     together = Zeros(
-        *(np.concatenate([one[..., kept], other], axis=-1) for one, other in zip(zeros, found))
+        *(
+            np.concatenate([column[..., unreplaced], solved_column], axis=-1)
+            for column, solved_column in zip(zeros, solved)
+        )
     )
-    return together, np.concatenate([np.full((2, len(kept)), np.nan), plane], axis=1)
+    return together, np.concatenate([np.full((2, len(unreplaced)), np.nan), plane], axis=1)
 
 
 def _replaced(
-    curves: Curves, zeros: Zeros, found: Zeros, plane: Array, passing: Index, noise: float
+    curves: Curves, zeros: Zeros, solved: Zeros, plane: Array, passing: Index, noise: float
 ) -> Mask:
     """Which zeros (k,) at poses `passing` were found exactly, or have a plane that cannot be told."""
-    known = np.zeros(curves.point.shape[2], dtype=bool)
-    known[passing] = True
-    result: Mask = known[zeros.pose]
-    there = np.flatnonzero(result)
-    x, y = zeros.side[there] * _point(curves, zeros.pose[there], zeros.angle[there])[0][:2]
-    away = np.hypot(x, y)
-    apart = zeros.angle[there, None] - found.angle
-    same = np.abs(apart - TURN * np.rint(apart * (1.0 / TURN))) < SAME_RAD
-    for own, other in (
-        (zeros.pose, found.pose),
-        (zeros.side, found.side),
-        (zeros.elbow, found.elbow),
+    is_passing = np.zeros(curves.point.shape[2], dtype=bool)
+    is_passing[passing] = True
+    result: Mask = is_passing[zeros.pose]
+    rows = np.flatnonzero(result)
+    x, y = zeros.side[rows] * _point(curves, zeros.pose[rows], zeros.angle[rows])[0][:2]
+    radius = np.hypot(x, y)
+    angle_gap = zeros.angle[rows, None] - solved.angle
+    same = np.abs(angle_gap - TURN * np.rint(angle_gap * (1.0 / TURN))) < SAME_RAD
+    for zero_column, solved_column in (
+        (zeros.pose, solved.pose),
+        (zeros.side, solved.side),
+        (zeros.elbow, solved.elbow),
     ):
-        same &= own[there, None] == other
-    x, y = x[:, None] - away[:, None] * plane[1], y[:, None] - away[:, None] * plane[0]
-    same &= np.hypot(x, y) < SAME_SINE * away[:, None]
+        same &= zero_column[rows, None] == solved_column
+    x, y = x[:, None] - radius[:, None] * plane[1], y[:, None] - radius[:, None] * plane[0]
+    same &= np.hypot(x, y) < SAME_SINE * radius[:, None]
     mismatch = np.abs(
         geometry(
-            curves, zeros.pose[there], zeros.angle[there], zeros.side[there], zeros.bent[:, there]
+            curves, zeros.pose[rows], zeros.angle[rows], zeros.side[rows], zeros.bent[:, rows]
         ).value
     )
-    result[there] = (away < noise) | (mismatch > MISMATCH) | same.any(axis=1)
+    result[rows] = (radius < noise) | (mismatch > MISMATCH) | same.any(axis=1)
     return result
 
 
@@ -99,10 +102,10 @@ def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
     if not len(likely):
         return likely, np.zeros(0)
     angles = np.arange(SAMPLES) * (TURN / SAMPLES)
-    at = _point(curves, likely[:, None], angles)[0]  # type: ignore[arg-type]
-    away = np.hypot(at[0], at[1])
+    points = _point(curves, likely[:, None], angles)[0]  # type: ignore[arg-type]
+    radius = np.hypot(points[0], points[1])
     row, number = np.nonzero(
-        (away <= np.roll(away, 1, axis=1)) & (away < np.roll(away, -1, axis=1))
+        (radius <= np.roll(radius, 1, axis=1)) & (radius < np.roll(radius, -1, axis=1))
     )
     pose, angle = likely[row], angles[number]
     for _ in range(ROUNDS):
@@ -117,37 +120,45 @@ def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
 
 
 def _solved(
-    curves: Curves, length: float, pose: Index, angle: Array, elbow: Array, way: Array
+    curves: Curves, length: float, pose: Index, angle: Array, elbow: Array, sense: Array
 ) -> tuple[Zeros, Array]:
     """Zeros near angles of axis 6 (k,), of an elbow 1 or -1 and one of the two ways 1 or -1 in which axis 5 is met, and sine
     and cosine (2, k) of the plane."""
-    ahead, before = np.zeros(len(pose)), (angle, np.full(len(pose), np.nan))
+    ahead, previous = np.zeros(len(pose)), (angle, np.full(len(pose), np.nan))
     for _ in range(ROUNDS):
         (x, y, above), (u, v, _), _ = _point(curves, pose, angle)
-        bent, along, five, plane, sure = _met(curves, pose, angle, ahead, above, elbow, way)
+        bent, along, five, plane, sure = _plane_of_meeting(
+            curves, pose, angle, ahead, above, elbow, sense
+        )
         ahead = x * plane[1] + y * plane[0]
         off, slope = x * plane[0] - y * plane[1], u * plane[0] - v * plane[1]
         # the plane turns with the angle too: a secant, once the steps are those of one
-        moved = angle - before[0]
+        moved = angle - previous[0]
         with np.errstate(invalid="ignore", divide="ignore"):
-            secant = (off - before[1]) / moved
+            secant = (off - previous[1]) / moved
         slope = np.where(
             np.isfinite(secant) & (np.abs(moved) > 1e-10) & (secant * slope > 0.0), secant, slope
         )
-        before = angle, off
+        previous = angle, off
         angle = angle - np.clip(off / np.where(slope == 0.0, TINY, slope), -STEP_RAD, STEP_RAD)
-    kept = np.flatnonzero(
+    valid = np.flatnonzero(
         sure & (np.abs(off) < PLANE_SHARE * length) & (np.abs(ahead) < SOLVED_SHARE * length)
     )
     sweep = (x * v - y * u) / (x * x + y * y + TINY)
     rising = along[0] * (plane[1] * five[1] - plane[0] * five[0]) * sweep
     side = np.where(ahead >= 0.0, 1.0, -1.0)
     columns: tuple[Any, ...] = (pose, angle, side, elbow, bent, rising)
-    return Zeros(*(column[..., kept] for column in columns)), plane[:, kept]
+    return Zeros(*(column[..., valid] for column in columns)), plane[:, valid]
 
 
-def _met(
-    curves: Curves, pose: Index, angle: Array, ahead: Array, above: Array, elbow: Array, way: Array
+def _plane_of_meeting(
+    curves: Curves,
+    pose: Index,
+    angle: Array,
+    ahead: Array,
+    above: Array,
+    elbow: Array,
+    sense: Array,
 ) -> tuple[Array, Array, Array, Array, Mask]:
     """Sine and cosine (2, k) of the elbow's bend, axis 4 in the plane (2, k), axis 5 (3, k), sine and cosine (2, k) of the
     plane in which they meet as they must, and where they can (k,)."""
@@ -164,10 +175,10 @@ def _met(
     along = np.stack([fore[0] * cos + fore[1] * sin, fore[1] * cos - fore[0] * sin])
     constant, by_cos, by_sin = curves.five[:, :, pose]
     five = constant + np.cos(angle) * by_cos + np.sin(angle) * by_sin
-    wanted = curves.square - along[1] * five[2]
+    target = curves.square - along[1] * five[2]
     size = along[0] * np.hypot(five[0], five[1])
-    share = wanted / np.where(size == 0.0, TINY, size)
-    towards = np.arctan2(five[1], five[0]) + way * np.arccos(np.clip(share, -1.0, 1.0))
+    share = target / np.where(size == 0.0, TINY, size)
+    towards = np.arctan2(five[1], five[0]) + sense * np.arccos(np.clip(share, -1.0, 1.0))
     return (
         bent,
         along,

@@ -64,12 +64,12 @@ def plane_of(curves: Curves, pose: Index, angle: Array, side: Array) -> Plane:
     """What is known of the arm at angles of axis 6 (k,) without its elbow."""
     cos, sin = np.cos(angle), np.sin(angle)
     x, y, above = (
-        part[0][pose] + cos * part[1][pose] + sin * part[2][pose]
-        for part in curves.point.transpose(1, 0, 2)
+        harmonics[0][pose] + cos * harmonics[1][pose] + sin * harmonics[2][pose]
+        for harmonics in curves.point.transpose(1, 0, 2)
     )
     five = [
-        part[0][pose] + cos * part[1][pose] + sin * part[2][pose]
-        for part in curves.five.transpose(1, 0, 2)
+        harmonics[0][pose] + cos * harmonics[1][pose] + sin * harmonics[2][pose]
+        for harmonics in curves.five.transpose(1, 0, 2)
     ]
     x = x + TINY
     ahead = side * np.sqrt(x * x + y * y)

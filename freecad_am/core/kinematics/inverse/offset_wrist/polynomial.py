@@ -83,15 +83,15 @@ def zeros(curves: Curves) -> Zeros:
         *curves.lean,
         curves.square,
     )
-    parts = np.stack([curves.point * length, curves.five])
+    harmonics = np.stack([curves.point * length, curves.five])
     even = is_even(curves)
-    number, low, high, near, close, touching, drowned = trigonometric.parted(
-        _coefficients(arm, parts, even)
+    number, low, high, bounds_near, close, touching, drowned = trigonometric.isolate_zeros(
+        _coefficients(arm, harmonics, even)
     )
-    of_zero = np.take(parts, number, axis=3)
+    of_zero = np.take(harmonics, number, axis=3)
     side = np.ones(len(number)) if even else _side(arm, of_zero, low, high)
-    angle, sure, away = _roots(arm, of_zero, side, low, high, near)
-    close[number[~sure | (away < NEAR_AXIS)]] = True
+    angle, sure, distance = _roots(arm, of_zero, side, low, high, bounds_near)
+    close[number[~sure | (distance < NEAR_AXIS)]] = True
     if not sure.all():
         # where three meet, rounding moves a zero by more than is asked for
         moved = np.flatnonzero(~sure)
@@ -99,18 +99,23 @@ def zeros(curves: Curves) -> Zeros:
             np.concatenate([touching[0], number[moved]]),
             np.concatenate([touching[1], angle[moved]]),
         )
-        kept = np.flatnonzero(sure)
-        number, angle, side, of_zero = number[kept], angle[kept], side[kept], of_zero[..., kept]
-    found = _solutions(arm, of_zero, number, angle, side)
+        sure_rows = np.flatnonzero(sure)
+        number, angle, side, of_zero = (
+            number[sure_rows],
+            angle[sure_rows],
+            side[sure_rows],
+            of_zero[..., sure_rows],
+        )
+    solutions = _solutions(arm, of_zero, number, angle, side)
     if even:
-        found = _both_sides(found)
-    left = np.flatnonzero(close)
-    if not len(left):
-        return found
-    others = search.zeros(
+        solutions = _both_sides(solutions)
+    doubtful = np.flatnonzero(close)
+    if not len(doubtful):
+        return solutions
+    searched = search.zeros(
         Curves(
-            curves.point[:, :, left],
-            curves.five[:, :, left],
+            curves.point[:, :, doubtful],
+            curves.five[:, :, doubtful],
             curves.upper,
             curves.fore,
             curves.lean,
@@ -118,74 +123,87 @@ def zeros(curves: Curves) -> Zeros:
             curves.ahead,
         )
     )
-    found = _together(found, others._replace(pose=left[others.pose]), close)
-    found = _with(found, _touching(arm, curves, parts, *touching))
-    return _with(found, without_digits.zeros(curves, *drowned)) if len(drowned[0]) else found
+    solutions = _together(solutions, searched._replace(pose=doubtful[searched.pose]), close)
+    solutions = _with(solutions, _touching(arm, curves, harmonics, *touching))
+    return (
+        _with(solutions, without_digits.zeros(curves, *drowned)) if len(drowned[0]) else solutions
+    )
 
 
-def _touching(arm: _Lengths, curves: Curves, parts: Array, number: Index, angle: Array) -> Zeros:
+def _touching(
+    arm: _Lengths, curves: Curves, harmonics: Array, number: Index, angle: Array
+) -> Zeros:
     """Solutions where the polynomial touches zero and no sign changes, those of them that give back their pose."""
     even = is_even(curves)
     # on either side of axis 1
     side = np.repeat([1.0] if even else [1.0, -1.0], len(number))
     number, angle = np.tile(number, 1 if even else 2), np.tile(angle, 1 if even else 2)
-    found = _solutions(arm, np.take(parts, number, axis=3), number, angle, side)
+    solutions = _solutions(arm, np.take(harmonics, number, axis=3), number, angle, side)
     if even:
-        found = _both_sides(found)
-    off = np.abs(search.values(curves, found.pose, found.angle, found.side, found.elbow))
-    kept, columns = np.flatnonzero(off < MEETS), tuple[Any, ...](found)
-    return Zeros(*(column[..., kept] for column in columns))
+        solutions = _both_sides(solutions)
+    off = np.abs(
+        search.values(curves, solutions.pose, solutions.angle, solutions.side, solutions.elbow)
+    )
+    valid, columns = np.flatnonzero(off < MEETS), tuple[Any, ...](solutions)
+    return Zeros(*(column[..., valid] for column in columns))
 
 
-def _with(found: Zeros, more: Zeros) -> Zeros:
+def _with(zeros: Zeros, extra: Zeros) -> Zeros:
     """Zeros, and those of some more that are none of them, each once."""
-    for k in range(len(more.pose)):
+    for k in range(len(extra.pose)):
         same = (
-            (found.pose == more.pose[k])
-            & (found.side == more.side[k])
-            & (found.elbow == more.elbow[k])
+            (zeros.pose == extra.pose[k])
+            & (zeros.side == extra.side[k])
+            & (zeros.elbow == extra.elbow[k])
         )
-        apart = found.angle[same] - more.angle[k]
-        if not (np.abs(apart - TURN * np.rint(apart * (1.0 / TURN))) < TWICE_RAD).any():
-            found = Zeros(
+        angle_gap = zeros.angle[same] - extra.angle[k]
+        if not (np.abs(angle_gap - TURN * np.rint(angle_gap * (1.0 / TURN))) < TWICE_RAD).any():
+            zeros = Zeros(
                 *(
-                    np.concatenate([own, other[..., k : k + 1]], axis=-1)
-                    for own, other in zip(found, more)
+                    np.concatenate([zero_column, extra_column[..., k : k + 1]], axis=-1)
+                    for zero_column, extra_column in zip(zeros, extra)
                 )
             )
-    return found
+    return zeros
 
 
-def _together(found: Zeros, others: Zeros, close: Mask) -> Zeros:
+def _together(zeros: Zeros, searched: Zeros, close: Mask) -> Zeros:
     """Zeros found here, and those of the search at poses (n,) that are `close`, each once."""
-    sure = np.flatnonzero(~close[found.pose])
-    unsure = np.flatnonzero(close[found.pose])
-    same = np.ones((len(unsure), len(others.pose)), dtype=bool)
-    for own, other in (
-        (found.pose, others.pose),
-        (found.side, others.side),
-        (found.elbow, others.elbow),
+    sure = np.flatnonzero(~close[zeros.pose])
+    unsure = np.flatnonzero(close[zeros.pose])
+    same = np.ones((len(unsure), len(searched.pose)), dtype=bool)
+    for zero_column, searched_column in (
+        (zeros.pose, searched.pose),
+        (zeros.side, searched.side),
+        (zeros.elbow, searched.elbow),
     ):
-        same &= own[unsure, None] == other
-    apart = found.angle[unsure, None] - others.angle
-    same &= np.abs(apart - TURN * np.rint(apart * (1.0 / TURN))) < SAME_RAD
-    kept = np.concatenate([sure, unsure[~same.any(axis=1)]])
+        same &= zero_column[unsure, None] == searched_column
+    angle_gap = zeros.angle[unsure, None] - searched.angle
+    same &= np.abs(angle_gap - TURN * np.rint(angle_gap * (1.0 / TURN))) < SAME_RAD
+    unmatched = np.concatenate([sure, unsure[~same.any(axis=1)]])
     return Zeros(
-        *(np.concatenate([own[..., kept], other], axis=-1) for own, other in zip(found, others))
+        *(
+            np.concatenate([zero_column[..., unmatched], searched_column], axis=-1)
+            for zero_column, searched_column in zip(zeros, searched)
+        )
     )
 
 
-def _coefficients(arm: _Lengths, parts: Array, even: bool) -> Array:
+def _coefficients(arm: _Lengths, harmonics: Array, even: bool) -> Array:
     """Of the polynomial (9 or 17, n), for constant, cosine and sine parts of point and axis 5 (2, 3, 3, n)."""
     degree = 4 if even else 8
     nodes = 2 * degree + 2
-    at = trigonometric.angles(nodes)
-    first = np.stack([np.ones(nodes), np.cos(at), np.sin(at)], axis=1)
-    point, five = ([first @ np.ascontiguousarray(part[:, k]) for k in range(3)] for part in parts)
-    whole, by_radius, flat = _halves(arm, point, five)
-    value: Array = whole if even else whole * whole - flat * by_radius * by_radius
+    node_angles = trigonometric.angles(nodes)
+    basis = np.stack([np.ones(nodes), np.cos(node_angles), np.sin(node_angles)], axis=1)
+    point, five = (
+        [basis @ np.ascontiguousarray(harmonic[:, k]) for k in range(3)] for harmonic in harmonics
+    )
+    constant_part, by_radius, flat = _halves(arm, point, five)
+    value: Array = (
+        constant_part if even else constant_part * constant_part - flat * by_radius * by_radius
+    )
     weights = np.where(np.arange(2 * degree + 1) == 0, 1.0, 2.0) / nodes
-    result: Array = (trigonometric.harmonics(degree, at) * weights[:, None]) @ value
+    result: Array = (trigonometric.harmonics(degree, node_angles) * weights[:, None]) @ value
     return result
 
 
@@ -205,7 +223,7 @@ def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array
         (arm.cos * arm.ahead) * up - arm.sin * level,
     )
     sizes = within * within + flat * up * up
-    whole = squared * sizes - across * across - flat * by_across * by_across
+    constant_part = squared * sizes - across * across - flat * by_across * by_across
     by_radius = 2.0 * (factor * common * sizes - across * by_across)
     if arm.square:
         # what is multiplied by q, then what by its square
@@ -213,40 +231,40 @@ def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array
             arm.sin * rise - (arm.cos * arm.ahead) * within,
             (arm.sin * arm.ahead) * up + arm.cos * level,
         )
-        whole -= (2.0 * arm.square) * flat * (common * by_out + factor * out)
+        constant_part -= (2.0 * arm.square) * flat * (common * by_out + factor * out)
         by_radius -= (2.0 * arm.square) * (common * out + factor * by_out * flat)
-        whole += arm.square**2 * flat * (flat + z * z + arm.ahead**2)
+        constant_part += arm.square**2 * flat * (flat + z * z + arm.ahead**2)
         by_radius -= (2.0 * arm.square**2 * arm.ahead) * flat
-    return whole, by_radius, flat
+    return constant_part, by_radius, flat
 
 
-def _side(arm: _Lengths, parts: Array, low: Array, high: Array) -> Array:
+def _side(arm: _Lengths, harmonics: Array, low: Array, high: Array) -> Array:
     """1 where the zero of a step is one in front of axis 1, -1 where it is one at the back, 0 where this cannot be told."""
     ends = []
     for angle in (low, high):
-        point, five = _turned(parts, np.cos(angle), np.sin(angle))
-        whole, by_radius, flat = _halves(arm, list(point), list(five))
+        point, five = _turned(harmonics, np.cos(angle), np.sin(angle))
+        constant_part, by_radius, flat = _halves(arm, list(point), list(five))
         by_radius *= np.sqrt(flat)
-        ends.append((whole + by_radius >= 0.0, whole - by_radius >= 0.0))
-    front, back = (one != other for one, other in zip(*ends))
+        ends.append((constant_part + by_radius >= 0.0, constant_part - by_radius >= 0.0))
+    front, back = (at_low != at_high for at_low, at_high in zip(*ends))
     result: Array = front.astype(float) - back
     return result
 
 
-def _turned(parts: Array, cos: Array, sin: Array) -> Array:
+def _turned(harmonics: Array, cos: Array, sin: Array) -> Array:
     """Point and axis 5 (2, 3, k)."""
-    result: Array = parts[:, 1] * cos
-    result += parts[:, 2] * sin
-    result += parts[:, 0]
+    result: Array = harmonics[:, 1] * cos
+    result += harmonics[:, 2] * sin
+    result += harmonics[:, 0]
     return result
 
 
-def _terms(arm: _Lengths, parts: Array, angle: Array, side: Array) -> _Terms:
+def _terms(arm: _Lengths, harmonics: Array, angle: Array, side: Array) -> _Terms:
     """Of points and axes 5 (2, 3, 3, k) at angles (k,), on a side of axis 1."""
     cos, sin = np.cos(angle), np.sin(angle)
-    (x, y, z), (five_x, five_y, up) = _turned(parts, cos, sin)
-    moved = parts[:, 2] * cos
-    moved -= parts[:, 1] * sin
+    (x, y, z), (five_x, five_y, up) = _turned(harmonics, cos, sin)
+    moved = harmonics[:, 2] * cos
+    moved -= harmonics[:, 1] * sin
     (x_, y_, z_), (five_x_, five_y_, up_) = moved
     flat = x * x + y * y
     radius = side * (np.sqrt(flat) + TINY)
@@ -288,48 +306,58 @@ def _terms(arm: _Lengths, parts: Array, angle: Array, side: Array) -> _Terms:
 
 
 def _roots(
-    arm: _Lengths, parts: Array, side: Array, low: Array, high: Array, near: Array
+    arm: _Lengths, harmonics: Array, side: Array, low: Array, high: Array, first_guess: Array
 ) -> tuple[Array, Mask, Array]:
     """The zero (k,) in each step, whether it was found, and how far from axis 1: Newton's method, kept in the step."""
-    angle, step, away = near.copy(), np.full(len(near), np.inf), np.zeros(len(near))
-    active, some, its_side = np.arange(len(near)), parts, side
+    angle, step, radii = (
+        first_guess.copy(),
+        np.full(len(first_guess), np.inf),
+        np.zeros(len(first_guess)),
+    )
+    active, active_harmonics, its_side = np.arange(len(first_guess)), harmonics, side
     if not side.all():
         active = np.flatnonzero(side)
-        some, its_side = parts[..., active], side[active]
+        active_harmonics, its_side = harmonics[..., active], side[active]
     for _ in range(NEWTON):
-        at = _terms(arm, some, angle[active], its_side)
-        moved = at.value / np.where(at.slope == 0.0, TINY, at.slope)
-        step[active], away[active] = moved, np.abs(at.radius)
+        terms = _terms(arm, active_harmonics, angle[active], its_side)
+        moved = terms.value / np.where(terms.slope == 0.0, TINY, terms.slope)
+        step[active], radii[active] = moved, np.abs(terms.radius)
         angle[active] = np.clip(angle[active] - moved, low[active], high[active])
         going = np.flatnonzero(np.abs(moved) > NEWTON_RAD)
         if not len(going):
             break
         if 2 * len(going) < len(active):
             # most are there: go on with the others alone
-            active, some, its_side = active[going], some[..., going], its_side[going]
-    return angle, np.abs(step) <= NEWTON_RAD, away
+            active, active_harmonics, its_side = (
+                active[going],
+                active_harmonics[..., going],
+                its_side[going],
+            )
+    return angle, np.abs(step) <= NEWTON_RAD, radii
 
 
-def _solutions(arm: _Lengths, parts: Array, pose: Index, angle: Array, side: Array) -> Zeros:
+def _solutions(arm: _Lengths, harmonics: Array, pose: Index, angle: Array, side: Array) -> Zeros:
     """The solutions at zeros of the polynomial."""
-    at = _terms(arm, parts, angle, side)
-    wanted = arm.square * at.squared * at.radius
-    level = at.common * at.level
-    turn = (wanted - level) / np.where(at.across == 0.0, TINY, at.across)
+    terms = _terms(arm, harmonics, angle, side)
+    target = arm.square * terms.squared * terms.radius
+    level = terms.common * terms.level
+    turn = (target - level) / np.where(terms.across == 0.0, TINY, terms.across)
     # far from the stretched arm its height in the triangle has the more digits of the two
-    height = np.sqrt(np.maximum(at.squared - at.common * at.common, 0.0))
-    turn = np.where(np.abs(at.radius) * height > np.abs(at.across), np.copysign(height, turn), turn)
-    bent = np.stack([turn, at.common - arm.fore]) * (1.0 / arm.upper)
-    by_angle = 0.5 * at.slope / np.where(level == wanted, TINY, (level - wanted) * at.radius)
+    height = np.sqrt(np.maximum(terms.squared - terms.common * terms.common, 0.0))
+    turn = np.where(
+        np.abs(terms.radius) * height > np.abs(terms.across), np.copysign(height, turn), turn
+    )
+    bent = np.stack([turn, terms.common - arm.fore]) * (1.0 / arm.upper)
+    by_angle = 0.5 * terms.slope / np.where(level == target, TINY, (level - target) * terms.radius)
     return Zeros(pose, angle, side, np.where(turn >= 0.0, 1.0, -1.0), bent, by_angle)
 
 
-def _both_sides(found: Zeros) -> Zeros:
+def _both_sides(front: Zeros) -> Zeros:
     """Solutions in front of axis 1, and those at the back at the same angles."""
     pose, angle, side, elbow, bent, slope = (
-        np.concatenate([column, column], axis=-1) for column in found
+        np.concatenate([column, column], axis=-1) for column in front
     )
-    count = len(found.pose)
+    count = len(front.pose)
     side[count:] *= -1.0
     elbow[count:] *= -1.0
     bent[0, count:] *= -1.0

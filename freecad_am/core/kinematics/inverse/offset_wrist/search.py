@@ -22,7 +22,7 @@ from .plane import TINY, Curves, Spot, geometry, plane_of, spot_of
 SAMPLES = 36
 SAMPLE_SHIFT = 0.37  # of a step: no sample where the arm is stretched or folded, where a zero of it would have either sign
 PIECES, LEVELS = 8, 6  # into which a step is divided where the arm swings fast, and how often again
-FLAT = (
+FLAT_VALUES = (
     0.02,
     4e-4,
 )  # of the cosine between axes 4 and 5: steps whose ends are less are divided, and again
@@ -55,22 +55,31 @@ def along(curves: Curves, loops: Loops, t: Array, level: int, alike: bool = Fals
     """The zeros between samples t (k, s) along loops, of which the first and the last are there for extremes beside them;
     `level`: how often steps between samples were divided; `alike`: all rows of t are."""
     loop, low, high = _steps(curves, loops, np.arange(len(loops.pose)), t, level, alike)
-    at = loops.of(loop)
-    root = _refined(curves, at, low, high)
-    angle, bent = angle_along(curves, at, root)
-    elbow = np.where(at.elbow != 0.0, at.elbow, np.where(np.sin(root) >= 0.0, 1.0, -1.0))
-    found = Zeros(at.pose, angle, at.side, elbow, bent, _slope(curves, at, angle, elbow))
-    columns: tuple[Any, ...] = found
-    once = _once(found)
+    zero_loops = loops.of(loop)
+    root = _refined(curves, zero_loops, low, high)
+    angle, bent = angle_along(curves, zero_loops, root)
+    elbow = np.where(
+        zero_loops.elbow != 0.0, zero_loops.elbow, np.where(np.sin(root) >= 0.0, 1.0, -1.0)
+    )
+    zeros = Zeros(
+        zero_loops.pose,
+        angle,
+        zero_loops.side,
+        elbow,
+        bent,
+        _slope(curves, zero_loops, angle, elbow),
+    )
+    columns: tuple[Any, ...] = zeros
+    once = _once(zeros)
     return Zeros(*(column[..., once] for column in columns))
 
 
-def _once(found: Zeros) -> Index:
+def _once(zeros: Zeros) -> Index:
     """Which zeros are left when those found twice, in a step and in one of its pieces, count once."""
-    angle = found.angle - 2.0 * math.pi * np.round(found.angle / (2.0 * math.pi))
-    order = np.lexsort((angle, found.elbow, found.side, found.pose))
+    angle = zeros.angle - 2.0 * math.pi * np.round(zeros.angle / (2.0 * math.pi))
+    order = np.lexsort((angle, zeros.elbow, zeros.side, zeros.pose))
     twice = np.abs(np.diff(angle[order])) < SAME_RAD
-    for column in (found.pose, found.side, found.elbow):
+    for column in (zeros.pose, zeros.side, zeros.elbow):
         twice &= column[order][1:] == column[order][:-1]
     return np.asarray(order[np.concatenate([np.ones(min(1, len(order)), dtype=bool), ~twice])])
 
@@ -87,8 +96,8 @@ def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) 
     else:
         cos, sin = np.cos(angle), np.sin(angle)
         point = [
-            part[0][pose] + cos * part[1][pose] + sin * part[2][pose]
-            for part in curves.point.transpose(1, 0, 2)
+            harmonics[0][pose] + cos * harmonics[1][pose] + sin * harmonics[2][pose]
+            for harmonics in curves.point.transpose(1, 0, 2)
         ]
         squared = point[0] ** 2 + point[1] ** 2 + point[2] ** 2
     scale = 1.0 / (2.0 * curves.upper * curves.fore)
@@ -96,38 +105,38 @@ def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) 
     return np.stack([elbow * np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0)), cosine])
 
 
-def _at(curves: Curves, at: Loops, t: Array) -> Spot:
-    angle, bent = angle_along(curves, at, t)
-    return geometry(curves, at.pose, angle, at.side, bent)
+def _at(curves: Curves, loops: Loops, t: Array) -> Spot:
+    angle, bent = angle_along(curves, loops, t)
+    return geometry(curves, loops.pose, angle, loops.side, bent)
 
 
-def _sampled(curves: Curves, loops: Loops, which: Index, t: Array, alike: bool) -> Spot:
-    """The arm (m, s) at t (m, s) along loops `which` (m,); `alike`: all rows of t are. Less exact than `_at` close to
+def _sampled(curves: Curves, loops: Loops, rows: Index, t: Array, alike: bool) -> Spot:
+    """The arm (m, s) at t (m, s) along loops `rows` (m,); `alike`: all rows of t are. Less exact than `_at` close to
     where the arm is stretched or folded, where no sample is, and in half the time."""
-    one = t[:1] if alike else t
-    course, rising = np.cos(one), np.where(np.sin(one) >= 0.0, 1.0, -1.0)
+    sample_row = t[:1] if alike else t
+    course, rising = np.cos(sample_row), np.where(np.sin(sample_row) >= 0.0, 1.0, -1.0)
     pose, side, elbow, middle, half = (
-        column[which][:, None]
+        column[rows][:, None]
         for column in (loops.pose, loops.side, loops.elbow, loops.middle, loops.half)
     )
-    whole = elbow != 0.0
-    plane = plane_of(curves, pose, np.where(whole, middle + t, middle - half * course), side)  # type: ignore[arg-type]
+    full_circle = elbow != 0.0
+    plane = plane_of(curves, pose, np.where(full_circle, middle + t, middle - half * course), side)  # type: ignore[arg-type]
     squared = plane.ahead * plane.ahead + plane.above * plane.above
     bend = (squared - (curves.upper**2 + curves.fore**2)) / (2.0 * curves.upper * curves.fore)
-    bent = np.where(whole, elbow, rising) * np.sqrt(np.maximum(1.0 - bend * bend, 0.0))
+    bent = np.where(full_circle, elbow, rising) * np.sqrt(np.maximum(1.0 - bend * bend, 0.0))
     return spot_of(curves, plane, (bent, bend))
 
 
 def _steps(
-    curves: Curves, loops: Loops, which: Index, t: Array, level: int, alike: bool = False
+    curves: Curves, loops: Loops, rows: Index, t: Array, level: int, alike: bool = False
 ) -> tuple[Index, Array, Array]:
-    """Loops (k,) and ends (k,), (k,) of steps with a zero in them, from samples t (m, s) along loops `which` (m,), of which
+    """Loops (k,) and ends (k,), (k,) of steps with a zero in them, from samples t (m, s) along loops `rows` (m,), of which
     the first and the last are there for extremes beside them alone."""
-    spot = _sampled(curves, loops, which, t, alike)
+    spot = _sampled(curves, loops, rows, t, alike)
     value = spot.value
     above = value >= 0.0
     change = above[:, 1:] != above[:, :-1]
-    found = _touching(curves, loops, which, t, value)
+    steps = _touching(curves, loops, rows, t, value)
     if level < LEVELS:
         fast = _turned(spot.cosine, spot.sine) < SWING
         fast |= _turned(*spot.along) < SWING
@@ -135,20 +144,20 @@ def _steps(
         fast[:, 1:] |= fast[:, :-1]
         fast[:, :-1] |= fast[:, 1:]
         size = np.abs(value)
-        if level < len(FLAT):
-            fast |= np.maximum(size[:, :-1], size[:, 1:]) < FLAT[level]
+        if level < len(FLAT_VALUES):
+            fast |= np.maximum(size[:, :-1], size[:, 1:]) < FLAT_VALUES[level]
         change &= ~fast
         fast[:, [0, -1]] = False
-        row, at = np.nonzero(fast)
+        row, column = np.nonzero(fast)
         if len(row):
             share = np.arange(-1, PIECES + 2) / PIECES
-            finer = t[row, at][:, None] + share * (t[row, at + 1] - t[row, at])[:, None]
-            finer[:, -2] = t[row, at + 1]  # to its last digit, as in the step beside
-            found.append(_steps(curves, loops, which[row], finer, level + 1))
+            finer = t[row, column][:, None] + share * (t[row, column + 1] - t[row, column])[:, None]
+            finer[:, -2] = t[row, column + 1]  # to its last digit, as in the step beside
+            steps.append(_steps(curves, loops, rows[row], finer, level + 1))
     change[:, [0, -1]] = False
-    row, at = np.nonzero(change)
-    found.append((which[row], t[row, at], t[row, at + 1]))
-    return tuple(np.concatenate(columns) for columns in zip(*found))  # type: ignore[return-value]
+    row, column = np.nonzero(change)
+    steps.append((rows[row], t[row, column], t[row, column + 1]))
+    return tuple(np.concatenate(columns) for columns in zip(*steps))  # type: ignore[return-value]
 
 
 def _turned(cosine: Array, sine: Array) -> Array:
@@ -157,27 +166,27 @@ def _turned(cosine: Array, sine: Array) -> Array:
 
 
 def _touching(
-    curves: Curves, loops: Loops, which: Index, t: Array, value: Array
+    curves: Curves, loops: Loops, rows: Index, t: Array, value: Array
 ) -> list[tuple[Index, Array, Array]]:
     """Steps about extremes between samples of one sign that reach zero: two with a zero each, or one without length."""
     size = np.abs(value)
     same = (value[:, 1:-1] >= 0.0) == (value[:, :-2] >= 0.0)
     same &= (value[:, 1:-1] >= 0.0) == (value[:, 2:] >= 0.0)
-    least = (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] <= size[:, 2:])
+    is_minimum = (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] <= size[:, 2:])
     curve = size[:, :-2] - 2.0 * size[:, 1:-1] + size[:, 2:]
     fall = (size[:, :-2] - size[:, 2:]) ** 2 / (8.0 * np.maximum(curve, TINY))
-    row, at = np.nonzero(same & least & (size[:, 1:-1] - fall < 0.25 * curve))
+    row, column = np.nonzero(same & is_minimum & (size[:, 1:-1] - fall < 0.25 * curve))
     if not len(row):
         return []
-    loop = loops.of(which[row])
-    sign = np.where(value[row, at + 1] >= 0.0, 1.0, -1.0)
-    a, b, c = t[row, at], t[row, at + 1], t[row, at + 2]
-    fa, fb, fc = (sign * value[row, at + k] for k in range(3))
+    loop = loops.of(rows[row])
+    sign = np.where(value[row, column + 1] >= 0.0, 1.0, -1.0)
+    a, b, c = t[row, column], t[row, column + 1], t[row, column + 2]
+    fa, fb, fc = (sign * value[row, column + k] for k in range(3))
     for _ in range(PEAKS):
         # the least of the parabola through three samples, kept inside
-        one, other = (b - a) * (fb - fc), (b - c) * (fb - fa)
+        fall_left, fall_right = (b - a) * (fb - fc), (b - c) * (fb - fa)
         with np.errstate(invalid="ignore", divide="ignore"):
-            x = b - 0.5 * ((b - a) * one - (b - c) * other) / (one - other)
+            x = b - 0.5 * ((b - a) * fall_left - (b - c) * fall_right) / (fall_left - fall_right)
         wide = np.where(c - b > b - a, b + 0.3 * (c - b), b - 0.3 * (b - a))
         x = np.where((x > a) & (x < c) & (np.abs(x - b) > 1e-12), x, wide)
         fx = sign * _at(curves, loop, x).value
@@ -198,16 +207,16 @@ def _touching(
         b, fb = np.where(lower, x, b), np.where(lower, fx, fb)
     through, touch = fb < 0.0, (fb >= 0.0) & (fb < TOUCHES)
     return [
-        (which[row][through], a[through], b[through]),
-        (which[row][through], b[through], c[through]),
-        (which[row][touch], b[touch], b[touch]),
+        (rows[row][through], a[through], b[through]),
+        (rows[row][through], b[through], c[through]),
+        (rows[row][touch], b[touch], b[touch]),
     ]
 
 
-def _refined(curves: Curves, at: Loops, low: Array, high: Array) -> Array:
+def _refined(curves: Curves, loops: Loops, low: Array, high: Array) -> Array:
     """The zero t (k,) in each step: Chandrupatla's method, which does not leave the step."""
     a, b = high.copy(), low.copy()
-    fa, fb = _at(curves, at, a).value, _at(curves, at, b).value
+    fa, fb = _at(curves, loops, a).value, _at(curves, loops, b).value
     c, fc = a.copy(), fa.copy()
     share = np.full(len(a), 0.5)
     best = np.where(np.abs(fa) < np.abs(fb), a, b)
@@ -218,30 +227,38 @@ def _refined(curves: Curves, at: Loops, low: Array, high: Array) -> Array:
             break
         k = active
         x = a[k] + share[k] * (b[k] - a[k])
-        fx = _at(curves, at.of(k), x).value
-        kept = (fx >= 0.0) == (fa[k] >= 0.0)
-        c[k], fc[k] = np.where(kept, a[k], b[k]), np.where(kept, fa[k], fb[k])
-        b[k], fb[k] = np.where(kept, b[k], a[k]), np.where(kept, fb[k], fa[k])
+        fx = _at(curves, loops.of(k), x).value
+        same_sign = (fx >= 0.0) == (fa[k] >= 0.0)
+        c[k], fc[k] = np.where(same_sign, a[k], b[k]), np.where(same_sign, fa[k], fb[k])
+        b[k], fb[k] = np.where(same_sign, b[k], a[k]), np.where(same_sign, fb[k], fa[k])
         a[k], fa[k] = x, fx
         nearer = np.abs(fa[k]) < np.abs(fb[k])
         best[k] = np.where(nearer, a[k], b[k])
         width = np.abs(b[k] - a[k])
-        done = (fx == 0.0) | (width <= 4e-16 * np.maximum(np.abs(a[k]), 1.0)) | (np.abs(fx) < 2e-16)
+        finished = (
+            (fx == 0.0) | (width <= 4e-16 * np.maximum(np.abs(a[k]), 1.0)) | (np.abs(fx) < 2e-16)
+        )
         with np.errstate(invalid="ignore", divide="ignore"):
             xi, phi = (a[k] - b[k]) / (c[k] - b[k]), (fa[k] - fb[k]) / (fc[k] - fb[k])
             bowed = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
             step = fa[k] / (fb[k] - fa[k]) * fc[k] / (fb[k] - fc[k]) + (c[k] - a[k]) / (
                 b[k] - a[k]
             ) * fa[k] / (fc[k] - fa[k]) * fb[k] / (fc[k] - fb[k])
-            least = np.minimum(0.5, 2e-16 * np.maximum(np.abs(a[k]), 1.0) / np.maximum(width, TINY))
-        share[k] = np.where(bowed, np.clip(np.nan_to_num(step, nan=0.5), least, 1.0 - least), 0.5)
-        active = k[~done]
+            min_share = np.minimum(
+                0.5, 2e-16 * np.maximum(np.abs(a[k]), 1.0) / np.maximum(width, TINY)
+            )
+        share[k] = np.where(
+            bowed, np.clip(np.nan_to_num(step, nan=0.5), min_share, 1.0 - min_share), 0.5
+        )
+        active = k[~finished]
     return best
 
 
-def _slope(curves: Curves, at: Loops, angle: Array, elbow: Array) -> Array:
+def _slope(curves: Curves, loops: Loops, angle: Array, elbow: Array) -> Array:
     """The slope (k,) of the function by the angle of axis 6."""
     step = 1e-6
-    ahead, behind = (values(curves, at.pose, angle + way, at.side, elbow) for way in (step, -step))
+    ahead, behind = (
+        values(curves, loops.pose, angle + offset, loops.side, elbow) for offset in (step, -step)
+    )
     result: Array = (ahead - behind) / (2.0 * step)
     return result

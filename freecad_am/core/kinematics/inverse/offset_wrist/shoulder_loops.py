@@ -36,29 +36,29 @@ def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask,
     angles %= TURN
     angles = np.sort(angles, axis=1)
     count = np.isfinite(angles).sum(axis=1)
-    each = np.arange(len(angles))
+    rows = np.arange(len(angles))
     following = np.roll(angles, -1, axis=1)
-    following[each[count > 0], count[count > 0] - 1] = angles[count > 0, 0] + TURN
-    row, at = np.nonzero(np.isfinite(angles))
-    begin, end = angles[row, at], following[row, at]
+    following[rows[count > 0], count[count > 0] - 1] = angles[count > 0, 0] + TURN
+    row, column = np.nonzero(np.isfinite(angles))
+    begin, end = angles[row, column], following[row, column]
     inside = end - begin > SHORTEST_RAD
     row, begin, end = row[inside], begin[inside], end[inside]
-    kept = _closes(squared_distance(curves, row, 0.5 * (begin + end), side), lengths)
+    closing = _closes(squared_distance(curves, row, 0.5 * (begin + end), side), lengths)
     none = np.flatnonzero(count == 0)
-    whole = none[_closes(squared_distance(curves, none, np.zeros(len(none)), side), lengths)]
-    row, begin, end = row[kept], begin[kept], end[kept]
+    full_circles = none[_closes(squared_distance(curves, none, np.zeros(len(none)), side), lengths)]
+    row, begin, end = row[closing], begin[closing], end[closing]
     stretched, straight = (
         np.abs(distance - lengths[0]) < np.abs(distance - lengths[1])
         for distance in (squared_distance(curves, row, angle, side) for angle in (begin, end))
     )
-    return row, begin, end, stretched, ~straight, whole
+    return row, begin, end, stretched, ~straight, full_circles
 
 
 def squared_distance(curves: Curves, pose: Index, angle: Array, side: float | Array) -> Array:
     """The squared distance (...) of the point from axis 2, in the arm's plane."""
     x, y, above = (
-        part[0][pose] + np.cos(angle) * part[1][pose] + np.sin(angle) * part[2][pose]
-        for part in curves.point.transpose(1, 0, 2)
+        harmonics[0][pose] + np.cos(angle) * harmonics[1][pose] + np.sin(angle) * harmonics[2][pose]
+        for harmonics in curves.point.transpose(1, 0, 2)
     )
     result: Array = (side * np.hypot(x, y) - curves.ahead) ** 2 + above**2
     return result
@@ -69,27 +69,32 @@ def _off(
 ) -> tuple[Array, Array]:
     """By how much the squared distance (...) differs from the nearer of both squared lengths, and its slope."""
     cos, sin = np.cos(angle), np.sin(angle)
-    parts = [
-        (part[0][pose], part[1][pose], part[2][pose]) for part in curves.point.transpose(1, 0, 2)
+    harmonics = [
+        (component[0][pose], component[1][pose], component[2][pose])
+        for component in curves.point.transpose(1, 0, 2)
     ]
-    x, y, above = (constant + cos * by_cos + sin * by_sin for constant, by_cos, by_sin in parts)
-    x_slope, y_slope, rise = (cos * by_sin - sin * by_cos for _, by_cos, by_sin in parts)
-    away = np.hypot(x, y) + TINY
-    squared = (side * away - curves.ahead) ** 2 + above**2
+    x, y, above = (constant + cos * by_cos + sin * by_sin for constant, by_cos, by_sin in harmonics)
+    x_slope, y_slope, rise = (cos * by_sin - sin * by_cos for _, by_cos, by_sin in harmonics)
+    radius = np.hypot(x, y) + TINY
+    squared = (side * radius - curves.ahead) ** 2 + above**2
     slope = (
-        2.0 * (side * away - curves.ahead) * side * (x * x_slope + y * y_slope) / away
+        2.0 * (side * radius - curves.ahead) * side * (x * x_slope + y * y_slope) / radius
         + 2.0 * above * rise
     )
-    both = squared[..., None] - lengths
-    off = np.where(np.abs(both[..., 0]) < np.abs(both[..., 1]), both[..., 0], both[..., 1])
+    differences = squared[..., None] - lengths
+    off = np.where(
+        np.abs(differences[..., 0]) < np.abs(differences[..., 1]),
+        differences[..., 0],
+        differences[..., 1],
+    )
     return off, slope
 
 
 def difference(curves: Curves, pose: Index, angle: Array, half: Array, side: Array) -> Array:
     """By how much the squared distance (k,) at an angle differs from that twice `half` further on, without the loss of
     digits of a difference."""
-    there = angle + 2.0 * half
-    constant, cos, sin = (curves.point[part][:, pose] for part in range(3))
+    far_angle = angle + 2.0 * half
+    constant, cos, sin = (curves.point[harmonic][:, pose] for harmonic in range(3))
     # of cosine and sine between both angles
     by_cos, by_sin = (
         -2.0 * np.sin(half) * np.sin(angle + half),
@@ -97,10 +102,12 @@ def difference(curves: Curves, pose: Index, angle: Array, half: Array, side: Arr
     )
     squares = 2.0 * ((constant * cos).sum(axis=0) * by_cos + (constant * sin).sum(axis=0) * by_sin)
     rise = cos[2] * by_cos + sin[2] * by_sin
-    here, after = (constant + np.cos(at) * cos + np.sin(at) * sin for at in (angle, there))
-    around = squares - rise * (here[2] + after[2])
-    apart = np.hypot(here[0], here[1]) + np.hypot(after[0], after[1])
-    result: Array = squares - 2.0 * side * curves.ahead * around / (apart + TINY)
+    near_point, far_point = (
+        constant + np.cos(turned) * cos + np.sin(turned) * sin for turned in (angle, far_angle)
+    )
+    around = squares - rise * (near_point[2] + far_point[2])
+    radius_sum = np.hypot(near_point[0], near_point[1]) + np.hypot(far_point[0], far_point[1])
+    result: Array = squares - 2.0 * side * curves.ahead * around / (radius_sum + TINY)
     return result
 
 
@@ -115,21 +122,23 @@ def _angles(curves: Curves, squared: float) -> Array:
     # (p p + k)^2 - (2 a)^2 (p p - z z), by constant, cosine, sine, cosine and sine of twice the angle
     linear = np.stack([2.0 * (constant * cos).sum(axis=0), 2.0 * (constant * sin).sum(axis=0)])
     shifted, twice = mean + curves.ahead**2 - squared, 4.0 * curves.ahead**2
-    whole = _square(shifted, *linear)
+    squared_terms = _square(shifted, *linear)
     height = _square(*curves.point[:, 2])
-    trig = whole + twice * height
+    trig = squared_terms + twice * height
     trig[0] -= twice * mean
     trig[1] -= twice * linear[0]
     trig[2] -= twice * linear[1]
     scale = np.abs(trig).max(axis=0) + TINY
     trig = trig / scale
-    last = 0.5 * (trig[3] - 1j * trig[4])
-    last = np.where(np.abs(last) < 1e-14, 1e-14, last)
-    first = 0.5 * (trig[1] - 1j * trig[2])
+    second_order = 0.5 * (trig[3] - 1j * trig[4])
+    second_order = np.where(np.abs(second_order) < 1e-14, 1e-14, second_order)
+    first_order = 0.5 * (trig[1] - 1j * trig[2])
     companion = np.zeros((len(mean), 4, 4), dtype=complex)
     companion[:, [1, 2, 3], [0, 1, 2]] = 1.0
-    for row, coefficient in enumerate((np.conj(last), np.conj(first), trig[0], first)):
-        companion[:, row, 3] = -coefficient / last
+    for row, coefficient in enumerate(
+        (np.conj(second_order), np.conj(first_order), trig[0], first_order)
+    ):
+        companion[:, row, 3] = -coefficient / second_order
     angle = np.angle(np.linalg.eigvals(companion))
     for _ in range(NEWTON):
         c, s, c2, s2 = np.cos(angle), np.sin(angle), np.cos(2.0 * angle), np.sin(2.0 * angle)

@@ -23,12 +23,17 @@ PIECES, LEVELS = (
     4,
     {4: 10, 8: 7},
 )  # into which undecided steps are cut, and how often: of the higher degree while it tells
-SURE = 7  # levels: zeros parted by later ones are so near to each other that they have few digits
+SURE_LEVELS = (
+    7  # levels: zeros parted by later ones are so near to each other that they have few digits
+)
 VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
 # of the sum of all coefficients, by degree: how far off a value is, and how far an extreme that is a double zero may be
 # from zero by the rounding of the pose; the higher one is a difference of products of two
 ROUNDING, TOUCHING = {4: 5e-17, 8: 4e-15}, {4: 1e-13, 8: 1e-13}
-TO_EXTREME, WITHIN = 8, 1e-4  # steps to an extreme that is next to zero, and rad of one at most
+EXTREME_STEPS, MAX_STEP_RAD = (
+    8,
+    1e-4,
+)  # steps to an extreme that is next to zero, and rad of one at most
 UNTOLD = 2.0  # times that an extreme is which may as well be zero
 DROWNED = 8.0  # times that a step's values and slopes are, at most, that rounding leaves nothing of
 
@@ -77,13 +82,13 @@ def harmonics(degree: int, angle: Array, derivative: int = 0) -> Array:
 @cache
 def _grid(degree: int) -> Array:
     """What gives the values, then the slopes by a third of a step, at the ends of all steps of a turn."""
-    at = np.append(angles(STEPS[degree]), 0.0)
-    slopes = harmonics(degree, at, 1) * (TURN / STEPS[degree] / 3.0)
-    result: Array = np.concatenate([harmonics(degree, at), slopes], axis=1).T.copy()
+    step_ends = np.append(angles(STEPS[degree]), 0.0)
+    slopes = harmonics(degree, step_ends, 1) * (TURN / STEPS[degree] / 3.0)
+    result: Array = np.concatenate([harmonics(degree, step_ends), slopes], axis=1).T.copy()
     return result
 
 
-def parted(coefficients: Array) -> Parted:
+def isolate_zeros(coefficients: Array) -> Parted:
     """Of polynomials given by their coefficients (2 degree + 1, n), in the order of `harmonics`."""
     degree = len(coefficients) // 2
     amplitudes = np.hypot(coefficients[1 : degree + 1], coefficients[degree + 1 :])
@@ -91,21 +96,21 @@ def parted(coefficients: Array) -> Parted:
     rounding, touching = ROUNDING[degree] * size, TOUCHING[degree] * size
     fourth = np.arange(1.0, degree + 1.0) ** 4 @ amplitudes
     waves: Array | None = None
-    width, found, close = TURN / STEPS[degree], [], np.zeros(coefficients.shape[1], dtype=bool)
+    width, singles, close = TURN / STEPS[degree], [], np.zeros(coefficients.shape[1], dtype=bool)
     touches: list[tuple[Index, Array]] = []
     drowned: list[tuple[Index, Array, Array]] = []
     steps = _first(coefficients, width, fourth, touching)
     for level in range(LEVELS[degree]):
         single, open_ = _single_or_open(steps, fourth, rounding, width)
-        found.append((single, width))
-        lost = _drowned(open_, rounding)
-        close[open_.number if level >= SURE - 1 else open_.number[lost]] = True
+        singles.append((single, width))
+        drowned_now = _drowned(open_, rounding)
+        close[open_.number if level >= SURE_LEVELS - 1 else open_.number[drowned_now]] = True
         is_last = level == LEVELS[degree] - 1
-        under = np.flatnonzero(lost)
+        under = np.flatnonzero(drowned_now)
         drowned.append((open_.number[under], open_.begin[under], open_.begin[under] + width))
-        ended = np.flatnonzero(lost | is_last)
-        touches.append((open_.number[ended], open_.begin[ended] + 0.5 * width))
-        open_ = _some(open_, np.flatnonzero(~lost))
+        finished = np.flatnonzero(drowned_now | is_last)
+        touches.append((open_.number[finished], open_.begin[finished] + 0.5 * width))
+        open_ = _some(open_, np.flatnonzero(~drowned_now))
         if is_last or not len(open_.number):
             break
         if waves is None:
@@ -113,48 +118,56 @@ def parted(coefficients: Array) -> Parted:
                 [coefficients[:1], coefficients[1 : degree + 1] - 1j * coefficients[degree + 1 :]]
             )
         width /= PIECES
-        steps = _without_empty(_cut(waves, open_, width), fourth, touching, width)
-    number, low, high, near = (
-        np.concatenate(columns) for columns in zip(*(_places(*one) for one in found))
+        steps = _drop_empty(_cut(waves, open_, width), fourth, touching, width)
+    number, low, high, guesses = (
+        np.concatenate(columns) for columns in zip(*(_places(*single) for single in singles))
     )
     numbers, middles = (np.concatenate(columns) for columns in zip(*touches))
     flat, begin, end = (np.concatenate(columns) for columns in zip(*drowned))
     found_at = _touching(coefficients, numbers, middles, touching, rounding)
-    return Parted(number, low, high, near, close, found_at, (flat, begin, end))
+    return Parted(number, low, high, guesses, close, found_at, (flat, begin, end))
 
 
 def _touching(
-    coefficients: Array, number: Index, at: Array, most: Array, rounding: Array
+    coefficients: Array, number: Index, angle: Array, max_value: Array, rounding: Array
 ) -> tuple[Index, Array]:
     """Number and angle (m,) of the zeros next to angles (k,) at which a polynomial has an extreme no farther from zero than
-    `most`, or just beyond zero: where a parabola there is zero, or the extreme where it is zero but for rounding."""
-    of, degree = coefficients[:, number], len(coefficients) // 2
+    `max_value`, or just beyond zero: where a parabola there is zero, or the extreme where it is zero but for rounding."""
+    own_coefficients, degree = coefficients[:, number], len(coefficients) // 2
 
     def derivative(order: int) -> Array:
-        result: Array = (harmonics(degree, at, order) * of).sum(axis=0)
+        result: Array = (harmonics(degree, angle, order) * own_coefficients).sum(axis=0)
         return result
 
-    for _ in range(TO_EXTREME):
+    for _ in range(EXTREME_STEPS):
         bend = derivative(2)
-        at = at - np.clip(derivative(1) / np.where(bend == 0.0, 1.0, bend), -WITHIN, WITHIN)
+        angle = angle - np.clip(
+            derivative(1) / np.where(bend == 0.0, 1.0, bend), -MAX_STEP_RAD, MAX_STEP_RAD
+        )
     value, bend, noise = derivative(0), derivative(2), UNTOLD * rounding[number]
     # through zero to where the steps are too wide to part both zeros
-    through = (value * bend < 0.0) & (np.abs(value) < 0.5 * WITHIN**2 * np.abs(bend))
-    kept = np.flatnonzero(((np.abs(value) <= most[number]) | through) & (bend != 0.0))
-    number, at, value, bend, noise = number[kept], at[kept], value[kept], bend[kept], noise[kept]
+    through = (value * bend < 0.0) & (np.abs(value) < 0.5 * MAX_STEP_RAD**2 * np.abs(bend))
+    valid = np.flatnonzero(((np.abs(value) <= max_value[number]) | through) & (bend != 0.0))
+    number, angle, value, bend, noise = (
+        number[valid],
+        angle[valid],
+        value[valid],
+        bend[valid],
+        noise[valid],
+    )
     unsure = np.sqrt(2.0 * noise / np.abs(bend))
     # the same one found from several steps
-    order = np.lexsort((at, number))
-    number, at, value, bend, noise, unsure = (
-        column[order] for column in (number, at, value, bend, noise, unsure)
+    order = np.lexsort((angle, number))
+    number, angle, value, bend, noise, unsure = (
+        column[order] for column in (number, angle, value, bend, noise, unsure)
     )
     once = np.ones(len(number), dtype=bool)
-    once[1:] = (number[1:] != number[:-1]) | (np.diff(at) > unsure[1:])
-    apart = np.sqrt(np.maximum(-2.0 * value / bend, 0.0))
-    apart[np.abs(value) <= noise] = 0.0
-    two = once & (apart > 0.0)
+    once[1:] = (number[1:] != number[:-1]) | (np.diff(angle) > unsure[1:])
+    offset = np.sqrt(np.maximum(-2.0 * value / bend, 0.0))
+    offset[np.abs(value) <= noise] = 0.0
+    two = once & (offset > 0.0)
     return np.concatenate([number[once], number[two]]), np.concatenate(
-        [(at - apart)[once], (at + apart)[two]]
+        [(angle - offset)[once], (angle + offset)[two]]
     )
 
 
@@ -162,18 +175,18 @@ def _first(coefficients: Array, width: float, fourth: Array, touching: Array) ->
     """The steps of a whole turn that may have a zero."""
     degree = len(coefficients) // 2
     values, slopes = (_grid(degree) @ coefficients).reshape(2, STEPS[degree] + 1, -1)
-    kept = np.flatnonzero(
+    possible = np.flatnonzero(
         _may_be_zero(
             values[:-1], values[1:], slopes[:-1], slopes[1:], _off(fourth, touching, width)
         )
     )
-    row, number = np.divmod(kept, coefficients.shape[1])
-    values, slopes, after = values.ravel(), slopes.ravel(), kept + coefficients.shape[1]
+    row, number = np.divmod(possible, coefficients.shape[1])
+    values, slopes, next_ends = values.ravel(), slopes.ravel(), possible + coefficients.shape[1]
     return _Steps(
         number,
         row * width,
-        np.stack([values[kept], values[after]]),
-        np.stack([slopes[kept], slopes[after]]),
+        np.stack([values[possible], values[next_ends]]),
+        np.stack([slopes[possible], slopes[next_ends]]),
     )
 
 
@@ -182,42 +195,47 @@ def _off(fourth: Array, touching: Array, width: float) -> Array:
     return result
 
 
-def _may_be_zero(one: Array, other: Array, rise: Array, last: Array, off: Array) -> Mask:
+def _may_be_zero(
+    begin_value: Array, end_value: Array, rise: Array, end_slope: Array, off: Array
+) -> Mask:
     """Whether the coefficients of the cubic are not all of one sign and farther from zero than `off`; values and slopes."""
-    second, third = one + rise, other - last
-    least = np.minimum(np.minimum(one, other), np.minimum(second, third))
-    most = np.maximum(np.maximum(one, other), np.maximum(second, third))
-    return np.asarray((least <= off) & (most >= -off))
+    second, third = begin_value + rise, end_value - end_slope
+    lowest = np.minimum(np.minimum(begin_value, end_value), np.minimum(second, third))
+    highest = np.maximum(np.maximum(begin_value, end_value), np.maximum(second, third))
+    return np.asarray((lowest <= off) & (highest >= -off))
 
 
-def _without_empty(steps: _Steps, fourth: Array, touching: Array, width: float) -> _Steps:
+def _drop_empty(steps: _Steps, fourth: Array, touching: Array, width: float) -> _Steps:
     off = _off(fourth[steps.number], touching[steps.number], width)
-    (one, other), (rise, last) = steps.value, steps.slope
-    return _some(steps, np.flatnonzero(_may_be_zero(one, other, rise, last, off)))
+    (begin_value, end_value), (rise, end_slope) = steps.value, steps.slope
+    return _some(steps, np.flatnonzero(_may_be_zero(begin_value, end_value, rise, end_slope, off)))
 
 
-def _some(steps: _Steps, kept: Index | Mask) -> _Steps:
-    return _Steps(steps.number[kept], steps.begin[kept], steps.value[:, kept], steps.slope[:, kept])
+def _some(steps: _Steps, rows: Index | Mask) -> _Steps:
+    return _Steps(steps.number[rows], steps.begin[rows], steps.value[:, rows], steps.slope[:, rows])
 
 
 def _single_or_open(
     steps: _Steps, fourth: Array, rounding: Array, width: float
 ) -> tuple[_Steps, _Steps]:
     """Of steps that may have a zero those that have one alone, and those of which it cannot be told."""
-    number, _, (one, other), (rise, last) = steps
+    number, _, (begin_value, end_value), (rise, end_slope) = steps
     off = SLOPE_SHARE / 3.0 * width**4 * fourth[number] + 3.0 * rounding[number]
-    middle = other - one - rise - last
-    single = np.minimum(np.minimum(rise, last), middle) > off
-    single |= np.maximum(np.maximum(rise, last), middle) < -off
-    return _some(steps, single & ((one >= 0.0) != (other >= 0.0))), _some(steps, ~single)
+    middle = end_value - begin_value - rise - end_slope
+    single = np.minimum(np.minimum(rise, end_slope), middle) > off
+    single |= np.maximum(np.maximum(rise, end_slope), middle) < -off
+    return _some(steps, single & ((begin_value >= 0.0) != (end_value >= 0.0))), _some(
+        steps, ~single
+    )
 
 
 def _drowned(steps: _Steps, rounding: Array) -> Mask:
     """Steps throughout which the cubic is of the size of rounding: pieces would tell no more."""
-    one, other = np.abs(steps.value)
-    rise, last = np.abs(steps.slope)
+    begin_value, end_value = np.abs(steps.value)
+    rise, end_slope = np.abs(steps.slope)
     return np.asarray(
-        np.maximum(one, other) + np.maximum(rise, last) < DROWNED * rounding[steps.number]
+        np.maximum(begin_value, end_value) + np.maximum(rise, end_slope)
+        < DROWNED * rounding[steps.number]
     )
 
 
@@ -250,13 +268,15 @@ def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
 
 def _places(steps: _Steps, width: float) -> tuple[Index, Array, Array, Array]:
     """Number, ends and about the zero (k,) of steps with one: the cubic of the angle over the value, kept in the step."""
-    one, other = steps.value
-    change = other - one
-    share = -one / change
-    rest = 1.0 - share
+    begin_value, end_value = steps.value
+    change = end_value - begin_value
+    share = -begin_value / change
+    remainder = 1.0 - share
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        first, last = change / (3.0 * steps.slope)
-        along = share * (share * (3.0 - 2.0 * share) + rest * (rest * first - share * last))
+        begin_share, end_share = change / (3.0 * steps.slope)
+        along = share * (
+            share * (3.0 - 2.0 * share) + remainder * (remainder * begin_share - share * end_share)
+        )
     # a slope near zero at an end is no slope of the angle: as between straight lines there
-    along = np.where((first < 4.0) & (last < 4.0), np.clip(along, 0.0, 1.0), share)
+    along = np.where((begin_share < 4.0) & (end_share < 4.0), np.clip(along, 0.0, 1.0), share)
     return steps.number, steps.begin, steps.begin + width, steps.begin + along * width
