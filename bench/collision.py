@@ -54,7 +54,7 @@ def _wall() -> tuple[Scene, Array]:
         [np.stack([np.zeros(61), y, np.full(61, float(z))], axis=1) for z in range(LAYERS)]
     )
     build = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    laid = deposit.of_beads(points, build, 8.0, 1.0, np.arange(0, len(points), 61))
+    laid = deposit.build_deposit(points, build, 8.0, 1.0, np.arange(0, len(points), 61))
     return scene([], points, 100.0, laid), points
 
 

@@ -498,7 +498,7 @@ class _Standing:
 @pytest.fixture(scope="module")
 def long_text(cell):
     """Joint values of more rows than are all driven through PyKDL, in a corner of their ranges, axis 1 at 0."""
-    joints = np.random.default_rng(8).uniform(0.0, 0.1, (points.EVERY * 3**6 + 5, 6)) * [
+    joints = np.random.default_rng(8).uniform(0.0, 0.1, (points.ROW_STRIDE * 3**6 + 5, 6)) * [
         0.0,
         1.0,
         1.0,
@@ -520,9 +520,9 @@ def test_of_a_long_text_some_rows_are_driven_by_the_second_solver(cell, long_tex
     monkeypatch.setattr(points.kdl_chain, "KdlArm", Counted)
     assert points.second_opinion(cell, *long_text) == ([], ("chain", "pykdl"))
     assert (
-        3**6 + len(long_text[1]) / points.EVERY
+        3**6 + len(long_text[1]) / points.ROW_STRIDE
         <= sum(driven)
-        <= 3**6 + len(long_text[1]) / points.EVERY + 1
+        <= 3**6 + len(long_text[1]) / points.ROW_STRIDE + 1
     )
 
 
@@ -543,7 +543,7 @@ def test_solvers_that_disagree_elsewhere_are_caught_by_any_long_text(
 
     text = _Standing(joints), cell.machine.to_controller(joints), cell.machine.chain.forward(joints)
     monkeypatch.setattr(points.kdl_chain, "KdlArm", Off)
-    monkeypatch.setattr(points, "EVERY", 1)
+    monkeypatch.setattr(points, "ROW_STRIDE", 1)
     ((code, wrong),) = points.second_opinion(cell, *text)[0]
     assert code == "VERIFY_SOLVERS" and len(wrong) == len(joints)
 

@@ -17,11 +17,11 @@ _EXACT = 15  # digits of a whole number that a float always holds
 
 def shapes(texts: Sequence[str], between: str = "\n") -> dict[str, list[int]]:
     """The texts with all digits 0, and which of the texts have each of these shapes; no text holds what is put `between`."""
-    found: defaultdict[str, list[int]] = defaultdict(list)
+    by_shape: defaultdict[str, list[int]] = defaultdict(list)
     if texts:
         for number, shape in enumerate(between.join(texts).translate(_DIGITS).split(between)):
-            found[shape].append(number)
-    return found
+            by_shape[shape].append(number)
+    return by_shape
 
 
 def numbers(texts: Sequence[str], shape: str, spans: Sequence[tuple[int, int]]) -> Array:
@@ -33,13 +33,15 @@ def numbers(texts: Sequence[str], shape: str, spans: Sequence[tuple[int, int]]) 
     table = np.frombuffer("".join(texts).encode("latin-1"), dtype=np.uint8).reshape(
         len(texts), len(shape)
     )
-    places = [place for begin, end in spans for place in range(begin, end) if shape[place] == "0"]
+    digit_columns = [
+        place for begin, end in spans for place in range(begin, end) if shape[place] == "0"
+    ]
     worth = [10**power for count in counts for power in range(count - 1, -1, -1)]
-    digits = (table.T[places] - np.uint8(ord("0"))) * np.array(worth)[:, None]
-    whole = np.add.reduceat(digits, np.cumsum([0, *counts[:-1]]))
+    digits = (table.T[digit_columns] - np.uint8(ord("0"))) * np.array(worth)[:, None]
+    integers = np.add.reduceat(digits, np.cumsum([0, *counts[:-1]]))
     # one division of two whole numbers is rounded as the text itself would be
     divisor = [
         (-1.0 if "-" in word else 1.0) * 10.0 ** word.partition(".")[2].count("0") for word in words
     ]
-    found: Array = whole.T / np.array(divisor)
-    return found
+    values: Array = integers.T / np.array(divisor)
+    return values

@@ -99,13 +99,13 @@ class Post(Protocol):
 def load(name: str) -> Post:
     """The post of that name, imported when it is first asked for. Raises InputError UNKNOWN_POST."""
     if name not in NAMES:
-        known = ", ".join(NAMES)
+        names = ", ".join(NAMES)
         raise InputError(
-            "UNKNOWN_POST", "program.post", "{!r} is not known; use one of {}, or none", name, known
+            "UNKNOWN_POST", "program.post", "{!r} is not known; use one of {}, or none", name, names
         )
     post: Any = importlib.import_module(f".{name}.post", __package__)
-    found: Post = post
-    return found
+    post_module: Post = post
+    return post_module
 
 
 def controller(name: str) -> Controller:
@@ -120,12 +120,12 @@ def reads_nc(post: str, parameter: str) -> bool:
 
 def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
     """Those of the posts, by name, that can say this motion of this set-up."""
-    found = []
+    names = []
     for name in posts:
         with contextlib.suppress(InputError):
             load(name).refuse_setup(motion, setup)
-            found.append(name)
-    return tuple(found)
+            names.append(name)
+    return tuple(names)
 
 
 def motion_written(post: str, setup: str) -> str:

@@ -34,14 +34,18 @@ class Lines:
     def move_at(self, name: str, line: int) -> int | None:
         """The move that a line of a file tells, the first one of a loop; between two moves the next one, after the last
         the last one. None of a file without any."""
-        mine = (
+        moves_of_file = (
             np.flatnonzero(self.file == self.files.index(name))
             if name in self.files
             else np.zeros(0, np.int64)
         )
-        if not len(mine):
+        if not len(moves_of_file):
             return None
-        return int(mine[min(int(np.searchsorted(self.line[mine], line)), len(mine) - 1)])
+        return int(
+            moves_of_file[
+                min(int(np.searchsorted(self.line[moves_of_file], line)), len(moves_of_file) - 1)
+            ]
+        )
 
 
 def lines_of(post: str, files: dict[str, bytes]) -> Lines:
@@ -50,20 +54,22 @@ def lines_of(post: str, files: dict[str, bytes]) -> Lines:
     names = tuple(
         sorted(files, key=lambda name: [int(number) for number in _NUMBER.findall(name)] + [0])
     )
-    found = [_moves(pattern, files[name]) for name in names]
-    file = np.repeat(np.arange(len(names)), [len(lines) for lines in found])
-    return Lines(names, file, np.array([line for lines in found for line in lines], dtype=np.int64))
+    move_lines = [_moves(pattern, files[name]) for name in names]
+    file = np.repeat(np.arange(len(names)), [len(lines) for lines in move_lines])
+    return Lines(
+        names, file, np.array([line for lines in move_lines for line in lines], dtype=np.int64)
+    )
 
 
 def _moves(pattern: re.Pattern[bytes], content: bytes) -> list[int]:
     """The line of each move of a file, as often as it is run."""
-    found: list[int] = []
+    move_lines: list[int] = []
     times = 1
     for number, line in enumerate(content.split(b"\n")):
         loop = _LOOP.search(line)
         if loop:
             times = int(loop[2]) - int(loop[1]) + 1
         elif pattern.match(line):
-            found += [number] * times
+            move_lines += [number] * times
             times = 1
-    return found
+    return move_lines

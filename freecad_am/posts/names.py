@@ -36,20 +36,20 @@ class Naming:
 
     def checked(self, name: str, where: str) -> str:
         """The name as the controller has it. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
-        shown = self.written(name) if name.isascii() else name
+        as_written = self.written(name) if name.isascii() else name
         if not name:
             raise self.refused(name, where, "it is empty")
-        if re.search(r"[^A-Za-z0-9_]", shown):
+        if re.search(r"[^A-Za-z0-9_]", as_written):
             raise self.refused(
                 name, where, "it may hold only the letters A to Z, digits and underscores"
             )
-        if not re.match(self.start, shown):
+        if not re.match(self.start, as_written):
             raise self.refused(name, where, Text("it must start with {}", self.starts))
-        if len(shown) > self.longest:
+        if len(as_written) > self.longest:
             raise self.refused(name, where, Text("it has more than {} characters", self.longest))
-        if self._taken(shown):
+        if self._taken(as_written):
             raise self.refused(name, where, "it is a reserved word")
-        return shown
+        return as_written
 
     def fits(self, name: str) -> bool:
         """Whether the controller takes a name, with the digits of parts behind it."""
@@ -99,9 +99,9 @@ class Naming:
 
 def plain(text: str) -> str:
     """The text in ASCII characters that can be printed."""
-    apart = (
+    ascii_text = (
         unicodedata.normalize("NFKD", text.replace("ß", "ss"))
         .encode("ascii", "ignore")
         .decode("ascii")
     )
-    return re.sub(r"[^ -~]+", " ", apart)
+    return re.sub(r"[^ -~]+", " ", ascii_text)

@@ -31,15 +31,17 @@ def rapids_between(
     driven_tip, driven_tool = _tips(cell, _between(text.serial, ends))
     straight_tip, straight_tool = _between(path.position, ends), _between(path.tool, ends)
     along = np.repeat(linear[ends], len(BETWEEN))[:, None]
-    apart = np.linalg.norm(np.where(along, straight_tip, driven_tip) - tip, axis=1)
+    distances = np.linalg.norm(np.where(along, straight_tip, driven_tip) - tip, axis=1)
     tilted = np.linalg.norm(np.where(along, straight_tool, driven_tool) - tool, axis=1)
     bound, tool_bound = tip_bounds(cell, looked_at, _between(text.reach, ends))
     # what runs straight where joints were looked at is refused elsewhere, unless it was planned so
     # near a singularity digits may explain more than the clearance of rapids has to spare; then the text is none
-    most = np.where(along[:, 0], OFF_WAY_MM, np.minimum(bound, OFF_WAY_MM))
-    wrong = ~((apart <= most) & (tilted <= np.maximum(tool_bound, OFF_WAY_RAD * along[:, 0])))
+    allowed = np.where(along[:, 0], OFF_WAY_MM, np.minimum(bound, OFF_WAY_MM))
+    wrong = ~(
+        (distances <= allowed) & (tilted <= np.maximum(tool_bound, OFF_WAY_RAD * along[:, 0]))
+    )
     off[ends] = wrong.reshape(len(ends), -1).any(axis=1)
-    return float(apart.max()), float(np.degrees(tilted.max())), off
+    return float(distances.max()), float(np.degrees(tilted.max())), off
 
 
 def _between(rows: Array, ends: Index) -> Array:
@@ -54,24 +56,24 @@ def _tips(cell: Cell, serial: Array) -> tuple[Array, Array]:
 
 
 def beads_between(
-    cell: Cell, planned: Planned, shown: Array, path: Path, chord_error: float
+    cell: Cell, planned: Planned, controller_values: Array, path: Path, chord_error: float
 ) -> tuple[float, Mask]:
     """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off.
 
     The tip is driven where it can be off, or farther than it is anywhere else: between points no farther from the planned
     ones it leaves their segment by that and its bow at most.
     """
-    serial, ends = cell.machine.from_controller(shown), planned.ends
-    largest, off = 0.0, np.zeros(len(shown), dtype=bool)
-    most = _larger_at_ends(lengths(path.position - planned.position), ends) + _bow(
+    serial, ends = cell.machine.from_controller(controller_values), planned.ends
+    largest, off = 0.0, np.zeros(len(controller_values), dtype=bool)
+    upper_bounds = _larger_at_ends(lengths(path.position - planned.position), ends) + _bow(
         cell, serial, ends
     )
-    most[~(most <= chord_error + _larger_at_ends(path.bound, ends))] = np.inf
-    falling = np.argsort(-most)
-    for some in pieces(falling):
-        if most[some[0]] <= largest:
+    upper_bounds[~(upper_bounds <= chord_error + _larger_at_ends(path.bound, ends))] = np.inf
+    falling = np.argsort(-upper_bounds)
+    for candidates in pieces(falling):
+        if upper_bounds[candidates[0]] <= largest:
             break
-        rows = ends[some]
+        rows = ends[candidates]
         tips = cell.tip_at(_between(serial, rows))
         strayed, off[rows] = _off_segments(planned, rows, tips, path, chord_error)
         largest = float(np.maximum(largest, strayed))
@@ -100,17 +102,17 @@ def _bow(cell: Cell, serial: Array, ends: Index) -> Array:
 
 
 def tools_between(
-    cell: Cell, planned: Planned, asked: Array, tools: Array, path: Path, chord_error: float
+    cell: Cell, planned: Planned, flanges: Array, tools: Array, path: Path, chord_error: float
 ) -> tuple[float, Mask]:
-    """The same while tools (n, 4, 4), another one at each point, on flanges at `asked` (n, 4, 4) run straight."""
-    largest, off = 0.0, np.zeros(len(asked), dtype=bool)
+    """The same while tools (n, 4, 4), another one at each point, on flanges at `flanges` (n, 4, 4) run straight."""
+    largest, off = 0.0, np.zeros(len(flanges), dtype=bool)
     for ends in pieces(planned.ends):
-        ways = (
-            _straight(asked[ends - 1] @ tools[ends], asked[ends] @ tools[ends])
+        flanges_between = (
+            _straight(flanges[ends - 1] @ tools[ends], flanges[ends] @ tools[ends])
             @ frames.inverse(tools[ends])[:, None]
         )
         strayed, off[ends] = _off_segments(
-            planned, ends, cell.tip_in_part(ways.reshape(-1, 4, 4))[0], path, chord_error
+            planned, ends, cell.tip_in_part(flanges_between.reshape(-1, 4, 4))[0], path, chord_error
         )
         largest = float(np.maximum(largest, strayed))
     return largest, off
@@ -123,12 +125,12 @@ def _off_segments(
     and which of these (len(ends),) leave theirs by more than the chord error and the digits of their two points."""
     tips = tips.reshape(len(ends), len(BETWEEN), 3)
     start, step = planned.position[ends - 1], planned.position[ends] - planned.position[ends - 1]
-    away = tips - start[:, None]
+    offsets = tips - start[:, None]
     squared = np.maximum(np.einsum("ni,ni->n", step, step), 1e-300)
-    share = np.clip(np.einsum("nki,ni->nk", away, step) / squared[:, None], 0.0, 1.0)
-    away -= share[..., None] * step[:, None]
-    apart = np.einsum("nki,nki->nk", away, away)
-    distance = np.sqrt(np.maximum.reduce([apart[:, k] for k in range(len(BETWEEN))]))
+    share = np.clip(np.einsum("nki,ni->nk", offsets, step) / squared[:, None], 0.0, 1.0)
+    offsets -= share[..., None] * step[:, None]
+    squared_distances = np.einsum("nki,nki->nk", offsets, offsets)
+    distance = np.sqrt(np.maximum.reduce([squared_distances[:, k] for k in range(len(BETWEEN))]))
     return float(distance.max()), ~(distance <= chord_error + _larger_at_ends(path.bound, ends))
 
 

@@ -28,25 +28,25 @@ class DrivenBead:
     height: None = None
 
 
-def driven(cell: Cell, program: Program, read: ReadMoves) -> Motion:
+def driven(cell: Cell, program: Program, text: ReadMoves) -> Motion:
     """The rows that a text makes the machine pass, in part coordinates, joints NaN where a position is not reached.
 
     program: what it is told of the cell, its moves left out. Build directions are tool axes, widths are not known. Raises
     InputError NO_CONFIGURATION where a text does not say by which configuration of the arm it begins.
     """
-    path, serial = _driven(cell, program, read)
-    seconds = _durations(cell, read, path.position, serial)
-    starts = _starts(read)
+    path, serial = _driven(cell, program, text)
+    seconds = _durations(cell, text, path.position, serial)
+    starts = _starts(text)
     # the first row of a bead repeats where the machine stands
     inserted = np.maximum(starts - 1, 0)
-    rows = np.insert(np.arange(len(read.deposit)), starts, inserted)
-    fresh = np.insert(np.zeros(len(read.deposit), dtype=bool), starts, True)
-    deposit = read.deposit[rows] | fresh
-    layer, bead, point = _places(deposit, fresh, _layers(read.events, starts))
+    rows = np.insert(np.arange(len(text.deposit)), starts, inserted)
+    fresh = np.insert(np.zeros(len(text.deposit), dtype=bool), starts, True)
+    deposit = text.deposit[rows] | fresh
+    layer, bead, point = _places(deposit, fresh, _layers(text.events, starts))
     duration = np.where(fresh, 0.0, seconds[rows])
     position, tool = path.position[rows], path.tool[rows]
-    way = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
-    speed = np.divide(way, duration, out=np.zeros(len(way)), where=duration > 0.0)
+    step_lengths = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
+    speed = np.divide(step_lengths, duration, out=np.zeros(len(step_lengths)), where=duration > 0.0)
     return Motion(
         deposit=deposit,
         layer=layer,
@@ -65,68 +65,75 @@ def driven(cell: Cell, program: Program, read: ReadMoves) -> Motion:
 def beads(motion: Motion) -> list[DrivenBead]:
     """The beads of a motion, in order."""
     deposited = np.flatnonzero(motion.deposit)
-    parts = (
+    row_groups = (
         np.split(deposited, np.flatnonzero(motion.point[deposited] == 0)[1:])
         if len(deposited)
         else []
     )
     return [
-        DrivenBead(motion.position[rows], motion.build[rows], motion.tool[rows]) for rows in parts
+        DrivenBead(motion.position[rows], motion.build[rows], motion.tool[rows])
+        for rows in row_groups
     ]
 
 
-def _driven(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array]:
+def _driven(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array]:
     """Where the text takes the tip, and the serial joints (n, axes) that do it."""
-    machine, continuous = cell.machine, text_path.shorter_way(cell, program, read)
-    if read.position is None:
-        assert read.joints is not None
-        shown = _in_turns(read.joints, continuous)
-        return text_path.joint_path(cell, shown, text_path.digits(cell, read))[
+    machine, continuous = cell.machine, text_path.shorter_way(cell, program, text)
+    if text.position is None:
+        assert text.joints is not None
+        controller_values = _in_turns(text.joints, continuous)
+        return text_path.joint_path(cell, controller_values, text_path.digits(cell, text))[
             0
-        ], machine.from_controller(shown)
+        ], machine.from_controller(controller_values)
     if not cell.machine.free:
-        path = text_path.text_tips(cell, program, read)
-        serial = followed.by_table(cell, read, path)
+        path = text_path.text_tips(cell, program, text)
+        serial = followed.by_table(cell, text, path)
     else:
-        path, asked, _ = text_path.text_path(cell, program, read)
-        serial = followed.by_robot(cell, read, asked)
+        path, flanges, _ = text_path.text_path(cell, program, text)
+        serial = followed.by_robot(cell, text, flanges)
     return path, machine.from_controller(_in_turns(machine.to_controller(serial), continuous))
 
 
-def _in_turns(shown: Array, continuous: Mask) -> Array:
+def _in_turns(controller_values: Array, continuous: Mask) -> Array:
     """Controller values (n, axes) with the axes that go the shorter way counted on from row to row."""
-    unwrapped, known = np.array(shown), np.isfinite(shown).all(axis=1)
-    unwrapped[np.ix_(known, continuous)] = np.unwrap(unwrapped[np.ix_(known, continuous)], axis=0)
+    unwrapped, reached = np.array(controller_values), np.isfinite(controller_values).all(axis=1)
+    unwrapped[np.ix_(reached, continuous)] = np.unwrap(
+        unwrapped[np.ix_(reached, continuous)], axis=0
+    )
     return unwrapped
 
 
-def _durations(cell: Cell, read: ReadMoves, position: Array, serial: Array) -> Array:
+def _durations(cell: Cell, text: ReadMoves, position: Array, serial: Array) -> Array:
     """(n,) s of each move as the text says it: by a time, a speed of the tip, or a share of the axes' largest speeds; 0 of
     the first one, which begins wherever the machine stands."""
-    way = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
+    step_lengths = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
     turned = np.abs(np.diff(cell.machine.to_controller(serial), axis=0, prepend=np.nan))
     with np.errstate(invalid="ignore"):
         quickest = np.nan_to_num((turned / cell.machine.max_speed).max(axis=1))
-    taken = read.duration
-    if read.speed is not None:
-        by_speed = np.divide(way, read.speed, out=np.full(len(way), np.nan), where=read.speed > 0.0)
-        # a speed of the tip says nothing where the tip stands still
-        taken = np.where(
-            np.isnan(taken), np.maximum(by_speed, np.where(way > 0.0, 0.0, quickest)), taken
+    seconds = text.duration
+    if text.speed is not None:
+        by_speed = np.divide(
+            step_lengths, text.speed, out=np.full(len(step_lengths), np.nan), where=text.speed > 0.0
         )
-    if read.share is not None:
-        taken = np.where(np.isnan(taken), quickest / read.share, taken)
-    taken = np.where(np.isnan(taken), quickest, taken)
-    taken[:1] = 0.0
-    return taken
+        # a speed of the tip says nothing where the tip stands still
+        seconds = np.where(
+            np.isnan(seconds),
+            np.maximum(by_speed, np.where(step_lengths > 0.0, 0.0, quickest)),
+            seconds,
+        )
+    if text.share is not None:
+        seconds = np.where(np.isnan(seconds), quickest / text.share, seconds)
+    seconds = np.where(np.isnan(seconds), quickest, seconds)
+    seconds[:1] = 0.0
+    return seconds
 
 
-def _starts(read: ReadMoves) -> Index:
+def _starts(text: ReadMoves) -> Index:
     """The moves that are the first ones of beads: with which the deposit begins, or begins anew."""
-    begun = np.diff(read.deposit, prepend=False) & read.deposit
-    on = [event.row for event in read.events if event.kind == "on" and event.row < len(begun)]
-    begun[on] |= read.deposit[on]
-    return np.flatnonzero(begun)
+    begins = np.diff(text.deposit, prepend=False) & text.deposit
+    on = [event.row for event in text.events if event.kind == "on" and event.row < len(begins)]
+    begins[on] |= text.deposit[on]
+    return np.flatnonzero(begins)
 
 
 def _layers(events: tuple[Event, ...], starts: Index) -> Integers:
@@ -150,8 +157,8 @@ def _places(deposit: Mask, fresh: Mask, layers: Integers) -> tuple[Integers, ...
     for layer in np.unique(layers):
         same = layers == layer
         numbers[same] = np.arange(same.sum())
-    begun = np.cumsum(fresh)
-    which = np.minimum(np.where(deposit, begun - 1, begun), len(layers) - 1)
+    bead_counts = np.cumsum(fresh)
+    bead_numbers = np.minimum(np.where(deposit, bead_counts - 1, bead_counts), len(layers) - 1)
     changed = np.flatnonzero(fresh | np.append(True, deposit[1:] != deposit[:-1]))
     point = np.arange(len(deposit)) - np.repeat(changed, np.diff(np.append(changed, len(deposit))))
-    return layers[which], numbers[which], point
+    return layers[bead_numbers], numbers[bead_numbers], point

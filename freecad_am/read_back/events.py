@@ -38,30 +38,35 @@ _FAMILIES = (
 )
 
 
-def event_issues(planned: Planned, program: Program, read: ReadMoves) -> list[Issue]:
+def event_issues(planned: Planned, program: Program, text: ReadMoves) -> list[Issue]:
     """The deposit in each move, the speed of its wire, and all events."""
-    wanted = planned.deposit & (not program.dry_run)
+    expected = planned.deposit & (not program.dry_run)
     wire = np.where(
-        wanted, planned.motion.wire[planned.rows] * (0.06 * program.nc.wire_gain), np.nan
+        expected, planned.motion.wire[planned.rows] * (0.06 * program.nc.wire_gain), np.nan
     )
-    feed = np.where(read.deposit, np.nan if read.wire is None else read.wire, np.nan)
-    wrong = (np.abs(feed - wire) > read.wire_digits + COMPUTED_AXIS * wire) | (
+    feed = np.where(text.deposit, np.nan if text.wire is None else text.wire, np.nan)
+    wrong = (np.abs(feed - wire) > text.wire_digits + COMPUTED_AXIS * wire) | (
         np.isnan(feed) != np.isnan(wire)
     )
-    if read.wire_output not in (None, program.nc.wire_output):
-        wrong |= wanted
+    if text.wire_output not in (None, program.nc.wire_output):
+        wrong |= expected
     issues = planned.issue(
-        "VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned"
+        "VERIFY_DEPOSIT", text.deposit != expected, "the deposit is switched otherwise than planned"
     )
     issues += planned.issue(
         "VERIFY_WIRE", wrong, "the speed of the wire in the text is not the planned one"
     )
-    known = {issue.code for issue in issues}
-    found, due = _joined(timed(read.events, speeds_of(planned, read))), _joined(_due(program))
+    codes = {issue.code for issue in issues}
+    events, due = (
+        _merge_waits(timed(text.events, speeds_of(planned, text))),
+        _merge_waits(_due(program)),
+    )
     for code, message, kinds in _FAMILIES:
-        if code not in known:
-            issues += _compared(planned, program, code, message, _of(found, kinds), _of(due, kinds))
-    if not issues and [(event.row, event.kind) for event in found] != [
+        if code not in codes:
+            issues += _compared(
+                planned, program, code, message, _of(events, kinds), _of(due, kinds)
+            )
+    if not issues and [(event.row, event.kind) for event in events] != [
         (event.row, event.kind) for event in due
     ]:
         issues.append(
@@ -77,69 +82,72 @@ def _compared(
     program: Program,
     code: str,
     message: str,
-    found: Sequence[Event],
+    events: Sequence[Event],
     due: Sequence[Event],
 ) -> list[Issue]:
     """An error where the events of a text are not those that are due."""
-    alike = [_alike(program, one, other) for one, other in zip(found, due)]
-    off = alike.count(False) + abs(len(found) - len(due))
+    alike = [_alike(program, event, due_event) for event, due_event in zip(events, due)]
+    off = alike.count(False) + abs(len(events) - len(due))
     if not off:
         return []
-    first = alike.index(False) if False in alike else len(alike)
-    row = min((events[first].row for events in (found, due) if first < len(events)), default=0)
+    first_mismatch = alike.index(False) if False in alike else len(alike)
+    row = min(
+        (events[first_mismatch].row for events in (events, due) if first_mismatch < len(events)),
+        default=0,
+    )
     return [
         Issue(
             ERROR,
             code,
-            Text("{}; {} of {} events", message, off, max(len(found), len(due))),
+            Text("{}; {} of {} events", message, off, max(len(events), len(due))),
             *planned.place(row),
         )
     ]
 
 
-def _alike(program: Program, found: Event, due: Event) -> bool:
+def _alike(program: Program, event: Event, due: Event) -> bool:
     """Whether an event of a text is the one that is due."""
-    if (found.row, found.kind) != (due.row, due.kind) or not _as_early(found, due):
+    if (event.row, event.kind) != (due.row, due.kind) or not _as_early(event, due):
         return False
-    if ARC in (*found.value, *due.value):
-        return found.value == due.value
+    if ARC in (*event.value, *due.value):
+        return event.value == due.value
     if due.kind in ("on", "off") and program.nc.deposit_on and program.axis_names:
         return (
-            found.value[1]
+            event.value[1]
             == (program.nc.deposit_on if due.kind == "on" else program.nc.deposit_off).upper()
         )
     if due.kind in ("on", "off"):
-        return found.value[0] == due.value[0]
+        return event.value[0] == due.value[0]
     if due.kind == "call":
-        return found.value == due.value
-    *names, value = (float(part) for part in found.value)
-    *others, wanted = (float(part) for part in due.value)
+        return event.value == due.value
+    *names, value = (float(word) for word in event.value)
+    *due_names, due_value = (float(word) for word in due.value)
     # a wait that is shorter than the last digit is written as one of that
-    wanted = max(wanted, 2.0 * found.digits) if due.kind == "wait" else wanted
-    return names == others and abs(value - wanted) <= found.digits + 1e-9
+    due_value = max(due_value, 2.0 * event.digits) if due.kind == "wait" else due_value
+    return names == due_names and abs(value - due_value) <= event.digits + 1e-9
 
 
-def _as_early(found: Event, due: Event) -> bool:
+def _as_early(event: Event, due: Event) -> bool:
     """Whether it happens as long ahead of its place, or where the machine stands."""
-    if found.ahead is None or due.ahead is None:
-        return found.ahead is due.ahead
-    return abs(found.ahead - due.ahead) <= found.digits + 1e-9
+    if event.ahead is None or due.ahead is None:
+        return event.ahead is due.ahead
+    return abs(event.ahead - due.ahead) <= event.digits + 1e-9
 
 
 def _of(events: Sequence[Event], kinds: Sequence[str]) -> list[Event]:
     return [event for event in events if event.kind in kinds]
 
 
-def _joined(events: Sequence[Event] | Iterator[Event]) -> list[Event]:
+def _merge_waits(events: Sequence[Event] | Iterator[Event]) -> list[Event]:
     """The events with waits one after the other as one, and none of no time."""
     joined: list[Event] = []
     for event in events:
-        last = joined[-1] if joined else None
+        previous = joined[-1] if joined else None
         if event.kind == "wait" and event.value == (0.0,):
             continue
-        if last and (last.row, last.kind, event.kind) == (event.row, "wait", "wait"):
+        if previous and (previous.row, previous.kind, event.kind) == (event.row, "wait", "wait"):
             joined[-1] = Event(
-                event.row, "wait", (float(last.value[0]) + float(event.value[0]),), event.digits
+                event.row, "wait", (float(previous.value[0]) + float(event.value[0]),), event.digits
             )
         else:
             joined.append(event)

@@ -18,12 +18,12 @@ class Finding(NamedTuple):
     issue: Issue
     row: int | None
 
-    def line(self, motion: Motion, read: ReadMoves) -> tuple[str, int] | None:
+    def line(self, motion: Motion, text: ReadMoves) -> tuple[str, int] | None:
         """File and line, from 1, of the move to the row, the motion being what the text drives; None where it is unknown."""
-        if self.row is None or read.lines is None:
+        if self.row is None or text.lines is None:
             return None
         # the first row of a bead repeats the end of the move before
-        return read.lines.at(max(int(np.count_nonzero(motion.moves[: self.row + 1])) - 1, 0))
+        return text.lines.at(max(int(np.count_nonzero(motion.moves[: self.row + 1])) - 1, 0))
 
 
 def error_at(code: str, message: Text, motion: Motion, row: int) -> Finding:

@@ -19,51 +19,56 @@ from .planned import pieces
 from .text_path import Path
 
 
-def by_robot(cell: Cell, read: ReadMoves, asked: Array) -> Array:
-    """(n, axes) serial joints of a cell with a robot whose flange is at `asked` (n, 4, 4); NaN where it is not reached.
+def by_robot(cell: Cell, text: ReadMoves, flanges: Array) -> Array:
+    """(n, axes) serial joints of a cell with a robot whose flange is at `flanges` (n, 4, 4); NaN where it is not reached.
 
     Rows that the text tells in joints have these. Raises InputError NO_CONFIGURATION where it begins with a position and
     neither names a configuration nor says what it is next to, and the cell leaves it open too.
     """
-    machine, own = cell.machine, cell.robot.chain.axes
-    shown = (
-        np.full((len(asked), machine.chain.axes), np.nan) if read.joints is None else read.joints
+    machine, robot_axes = cell.machine, cell.robot.chain.axes
+    controller_values = (
+        np.full((len(flanges), machine.chain.axes), np.nan) if text.joints is None else text.joints
     )
-    unknown = np.isnan(shown[:, :own]).any(axis=1)
-    serial = np.full_like(shown, np.nan)
-    serial[~unknown] = machine.from_controller(shown[~unknown])
+    unknown = np.isnan(controller_values[:, :robot_axes]).any(axis=1)
+    serial = np.full_like(controller_values, np.nan)
+    serial[~unknown] = machine.from_controller(controller_values[~unknown])
     if cell.external is not None:  # the external axes are told with every position
-        external = machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[:, own:]
-        asked, serial[:, own:] = frames.inverse(cell.external.base(external)) @ asked, external
-    if read.near is not None:
-        known = unknown & np.isfinite(read.near).all(axis=1)
-        serial[known, :own] = _nearest_turns(
-            cell, asked[known], machine.from_controller(read.near[known])[:, :own]
+        external = machine.from_controller(
+            np.where(np.isnan(controller_values), 0.0, controller_values)
+        )[:, robot_axes:]
+        flanges, serial[:, robot_axes:] = (
+            frames.inverse(cell.external.base(external)) @ flanges,
+            external,
         )
-        unknown &= ~known
+    if text.near is not None:
+        near_rows = unknown & np.isfinite(text.near).all(axis=1)
+        serial[near_rows, :robot_axes] = _nearest_turns(
+            cell, flanges[near_rows], machine.from_controller(text.near[near_rows])[:, :robot_axes]
+        )
+        unknown &= ~near_rows
     for start, end in _runs(unknown):
-        before = serial[start - 1, :own] if start else np.full(own, np.nan)
-        serial[start:end, :own] = _arm(cell, read, asked, slice(start, end), before)
+        previous = serial[start - 1, :robot_axes] if start else np.full(robot_axes, np.nan)
+        serial[start:end, :robot_axes] = _arm(cell, text, flanges, slice(start, end), previous)
     return serial
 
 
-def by_table(cell: Cell, read: ReadMoves, path: Path) -> Array:
+def by_table(cell: Cell, text: ReadMoves, path: Path) -> Array:
     """(n, 5) serial joints of a machine with rotary axes whose tip takes a path; NaN where a direction is not reached.
 
     A rotary axis that a direction leaves free stays where it is.
     """
-    assert read.joints is not None
-    serial = cell.machine.from_controller(read.joints)
-    solver, unknown = FiveAxis(cell.machine.chain), np.isnan(read.joints).any(axis=1)
+    assert text.joints is not None
+    serial = cell.machine.from_controller(text.joints)
+    solver, unknown = FiveAxis(cell.machine.chain), np.isnan(text.joints).any(axis=1)
     points, tools = cell.on_flange(path.position, path.tool)
     turning = list(solver.turning)
     for start, end in _runs(unknown):
         rows = slice(start, end)
-        before = serial[start - 1, turning] if start else np.zeros(2)
+        previous = serial[start - 1, turning] if start else np.zeros(2)
         turned = serial[rows, turning]
         if np.isnan(turned).any():
-            found, free = solver.inverse(points[rows], tools[rows], cell.station)
-            turned = _nearest(np.moveaxis(found[..., turning], 0, 1), free, before)
+            solutions, free = solver.inverse(points[rows], tools[rows], cell.station)
+            turned = _nearest(np.moveaxis(solutions[..., turning], 0, 1), free, previous)
         serial[rows] = solver.placed(turned, points[rows], cell.station)
     return serial
 
@@ -74,19 +79,20 @@ def _runs(mask: Mask) -> list[tuple[int, int]]:
     return list(zip(edges[::2], edges[1::2], strict=True))
 
 
-def _arm(cell: Cell, read: ReadMoves, asked: Array, rows: slice, before: Array) -> Array:
-    """(k, 6) joints of the arm at some rows of the text that follow each other after joints `before` (6,)."""
+def _arm(cell: Cell, text: ReadMoves, flanges: Array, rows: slice, previous: Array) -> Array:
+    """(k, 6) joints of the arm at some rows of the text that follow each other after joints `previous` (6,)."""
     arm = cell.robot.arm
     assert arm is not None
     solutions = [
-        arm.solutions(asked[rows][some]) for some in pieces(np.arange(rows.stop - rows.start))
+        arm.solutions(flanges[rows][rows_now])
+        for rows_now in pieces(np.arange(rows.stop - rows.start))
     ]
-    found = np.concatenate([np.moveaxis(joints, 0, 1) for joints, _ in solutions])
-    if read.configuration is not None:
+    joint_solutions = np.concatenate([np.moveaxis(joints, 0, 1) for joints, _ in solutions])
+    if text.configuration is not None:
         return _as_named(
-            cell, read, found, np.concatenate([words.T for _, words in solutions]), rows
+            cell, text, joint_solutions, np.concatenate([words.T for _, words in solutions]), rows
         )
-    if not np.isfinite(before).all():
+    if not np.isfinite(previous).all():
         if cell.branch is None:
             raise InputError(
                 "NO_CONFIGURATION",
@@ -94,32 +100,38 @@ def _arm(cell: Cell, read: ReadMoves, asked: Array, rows: slice, before: Array) 
                 "it begins with a position and names no configuration of the arm; say it in "
                 "the cell, branch: [front, up, flip]",
             )
-        before = found[0, cell.branch]
-    return _nearest(found, np.zeros((len(found), found.shape[2]), dtype=bool), before)
+        previous = joint_solutions[0, cell.branch]
+    return _nearest(
+        joint_solutions,
+        np.zeros((len(joint_solutions), joint_solutions.shape[2]), dtype=bool),
+        previous,
+    )
 
 
-def _nearest_turns(cell: Cell, asked: Array, near: Array) -> Array:
-    """(k, 6) the joints of flange poses (k, 4, 4) next to joints `near` (k, 6), in their turns."""
+def _nearest_turns(cell: Cell, flanges: Array, reference: Array) -> Array:
+    """(k, 6) the joints of flange poses (k, 4, 4) next to joints `reference` (k, 6), in their turns."""
     arm = cell.robot.arm
     assert arm is not None
-    found = np.moveaxis(arm.inverse(asked), 0, 1)
-    chosen = found[np.arange(len(found)), _apart(near[:, None], found).argmin(axis=1)]
-    unwrapped: Array = chosen + TURN * np.rint((near - chosen) / TURN)
+    solutions = np.moveaxis(arm.inverse(flanges), 0, 1)
+    nearest = solutions[
+        np.arange(len(solutions)), _joint_distance(reference[:, None], solutions).argmin(axis=1)
+    ]
+    unwrapped: Array = nearest + TURN * np.rint((reference - nearest) / TURN)
     return unwrapped
 
 
-def _as_named(cell: Cell, read: ReadMoves, found: Array, words: Index, rows: slice) -> Array:
+def _as_named(cell: Cell, text: ReadMoves, solutions: Array, words: Index, rows: slice) -> Array:
     """Of solutions (k, configurations, 6) that bear `words` (k, configurations) those the text names, with its turns."""
-    configuration = read.configuration
+    configuration = text.configuration
     assert configuration is not None
     names = np.array([opw.branch_name(index) for index in range(8)])[words]
     # what controllers call flip is which way axis 5 is bent as they count it
-    shown = cell.robot.to_controller(found)
+    controller_values = cell.robot.to_controller(solutions)
     named = (names[..., 0] == "front") == configuration.front[rows, None]
     named &= (names[..., 1] == "up") == configuration.up[rows, None]
     named &= (
-        ((shown[..., 4] > 0.0) == configuration.flip[rows, None])
-        & np.isfinite(found).all(axis=2)
+        ((controller_values[..., 4] > 0.0) == configuration.flip[rows, None])
+        & np.isfinite(solutions).all(axis=2)
         & (words >= 0)
     )
     if configuration.turns[rows, :-1].any():
@@ -129,37 +141,41 @@ def _as_named(cell: Cell, read: ReadMoves, found: Array, words: Index, rows: sli
             "it names turns of other axes than the last one, which cannot be followed; "
             "give these positions in joints",
         )
-    chosen = shown[np.arange(len(found)), named.argmax(axis=1)]
-    chosen -= TURN * np.rint(chosen / TURN)
-    chosen[:, -1] += TURN * configuration.turns[rows, -1]
-    joints: Array = np.where(named.any(axis=1)[:, None], cell.robot.from_controller(chosen), np.nan)
+    named_values = controller_values[np.arange(len(solutions)), named.argmax(axis=1)]
+    named_values -= TURN * np.rint(named_values / TURN)
+    named_values[:, -1] += TURN * configuration.turns[rows, -1]
+    joints: Array = np.where(
+        named.any(axis=1)[:, None], cell.robot.from_controller(named_values), np.nan
+    )
     return joints
 
 
-def _nearest(found: Array, free: Mask, before: Array) -> Array:
+def _nearest(solutions: Array, free: Mask, previous: Array) -> Array:
     """(k, axes) one of the solutions (k, configurations, axes) of each row, next to that of the row before, the first one
-    next to `before`, turns counted on. free: (k, axes) what stays as it is, whatever the solutions say."""
-    first = int(_apart(found[0], before).argmin())
-    chosen = [first]
-    for some in pieces(np.arange(len(found) - 1)):
-        apart = _apart(found[some, :, None], found[some + 1, None])
+    next to `previous`, turns counted on. free: (k, axes) what stays as it is, whatever the solutions say."""
+    first_choice = int(_joint_distance(solutions[0], previous).argmin())
+    choices = [first_choice]
+    for rows in pieces(np.arange(len(solutions) - 1)):
+        distances = _joint_distance(solutions[rows, :, None], solutions[rows + 1, None])
         nearest = np.where(
-            np.isfinite(apart).any(axis=2), apart.argmin(axis=2), np.arange(found.shape[1])
+            np.isfinite(distances).any(axis=2),
+            distances.argmin(axis=2),
+            np.arange(solutions.shape[1]),
         )
-        for after in nearest.tolist():
-            chosen.append(after[chosen[-1]])
-    joints = np.vstack([before, found[np.arange(len(found)), chosen]])
+        for successors in nearest.tolist():
+            choices.append(successors[choices[-1]])
+    joints = np.vstack([previous, solutions[np.arange(len(solutions)), choices]])
     # what is free takes the value of the last row that had one
-    bound = np.vstack([np.ones(len(before), dtype=bool), ~free])
-    held = np.maximum.accumulate(np.where(bound, np.arange(len(joints))[:, None], 0), axis=0)
-    joints = np.take_along_axis(joints, held, axis=0)
-    known = np.isfinite(joints).all(axis=1)
-    joints[known] = np.unwrap(joints[known], axis=0)
+    bound = np.vstack([np.ones(len(previous), dtype=bool), ~free])
+    last_bound = np.maximum.accumulate(np.where(bound, np.arange(len(joints))[:, None], 0), axis=0)
+    joints = np.take_along_axis(joints, last_bound, axis=0)
+    reached = np.isfinite(joints).all(axis=1)
+    joints[reached] = np.unwrap(joints[reached], axis=0)
     return joints[1:]
 
 
-def _apart(one: Array, other: Array) -> Array:
+def _joint_distance(joints: Array, reference: Array) -> Array:
     """(...) how far joints (..., axes) are from others, turns left out; infinite where there are none."""
-    turned = one - other
-    apart = np.abs(turned - TURN * np.rint(turned / TURN)).max(axis=-1)
-    return np.where(np.isnan(apart), np.inf, apart)
+    turned = joints - reference
+    distances = np.abs(turned - TURN * np.rint(turned / TURN)).max(axis=-1)
+    return np.where(np.isnan(distances), np.inf, distances)

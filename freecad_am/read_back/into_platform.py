@@ -18,8 +18,8 @@ def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
     """INTO_PLATFORM with the lowest place, where the nozzle's tip is below the platform, within its edge, while it deposits.
     motion: what the text drives; what is not reached is not looked at."""
     rows = np.flatnonzero(motion.deposit & motion.reachable)
-    place = frames.inverse(cell.mount)
-    points = motion.position[rows] @ place[:3, :3].T + place[:3, 3]
+    to_platform = frames.inverse(cell.mount)
+    points = motion.position[rows] @ to_platform[:3, :3].T + to_platform[:3, 3]
     below = (points[:, 2] < -ROUNDED) & (
         np.hypot(points[:, 0], points[:, 1]) < 0.5 * cell.platform_diameter
     )

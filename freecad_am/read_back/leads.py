@@ -26,24 +26,32 @@ def timed(events: Sequence[Event], speed: Array) -> tuple[Event, ...]:
     )
 
 
-def speeds_of(planned: Planned, read: ReadMoves) -> Array:
+def speeds_of(planned: Planned, text: ReadMoves) -> Array:
     """(n,) mm/s of the tip on each move: as the text says it, else by the planned points and times, against which its own
     are held."""
-    way = np.linalg.norm(np.diff(planned.position, axis=0, prepend=planned.position[:1]), axis=1)
-    speed: Array = np.divide(
-        way, planned.duration, out=np.zeros(len(way)), where=planned.duration > 0.0
+    step_lengths = np.linalg.norm(
+        np.diff(planned.position, axis=0, prepend=planned.position[:1]), axis=1
     )
-    if read.speed is None:
+    speed: Array = np.divide(
+        step_lengths,
+        planned.duration,
+        out=np.zeros(len(step_lengths)),
+        where=planned.duration > 0.0,
+    )
+    if text.speed is None:
         return speed
-    return np.asarray(np.where(np.isfinite(read.speed), read.speed, speed))
+    return np.asarray(np.where(np.isfinite(text.speed), text.speed, speed))
 
 
-def _timed(event: Event, before: float, speed: Array) -> Event:
+def _timed(event: Event, distance_before: float, speed: Array) -> Event:
     along = float(speed[event.row - 1])
-    if not before:
+    if not distance_before:
         return dataclasses.replace(event, ahead=0.0, digits=0.0, before=None)
     if not along > 0.0:
         return dataclasses.replace(event, ahead=np.nan, digits=0.0, before=None)
     return dataclasses.replace(
-        event, ahead=before / along, digits=min(event.digits / along, MOST_DIGITS), before=None
+        event,
+        ahead=distance_before / along,
+        digits=min(event.digits / along, MOST_DIGITS),
+        before=None,
     )

@@ -35,13 +35,13 @@ class Planned:
         """An error at the first wrong move, none when there is none; the message says how many there are."""
         if not wrong.any():
             return []
-        count, first = int(wrong.sum()), int(np.argmax(wrong))
+        count, first_row = int(wrong.sum()), int(np.argmax(wrong))
         return [
             Issue(
                 ERROR,
                 code,
                 Text("{}; {} of {} moves", message, count, len(wrong)),
-                *self.place(first),
+                *self.place(first_row),
             )
         ]
 

@@ -16,7 +16,7 @@ from .finding import Finding
 
 
 def selection_findings(
-    motion: Motion, read: ReadMoves, expected: tuple[int, int] | None
+    motion: Motion, text: ReadMoves, expected: tuple[int, int] | None
 ) -> list[Finding]:
     """FRAME_NUMBER where a text selects several frames or tools, of which only one is known, or others than a job; and
     OTHER_PROGRAM for each program that it calls and that was not given.
@@ -30,60 +30,64 @@ def selection_findings(
     expected
         Numbers of the frame and of the tool of a job, None without one.
     """
-    return [*_numbers(motion, read, expected), *_calls(motion, read)]
+    return [*_numbers(motion, text, expected), *_calls(motion, text)]
 
 
 def _numbers(
-    motion: Motion, read: ReadMoves, expected: tuple[int, int] | None
+    motion: Motion, text: ReadMoves, expected: tuple[int, int] | None
 ) -> Iterator[Finding]:
     frame, tool = expected or (None, None)
     selections: list[tuple[Text, Array | None, int | None]] = [
-        (Text("work frame"), read.user_frame, frame),
-        (Text("tool"), read.tool_frame, tool),
+        (Text("work frame"), text.user_frame, frame),
+        (Text("tool"), text.tool_frame, tool),
     ]
     rows = np.flatnonzero(motion.moves)
     for kind, numbers, number in selections:
-        known = np.flatnonzero(~np.isnan(numbers)) if numbers is not None else np.zeros(0, np.intp)
-        if numbers is None or not len(known):
+        numbered = (
+            np.flatnonzero(~np.isnan(numbers)) if numbers is not None else np.zeros(0, np.intp)
+        )
+        if numbers is None or not len(numbered):
             continue
-        first = numbers[known[0]]
-        changed = known[numbers[known] != first]
+        first_number = numbers[numbered[0]]
+        changed = numbered[numbers[numbered] != first_number]
         if len(changed):
             message = Text(
                 "{} {:.0f} is selected, moves before are in {:.0f}: only one of them is known here, and all moves are driven "
                 "in that; give a program of one alone",
                 kind,
                 numbers[changed[0]],
-                first,
+                first_number,
             )
-            yield _at(ERROR, "FRAME_NUMBER", message, motion, int(rows[changed[0]]))
-        elif number is not None and first != number:
+            yield _finding_at(ERROR, "FRAME_NUMBER", message, motion, int(rows[changed[0]]))
+        elif number is not None and first_number != number:
             message = Text(
                 "{} {:.0f} is selected, the job has {}: moves are driven in that of the cell; compare the two, and correct "
                 "the program's number or that of the job",
                 kind,
-                first,
+                first_number,
                 number,
             )
-            yield _at(WARNING, "FRAME_NUMBER", message, motion, int(rows[known[0]]))
+            yield _finding_at(WARNING, "FRAME_NUMBER", message, motion, int(rows[numbered[0]]))
 
 
-def _calls(motion: Motion, read: ReadMoves) -> Iterator[Finding]:
+def _calls(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
     """One finding of each name, at the first move behind the call."""
     rows = np.flatnonzero(motion.moves)
-    first: dict[str, int] = {}
-    for event in read.events:
+    first_calls: dict[str, int] = {}
+    for event in text.events:
         if event.kind == "call":
-            first.setdefault(str(event.value[0]), event.row)
-    for name, row in first.items():
+            first_calls.setdefault(str(event.value[0]), event.row)
+    for name, row in first_calls.items():
         message = Text(
             "{} is called, which is not among the files: what it moves, switches or sets is not driven; give its file too, or "
             "look at it at the controller",
             name,
         )
-        yield _at(WARNING, "OTHER_PROGRAM", message, motion, int(rows[min(row, len(rows) - 1)]))
+        yield _finding_at(
+            WARNING, "OTHER_PROGRAM", message, motion, int(rows[min(row, len(rows) - 1)])
+        )
 
 
-def _at(level: str, code: str, message: Text, motion: Motion, row: int) -> Finding:
-    place = int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
-    return Finding(Issue(level, code, message, *place), row)
+def _finding_at(level: str, code: str, message: Text, motion: Motion, row: int) -> Finding:
+    bead_point = int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
+    return Finding(Issue(level, code, message, *bead_point), row)

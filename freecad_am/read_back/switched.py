@@ -19,19 +19,19 @@ from .leads import timed
 MOST_LONGER = 0.002
 
 
-def switching_findings(motion: Motion, read: ReadMoves) -> list[Finding]:
+def switching_findings(motion: Motion, text: ReadMoves) -> list[Finding]:
     """The first DEPOSIT_SWITCH where it is switched on a second time, or is on where the program ends: an end of a bead is
     lost; and the first TRIGGER_LEAD where it is switched earlier than the move begins on which it is. motion: what the text
     drives."""
-    first: dict[str, Finding] = {}
-    for finding in _findings(motion, read):
-        first.setdefault(finding.issue.code, finding)
-    return list(first.values())
+    first_findings: dict[str, Finding] = {}
+    for finding in _findings(motion, text):
+        first_findings.setdefault(finding.issue.code, finding)
+    return list(first_findings.values())
 
 
-def _findings(motion: Motion, read: ReadMoves) -> Iterator[Finding]:
+def _findings(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
     rows, on = np.flatnonzero(motion.moves), False
-    for event in timed(read.events, motion.speed[rows]):
+    for event in timed(text.events, motion.speed[rows]):
         if event.kind not in ("on", "off"):
             continue
         if on and event.kind == "on":

@@ -42,37 +42,37 @@ class Joints:
 def given_by_position(cell: Cell, joints: Array) -> Mask:
     """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: a robot's own
     ones, and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
-    own = (
+    robot_axes = (
         np.arange(joints.shape[1]) < cell.robot.chain.axes
     )  # a position says nothing of the external axes
-    untold = np.isnan(joints[:, own]).all(axis=1, keepdims=True)
-    return np.asarray((cell.machine.chain.sliding | untold) & own, dtype=np.bool_)
+    untold = np.isnan(joints[:, robot_axes]).all(axis=1, keepdims=True)
+    return np.asarray((cell.machine.chain.sliding | untold) & robot_axes, dtype=np.bool_)
 
 
-def shorter_way(cell: Cell, program: Program, read: ReadMoves) -> Mask:
+def shorter_way(cell: Cell, program: Program, text: ReadMoves) -> Mask:
     """(axes,) the axes that the controller takes the shorter way: those of robots that turn without end. Rotary axes of
     machine tools count their turns, unless the text says otherwise."""
-    shorter = not cell.arrangement.named_axes if read.shorter_way is None else read.shorter_way
+    shorter = not cell.arrangement.named_axes if text.shorter_way is None else text.shorter_way
     return np.array(program.continuous) & shorter
 
 
-def digits(cell: Cell, read: ReadMoves) -> Array:
+def digits(cell: Cell, text: ReadMoves) -> Array:
     """(axes,) half of the last digit of each axis, rad and mm."""
-    return np.where(cell.machine.chain.sliding, read.linear_digits, read.digits)
+    return np.where(cell.machine.chain.sliding, text.linear_digits, text.digits)
 
 
-def joint_path(cell: Cell, shown: Array, half: Array) -> tuple[Path, Array]:
+def joint_path(cell: Cell, controller_values: Array, half: Array) -> tuple[Path, Array]:
     """The path of controller joint values (n, axes), each off by at most `half` (axes,), and the flange poses (n, 4, 4)."""
-    machine, count = cell.machine, len(shown)
+    machine, count = cell.machine, len(controller_values)
     path = Path(np.empty((count, 3)), np.empty((count, 3)), np.empty(count), np.empty(count))
     flange = np.empty((count, 4, 4))
     for rows in pieces(np.arange(count)):
-        serial = machine.from_controller(shown[rows])
-        at = machine.chain.frames(serial)
-        flange[rows] = at.flange
-        path.position[rows], path.tool[rows] = cell.tip_in_part(at.flange)
+        serial = machine.from_controller(controller_values[rows])
+        joint_frames = machine.chain.frames(serial)
+        flange[rows] = joint_frames.flange
+        path.position[rows], path.tool[rows] = cell.tip_in_part(joint_frames.flange)
         path.bound[rows], path.tool_bound[rows] = _bounds(
-            cell, at, machine.controller_matrix, half[None]
+            cell, joint_frames, machine.controller_matrix, half[None]
         )
     return path, flange
 
@@ -82,53 +82,67 @@ def tip_bounds(cell: Cell, serial: Array, reach: Array) -> tuple[Array, Array]:
     return _bounds(cell, cell.machine.chain.frames(serial), np.eye(serial.shape[1]), reach)
 
 
-def _bounds(cell: Cell, at: JointFrames, matrix: Array, half: Array) -> tuple[Array, Array]:
+def _bounds(
+    cell: Cell, joint_frames: JointFrames, matrix: Array, half: Array
+) -> tuple[Array, Array]:
     """Bounds of tip and tool to first order where matrix @ joints are off by `half` (n, axes), or (1, axes) of all: the sum
     of the lengths of the Jacobian's columns; what the second order adds is at most that times the sum of the angles."""
     slides = cell.machine.chain.sliding
     to_serial = np.linalg.inv(matrix)
     # one row per joint and entry, each of all poses
-    direction, origin = at.directions.transpose(1, 2, 0), at.origins.transpose(1, 2, 0)
-    lever = cell.deposition_point(at.flange).T - origin
+    direction, origin = (
+        joint_frames.directions.transpose(1, 2, 0),
+        joint_frames.origins.transpose(1, 2, 0),
+    )
+    lever = cell.deposition_point(joint_frames.flange).T - origin
     linear, angular = np.empty_like(lever), np.array(direction)
-    for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
-        np.multiply(direction[:, following], lever[:, last], out=linear[:, row])
-        linear[:, row] -= direction[:, last] * lever[:, following]
+    for row, (following, column_2) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.multiply(direction[:, following], lever[:, column_2], out=linear[:, row])
+        linear[:, row] -= direction[:, column_2] * lever[:, following]
     linear[slides], angular[slides] = direction[slides], 0.0
-    more = 1.0 + (np.abs(to_serial) @ half.T)[~slides].sum(axis=0)
-    shown = [
+    growth = 1.0 + (np.abs(to_serial) @ half.T)[~slides].sum(axis=0)
+    columns = [
         (to_serial.T @ rows.reshape(len(rows), -1)).reshape(rows.shape)
         for rows in (linear, angular)
     ]
-    moved, turned = ((np.sqrt(np.square(rows).sum(axis=1)) * half.T).sum(axis=0) for rows in shown)
-    return more * moved + COMPUTED_MM, more * turned + COMPUTED_AXIS
+    moved, turned = (
+        (np.sqrt(np.square(rows).sum(axis=1)) * half.T).sum(axis=0) for rows in columns
+    )
+    return growth * moved + COMPUTED_MM, growth * turned + COMPUTED_AXIS
 
 
 def text_joints(
-    cell: Cell, near: Array, shown: Array | None, half: Array, path: Path, asked: Array | None
+    cell: Cell,
+    reference: Array,
+    controller_values: Array | None,
+    half: Array,
+    path: Path,
+    flanges: Array | None,
 ) -> Joints:
-    """The joints that a text asks for: its values `shown` (n, axes), as the controller counts them, off by `half` (axes,).
-    Where it has none (NaN) they bring flange or tip to its positions, by one step of Newton from serial joints `near`
+    """The joints that a text asks for: its values `controller_values` (n, axes), as the controller counts them, off by `half` (axes,).
+    Where it has none (NaN) they bring flange or tip to its positions, by one step of Newton from serial joints `reference`
     (n, axes).
 
-    asked: (n, 4, 4) flange poses of the text, None where it tells of tip and direction alone.
+    flanges: (n, 4, 4) flange poses of the text, None where it tells of tip and direction alone.
     """
     machine = cell.machine
-    given = machine.to_controller(near)
-    shown = np.full_like(given, np.nan) if shown is None else shown
-    unknown = np.isnan(shown)
-    serial = machine.from_controller(np.where(unknown, given, shown))
+    reference_values = machine.to_controller(reference)
+    controller_values = (
+        np.full_like(reference_values, np.nan) if controller_values is None else controller_values
+    )
+    unknown = np.isnan(controller_values)
+    serial = machine.from_controller(np.where(unknown, reference_values, controller_values))
     reach = np.broadcast_to(np.abs(np.linalg.inv(machine.controller_matrix)) @ half, serial.shape)
     rows = np.flatnonzero(unknown.any(axis=1))
     if len(rows):
         reach = reach.copy()
-        columns, away, about = (
+        columns, errors, about = (
             _to_tip(cell, serial[rows], path, rows)
-            if asked is None
-            else _to_flange(cell, serial[rows], path, asked[rows], rows)
+            if flanges is None
+            else _to_flange(cell, serial[rows], path, flanges[rows], rows)
         )
         inverse = np.linalg.pinv(columns * unknown[rows, None, :], rcond=1e-9)
-        serial[rows] += np.einsum("nij,nj->ni", inverse, away)
+        serial[rows] += np.einsum("nij,nj->ni", inverse, errors)
         solved = np.einsum("nij,nj->ni", np.abs(inverse), about)
         reach[rows] = np.where(unknown[rows], solved, reach[rows])
     return Joints(serial, reach)
@@ -139,16 +153,20 @@ _LEVER = 300.0
 
 
 def _to_flange(
-    cell: Cell, serial: Array, path: Path, asked: Array, rows: Index
+    cell: Cell, serial: Array, path: Path, flanges: Array, rows: Index
 ) -> tuple[Array, Array, Array]:
     """Of the flange: how joints move it (n, 6, axes), how far it is from where it is asked to be (n, 6), and by how much
     that may be off (n, 6); mm, and radians times the lever."""
-    at = cell.machine.chain.frames(serial)
+    joint_frames = cell.machine.chain.frames(serial)
     slides = cell.machine.chain.sliding[:, None]
-    place = at.flange[:, :3, 3]
-    moved = np.where(slides, at.directions, np.cross(at.directions, place[:, None, :] - at.origins))
-    turned = np.where(slides, 0.0, at.directions) * _LEVER
-    turn = asked[:, :3, :3] @ np.swapaxes(at.flange[:, :3, :3], 1, 2)
+    position = joint_frames.flange[:, :3, 3]
+    moved = np.where(
+        slides,
+        joint_frames.directions,
+        np.cross(joint_frames.directions, position[:, None, :] - joint_frames.origins),
+    )
+    turned = np.where(slides, 0.0, joint_frames.directions) * _LEVER
+    turn = flanges[:, :3, :3] @ np.swapaxes(joint_frames.flange[:, :3, :3], 1, 2)
     # the angles are those of digits: their sines are as good
     about = 0.5 * np.stack(
         [
@@ -158,54 +176,54 @@ def _to_flange(
         ],
         1,
     )
-    away = np.hstack([asked[:, :3, 3] - place, about * _LEVER])
-    arm = np.linalg.norm(cell.deposition_point(at.flange) - place, axis=1)
+    errors = np.hstack([flanges[:, :3, 3] - position, about * _LEVER])
+    arm = np.linalg.norm(cell.deposition_point(joint_frames.flange) - position, axis=1)
     off = np.stack(
         [path.bound[rows] + arm * path.tool_bound[rows]] * 3 + [path.tool_bound[rows] * _LEVER] * 3,
         axis=1,
     )
-    return np.swapaxes(np.concatenate([moved, turned], axis=2), 1, 2), away, off
+    return np.swapaxes(np.concatenate([moved, turned], axis=2), 1, 2), errors, off
 
 
 def _to_tip(cell: Cell, serial: Array, path: Path, rows: Index) -> tuple[Array, Array, Array]:
     """The same of the tip and its direction in part coordinates, where the part is what the chain moves."""
-    at = cell.machine.chain.frames(serial)
+    joint_frames = cell.machine.chain.frames(serial)
     slides = cell.machine.chain.sliding[:, None]
-    tip, tool = cell.tip_in_part(at.flange)
-    lever = cell.deposition_point(at.flange)[:, None, :] - at.origins
-    moved = np.where(slides, at.directions, np.cross(at.directions, lever))
-    turned = np.cross(np.where(slides, 0.0, at.directions), cell.station[:3, 2]) * _LEVER
-    into = cell.mount[:3, :3] @ np.swapaxes((at.flange @ cell.carried)[:, :3, :3], 1, 2)
+    tip, tool = cell.tip_in_part(joint_frames.flange)
+    lever = cell.deposition_point(joint_frames.flange)[:, None, :] - joint_frames.origins
+    moved = np.where(slides, joint_frames.directions, np.cross(joint_frames.directions, lever))
+    turned = np.cross(np.where(slides, 0.0, joint_frames.directions), cell.station[:3, 2]) * _LEVER
+    into = cell.mount[:3, :3] @ np.swapaxes((joint_frames.flange @ cell.carried)[:, :3, :3], 1, 2)
     columns = -np.concatenate(
         [moved @ np.swapaxes(into, 1, 2), turned @ np.swapaxes(into, 1, 2)], axis=2
     )
-    away = np.hstack([path.position[rows] - tip, (path.tool[rows] - tool) * _LEVER])
+    errors = np.hstack([path.position[rows] - tip, (path.tool[rows] - tool) * _LEVER])
     off = np.stack([path.bound[rows]] * 3 + [path.tool_bound[rows] * _LEVER] * 3, axis=1)
-    return np.swapaxes(columns, 1, 2), away, off
+    return np.swapaxes(columns, 1, 2), errors, off
 
 
-def text_tips(cell: Cell, program: Program, read: ReadMoves) -> Path:
+def text_tips(cell: Cell, program: Program, text: ReadMoves) -> Path:
     """Tips and tool axes of a text in part coordinates, by its positions and its directions, or else its rotary axes; of
     the rows it tells in axes, by these."""
-    assert read.position is not None and program.carried is not None
+    assert text.position is not None and program.carried is not None
     in_part = cell.mount @ frames.inverse(cell.carried) @ frames.bryant(program.carried)
-    position = read.position @ in_part[:3, :3].T + in_part[:3, 3]
-    bound = np.full(len(position), np.sqrt(3.0) * read.position_digits + COMPUTED_MM)
+    position = text.position @ in_part[:3, :3].T + in_part[:3, 3]
+    bound = np.full(len(position), np.sqrt(3.0) * text.position_digits + COMPUTED_MM)
     tool, tool_bound = np.full_like(position, np.nan), np.zeros(len(position))
-    if read.direction is not None:
-        length = np.linalg.norm(read.direction, axis=1)
-        tool = (read.direction / np.maximum(length, 1e-300)[:, None]) @ in_part[:3, :3].T
+    if text.direction is not None:
+        length = np.linalg.norm(text.direction, axis=1)
+        tool = (text.direction / np.maximum(length, 1e-300)[:, None]) @ in_part[:3, :3].T
         tool_bound = (
-            np.sqrt(3.0) * read.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
+            np.sqrt(3.0) * text.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
         )
-    elif read.joints is not None:  # where the linear axes stand does not turn the tool
-        given, _ = joint_path(
-            cell, np.where(cell.machine.chain.sliding, 0.0, read.joints), digits(cell, read)
+    elif text.joints is not None:  # where the linear axes stand does not turn the tool
+        path_in_axes, _ = joint_path(
+            cell, np.where(cell.machine.chain.sliding, 0.0, text.joints), digits(cell, text)
         )
-        tool, tool_bound = given.tool, given.tool_bound
-    if read.joints is not None:
-        rows = np.isfinite(read.joints).all(axis=1)  # told in axes
-        path, _ = joint_path(cell, read.joints[rows], digits(cell, read))
+        tool, tool_bound = path_in_axes.tool, path_in_axes.tool_bound
+    if text.joints is not None:
+        rows = np.isfinite(text.joints).all(axis=1)  # told in axes
+        path, _ = joint_path(cell, text.joints[rows], digits(cell, text))
         position[rows], tool[rows], bound[rows], tool_bound[rows] = (
             path.position,
             path.tool,
@@ -215,52 +233,52 @@ def text_tips(cell: Cell, program: Program, read: ReadMoves) -> Path:
     return Path(position, tool, bound, tool_bound)
 
 
-def text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array, Array]:
+def text_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array, Array]:
     """The path of a text with positions, the flange poses and the tools (n, 4, 4) on the flange it asks for; of rows told in
     joint values by these."""
-    path, asked, tools = positions_path(cell, program, read)
-    if read.joints is not None:
-        rows = np.isfinite(read.joints).all(axis=1)
-        given, asked[rows] = joint_path(cell, read.joints[rows], digits(cell, read))
+    path, flanges, tools = positions_path(cell, program, text)
+    if text.joints is not None:
+        rows = np.isfinite(text.joints).all(axis=1)
+        joint_rows_path, flanges[rows] = joint_path(cell, text.joints[rows], digits(cell, text))
         path.position[rows], path.tool[rows], path.bound[rows], path.tool_bound[rows] = (
-            given.position,
-            given.tool,
-            given.bound,
-            given.tool_bound,
+            joint_rows_path.position,
+            joint_rows_path.tool,
+            joint_rows_path.bound,
+            joint_rows_path.tool_bound,
         )
-    return path, asked, tools
+    return path, flanges, tools
 
 
-def positions_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array, Array]:
+def positions_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array, Array]:
     """The same by its positions alone, NaN where it tells none.
 
     Texts without frames of their own count on the user frame that the program tells of. Every frame is off by half a
     digit: its origin by at most sqrt(3) of it, its rotation by three angles; a frame that does not turn the target about
     itself has no lever.
     """
-    assert read.position is not None and read.rotation is not None
-    count, lever = 1, np.zeros(len(read.position))
+    assert text.position is not None and text.rotation is not None
+    count, lever = 1, np.zeros(len(text.position))
     user = (
         cell.station
         if program.station is None
         else cell.machine.base @ frames.bryant(program.station)
     )
-    seen, tools = (
-        user @ frames.pose(read.rotation, read.position),
+    tips, tools = (
+        user @ frames.pose(text.rotation, text.position),
         np.broadcast_to(cell.carried, (len(lever), 4, 4)),
     )
-    if read.frame is not None and read.tool is not None:
-        count, tools = 3, read.tool
-        seen = cell.machine.base @ read.frame @ frames.pose(read.rotation, read.position)
-        lever = np.linalg.norm(read.position, axis=1)
-        if read.lever is not None and read.lever.any():
-            count, lever = 4, lever + read.lever
-    asked = seen @ frames.inverse(tools)
+    if text.frame is not None and text.tool is not None:
+        count, tools = 3, text.tool
+        tips = cell.machine.base @ text.frame @ frames.pose(text.rotation, text.position)
+        lever = np.linalg.norm(text.position, axis=1)
+        if text.lever is not None and text.lever.any():
+            count, lever = 4, lever + text.lever
+    flanges = tips @ frames.inverse(tools)
     bound = (
-        count * np.sqrt(3.0) * read.position_digits
-        + 3.0 * read.rotation_digits * lever
+        count * np.sqrt(3.0) * text.position_digits
+        + 3.0 * text.rotation_digits * lever
         + COMPUTED_MM
     )
-    tool_bound = np.full(len(bound), 3.0 * count * read.rotation_digits + COMPUTED_AXIS)
-    position, tool = cell.tip_in_part(asked)
-    return Path(position, tool, bound, tool_bound), asked, tools
+    tool_bound = np.full(len(bound), 3.0 * count * text.rotation_digits + COMPUTED_AXIS)
+    position, tool = cell.tip_in_part(flanges)
+    return Path(position, tool, bound, tool_bound), flanges, tools

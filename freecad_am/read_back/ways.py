@@ -25,7 +25,7 @@ BLEND_SHARE = 0.4
 HALF_TURN = np.radians(0.001)
 
 
-def way_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> list[Issue]:
+def way_issues(cell: Cell, planned: Planned, program: Program, text: ReadMoves) -> list[Issue]:
     """VERIFY_INTERPOLATION, VERIFY_BLEND, VERIFY_FRAME, VERIFY_CONFIGURATION."""
     linear = np.repeat(
         [run.interpolation == LINEAR_MOVE for run in program.moves],
@@ -34,67 +34,72 @@ def way_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves) 
     return [
         *planned.issue(
             "VERIFY_INTERPOLATION",
-            read.linear != linear,
+            text.linear != linear,
             "the text moves straight in space where straight in the joints was planned, or the other way",
         ),
         *planned.issue(
             "VERIFY_BLEND",
-            _rounded_otherwise(cell, planned, program, read),
+            _rounded_otherwise(cell, planned, program, text),
             "the text stops, or rounds the corner, otherwise than planned",
         ),
-        *_frame_issues(cell, planned, program, read, linear),
-        *_configuration_issues(cell, planned, program, read.configuration),
-        *_near_issues(cell, planned, read),
+        *_frame_issues(cell, planned, program, text, linear),
+        *_configuration_issues(cell, planned, program, text.configuration),
+        *_near_issues(cell, planned, text),
     ]
 
 
-def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Mask:
+def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, text: ReadMoves) -> Mask:
     """(n,) moves that do not stop where they should, or pass through where they should not, or by another rounding."""
-    if read.level is not None:
+    if text.level is not None:
         level = np.where(planned.stops, 0.0, np.ceil(0.01 * LEVELS * program.blend))
-        return np.asarray(read.level != level)
-    if read.blend_radius is not None:
-        return _blended_otherwise(cell, planned, program, read)
-    if read.blend is not None:
+        return np.asarray(text.level != level)
+    if text.blend_radius is not None:
+        return _blended_otherwise(cell, planned, program, text)
+    if text.blend is not None:
         return np.asarray(
-            (read.stops != planned.stops) | (~planned.stops & (read.blend != program.blend))
+            (text.stops != planned.stops) | (~planned.stops & (text.blend != program.blend))
         )
-    if read.rounding is None:
-        return np.asarray(read.stops != planned.stops)
+    if text.rounding is None:
+        return np.asarray(text.stops != planned.stops)
     # the last corner of a bead is named, and not passed; a rounding of nothing is a stop
     table = bool(program.axis_names)
     rounding = (
-        np.full(len(read.stops), program.nc.tolerance)
+        np.full(len(text.stops), program.nc.tolerance)
         if table
         else _share_of_shortest(planned, program.blend)
     )
-    rounded = np.where(np.isnan(read.rounding), 0.0, read.rounding)
+    rounded = np.where(np.isnan(text.rounding), 0.0, text.rounding)
     # a stop that names no rounding says all there is to say where a stop was planned
     rounding = np.where(
-        planned.deposit & ~(planned.stops & read.stops & np.isnan(read.rounding)), rounding, 0.0
+        planned.deposit & ~(planned.stops & text.stops & np.isnan(text.rounding)), rounding, 0.0
     )
     rounding = np.where(planned.halt, 0.0, rounding)
     off = ~(np.abs(rounded - rounding) <= (1e-5 if table else THOUSANDTH))
     return np.asarray(
-        (planned.stops & ~read.stops) | ~planned.stops & read.stops & (rounded > 0.0) | off
+        (planned.stops & ~text.stops) | ~planned.stops & text.stops & (rounded > 0.0) | off
     )
 
 
-def _blended_otherwise(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Mask:
+def _blended_otherwise(cell: Cell, planned: Planned, program: Program, text: ReadMoves) -> Mask:
     """The same of a text with blend radii: in percent of BLEND_SHARE of the shorter way that the text's tool goes beside the
     point, so that those of neighbours never meet."""
-    assert read.blend_radius is not None and read.tool is not None
+    assert text.blend_radius is not None and text.tool is not None
     tip = np.empty_like(planned.position)
     for rows in pieces(np.arange(len(tip))):
         flange = cell.machine.chain.forward(planned.joints[rows])
         tip[rows] = (
-            np.einsum("nij,nj->ni", flange[:, :3, :3], read.tool[rows, :3, 3]) + flange[:, :3, 3]
+            np.einsum("nij,nj->ni", flange[:, :3, :3], text.tool[rows, :3, 3]) + flange[:, :3, 3]
         )
-    way = np.linalg.norm(np.diff(tip, axis=0, prepend=tip[:1]), axis=1)
-    radius = 0.01 * BLEND_SHARE * program.blend * np.minimum(way, np.append(way[1:], 0.0))
+    step_lengths = np.linalg.norm(np.diff(tip, axis=0, prepend=tip[:1]), axis=1)
+    radius = (
+        0.01
+        * BLEND_SHARE
+        * program.blend
+        * np.minimum(step_lengths, np.append(step_lengths[1:], 0.0))
+    )
     passed = ~planned.stops & (radius > 0.0)
-    off = np.abs(read.blend_radius - np.where(passed, radius, 0.0)) > THOUSANDTH
-    return np.asarray((planned.stops & ~read.stops) | passed & read.stops | off)
+    off = np.abs(text.blend_radius - np.where(passed, radius, 0.0)) > THOUSANDTH
+    return np.asarray((planned.stops & ~text.stops) | passed & text.stops | off)
 
 
 def _share_of_shortest(planned: Planned, blend: float) -> Array:
@@ -109,21 +114,21 @@ def _share_of_shortest(planned: Planned, blend: float) -> Array:
 
 
 def _frame_issues(
-    cell: Cell, planned: Planned, program: Program, read: ReadMoves, linear: Mask
+    cell: Cell, planned: Planned, program: Program, text: ReadMoves, linear: Mask
 ) -> list[Issue]:
     wrong = np.zeros(len(linear), dtype=bool)
-    if read.user_frame is not None:
+    if text.user_frame is not None:
         checked = linear if program.axis_names else np.ones(len(linear), dtype=bool)
-        wrong |= checked & (read.user_frame != program.user_frame)
-    if read.tool_frame is not None:
-        wrong |= read.tool_frame != program.tool_frame
+        wrong |= checked & (text.user_frame != program.user_frame)
+    if text.tool_frame is not None:
+        wrong |= text.tool_frame != program.tool_frame
     message = Text(
         "the text selects another frame or tool than {} and {}",
         program.user_frame,
         program.tool_frame,
     )
     issues = planned.issue("VERIFY_FRAME", wrong, message)
-    if program.external_kinds and (read.unit, read.first_external) != (
+    if program.external_kinds and (text.unit, text.first_external) != (
         program.unit,
         program.first_external,
     ):
@@ -133,8 +138,8 @@ def _frame_issues(
                 "VERIFY_FRAME",
                 Text(
                     "the text moves {} from axis {} on, the program {} from axis {} on",
-                    read.unit or "no positioner",
-                    read.first_external,
+                    text.unit or "no positioner",
+                    text.first_external,
                     program.unit,
                     program.first_external,
                 ),
@@ -143,13 +148,15 @@ def _frame_issues(
     return issues
 
 
-def _near_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
+def _near_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
     """Joint values that a position's are to be next to: the planned ones."""
-    if read.near is None:
+    if text.near is None:
         return []
-    apart = np.abs(read.near - cell.machine.to_controller(planned.joints))
-    wrong = (np.isfinite(apart) & ~(apart <= read.near_digits + COMPUTED_AXIS)).any(axis=1)
-    wrong |= np.isnan(read.near).any(axis=1) & ~read.linear
+    differences = np.abs(text.near - cell.machine.to_controller(planned.joints))
+    wrong = (np.isfinite(differences) & ~(differences <= text.near_digits + COMPUTED_AXIS)).any(
+        axis=1
+    )
+    wrong |= np.isnan(text.near).any(axis=1) & ~text.linear
     return planned.issue(
         "VERIFY_CONFIGURATION", wrong, "the text asks for joint values other than the planned ones"
     )
@@ -171,17 +178,19 @@ def _configuration_issues(
             )
         ]
     names = np.array([opw.branch_name(index) for index in range(8)])[arm.branch_of(planned.joints)]
-    shown = cell.machine.to_controller(planned.joints)
-    last = np.where(np.array(program.continuous)[-1], 0.0, shown[:, -1])
-    near, far = (
-        np.rint((np.abs(last) + side) / (2.0 * np.pi)) * np.sign(last)
+    controller_values = cell.machine.to_controller(planned.joints)
+    last_axis = np.where(np.array(program.continuous)[-1], 0.0, controller_values[:, -1])
+    turns_low, turns_high = (
+        np.rint((np.abs(last_axis) + side) / (2.0 * np.pi)) * np.sign(last_axis)
         for side in (-HALF_TURN, HALF_TURN)
     )
-    turned = (named.turns[:, -1] != near) & (named.turns[:, -1] != far) | (
+    turned = (named.turns[:, -1] != turns_low) & (named.turns[:, -1] != turns_high) | (
         named.turns[:, :-1] != 0.0
     ).any(axis=1)
-    bent = np.abs(shown[:, 4]) > COMPUTED_AXIS
-    other = bent & (named.flip != (shown[:, 4] > 0.0)) | (named.up != (names[:, 1] == "up"))
-    other |= named.front != (names[:, 0] == "front")
+    bent = np.abs(controller_values[:, 4]) > COMPUTED_AXIS
+    differs = bent & (named.flip != (controller_values[:, 4] > 0.0)) | (
+        named.up != (names[:, 1] == "up")
+    )
+    differs |= named.front != (names[:, 0] == "front")
     message = "the text asks for another configuration of the arm, or other turns"
-    return planned.issue("VERIFY_CONFIGURATION", np.asarray(turned | other), message)
+    return planned.issue("VERIFY_CONFIGURATION", np.asarray(turned | differs), message)

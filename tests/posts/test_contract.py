@@ -140,12 +140,12 @@ def test_a_retract_distance_of_nothing_leads_over_what_was_just_laid(way):
 def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
     """The same jobs planned by a check that misses something: the drive of the text finds it."""
     way = STACKED[0]
-    met, built = rapids.RapidObstacles.met, bead_ends.of_beads
+    met, built = rapids.RapidObstacles.met, bead_ends.build_deposit
     with monkeypatch.context() as patch:
         if broken == "beads are lines":
             patch.setattr(
                 bead_ends,
-                "of_beads",
+                "build_deposit",
                 lambda points, build, width, *rest, **more: built(
                     points, build, 0.0 * width, *rest, **more
                 ),

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..types import Array, Index, Mask
 from .by_numbers import ByNumbers
-from .deposit import of_beads
+from .deposit import build_deposit
 from .frustum import side_height
 from .nozzle import Nozzle, exempt_height, travelling
 from .obstacles import Obstacles
@@ -64,8 +64,8 @@ class Beads(NamedTuple):
         """Those of beads; width and height, mm, of those that do not tell theirs."""
         points = np.concatenate([bead.points for bead in beads])
         counts = np.array([len(bead.points) for bead in beads])
-        first = np.zeros(len(points), dtype=bool)
-        first[np.cumsum(counts) - counts] = True
+        is_first = np.zeros(len(points), dtype=bool)
+        is_first[np.cumsum(counts) - counts] = True
         return cls(
             points,
             np.concatenate([bead.build for bead in beads]),
@@ -82,12 +82,14 @@ class Beads(NamedTuple):
                     for bead in beads
                 ]
             ),
-            first,
+            is_first,
         )
 
     def solid(self, grain: float = GRAIN) -> Obstacles:
         """The deposit in pieces of so many mm, each from the number of its last point on."""
-        return of_beads(self.points, self.build, self.width, self.height, self.first, grain=grain)
+        return build_deposit(
+            self.points, self.build, self.width, self.height, self.first, grain=grain
+        )
 
 
 class Size(NamedTuple):
@@ -118,21 +120,23 @@ class BeadEnds:
         heights = standing_heights(
             deposit, size, beads.points[rows], beads.tool[rows], beads.height[rows], when
         )
-        found = []
-        for some in np.split(np.arange(len(rows)), 2):
+        ends_found = []
+        for side in np.split(np.arange(len(rows)), 2):
             point, height = (
                 np.full((len(beads.points) + 1, 3), np.nan),
                 np.zeros(len(beads.points) + 1),
             )
-            point[when[some]], height[when[some]] = beads.points[rows[some]], heights[some]
-            found.append(_Ends(point, height))
-        self._ends = found
+            point[when[side]], height[when[side]] = beads.points[rows[side]], heights[side]
+            ends_found.append(_Ends(point, height))
+        self._ends = ends_found
 
     @classmethod
     def of(cls, beads: Beads, size: Size) -> BeadEnds:
         """Those of the beads, made once for the rapids that are planned and for the look at what came of it."""
-        made = _made if len(beads.points) <= REMEMBERED else _made.__wrapped__
-        return made(_Asked(beads, size))
+        build = (
+            _build_bead_ends if len(beads.points) <= REMEMBERED else _build_bead_ends.__wrapped__
+        )
+        return build(_Asked(beads, size))
 
     def nozzle(self, tip: Array, deposited: Index) -> Nozzle:
         """The nozzle with tips (k, 3), where so many points (k,) are there: the last of these is left, the one after it come
@@ -142,10 +146,10 @@ class BeadEnds:
         about = side_height(radius, slope) + ABOVE_FACES
         bodies, deposit = np.zeros(len(tip)), np.zeros(len(tip))
         for end in self._ends:
-            away = np.linalg.norm(tip - end.point[deposited], axis=1)
+            distances = np.linalg.norm(tip - end.point[deposited], axis=1)
             bodies, deposit = (
-                np.fmax(bodies, about - away),
-                np.fmax(deposit, end.height[deposited] - away),
+                np.fmax(bodies, about - distances),
+                np.fmax(deposit, end.height[deposited] - distances),
             )
         return Nozzle(
             travelling(*self._size, bodies).bodies, travelling(*self._size, deposit).deposit
@@ -161,8 +165,8 @@ class _Asked(ByNumbers):
 
 
 @lru_cache(maxsize=1)
-def _made(asked: _Asked) -> BeadEnds:
-    return BeadEnds(asked.beads, asked.size)
+def _build_bead_ends(question: _Asked) -> BeadEnds:
+    return BeadEnds(question.beads, question.size)
 
 
 def standing_heights(
@@ -175,17 +179,17 @@ def standing_heights(
     job that asks for no clearance - it is as much as that: no way off the point avoids it, and what it touches while
     depositing is looked at elsewhere. CHORD more is left out, as of all of a nozzle on rapids.
     """
-    known, which = np.unique(height, return_inverse=True)
-    least = np.array([exempt_height(size.radius, size.slope, float(each)) for each in known])
-    found = np.minimum(least[which.ravel()], size.length)
-    rows = np.flatnonzero(deposit.touched(travelling(*size, found).deposit, tip, axis, moment))
-    low, high = found[rows], np.full(len(rows), size.length)
+    distinct, distinct_rows = np.unique(height, return_inverse=True)
+    exempt = np.array([exempt_height(size.radius, size.slope, float(value)) for value in distinct])
+    heights = np.minimum(exempt[distinct_rows.ravel()], size.length)
+    rows = np.flatnonzero(deposit.touched(travelling(*size, heights).deposit, tip, axis, moment))
+    low, high = heights[rows], np.full(len(rows), size.length)
     for _ in range(HALVINGS if len(rows) else 0):
         middle = 0.5 * (low + high)
         touched = deposit.touched(
             travelling(*size, middle).deposit, tip[rows], axis[rows], moment[rows]
         )
         low, high = np.where(touched, middle, low), np.where(touched, high, middle)
-    found[rows] = high
-    standing: Array = np.minimum(found + CHORD, size.length)
+    heights[rows] = high
+    standing: Array = np.minimum(heights + CHORD, size.length)
     return standing

@@ -33,8 +33,8 @@ def _numbers(value: object) -> Hashable:
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     if isinstance(value, (list, tuple)):
-        return tuple(_numbers(each) for each in value)
+        return tuple(_numbers(entry) for entry in value)
     if is_dataclass(value):
-        return tuple(_numbers(getattr(value, each.name)) for each in fields(value))
+        return tuple(_numbers(getattr(value, entry.name)) for entry in fields(value))
     assert isinstance(value, Hashable)
     return value

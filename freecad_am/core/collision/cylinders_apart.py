@@ -49,57 +49,72 @@ class _Pairs:
 
     def farthest(self, direction: Array) -> Array:
         """The points (k, 3) that lie farthest along directions (k, 3)."""
-        found: Array = self.cylinders.start + self.cylinders.solid.farthest(
+        points: Array = self.cylinders.start + self.cylinders.solid.farthest(
             direction, self.cylinders.axis
         )
-        return found
+        return points
 
 
-def nearer(one: PlacedCylinders, other: PlacedCylinders, gap: float) -> Mask:
+def nearer(cylinders: PlacedCylinders, others_at: PlacedCylinders, gap: float) -> Mask:
     """(k,) whether two cylinders are nearer to each other than `gap` mm, which is more than nothing, or meet."""
-    apart = axes_apart(one, other)
-    found: Mask = apart < gap  # the axes themselves are in the cylinders
-    left = np.flatnonzero(~found & (apart < gap + one.radius + other.radius))
-    if len(left):
-        first, second = one.of(left), other.of(left)
+    distances = axes_apart(cylinders, others_at)
+    are_nearer: Mask = distances < gap  # the axes themselves are in the cylinders
+    doubtful = np.flatnonzero(~are_nearer & (distances < gap + cylinders.radius + others_at.radius))
+    if len(doubtful):
+        first_cylinders, second_cylinders = cylinders.of(doubtful), others_at.of(doubtful)
         adjacent = _Pairs(
-            PlacedCylinders(second.start - first.start, second.axis, second.length, second.radius)
+            PlacedCylinders(
+                second_cylinders.start - first_cylinders.start,
+                second_cylinders.axis,
+                second_cylinders.length,
+                second_cylinders.radius,
+            )
         )
-        middle = adjacent.cylinders.start + 0.5 * second.length * second.axis
-        start = first.solid.nearest(middle, first.axis) - middle
+        middle = adjacent.cylinders.start + 0.5 * second_cylinders.length * second_cylinders.axis
+        start = first_cylinders.solid.nearest(middle, first_cylinders.axis) - middle
         # where that middle is in the cylinder the way is none, and they meet
         inside = dots(start, start) <= CONVERGED**2
-        found[left[inside]] = True
+        are_nearer[doubtful[inside]] = True
         rows = np.flatnonzero(~inside)
         low, _ = separation.bounds(
-            first.solid, first.axis[rows], adjacent[rows], gap, gap, start[rows]
+            first_cylinders.solid, first_cylinders.axis[rows], adjacent[rows], gap, gap, start[rows]
         )
-        found[left[rows]] = low < gap  # what is in doubt counts
-    return found
+        are_nearer[doubtful[rows]] = low < gap  # what is in doubt counts
+    return are_nearer
 
 
-def axes_apart(one: PlacedCylinders, other: PlacedCylinders) -> Array:
+def axes_apart(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> Array:
     """(k,) mm between the axes of cylinders, from end to end."""
-    off = one.start - other.start
-    lean, first, second = dots(one.axis, other.axis), dots(one.axis, off), dots(other.axis, off)
+    off = cylinders.start - others_at.start
+    lean, first_offset, second_offset = (
+        dots(cylinders.axis, others_at.axis),
+        dots(cylinders.axis, off),
+        dots(others_at.axis, off),
+    )
     square = 1.0 - lean * lean
     crossing = square > PARALLEL
-    along = np.where(crossing, (lean * second - first) / np.where(crossing, square, 1.0), 0.0)
+    along = np.where(
+        crossing, (lean * second_offset - first_offset) / np.where(crossing, square, 1.0), 0.0
+    )
     along = np.minimum(
-        np.maximum(along, 0.0), one.length
+        np.maximum(along, 0.0), cylinders.length
     )  # np.clip takes many times that for a few
-    there = np.minimum(np.maximum(lean * along + second, 0.0), other.length)
-    along = np.minimum(np.maximum(lean * there - first, 0.0), one.length)
-    away: Array = lengths(off + along[:, None] * one.axis - there[:, None] * other.axis)
-    return away
+    along_other = np.minimum(np.maximum(lean * along + second_offset, 0.0), others_at.length)
+    along = np.minimum(np.maximum(lean * along_other - first_offset, 0.0), cylinders.length)
+    distances: Array = lengths(
+        off + along[:, None] * cylinders.axis - along_other[:, None] * others_at.axis
+    )
+    return distances
 
 
-def nearest(one: PlacedCylinders, other: PlacedCylinders) -> tuple[Array, Array]:
+def nearest(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> tuple[Array, Array]:
     """The places (k, 3) where the second cylinders are nearest to the first ones, and the ways (k, 3) from there to these;
     none where the two meet."""
     adjacent = _Pairs(
-        PlacedCylinders(other.start - one.start, other.axis, other.length, other.radius)
+        PlacedCylinders(
+            others_at.start - cylinders.start, others_at.axis, others_at.length, others_at.radius
+        )
     )
-    middle = adjacent.cylinders.start + 0.5 * other.length * other.axis
-    there, way = separation.ways(one.solid, one.axis, adjacent, middle)
-    return one.start + there, way
+    middle = adjacent.cylinders.start + 0.5 * others_at.length * others_at.axis
+    points, offsets = separation.ways(cylinders.solid, cylinders.axis, adjacent, middle)
+    return cylinders.start + points, offsets

@@ -24,7 +24,7 @@ CORNER = np.cos(
 PART = 25_000  # points of the parts of a deposit that is made again whenever it is asked
 
 
-def of_beads(
+def build_deposit(
     points: Array,
     build: Array,
     width: Array | float,
@@ -46,16 +46,22 @@ def of_beads(
     A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.
     """
     n = len(points)
-    first = np.zeros(n, dtype=bool)
-    first[starts] = True
-    first[:1] = True
-    kept = _joined(points, first, grain) if grain > 0.0 and n else np.arange(n)
+    is_first = np.zeros(n, dtype=bool)
+    is_first[starts] = True
+    is_first[:1] = True
+    kept_rows = _join_points(points, is_first, grain) if grain > 0.0 and n else np.arange(n)
     moment = np.arange(n) if moments is None else moments
     wide, tall = (
-        np.broadcast_to(np.asarray(each, dtype=float), n)[kept] for each in (width, height)
+        np.broadcast_to(np.asarray(size_of, dtype=float), n)[kept_rows]
+        for size_of in (width, height)
     )
-    points, build, moment, first = points[kept], build[kept], moment[kept], first[kept]
-    end = np.flatnonzero(~first)
+    points, build, moment, is_first = (
+        points[kept_rows],
+        build[kept_rows],
+        moment[kept_rows],
+        is_first[kept_rows],
+    )
+    end = np.flatnonzero(~is_first)
     along = points[end] - points[end - 1]
     size = lengths(along)
     end, along, size = end[size > 0.0], along[size > 0.0], size[size > 0.0]
@@ -67,10 +73,10 @@ def of_beads(
     along /= size[:, None]
     wide, tall = 0.5 * (wide[begin] + wide[end]), 0.5 * (tall[begin] + tall[end])
     round_ = 0.5 * np.minimum(wide, tall)
-    sideways = [unit_rows(np.cross(build[each], along)) for each in (begin, end)]
+    sideways = [unit_rows(np.cross(build[point_end], along)) for point_end in (begin, end)]
     corners = []
-    for at, side in zip((begin, end), sideways):
-        middle = points[at] + (0.5 * tall)[:, None] * build[at]
+    for point_rows, side in zip((begin, end), sideways):
+        middle = points[point_rows] + (0.5 * tall)[:, None] * build[point_rows]
         # the flat of the section: across a bead that is wider than high, else upright
         flat = (
             (0.5 * (wide - tall))[:, None] * side
@@ -78,7 +84,7 @@ def of_beads(
             else np.where(
                 (wide >= tall)[:, None],
                 (0.5 * (wide - tall))[:, None] * side,
-                (0.5 * (tall - wide))[:, None] * build[at],
+                (0.5 * (tall - wide))[:, None] * build[point_rows],
             )
         )
         corners += [middle - flat, middle + flat]
@@ -87,11 +93,11 @@ def of_beads(
         (end[:-1] == begin[1:]) & (np.einsum("ij,ij->i", along[:-1], along[1:]) < CORNER)
     )
     wedge = np.concatenate([hull[turned][:, 2:], hull[turned + 1][:, :2]], axis=1)
-    pieces = np.concatenate([hull, wedge])
+    hulls = np.concatenate([hull, wedge])
     if like is not None:
-        return like.moved(pieces)
+        return like.moved(hulls)
     return Obstacles(
-        pieces,
+        hulls,
         np.concatenate([since, since[turned + 1]]),
         np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
         np.concatenate([line, line[turned + 1]]),
@@ -100,18 +106,20 @@ def of_beads(
     )
 
 
-def _joined(points: Array, first: Mask, grain: float) -> Index:
-    """Which points (n, 3) are left where pieces are joined up to `grain` mm; first: (n,) those at which beads begin."""
-    last = np.append(first[1:], True)
-    way = np.diff(points, axis=0, prepend=points[:1])
-    size = lengths(way)
-    step = np.where(first, 0.0, size)
-    way /= np.maximum(size, 1e-12)[:, None]
+def _join_points(points: Array, is_first: Mask, grain: float) -> Index:
+    """Which points (n, 3) are left where pieces are joined up to `grain` mm; is_first: (n,) those at which beads begin."""
+    is_last = np.append(is_first[1:], True)
+    directions = np.diff(points, axis=0, prepend=points[:1])
+    size = lengths(directions)
+    step = np.where(is_first, 0.0, size)
+    directions /= np.maximum(size, 1e-12)[:, None]
     # what is turned at a point is the difference to the way on from it
-    turn = np.where(first | last, 0.0, lengths(np.diff(way, axis=0, append=way[-1:])))
+    turn = np.where(
+        is_first | is_last, 0.0, lengths(np.diff(directions, axis=0, append=directions[-1:]))
+    )
     return np.flatnonzero(
-        first
-        | last
+        is_first
+        | is_last
         | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0)
         | (np.diff(np.floor(np.cumsum(turn) / BENT), prepend=0.0) > 0.0)
     )
@@ -120,14 +128,14 @@ def _joined(points: Array, first: Mask, grain: float) -> Index:
 def in_parts(
     points: Array, build: Array, width: Array, height: Array, starts: Index, **what: Any
 ) -> InParts:
-    """The deposit that `of_beads` makes of the same, for few looks."""
+    """The deposit that `build_deposit` makes of the same, for few looks."""
     return InParts(points, build, width, height, starts, what)
 
 
 @dataclass(frozen=True, eq=False)
 class InParts:
-    """The deposit that `of_beads` makes, made part by part whenever it is asked: for few looks at a long one, whose pieces
-    take more memory than its points. what: further arguments of `of_beads`."""
+    """The deposit that `build_deposit` makes, made part by part whenever it is asked: for few looks at a long one, whose pieces
+    take more memory than its points. what: further arguments of `build_deposit`."""
 
     points: Array
     build: Array
@@ -145,39 +153,39 @@ class InParts:
         own: Index | None = None,
     ) -> Mask:
         """As `Obstacles.touched`."""
-        found, count = np.zeros(len(tip), dtype=bool), len(self.points)
+        hits, count = np.zeros(len(tip), dtype=bool), len(self.points)
         begins = np.zeros(count, dtype=bool)
         begins[self.starts] = True
-        for first in range(0, count, PART):
-            rows = np.flatnonzero(~found if moment is None else ~found & (moment > first))
+        for begin in range(0, count, PART):
+            rows = np.flatnonzero(~hits if moment is None else ~hits & (moment > begin))
             # with the two pieces before, for what is filled at the corner between two
-            part = slice(max(first - 2, 0), min(first + PART, count))
-            rows = rows[self._near(part, solid.rows(rows), tip[rows], axis[rows])]
+            rows_of_part = slice(max(begin - 2, 0), min(begin + PART, count))
+            rows = rows[self._near(rows_of_part, solid.rows(rows), tip[rows], axis[rows])]
             if not len(rows):
                 continue
-            deposited = of_beads(
-                self.points[part],
-                self.build[part],
-                self.width[part],
-                self.height[part],
-                begins[part],
-                np.arange(part.start, part.stop),
+            deposited = build_deposit(
+                self.points[rows_of_part],
+                self.build[rows_of_part],
+                self.width[rows_of_part],
+                self.height[rows_of_part],
+                begins[rows_of_part],
+                np.arange(rows_of_part.start, rows_of_part.stop),
                 short=True,
                 **self.what,
             )
-            found[rows] = deposited.touched(
+            hits[rows] = deposited.touched(
                 solid.rows(rows),
                 tip[rows],
                 axis[rows],
                 None if moment is None else moment[rows],
                 None if own is None else own[rows],
             )
-        return found
+        return hits
 
-    def _near(self, part: slice, solid: Frustum, tip: Array, axis: Array) -> Mask:
+    def _near(self, rows_of_part: slice, solid: Frustum, tip: Array, axis: Array) -> Mask:
         """False for solids (k,) that surely miss all pieces of a part: none is farther from its points than it is wide and
         high."""
-        low, high = self.points[part].min(axis=0), self.points[part].max(axis=0)
-        size = float(self.width[part].max() + self.height[part].max())
+        low, high = self.points[rows_of_part].min(axis=0), self.points[rows_of_part].max(axis=0)
+        size = float(self.width[rows_of_part].max() + self.height[rows_of_part].max())
         half, centre = 0.5 * (high - low)[:, None], 0.5 * (low + high)
         return solid.near_box(columns(centre - tip), columns(axis), half, np.full(len(tip), size))

@@ -24,7 +24,7 @@ PROBES = 250  # places of the surface at which the part's thickness is looked fo
 HALVINGS = 7  # of the step in which a probe leaves the part
 STEPS = 14  # of a probe into the part
 REACH = 64.0  # mm; no bead is wider
-ASIDE = 1.5  # distances between places of the surface; what lies farther beside its edge is not under it
+MAX_OFFSET_SHARE = 1.5  # distances between places of the surface; what lies farther beside its edge is not under it
 # three irrational steps, by which places spread evenly in a box (Roberts 2018, the generalised golden ratio)
 EVENLY = 1.0 / 1.22074408460575947536 ** np.arange(1, 4)
 
@@ -45,35 +45,45 @@ def measured(
     ground = None if excluded is None else inside_of(excluded)
     spacing = float(np.sqrt(surface.areas.mean()))
     probes = _probes(surface)
-    way, half = _inward(probes, inside, slack)
-    inward = way * surface.normals
-    middles, of = spread(part.corners(), grain(part.corners(), 2.0 * spacing))
+    sense, half = _inward(probes, inside, slack)
+    inward = sense * surface.normals
+    middles, triangle_of = spread(part.corners(), grain(part.corners(), 2.0 * spacing))
     deep = _depths(middles, surface, inward, half, spacing)
-    weight = _areas(part)[of] / np.bincount(of, minlength=len(part.triangles))[of]
+    weight = (
+        _areas(part)[triangle_of]
+        / np.bincount(triangle_of, minlength=len(part.triangles))[triangle_of]
+    )
     if ground is not None:
         weight = np.where(ground.holds(middles), 0.0, weight)
     by_face = np.array(
-        [_median(deep[owner[of] == k], weight[owner[of] == k]) for k in range(len(faces))]
+        [
+            _median(deep[owner[triangle_of] == k], weight[owner[triangle_of] == k])
+            for k in range(len(faces))
+        ]
     )
     if inside is None:
         return np.zeros(0), np.zeros(0), by_face, 1.0
     points = _places(inside)
-    kept = points if ground is None else points[~ground.holds(points)]
-    depths = _shares(_depths(kept, surface, inward, half, spacing)) if len(kept) else np.zeros(0)
+    free_points = points if ground is None else points[~ground.holds(points)]
+    depths = (
+        _shares(_depths(free_points, surface, inward, half, spacing))
+        if len(free_points)
+        else np.zeros(0)
+    )
     free = (
         np.ones(len(probes.points), dtype=bool) if ground is None else ~ground.holds(probes.points)
     )
-    thickness = _thickness(probes.points[free], way * probes.normals[free], half, inside, slack)
-    return depths, np.sort(thickness), by_face, len(kept) / max(len(points), 1)
+    thickness = _thickness(probes.points[free], sense * probes.normals[free], half, inside, slack)
+    return depths, np.sort(thickness), by_face, len(free_points) / max(len(points), 1)
 
 
-def grain(corners: Array, least: float) -> float:
-    """The longest side, mm, no less than `least`, that divides triangles (m, 3, 3) into no more than some MOST parts beside
+def grain(corners: Array, smallest: float) -> float:
+    """The longest side, mm, no less than `smallest`, that divides triangles (m, 3, 3) into no more than some MOST parts beside
     themselves: a face may be a million times as large as the wall that is looked at."""
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
     across = np.linalg.norm(doubled_areas(corners), axis=1)
     heights = across / np.maximum(sides, 1e-300)
-    longest = max(least, 1e-9)
+    longest = max(smallest, 1e-9)
     while ((1.0 + 2.0 * sides / longest) * (1.0 + 2.0 * heights / longest) - 1.0).sum() > MAX_PARTS:
         longest *= 1.5
     return longest
@@ -82,10 +92,12 @@ def grain(corners: Array, least: float) -> float:
 def _probes(surface: Surface) -> Surface:
     """Places of a surface that stand for equal areas."""
     ends = np.cumsum(surface.areas)
-    of = np.minimum(
+    point_rows = np.minimum(
         np.searchsorted(ends, (np.arange(PROBES) + 0.5) / PROBES * ends[-1]), len(ends) - 1
     )
-    return Surface(surface.points[of], surface.normals[of], np.full(PROBES, ends[-1] / PROBES))
+    return Surface(
+        surface.points[point_rows], surface.normals[point_rows], np.full(PROBES, ends[-1] / PROBES)
+    )
 
 
 def _inward(probes: Surface, inside: Inside | None, slack: float) -> tuple[float, bool]:
@@ -93,8 +105,8 @@ def _inward(probes: Surface, inside: Inside | None, slack: float) -> tuple[float
     if inside is None:
         return 1.0, True
     ahead, behind = (
-        float(inside.holds(probes.points + way * slack * probes.normals).mean())
-        for way in (1.0, -1.0)
+        float(inside.holds(probes.points + sense * slack * probes.normals).mean())
+        for sense in (1.0, -1.0)
     )
     return (1.0 if ahead >= behind else -1.0), min(ahead, behind) > 0.5 * max(ahead, behind)
 
@@ -104,75 +116,79 @@ def _depths(points: Array, surface: Surface, inward: Array, half: bool, spacing:
     _, nearest = cKDTree(surface.points).query(
         points, eps=0.02
     )  # in the middle of a ball all are alike
-    away = points - surface.points[nearest]
-    along = (away * inward[nearest]).sum(axis=1)
-    across = np.linalg.norm(away - along[:, None] * inward[nearest], axis=1)
+    offsets = points - surface.points[nearest]
+    along = (offsets * inward[nearest]).sum(axis=1)
+    across = np.linalg.norm(offsets - along[:, None] * inward[nearest], axis=1)
     deep = (
         2.0 * np.abs(along) if half else np.where(along > -spacing, np.maximum(along, 0.0), np.inf)
     )
-    found: Array = np.where(across <= ASIDE * spacing + 0.1 * np.abs(along), deep, np.inf)
-    return found
+    widths: Array = np.where(
+        across <= MAX_OFFSET_SHARE * spacing + 0.1 * np.abs(along), deep, np.inf
+    )
+    return widths
 
 
 def _places(inside: Inside) -> Array:
     """Points spread evenly inside of a body."""
-    found: list[Array] = []
+    batches: list[Array] = []
     for start in range(0, TRIES, AT_ONCE):
         share = np.mod(0.5 + np.arange(start + 1, start + AT_ONCE + 1)[:, None] * EVENLY, 1.0)
         points = inside.low + share * (inside.high - inside.low)
-        found.append(points[inside.holds(points)])
-        if sum(map(len, found)) >= PLACES:
+        batches.append(points[inside.holds(points)])
+        if sum(map(len, batches)) >= PLACES:
             break
-    return np.vstack(found)
+    return np.vstack(batches)
 
 
-def _thickness(start: Array, way: Array, half: bool, inside: Inside, slack: float) -> Array:
+def _thickness(start: Array, directions: Array, half: bool, inside: Inside, slack: float) -> Array:
     """How far (m,) mm the part reaches under places (m, 3) of a surface along unit vectors (m, 3); with `half` twice as far
     as it does where it reaches less far, of both ways."""
-    depth = _reach(start, way, inside, slack)
+    depth = _reach(start, directions, inside, slack)
     if half:
-        return 2.0 * np.minimum(depth, _reach(start, -way, inside, slack))
-    return np.maximum(depth - _entry(start, way, inside, slack), 0.0)
+        return 2.0 * np.minimum(depth, _reach(start, -directions, inside, slack))
+    return np.maximum(depth - _entry(start, directions, inside, slack), 0.0)
 
 
-def _entry(start: Array, way: Array, inside: Inside, slack: float) -> Array:
+def _entry(start: Array, directions: Array, inside: Inside, slack: float) -> Array:
     """How far (m,) mm from places of a body's surface, along unit vectors, (m, 3) each, its triangles begin, which are up to
     `slack` off that surface to either side; 0 where no such place is."""
     low, high = np.full(len(start), -slack), np.full(len(start), slack)
-    begins = ~inside.holds(start - slack * way) & inside.holds(start + slack * way)
+    begins = ~inside.holds(start - slack * directions) & inside.holds(start + slack * directions)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        within = inside.holds(start + middle[:, None] * way)
+        within = inside.holds(start + middle[:, None] * directions)
         low, high = np.where(within, low, middle), np.where(within, middle, high)
     return np.where(begins, 0.5 * (low + high), 0.0)
 
 
-def _reach(start: Array, way: Array, inside: Inside, slack: float) -> Array:
+def _reach(start: Array, directions: Array, inside: Inside, slack: float) -> Array:
     """How far (m,) mm lines from points along unit vectors, (m, 3) each, stay inside of a body, once they are in it."""
     steps = np.geomspace(slack, REACH, STEPS)
-    held = inside.holds(
-        (start[:, None] + steps[None, :, None] * way[:, None]).reshape(-1, 3)
+    is_inside = inside.holds(
+        (start[:, None] + steps[None, :, None] * directions[:, None]).reshape(-1, 3)
     ).reshape(len(start), STEPS)
-    through, never = held.all(axis=1), ~held[:, 0]
-    out = np.argmin(held, axis=1)
+    through, never = is_inside.all(axis=1), ~is_inside[:, 0]
+    out = np.argmin(is_inside, axis=1)
     low, high = steps[np.maximum(out - 1, 0)], steps[out]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        within = inside.holds(start + middle[:, None] * way)
+        within = inside.holds(start + middle[:, None] * directions)
         low, high = np.where(within, middle, low), np.where(within, high, middle)
     return np.where(through, REACH, np.where(never, 0.0, 0.5 * (low + high)))
 
 
 def _shares(values: Array) -> Array:
     """The values (n,) at the middles of SHARES equal shares of them, sorted."""
-    found: Array = np.sort(values)[((np.arange(SHARES) + 0.5) / SHARES * len(values)).astype(int)]
-    return found
+    sorted_values: Array = np.sort(values)[
+        ((np.arange(SHARES) + 0.5) / SHARES * len(values)).astype(int)
+    ]
+    return sorted_values
 
 
 def _areas(part: Body) -> Array:
     a, b, c = (part.corners()[:, k] for k in range(3))
-    found: Array = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return found
+    areas: Array = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return areas
 
 
 def _median(values: Array, weights: Array) -> float:

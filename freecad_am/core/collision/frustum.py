@@ -59,15 +59,15 @@ class Frustum:
         across: Array = offset - x * axis
         side = np.sqrt(_column_sums(across * across))
         size = _column_sums(np.abs(axis) * half) + rounding
-        near: Mask = (x > self.low - size) & (x < self.high + size)
+        may_meet: Mask = (x > self.low - size) & (x < self.high + size)
         lean = np.hypot(1.0, self.slope)
         across -= (self.slope * side) * axis
-        far = _column_sums(np.abs(across, out=across) * half)
+        reach = _column_sums(np.abs(across, out=across) * half)
         # of the plane with the normal across / (side lean); next to the axis there is none
-        near &= side * (side - self.radius - self.slope * x) <= far + lean * side * (
+        may_meet &= side * (side - self.radius - self.slope * x) <= reach + lean * side * (
             rounding + ROUNDING
         )
-        return near
+        return may_meet
 
     def nearest(self, offset: Array, axis: Array) -> Array:
         """The points (k, 3) of the solid nearest to points; these themselves where they are inside."""
@@ -75,28 +75,31 @@ class Frustum:
         across = offset - x[:, None] * axis
         side = np.sqrt(dots(across, across))
         low: float | Array = self.low
-        least, most = self.radius + self.slope * low, self.radius + self.slope * self.high
+        low_radius, high_radius = (
+            self.radius + self.slope * low,
+            self.radius + self.slope * self.high,
+        )
         inside = (x >= low) & (x <= self.high) & (side <= self.radius + self.slope * x)
         # in the half plane of height and distance from the axis: on the side, or else on the lower or the upper disc
-        tall, wide = self.high - low, most - least
-        along = ((x - low) * tall + (side - least) * wide) / (tall * tall + wide * wide)
+        tall, wide = self.high - low, high_radius - low_radius
+        along = ((x - low) * tall + (side - low_radius) * wide) / (tall * tall + wide * wide)
         along = np.minimum(np.maximum(along, 0.0), 1.0)  # np.clip takes many times that for a few
-        height, out = low + along * tall, least + along * wide
-        away = np.square(x - height) + np.square(side - out)
-        for disc, size in ((low, least), (self.high, most)):
+        height, out = low + along * tall, low_radius + along * wide
+        squared_distance = np.square(x - height) + np.square(side - out)
+        for disc, size in ((low, low_radius), (self.high, high_radius)):
             on_disc = np.minimum(side, size)
-            there = np.square(x - disc) + np.square(side - on_disc)
-            nearer = there < away
-            height, out, away = (
+            to_disc = np.square(x - disc) + np.square(side - on_disc)
+            nearer = to_disc < squared_distance
+            height, out, squared_distance = (
                 np.where(nearer, disc, height),
                 np.where(nearer, on_disc, out),
-                np.minimum(there, away),
+                np.minimum(to_disc, squared_distance),
             )
         height, out = np.where(inside, x, height), np.where(inside, side, out)
-        found: Array = (
+        points: Array = (
             height[:, None] * axis + (out / np.where(side > 0.0, side, 1.0))[:, None] * across
         )
-        return found
+        return points
 
     def gap(self, offset: Array, axis: Array) -> Array:
         """Distances (k,) mm of points from the solid, 0 inside."""
@@ -118,8 +121,8 @@ class Frustum:
         out = np.where(leaning, self.radius + self.slope * height, 0.0) / np.where(
             leaning, size, 1.0
         )
-        found: Array = height[:, None] * axis + out[:, None] * across
-        return found
+        points: Array = height[:, None] * axis + out[:, None] * across
+        return points
 
     def crossed(self, normal: Array, level: Array, axis: Array) -> Mask:
         """Whether planes, unit normals (k, 3) and heights (k,) over the tip, cut the solid."""
@@ -157,27 +160,27 @@ class Frustum:
         safe = np.where(steep, rise, 1.0)
         at_low, at_high = (self.low + ROUNDING - x) / safe, (self.high - ROUNDING - x) / safe
         within = (x > self.low + ROUNDING) & (x < self.high - ROUNDING)
-        first = np.where(
+        begin = np.where(
             steep, np.maximum(np.minimum(at_low, at_high), 0.0), np.where(within, 0.0, 2.0)
         )
-        last = np.where(steep, np.minimum(np.maximum(at_low, at_high), 1.0), 1.0)
+        stop = np.where(steep, np.minimum(np.maximum(at_low, at_high), 1.0), 1.0)
         square, mixed = dots(along, along), dots(across, along)
-        apart = dots(across, across)
+        squared = dots(across, across)
         pull = self.slope * rise
         bent = square - pull * pull > 1e-24
         with np.errstate(divide="ignore", invalid="ignore"):
             nearest = -mixed / square
-            off = np.maximum(apart - mixed * mixed / square, 0.0)
-            least = nearest + pull * np.sqrt(off / (square * (square - pull * pull)))
+            off = np.maximum(squared - mixed * mixed / square, 0.0)
+            vertex = nearest + pull * np.sqrt(off / (square * (square - pull * pull)))
         # where the cone opens faster than the segment leaves the axis, the deepest place is the end that is higher up
-        place = np.where(
+        deepest = np.where(
             bent,
-            np.clip(np.where(bent, least, 0.0), first, last),
-            np.where(rise > 0.0, last, first),
+            np.clip(np.where(bent, vertex, 0.0), begin, stop),
+            np.where(rise > 0.0, stop, begin),
         )
-        side = np.linalg.norm(across + place[:, None] * along, axis=1)
-        meets: Mask = (first <= last) & (
-            side - self.radius - self.slope * (x + place * rise) < -ROUNDING
+        side = np.linalg.norm(across + deepest[:, None] * along, axis=1)
+        meets: Mask = (begin <= stop) & (
+            side - self.radius - self.slope * (x + deepest * rise) < -ROUNDING
         )
         return meets
 

@@ -4,7 +4,7 @@
 A moment is a number that rises in the order of deposition: of a point, or of a row of a motion. A piece of a bead is there
 before the moment m where the number of its last point is less than m.
 
-How rapids are asked: the scene has `deposit.of_beads` of the deposit rows of the motion, with the numbers of these rows
+How rapids are asked: the scene has `deposit.build_deposit` of the deposit rows of the motion, with the numbers of these rows
 as `moments` and a `grain`, and the platform as a body (`geometry.obstacles.disc`). The looks along the moves are tips
 and axes in part coordinates, their moment is the row that the move goes to; the solid is `nozzle.travelling(...)`. On
 retract and approach, which are driven like travels, its `exempt` is (k,) `max(exempt_height(radius, slope, height) - d, 0)`,
@@ -22,7 +22,7 @@ import numpy as np
 from ..geometry.columns import lengths
 from ..geometry.obstacles import Body
 from ..types import Array, Index, Mask
-from .bodies import Bodies, of_bodies
+from .bodies import Bodies, build_bodies
 from .deposit import InParts
 from .frustum import Frustum
 from .nozzle import Nozzle
@@ -115,7 +115,7 @@ def scene(
 ) -> Scene:
     """The scene of bodies, as far as they are no farther than `reach` mm from the box about the points around (n, 3), and a
     deposit."""
-    return Scene(of_bodies(bodies, around, reach), deposit)
+    return Scene(build_bodies(bodies, around, reach), deposit)
 
 
 def _all(moment: Index | None, count: int) -> Index:

@@ -21,7 +21,7 @@ from .chain import Chain
 # poses done together: what they need stays in the processor's cache, and a call is not longer than its work
 PIECE = 4096
 # the same of poses whose eigenvalues are found together: in other company they have other last bits
-TOGETHER = 1024
+MATRICES_PER_BATCH = 1024
 
 
 def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
@@ -35,15 +35,15 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
     points = np.ascontiguousarray(np.broadcast_to(np.asarray(point, float), (count, 3)).T)
     result = np.empty((6, chain.axes, count))
     for start in range(0, count, PIECE):
-        piece = slice(start, start + PIECE)
-        direction, origin = chain.axes_at(angles[piece])
-        arm = np.subtract(points[:, piece], origin, out=origin)
-        for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
-            np.multiply(direction[:, following], arm[:, last], out=result[row, :, piece])
-            result[row, :, piece] -= direction[:, last] * arm[:, following]
-            result[3 + row, :, piece] = direction[:, row]
+        rows_now = slice(start, start + PIECE)
+        direction, origin = chain.axes_at(angles[rows_now])
+        arm = np.subtract(points[:, rows_now], origin, out=origin)
+        for row, (following, column_2) in enumerate(((1, 2), (2, 0), (0, 1))):
+            np.multiply(direction[:, following], arm[:, column_2], out=result[row, :, rows_now])
+            result[row, :, rows_now] -= direction[:, column_2] * arm[:, following]
+            result[3 + row, :, rows_now] = direction[:, row]
         for joint in np.flatnonzero(chain.sliding):
-            result[:3, joint, piece], result[3:, joint, piece] = direction[joint], 0.0
+            result[:3, joint, rows_now], result[3:, joint, rows_now] = direction[joint], 0.0
     return result.transpose(2, 0, 1)
 
 
@@ -80,14 +80,16 @@ def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Arr
     """
     rates = np.asarray(rates, float).T
 
-    def of_piece(scaled: Array, piece: slice) -> Array:
-        change = _rate(scaled, rates[:, piece])
+    def of_piece(scaled: Array, rows: slice) -> Array:
+        change = _rate(scaled, rates[:, rows])
         values, vectors = np.linalg.eigh(np.einsum("ikn,jkn->nij", scaled, scaled))
         halves = []
-        for which in (0, -1):
-            left = np.ascontiguousarray(vectors[:, :, which].T)
+        for extreme in (0, -1):
+            vector = np.ascontiguousarray(vectors[:, :, extreme].T)
             # d(sigma^2) = 2 u^T dJ J^T u
-            product = np.einsum("in,ikn->kn", left, change) * np.einsum("in,ikn->kn", left, scaled)
+            product = np.einsum("in,ikn->kn", vector, change) * np.einsum(
+                "in,ikn->kn", vector, scaled
+            )
             halves.append(product.sum(axis=0))
         low, high = values[:, 0], values[:, -1]
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -114,13 +116,13 @@ def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -
     """
     rates = np.asarray(rates, float).T
 
-    def of_piece(scaled: Array, piece: slice) -> Array:
+    def of_piece(scaled: Array, rows: slice) -> Array:
         matrices = np.ascontiguousarray(scaled.transpose(2, 0, 1))
         size = np.abs(np.linalg.det(matrices))
         singular = size == 0.0
         matrices[singular] = np.eye(6)
         relative: Array = np.einsum(
-            "nij,jin->n", np.linalg.inv(matrices), _rate(scaled, rates[:, piece])
+            "nij,jin->n", np.linalg.inv(matrices), _rate(scaled, rates[:, rows])
         )
         relative[singular] = np.nan
         relative *= size
@@ -133,23 +135,23 @@ def _in_pieces(
     function: Callable[..., Array],
     jacobians: ArrayLike,
     length: float,
-    size: int = TOGETHER,
+    size: int = MATRICES_PER_BATCH,
     with_slice: bool = False,
 ) -> Array:
     """`function` of scaled Jacobians (6, axes, m), in pieces of that size, so that they stay in the processor's cache."""
     matrices = np.moveaxis(np.asarray(jacobians, float), 0, -1)
     result = np.empty(matrices.shape[2])
     for start in range(0, len(result), size):
-        piece = slice(start, min(start + size, len(result)))
-        scaled = np.array(matrices[:, :, piece], order="C")
+        rows = slice(start, min(start + size, len(result)))
+        scaled = np.array(matrices[:, :, rows], order="C")
         scaled[:3] *= 1.0 / length
         unknown = np.isnan(scaled).any(axis=(0, 1)) if np.isnan(scaled.max()) else None
         if unknown is not None:
             # LAPACK takes no NaN: anything stands in for it
             scaled[:, :, unknown] = np.eye(scaled.shape[0], scaled.shape[1])[:, :, None]
-        result[piece] = function(scaled, piece) if with_slice else function(scaled)
+        result[rows] = function(scaled, rows) if with_slice else function(scaled)
         if unknown is not None:
-            result[piece][unknown] = np.nan
+            result[rows][unknown] = np.nan
     return result
 
 

@@ -16,7 +16,7 @@ from freecad_am.core.types import Array
 from ...core.issues import Text
 from ...core.read_moves import ARC, Event, ReadMoves
 from ..packed import Lines, floats
-from .modules import Frames, Module, turned, unreadable
+from .modules import Frames, Module, rotation_of_quaternions, unreadable
 from .process_data import ProcessData
 
 _DECIMALS = re.compile(r"\.(\d+)")
@@ -225,10 +225,10 @@ def all_moves(run: Run) -> ReadMoves:
             wire_digits=np.array(run.wire_half),
             wire_output=run.analogue,
         )
-    return _seen(read_moves, run) if linear.any() else read_moves
+    return _with_positions(read_moves, run) if linear.any() else read_moves
 
 
-def _seen(read_moves: ReadMoves, run: Run) -> ReadMoves:
+def _with_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
     """With the positions of the tool in the work object. A work object that the robot holds is what it takes to the tool:
     its position seen from there is that of the tool in it, turned about."""
     used, placed = run.frames, np.array(run.placed, dtype=np.bool_)
@@ -239,15 +239,18 @@ def _seen(read_moves: ReadMoves, run: Run) -> ReadMoves:
         raise unreadable(
             "program", "the four numbers of an orientation are not those of a unit quaternion"
         )
-    place, rotation = np.full((len(placed), 3), np.nan), np.full((len(placed), 3, 3), np.nan)
-    place[placed], rotation[placed] = _numbers(run.places, 3), turned(turns / length[:, None])
+    positions, rotation = np.full((len(placed), 3), np.nan), np.full((len(placed), 3, 3), np.nan)
+    positions[placed], rotation[placed] = (
+        _numbers(run.places, 3),
+        rotation_of_quaternions(turns / length[:, None]),
+    )
     if used.held:
         rotation = np.swapaxes(rotation, 1, 2)
-        place = -np.einsum("nij,nj->ni", rotation, place)
+        positions = -np.einsum("nij,nj->ni", rotation, positions)
     stands, carried = (used.tool, used.work_object) if used.held else (used.work_object, used.tool)
     return dataclasses.replace(
         read_moves,
-        position=place,
+        position=positions,
         rotation=rotation,
         position_digits=_half_digit(run.places),
         # four numbers, each off by half a digit, turn by at most four of these: as much as three angles of so much

@@ -39,12 +39,12 @@ class Frames:
     held: bool
     unit: str = ""
 
-    def same(self, other: Frames) -> bool:
+    def same(self, module_frames: Frames) -> bool:
         """Whether they are those of another module, number by number."""
-        alike = np.array_equal(self.tool, other.tool) and np.array_equal(
-            self.work_object, other.work_object
+        alike = np.array_equal(self.tool, module_frames.tool) and np.array_equal(
+            self.work_object, module_frames.work_object
         )
-        return alike and (self.held, self.unit) == (other.held, other.unit)
+        return alike and (self.held, self.unit) == (module_frames.held, module_frames.unit)
 
 
 @dataclass
@@ -76,19 +76,24 @@ class Module:
                     where,
                     Text("{} is not a tool of the module, or {} no work object", tool, work_object),
                 )
-            (on_robot, at), (held, seen) = self.tools[tool], self.objects[work_object]
-            if on_robot == held:
+            (on_robot, tool_pose), (object_held, object_pose) = (
+                self.tools[tool],
+                self.objects[work_object],
+            )
+            if on_robot == object_held:
                 raise unreadable(where, "the robot has to carry either the tool or the work object")
-            self._paired[tool, work_object] = Frames(at, seen, held, self.units[work_object])
+            self._paired[tool, work_object] = Frames(
+                tool_pose, object_pose, object_held, self.units[work_object]
+            )
         return self._paired[tool, work_object]
 
 
 def modules(files: dict[str, bytes]) -> dict[str, Module]:
     """The modules by name, lower case. Raises InputError UNREADABLE_PROGRAM."""
-    found: dict[str, Module] = {}
+    by_name: dict[str, Module] = {}
     for file in sorted(files):
         module = _module(file, files[file].decode("latin-1").replace("\r\n", "\n").split("\n"))
-        if module.name in found or f"{module.name}.mod" != file.lower():
+        if module.name in by_name or f"{module.name}.mod" != file.lower():
             raise unreadable(
                 file,
                 Text(
@@ -96,8 +101,8 @@ def modules(files: dict[str, bytes]) -> dict[str, Module]:
                     module.name,
                 ),
             )
-        found[module.name] = module
-    return found
+        by_name[module.name] = module
+    return by_name
 
 
 def _module(file: str, lines: list[str]) -> Module:
@@ -148,20 +153,23 @@ def _declare(module: Module, line: str, where: str) -> None:
 def _keep(module: Module, kind: str, name: str, value: Any) -> None:
     """Keep a value by its name. ValueError or TypeError for one that is not understood."""
     if kind == "tooldata":
-        held, at, (_mass, _centre, _axes, _x, _y, _z) = value
-        module.tools[name] = _truth(held), _pose(at)
+        is_held, pose, (_mass, _centre, _axes, _x, _y, _z) = value
+        module.tools[name] = _truth(is_held), _pose(pose)
     elif kind == "wobjdata":
-        held, fixed, unit, user, inside = value
+        is_held, fixed, unit, user, inside = value
         moved = (
             _truth(fixed) is False
         )  # by the unit, whose own frame goes before what is written for the user's
         written = moved and not np.array_equal(_pose(user), np.eye(4))
         if moved != bool(unit) or not isinstance(unit, str) or written:
             raise ValueError
-        module.objects[name], module.units[name] = (_truth(held), _pose(user) @ _pose(inside)), unit
+        module.objects[name], module.units[name] = (
+            (_truth(is_held), _pose(user) @ _pose(inside)),
+            unit,
+        )
     elif kind == "speeddata":
-        tip, *others = map(float, value)
-        if any(one < least for one, least in zip(others, _FAST, strict=True)):
+        tip, *speeds = map(float, value)
+        if any(speed_value < lowest for speed_value, lowest in zip(speeds, _FAST, strict=True)):
             raise ValueError
         module.speeds[name] = tip
     elif kind == "welddata":
@@ -188,23 +196,26 @@ def _truth(value: Any) -> bool:
 
 def _pose(value: Any) -> Array:
     """(4, 4) of [[x,y,z],[q1,q2,q3,q4]]."""
-    place, turn = (np.array(part, dtype=np.float64) for part in value)
-    if place.shape != (3,) or turn.shape != (4,) or abs(np.linalg.norm(turn) - 1.0) > 1e-5:
+    position, turn = (np.array(numbers, dtype=np.float64) for numbers in value)
+    if position.shape != (3,) or turn.shape != (4,) or abs(np.linalg.norm(turn) - 1.0) > 1e-5:
         raise ValueError
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = turned(turn[None] / np.linalg.norm(turn))[0], place
+    pose[:3, :3], pose[:3, 3] = (
+        rotation_of_quaternions(turn[None] / np.linalg.norm(turn))[0],
+        position,
+    )
     return pose
 
 
-def turned(quaternion: Array) -> Array:
+def rotation_of_quaternions(quaternion: Array) -> Array:
     """(n, 3, 3) rotations of unit quaternions w x y z (n, 4)."""
     w, v = quaternion[:, 0], quaternion[:, 1:]
     across = np.zeros((len(v), 3, 3))
     across[:, 0, 1], across[:, 0, 2], across[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
     across -= np.swapaxes(across, 1, 2)
     # v' = v + 2 w (u x v) + 2 u x (u x v)
-    found: Array = np.eye(3) + 2.0 * w[:, None, None] * across + 2.0 * across @ across
-    return found
+    rotations: Array = np.eye(3) + 2.0 * w[:, None, None] * across + 2.0 * across @ across
+    return rotations
 
 
 def unreadable(where: str, why: str) -> InputError:

@@ -24,7 +24,7 @@ ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS = 4, 3, 7
 # mm/s: the least that its three decimals tell well, and the largest of RAPID's own speeds (v7000)
 SPEEDS = (0.01, 7000.0)
 # s: the shortest move within a bead, and the shortest rapid
-SHORTEST, SHORTEST_RAPID = 0.0001, 0.001
+SHORTEST_MOVE_S, SHORTEST_RAPID = 0.0001, 0.001
 # mm: RAPID's own largest zone is 200
 LARGEST_ZONE = 100.0
 STOP = "fine"
@@ -37,7 +37,7 @@ class Pose(NamedTuple):
     quaternion: tuple[float, ...]
 
 
-def shown(joints: Array, slides: Mask) -> Array:
+def controller_values(joints: Array, slides: Mask) -> Array:
     """Joint values (n, axes) in degrees as the text has them, those that slide (axes,) in mm."""
     values = np.where(slides, joints, np.degrees(joints))
     rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
@@ -53,9 +53,9 @@ def positions(position: Array) -> Array:
 def quaternions(rotation: Array) -> Array:
     """(n, 4) w x y z of rotations (n, 3, 3), as the text has them: of the two that there are, the one whose first number
     that is not 0 is positive."""
-    found = np.round(QUATERNION.numbers(rotation), TURN_DECIMALS)
-    first = found[np.arange(len(found)), np.argmax(found != 0.0, axis=1)]
-    signed: Array = np.where(first[:, None] < 0.0, -found, found) + 0.0
+    numbers = np.round(QUATERNION.numbers(rotation), TURN_DECIMALS)
+    leading = numbers[np.arange(len(numbers)), np.argmax(numbers != 0.0, axis=1)]
+    signed: Array = np.where(leading[:, None] < 0.0, -numbers, numbers) + 0.0
     return signed
 
 
@@ -105,12 +105,12 @@ class Words:
 
 def _times(moves: Moves) -> Array:
     seconds = np.where(np.isfinite(moves.duration), moves.duration, 0.0)
-    if moves.kind == DEPOSIT and seconds.min() < SHORTEST:
+    if moves.kind == DEPOSIT and seconds.min() < SHORTEST_MOVE_S:
         raise InputError(
             "MOVE_TIME",
             place(moves),
             "a move takes {:.3g} s, less than the {:g} s that can be written; use a larger chord error or a lower speed",
             seconds.min(),
-            SHORTEST,
+            SHORTEST_MOVE_S,
         )
-    return np.maximum(seconds, SHORTEST if moves.kind == DEPOSIT else SHORTEST_RAPID)
+    return np.maximum(seconds, SHORTEST_MOVE_S if moves.kind == DEPOSIT else SHORTEST_RAPID)

@@ -184,8 +184,8 @@ def write(program: Program) -> dict[str, bytes]:
     _refuse(program)
     remarks = [
         line
-        for said in ("Robotic AM", *program.remarks, *_own_remarks(program))
-        for line in text.remark(said)
+        for words_of_remark in ("Robotic AM", *program.remarks, *_own_remarks(program))
+        for line in text.remark(words_of_remark)
     ]
     zones = numbers.Words(program, text.SPEED, text.ZONE)
     words = process.Process(program, zones)
@@ -197,24 +197,26 @@ def write(program: Program) -> dict[str, bytes]:
     )
     refuse_names_of_data(program, {name}, _names_used(program, words, zones))
     module = _Module(program, words, zones)
-    if size([piece for group in groups for piece in group])[0] <= program.max_points:
-        (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
+    if size([entry for group in groups for entry in group])[0] <= program.max_points:
+        (piece_list,) = packed(groups, program.max_points, _NO_END, unbroken)
         refuse_calls_of_own(program, {name}, program_name)
-        return {f"{name}.mod": module.as_bytes(name, text.MAIN, remarks, pieces)}
+        return {f"{name}.mod": module.as_bytes(name, text.MAIN, remarks, piece_list)}
     # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
-    parts = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
-    names = NAMING.parts(name, len(parts))
+    part_groups = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
+    names = NAMING.parts(name, len(part_groups))
     refuse_calls_of_own(program, {name, *names, *map(text.routine_of, names)}, program_name)
     refuse_names_of_data(program, names, _names_used(program, words, zones))
     files = {}
-    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
-        head = text.remark(f"part {number} of {len(parts)}")
-        files[f"{part}.mod"] = module.as_bytes(part, text.routine_of(part), head, pieces)
+    for number, (part_name, piece_list) in enumerate(zip(names, part_groups, strict=True), 1):
+        head = text.remark(f"part {number} of {len(part_groups)}")
+        files[f"{part_name}.mod"] = module.as_bytes(
+            part_name, text.routine_of(part_name), head, piece_list
+        )
     total = sum(map(len, files.values()))
     remarks += text.remark(
-        f"{len(parts)} parts of {total} bytes in all, loaded from {FOLDER} one after the other"
+        f"{len(part_groups)} parts of {total} bytes in all, loaded from {FOLDER} one after the other"
     )
-    load = [line for part in names for line in text.load(FOLDER, part)]
+    load = [line for part_name in names for line in text.load(FOLDER, part_name)]
     return {f"{name}.mod": text.module(name, text.MAIN, remarks, (), load), **files}
 
 
@@ -336,9 +338,9 @@ def _names_used(program: Program, words: process.Process, zones: numbers.Words) 
     """Names of the data and signals in the text, but for those that no program may have."""
     kinds = {WaitInput: "di", WaitBelow: "ai"}
     inputs = [
-        f"{kinds[type(one)]}{one.number}"
-        for one in program.blocks
-        if isinstance(one, (WaitInput, WaitBelow))
+        f"{kinds[type(block)]}{block.number}"
+        for block in program.blocks
+        if isinstance(block, (WaitInput, WaitBelow))
     ]
     return [
         *words.names,
@@ -358,43 +360,45 @@ class _Module:
     zones: numbers.Words
 
     def as_bytes(
-        self, name: str, routine: str, remarks: list[str], pieces: Sequence[Piece]
+        self, name: str, routine: str, remarks: list[str], piece_list: Sequence[Piece]
     ) -> bytes:
         """One module with what of the data its moves use."""
-        program, held = self.program, self.program.holds_part
+        program, part_held = self.program, self.program.holds_part
         station, carried = numbers.pose(program.station), numbers.pose(program.carried)
         lines: list[str] = []
         used: set[str] = set()
-        for piece in pieces:
-            if isinstance(piece, Run):
-                rows = slice(piece.start, piece.stop)
-                lines += _motion(piece.moves, rows, piece.words[rows], program)
-                for word in piece.words[rows]:
+        for entry in piece_list:
+            if isinstance(entry, Run):
+                rows = slice(entry.start, entry.stop)
+                lines += _motion(entry.moves, rows, entry.words[rows], program)
+                for word in entry.words[rows]:
                     used.update(
                         re.findall(r"\w+", word) if " " in word else (word.rpartition(",")[2],)
                     )
             else:
-                lines += piece
+                lines += entry
         zones = [(zone, size_mm) for size_mm, zone in self.zones.zones.items() if zone in used]
-        tool, work_object = (station, carried) if held else (carried, station)
+        tool, work_object = (station, carried) if part_held else (carried, station)
         moved_by = program.unit if program.on_positioner else ""
-        data = [*text.data(tool, work_object, held, zones, moved_by), *self.words.data(used)]
-        first = [
+        data = [*text.data(tool, work_object, part_held, zones, moved_by), *self.words.data(used)]
+        setup = [
             "    ConfL\\Off;",
             "    SingArea\\Off;",
             *text.activated(program.unit),
             *self.words.setup(used),
         ]
-        return text.module(name, routine, remarks, data, [*first, *lines])
+        return text.module(name, routine, remarks, data, [*setup, *lines])
 
 
 def _motion(
     moves: Moves, rows: slice, words: Sequence[str], program: Program, straight: bool = False
 ) -> list[str]:
     """Lines through some points of moves; straight: as positions, whatever the moves are."""
-    first, slides = program.first_external, program.slides
+    first_external, slides = program.first_external, program.slides
     if moves.interpolation != LINEAR_MOVE and not straight:
-        return text.joint_moves(numbers.shown(moves.joints[rows], slides), words, first)
+        return text.joint_moves(
+            numbers.controller_values(moves.joints[rows], slides), words, first_external
+        )
     if moves.position is None or moves.rotation is None:
         raise InputError(
             "NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`"
@@ -402,7 +406,7 @@ def _motion(
     return text.linear_moves(
         numbers.positions(moves.position[rows]),
         numbers.quaternions(moves.rotation[rows]),
-        numbers.shown(moves.joints[rows, AXES:], slides[AXES:]),
+        numbers.controller_values(moves.joints[rows, AXES:], slides[AXES:]),
         words,
-        first,
+        first_external,
     )

@@ -88,23 +88,23 @@ class Aboard:
 
 def aboard(blocks: Iterable[Block]) -> list[Aboard]:
     """What is told on each run of moves of a program, in order."""
-    found: list[Aboard] = []
+    runs: list[Aboard] = []
     arc, weave = None, 0
     for block in blocks:
         if isinstance(block, Moves) and len(block):
-            found.append(Aboard(block, arc, weave))
+            runs.append(Aboard(block, arc, weave))
         elif isinstance(block, Weave):
             weave = block.number
         elif isinstance(block, DepositOn):
             arc = block.schedule
-            found[-1:] = [dataclasses.replace(one, on=block.ahead) for one in found[-1:]]
+            runs[-1:] = [dataclasses.replace(run, on=block.ahead) for run in runs[-1:]]
         elif isinstance(block, DepositOff):
             arc = None
-            found[-1:] = [
-                dataclasses.replace(one, off=block.ahead, ends=True, stands=block.lead > 0.0)
-                for one in found[-1:]
+            runs[-1:] = [
+                dataclasses.replace(run, off=block.ahead, ends=True, stands=block.lead > 0.0)
+                for run in runs[-1:]
             ]
-    return found
+    return runs
 
 
 class Process:
@@ -125,48 +125,57 @@ class Process:
         words = self._plain(moves)
         if not self._aboard:
             return words
-        own = self._aboard[self._at]
+        aboard_run = self._aboard[self._at]
         self._at += 1
-        if own.arc is not None:
-            return self._welded(words, own, own.arc)
+        if aboard_run.arc is not None:
+            return self._welded(words, aboard_run, aboard_run.arc)
         fed = (
             []
             if moves.wire is None
             else [self._feed(ratio) for ratio in (moves.wire / moves.speed).tolist()]
         )
-        if not fed and own.lead is None:
+        if not fed and aboard_run.lead is None:
             return words
-        last = len(words) - 1
-        at_end = [*([FEED_END] if fed and own.ends else []), *self._switched(own, words[last])]
-        rows = range(len(words)) if fed else (last,)
+        last_row = len(words) - 1
+        at_end = [
+            *([FEED_END] if fed and aboard_run.ends else []),
+            *self._switched(aboard_run, words[last_row]),
+        ]
+        rows = range(len(words)) if fed else (last_row,)
         words = list(words)
         for row in rows:
             words[row] = self._triggered(
-                words[row], [*fed[row : row + 1], *(at_end if row == last else [])]
+                words[row], [*fed[row : row + 1], *(at_end if row == last_row else [])]
             )
         return words
 
     def _triggered(self, word: str, triggers: Sequence[str]) -> str:
         speed, _, corner = word.partition(",")
-        more = "".join(f"\\T{number}:={name}" for number, name in enumerate(triggers[1:], 2))
+        further = "".join(f"\\T{number}:={name}" for number, name in enumerate(triggers[1:], 2))
         if "\\V:=" not in speed:
-            return f"TriggAbsJ {speed},{triggers[0]}{more},{corner}"
-        return f"TriggL {self._speed(speed)},{triggers[0]}{more},{corner}"
+            return f"TriggAbsJ {speed},{triggers[0]}{further},{corner}"
+        return f"TriggL {self._speed(speed)},{triggers[0]}{further},{corner}"
 
-    def _welded(self, words: Sequence[str], own: Aboard, schedule: int) -> list[str]:
+    def _welded(self, words: Sequence[str], aboard_run: Aboard, schedule: int) -> list[str]:
         welded = []
         for row, word in enumerate(words, 1):
             speed, _, corner = word.partition(",")
-            name = "ArcLEnd" if own.ends and not own.stands and row == len(words) else "ArcL"
+            name = (
+                "ArcLEnd"
+                if aboard_run.ends and not aboard_run.stands and row == len(words)
+                else "ArcL"
+            )
             welded.append(
-                f"{name} {self._speed(speed)},{self._arc(own, schedule, _speed_in(speed))},{corner}"
+                f"{name} {self._speed(speed)},{self._arc(aboard_run, schedule, _speed_in(speed))},{corner}"
             )
         return welded
 
-    def _arc(self, own: Aboard, schedule: int, speed: str) -> str:
+    def _arc(self, aboard_run: Aboard, schedule: int, speed: str) -> str:
         """Seam, weld data at a speed, and weave."""
         weld = _numbered(self._welds, WELD, (schedule, speed))
-        return f"seam{schedule},{weld}" + (f"\\Weave:=weave{own.weave}" if own.weave else "")
+        return f"seam{schedule},{weld}" + (
+            f"\\Weave:=weave{aboard_run.weave}" if aboard_run.weave else ""
+        )
 
     def _speed(self, word: str) -> str:
         return _numbered(self._speeds, SPEED, _speed_in(word))
@@ -175,38 +184,42 @@ class Process:
         """The trigger by which the output follows the speed of the tip, mm/s: of wire in m/min there are `ratio` as many."""
         return _numbered(self._feeds, FEED, f"{0.06 * self._program.nc.wire_gain * ratio:#.7G}")
 
-    def _switched(self, own: Aboard, word: str) -> list[str]:
+    def _switched(self, aboard_run: Aboard, word: str) -> list[str]:
         """The triggers that switch the deposit before the end of a run whose last word that is. RAPID counts a time from
         where the robot stops, no farther back than it brakes; a way, at the speed of that very move, has no such end."""
-        if own.lead is None:
+        if aboard_run.lead is None:
             return []
-        kind = OFF if own.on is None else ON
-        if own.lead <= 0.0:
+        kind = OFF if aboard_run.on is None else ON
+        if aboard_run.lead <= 0.0:
             return [self._switches[kind].setdefault("0", kind)]
-        said = word.partition(",")[0]
-        speed = float(_speed_in(said)) if "\\V:=" in said else float(own.moves.speed[-1])
+        speed_word = word.partition(",")[0]
+        speed = (
+            float(_speed_in(speed_word))
+            if "\\V:=" in speed_word
+            else float(aboard_run.moves.speed[-1])
+        )
         if not speed >= SLOWEST:
             raise InputError(
                 "TRIGGER",
-                place(own.moves),
+                place(aboard_run.moves),
                 "the tip moves at {:.2g} mm/s on the move at the end of which the deposit is switched, and the lead is "
                 "programmed as a distance before that place; give a retract distance, or leave program.trigger.lead "
                 "out",
                 speed,
             )
-        return [_numbered(self._switches[kind], kind, f"{own.lead * speed:.{WAY_DECIMALS}f}")]
+        return [
+            _numbered(self._switches[kind], kind, f"{aboard_run.lead * speed:.{WAY_DECIMALS}f}")
+        ]
 
     def arc_start(self, schedule: int) -> str:
         """The word of the instruction that strikes the arc where the next bead starts."""
-        own = self._aboard[self._at]
-        return (
-            f"ArcLStart {text.SPEED},{self._arc(own, schedule, f'{own.moves.speed[0]:.3f}')},fine"
-        )
+        aboard_run = self._aboard[self._at]
+        return f"ArcLStart {text.SPEED},{self._arc(aboard_run, schedule, f'{aboard_run.moves.speed[0]:.3f}')},fine"
 
     def arc_end(self, schedule: int) -> str:
         """The word of the instruction that ends it where the last bead did."""
-        own = self._aboard[self._at - 1]
-        return f"ArcLEnd {text.SPEED},{self._arc(own, schedule, f'{own.moves.speed[-1]:.3f}')},fine"
+        aboard_run = self._aboard[self._at - 1]
+        return f"ArcLEnd {text.SPEED},{self._arc(aboard_run, schedule, f'{aboard_run.moves.speed[-1]:.3f}')},fine"
 
     @property
     def before(self) -> Moves:
@@ -257,9 +270,9 @@ class Process:
         lines += [f"    TriggSpeed {FEED_END},0,0,{analogue},0;"] if FEED_END in used else []
         output = f"do{self._program.deposit_output}"
         switches = [
-            f"    TriggIO {name},{way}\\DOp:={output},{int(kind == ON)};"
+            f"    TriggIO {name},{lead}\\DOp:={output},{int(kind == ON)};"
             for kind, names in self._switches.items()
-            for way, name in names.items()
+            for lead, name in names.items()
             if name in used
         ]
         return lines + switches
@@ -282,7 +295,7 @@ class Process:
     def declared(self) -> list[str]:
         """Names of data that the controller has to have, as far as words were given."""
         schedules = sorted({schedule for schedule, _ in self._welds})
-        weaves = sorted({one.weave for one in self._aboard if one.weave and one.arc is not None})
+        weaves = sorted({run.weave for run in self._aboard if run.weave and run.arc is not None})
         return [f"{kind}{number}" for number in schedules for kind in ("seam", "weld")] + [
             f"weave{n}" for n in weaves
         ]

@@ -54,19 +54,19 @@ class ProcessData:
 
     def understood(self, line: str, module: Module, where: str) -> bool:
         """Whether the line says something of it, which then is kept. Raises InputError UNREADABLE_PROGRAM."""
-        if taken := _TAKEN.match(line):
-            if taken[1] not in module.welds or taken[1] in self.welds:
+        if taken_weld := _TAKEN.match(line):
+            if taken_weld[1] not in module.welds or taken_weld[1] in self.welds:
                 raise unreadable(
                     where,
                     "what is taken of the controller is not weld data of the module, or taken twice",
                 )
-            self.welds[taken[1]] = Weld(int(taken[2]))
+            self.welds[taken_weld[1]] = Weld(int(taken_weld[2]))
         elif speed := _SPEED.match(line):
             self._keep_speed(speed, module, where)
         elif switch := _SWITCH.match(line):
             digits = 0.5 * 10.0 ** -len(switch[3]) if switch[3] else 0.0
-            kept = Switch(switch[4], switch[5] == "1", float(switch[2]), digits)
-            self._keep_trigger(switch[1], kept, module, where)
+            trigger = Switch(switch[4], switch[5] == "1", float(switch[2]), digits)
+            self._keep_trigger(switch[1], trigger, module, where)
         elif feed := _FEED.match(line):
             power = 10.0 ** int(feed[5] or 0)
             digits = 0.5 * 10.0 ** -len(feed[4] or "") * power

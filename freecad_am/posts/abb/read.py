@@ -39,17 +39,17 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
-    found = modules(files)
-    first = [module for module in found.values() if module.routine.lower() == _ROUTINE]
-    if len(first) != 1:
+    by_name = modules(files)
+    main_modules = [module for module in by_name.values() if module.routine.lower() == _ROUTINE]
+    if len(main_modules) != 1:
         raise unreadable(
-            "program", Text("{} modules have a routine main, expected one", len(first))
+            "program", Text("{} modules have a routine main, expected one", len(main_modules))
         )
-    run = Run(found, slides=first[0].slides)
-    _follow(first[0], run)
+    run = Run(by_name, slides=main_modules[0].slides)
+    _follow(main_modules[0], run)
     if not run.time_or_speed:
         raise unreadable("program", "there are no moves")
-    if len(run.followed) != len(found):
+    if len(run.followed) != len(by_name):
         raise unreadable("program", "there are modules that are never run, or run twice")
     if run.moving:
         raise unreadable("program", "it ends before the last move does")
@@ -92,18 +92,20 @@ def _follow(module: Module, run: Run) -> None:
 
 
 def _load(
-    module: Module, part: str, lines: Iterator[tuple[int, str]], run: Run, where: str
+    module: Module, part_name: str, lines: Iterator[tuple[int, str]], run: Run, where: str
 ) -> None:
     """A part is loaded, run and removed by the next lines; the robot must not deposit meanwhile."""
     number, called = next(lines, (0, ""))
-    name, loaded = _RUN.match(called), run.found.get(part.lower())
+    name, loaded = _RUN.match(called), run.found.get(part_name.lower())
     if name is None:
-        at = f"{module.file} line {number}"
-        raise unreadable(at, Text("{!r} where {} was loaded to be run", called, part))
+        place_of_line = f"{module.file} line {number}"
+        raise unreadable(
+            place_of_line, Text("{!r} where {} was loaded to be run", called, part_name)
+        )
     number, gone = next(lines, (0, ""))
-    if gone != f'UnLoad "HOME:/{part}.mod";':
-        at = f"{module.file} line {number}"
-        raise unreadable(at, Text("{!r} where {} was to be removed", gone, part))
+    if gone != f'UnLoad "HOME:/{part_name}.mod";':
+        place_of_line = f"{module.file} line {number}"
+        raise unreadable(place_of_line, Text("{!r} where {} was to be removed", gone, part_name))
     if (
         loaded is None
         or loaded.routine.lower() != name[1].lower()
@@ -114,7 +116,7 @@ def _load(
             where,
             Text(
                 "{} is not there, has no routine {}, is run already, or loaded while depositing",
-                part,
+                part_name,
                 name[1],
             ),
         )
@@ -129,8 +131,8 @@ def _other(line: str, run: Run, where: str) -> None:
     elif wait := _WAIT.match(line):
         straight(run)
         run.happens("wait", float(wait[1]), digits=0.5 * 10.0 ** -len(wait[2]))
-    elif given := _INPUT.match(line):
-        run.happens("input", float(given[1]))
+    elif input_wait := _INPUT.match(line):
+        run.happens("input", float(input_wait[1]))
     elif cool := _COOL.match(line):
         run.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
     elif (call := _CALL.match(line)) and call[1].upper() not in INSTRUCTIONS:

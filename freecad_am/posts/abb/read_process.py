@@ -33,7 +33,7 @@ def process_move(line: str, module: Module, run: Run, where: str) -> bool:
     if arc := _ARC.match(line):
         _arc_move(arc, module, run, where)
     elif trigg := _TRIGG_J.match(line):
-        *values, axes, speed, amount, decimals, first, more, zone, tool, work_object = (
+        *values, axes, speed, amount, decimals, first_trigger, further, zone, tool, work_object = (
             trigg.groups()
         )
         _speed_of(module, speed, where)
@@ -41,13 +41,15 @@ def process_move(line: str, module: Module, run: Run, where: str) -> bool:
         move = Move(
             False, tuple(values), axes, float(amount), 0.5 * 10.0 ** -len(decimals), zone, frames
         )
-        _triggered(move, _trigger_names(first, more, where), module, run, where)
+        _triggered(move, _trigger_names(first_trigger, further, where), module, run, where)
     elif trigg := _TRIGG_L.match(line):
-        place, turn, axes, speed, first, more, zone, tool, work_object = trigg.groups()
+        position, turn, axes, speed, first_trigger, further, zone, tool, work_object = (
+            trigg.groups()
+        )
         frames = module.tool_and_object(tool, work_object, where)
         amount = _speed_of(module, speed, where)
-        move = Move(True, (place, turn), axes, amount, module.halves[speed], zone, frames)
-        _triggered(move, _trigger_names(first, more, where), module, run, where)
+        move = Move(True, (position, turn), axes, amount, module.halves[speed], zone, frames)
+        _triggered(move, _trigger_names(first_trigger, further, where), module, run, where)
     else:
         return False
     return True
@@ -59,12 +61,12 @@ def _speed_of(module: Module, name: str, where: str) -> float:
     return module.speeds[name]
 
 
-def _trigger_names(first: str, more: str, where: str) -> list[str]:
+def _trigger_names(first_trigger: str, further: str, where: str) -> list[str]:
     """The triggers of a move, which count from \\T2 on without a gap."""
-    others = _MORE.findall(more)
-    if [int(number) for number, _ in others] != list(range(2, 2 + len(others))):
+    numbered = _MORE.findall(further)
+    if [int(number) for number, _ in numbered] != list(range(2, 2 + len(numbered))):
         raise unreadable(where, "its triggers are not numbered in a row")
-    return [first, *(name for _, name in others)]
+    return [first_trigger, *(name for _, name in numbered)]
 
 
 def _triggered(move: Move, names: list[str], module: Module, run: Run, where: str) -> None:
@@ -114,7 +116,9 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
 
 def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
     """The arc is struck where the robot stands, burns along a move, or ends with it, or where the robot stands after it."""
-    kind, place, turn, axes, speed, seam, weld_name, weave, zone, tool, work_object = arc.groups()
+    kind, position, turn, axes, speed, seam, weld_name, weave, zone, tool, work_object = (
+        arc.groups()
+    )
     weld, woven = run.given.welds.get(weld_name), int(weave or 0)
     if (
         weld is None
@@ -125,7 +129,7 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
         raise unreadable(where, "its weld data has no speed, or is of another seam")
     frames = module.tool_and_object(tool, work_object, where)
     dry = _speed_of(module, speed, where)
-    move = Move(True, (place, turn), axes, weld.speed, weld.half, zone, frames)
+    move = Move(True, (position, turn), axes, weld.speed, weld.half, zone, frames)
     if kind == "Start":
         if run.on or not run.nearest or not run.stands_at(move, where):
             raise unreadable(

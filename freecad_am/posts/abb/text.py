@@ -51,18 +51,24 @@ def module(
 
 
 def data(
-    tool: Pose, work_object: Pose, held: bool, zones: Sequence[tuple[str, float]], unit: str = ""
+    tool: Pose,
+    work_object: Pose,
+    part_held: bool,
+    zones: Sequence[tuple[str, float]],
+    unit: str = "",
 ) -> list[str]:
-    """Declarations of tool, work object, speed and zones. held: the robot carries the work object, and the tool stands.
+    """Declarations of tool, work object, speed and zones. part_held: the robot carries the work object, and the tool stands.
     unit: the mechanical unit whose face the work object is on and moves with, '' where it stands."""
-    tool_held, object_held = ("FALSE", "TRUE") if held else ("TRUE", "FALSE")
-    at, seen = (_POSE % (*pose.position, *pose.quaternion) for pose in (tool, work_object))
+    tool_held, object_held = ("FALSE", "TRUE") if part_held else ("TRUE", "FALSE")
+    tool_pose, object_pose = (
+        _POSE % (*pose.position, *pose.quaternion) for pose in (tool, work_object)
+    )
     # the user frame of what a unit moves is the unit's own, whatever is written: the object frame is seen from there
     fixed, user, inside = (
-        ("FALSE", _NOWHERE, f"[{seen}]") if unit else ("TRUE", f"[{seen}]", _NOWHERE)
+        ("FALSE", _NOWHERE, f"[{object_pose}]") if unit else ("TRUE", f"[{object_pose}]", _NOWHERE)
     )
     return [
-        f"LOCAL PERS tooldata {TOOL}:=[{tool_held},[{at}],{_LOAD}];",
+        f"LOCAL PERS tooldata {TOOL}:=[{tool_held},[{tool_pose}],{_LOAD}];",
         f'LOCAL PERS wobjdata {WORK_OBJECT}:=[{object_held},{fixed},"{unit}",{user},{inside}];',
         f"LOCAL CONST speeddata {SPEED}:={speed('1000')};",
         *(f"LOCAL CONST zonedata {zone}:={_zone(size)};" for zone, size in zones),
@@ -99,12 +105,15 @@ def _move_lines(line: str, instruction: str, values: Array, words: Sequence[str]
     """A line for each row of values (n, k) and its word, which begins with its own instruction, or is one of the usual."""
     split = [word.rpartition(" ") for word in words]
     rows = zip(values.tolist(), split, strict=True)
-    return [line % (own or instruction, *row, word) for row, (own, _, word) in rows]
+    return [
+        line % (own_instruction or instruction, *row, word)
+        for row, (own_instruction, _, word) in rows
+    ]
 
 
-def _axes(count: int, first: int) -> str:
+def _axes(count: int, first_external: int) -> str:
     """The external axes: so many of them, from that number on."""
-    formats = [_NO_AXIS] * (first - 1) + [f"%.{ANGLE_DECIMALS}f"] * count if count else []
+    formats = [_NO_AXIS] * (first_external - 1) + [f"%.{ANGLE_DECIMALS}f"] * count if count else []
     return f"[{','.join(formats + [_NO_AXIS] * (MOST_AXES - len(formats)))}]"
 
 
@@ -123,10 +132,14 @@ def wait(seconds: float) -> list[str]:
     return [f"    WaitTime {max(seconds, 0.001):.3f};"] if seconds > 0.0 else []
 
 
-def load(folder: str, part: str) -> list[str]:
+def load(folder: str, part_name: str) -> list[str]:
     """Loading the module of a part, running it and making room for the next one."""
-    path = f'"{folder}{part}.mod"'
-    return [f"    Load \\Dynamic,{path};", f'    %"{routine_of(part)}"%;', f"    UnLoad {path};"]
+    path = f'"{folder}{part_name}.mod"'
+    return [
+        f"    Load \\Dynamic,{path};",
+        f'    %"{routine_of(part_name)}"%;',
+        f"    UnLoad {path};",
+    ]
 
 
 def routine_of(part: str) -> str:

@@ -95,7 +95,7 @@ def read_moves(run: Run) -> ReadMoves:
     )
     deposit, linear = (np.array(column, dtype=np.bool_) for column in (run.deposit, run.linear))
     blend = np.array(run.blend)
-    found = ReadMoves(
+    moves = ReadMoves(
         joints,
         half_turn,
         np.array(run.duration),
@@ -114,10 +114,10 @@ def read_moves(run: Run) -> ReadMoves:
         lines=run.lines.read(),
     )
     if not cartesian:
-        return found
+        return moves
     words = np.array(run.configuration)
     return dataclasses.replace(
-        found,
+        moves,
         position=values[:, :3],
         rotation=_rotation(np.radians(values[:, 3:])),
         position_digits=digits,
@@ -141,8 +141,8 @@ def _joints(run: Run, values: Array) -> Array:
         )
     if not track:
         return np.asarray(np.radians(values))
-    rest = np.radians(np.delete(values, _OWN, axis=1))
-    return np.asarray(np.insert(rest, _OWN + number - 1, values[:, _OWN], axis=1))
+    angles = np.radians(np.delete(values, _OWN, axis=1))
+    return np.asarray(np.insert(angles, _OWN + number - 1, values[:, _OWN], axis=1))
 
 
 def _rotation(wpr: Array) -> Array:

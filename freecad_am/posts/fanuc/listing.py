@@ -99,8 +99,8 @@ def wait(seconds: float) -> list[str]:
     hundredths = max(round(seconds * 100.0), int(seconds > 0.0))
     while hundredths > 0:
         step = min(hundredths, round(_LONGEST_WAIT * 100.0))
-        shown = digits.joined([digits.right_aligned(np.array([step / 100.0]), 2, 7)], 1)
-        lines.append(f"  WAIT{shown}(sec) ;")
+        digits_text = digits.joined([digits.right_aligned(np.array([step / 100.0]), 2, 7)], 1)
+        lines.append(f"  WAIT{digits_text}(sec) ;")
         hundredths -= step
     return lines
 
@@ -126,9 +126,9 @@ def joint_records(
     """Records P[1].. of joint values (n, 6), of the track (n, 0 or 1) and of another group (n, k), degrees and mm already
     rounded to 3 decimals."""
     values = ",".join(f"\tJ{axis}=%10.3f deg" for axis in range(1, external.shape[1] + 1))
-    more = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if values else "};"
+    second_group = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if values else "};"
     extended = "deg,\r\n\tE1=%10.3f  mm\r\n};" if track.shape[1] else "deg\r\n};"
-    record = _JOINT_RECORD.replace("deg\r\n};", extended).replace("};", more)
+    record = _JOINT_RECORD.replace("deg\r\n};", extended).replace("};", second_group)
     return _records(record, user_frame, tool_frame, [], np.hstack([degrees, track, external]))
 
 
@@ -144,12 +144,12 @@ def _records(
 ) -> str:
     """Positions 1.. by their template: its fields are the number, columns (n,) of words, and values (n, k)."""
     n, count = values.shape
-    one = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
+    record = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
     # .250 without its zero in the same width, but exact zero as 0.000
-    shown = digits.right_aligned(values.T.ravel(), 3, 10).reshape(-1, count, n)
+    value_digits = digits.right_aligned(values.T.ravel(), 3, 10).reshape(-1, count, n)
     columns = [np.array(column, dtype="S").view(np.uint8).reshape(n, -1).T for column in words]
-    texts = [digits.plain(np.arange(1, n + 1), 0), *columns, *shown.transpose(1, 0, 2)]
-    fixed = [text.encode("ascii") for text in _FIELD.split(one)]
+    texts = [digits.plain(np.arange(1, n + 1), 0), *columns, *value_digits.transpose(1, 0, 2)]
+    fixed = [text.encode("ascii") for text in _FIELD.split(record)]
     return digits.joined(
-        [part for pair in zip(fixed, texts, strict=False) for part in pair] + fixed[-1:], n
+        [text for pair in zip(fixed, texts, strict=False) for text in pair] + fixed[-1:], n
     )

@@ -59,8 +59,8 @@ def time_words(moves: Moves) -> list[str]:
     milliseconds = 1 + spare
     milliseconds[1:] -= spare[:-1]
     return [
-        f"{second:.1f}sec" if is_long else f"{whole}msec"
-        for second, is_long, whole in zip(
+        f"{second:.1f}sec" if is_long else f"{milliseconds_of_move}msec"
+        for second, is_long, milliseconds_of_move in zip(
             seconds.tolist(), long.tolist(), milliseconds.tolist(), strict=True
         )
     ]
@@ -117,8 +117,8 @@ def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
         )
     wrists = np.where(moves.joints[:, 4] > 0.0, "F", "N").tolist()
     elbows = ["D" if elbow == "down" else "U" for _, elbow, _ in moves.configuration]
-    last = (turns[:, 5] + 0.0).tolist()
+    last_turns = (turns[:, 5] + 0.0).tolist()
     return [
         f"{wrist} {elbow} T, 0, 0, {turn:.0f}"
-        for wrist, elbow, turn in zip(wrists, elbows, last, strict=True)
+        for wrist, elbow, turn in zip(wrists, elbows, last_turns, strict=True)
     ]

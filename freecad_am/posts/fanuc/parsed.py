@@ -67,11 +67,11 @@ class Listing:
 
     def rows(self, points: Index) -> Index:
         """Which positions those numbered (k,) are, -1 where there is none."""
-        known = self.records.point
-        if not len(known):
+        points_recorded = self.records.point
+        if not len(points_recorded):
             return np.full(len(points), -1)
-        at = np.minimum(np.searchsorted(known, points), len(known) - 1)
-        return np.where(known[at] == points, at, -1)
+        candidates = np.minimum(np.searchsorted(points_recorded, points), len(points_recorded) - 1)
+        return np.where(points_recorded[candidates] == points, candidates, -1)
 
 
 def _text(content: bytes) -> str:
@@ -111,31 +111,34 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
         np.zeros(count, dtype=bool),
         np.full(count, np.nan),
     )
-    moving, others = np.zeros(count, dtype=bool), []
+    moving, other_rows = np.zeros(count, dtype=bool), []
     options: dict[int, str] = {}  # of moves, by their rows
-    for shape, some in alike.shapes(lines).items():
+    for shape, rows_of_shape in alike.shapes(lines).items():
         move = _MOTION.match(shape)
         if move is None:
-            others += some
+            other_rows += rows_of_shape
             continue
-        moving[some] = True
+        moving[rows_of_shape] = True
         spans = [move.span(group) for group in (2, 3, 6) if move[group]]
-        values = alike.numbers([lines[row] for row in some], shape, spans)
-        moves.point[some], moves.value[some] = values[:, 0], values[:, 1]
-        moves.unit[some], moves.straight[some] = UNITS.index(move[4]), move[1] == "L"
+        values = alike.numbers([lines[row] for row in rows_of_shape], shape, spans)
+        moves.point[rows_of_shape], moves.value[rows_of_shape] = values[:, 0], values[:, 1]
+        moves.unit[rows_of_shape], moves.straight[rows_of_shape] = (
+            UNITS.index(move[4]),
+            move[1] == "L",
+        )
         if move[6]:
-            moves.corner[some] = values[:, 2]
+            moves.corner[rows_of_shape] = values[:, 2]
         if move[7]:
-            options.update((row, lines[row][slice(*move.span(7))]) for row in some)
-    before = np.cumsum(moving)  # how many moves there are up to a line
-    instructions, done = [], 0
-    for row in [*sorted([*options, *(row for row in others if lines[row].strip())]), count]:
+            options.update((row, lines[row][slice(*move.span(7))]) for row in rows_of_shape)
+    moves_before = np.cumsum(moving)  # how many moves there are up to a line
+    instructions, moves_done = [], 0
+    for row in [*sorted([*options, *(row for row in other_rows if lines[row].strip())]), count]:
         option = options.get(row, "")
         upto = row + bool(option)
-        moved = int(before[upto - 1]) if upto else 0
-        if moved > done:
-            instructions.append(_Instruction(0, option, done, moved))
-            done = moved
+        moved = int(moves_before[upto - 1]) if upto else 0
+        if moved > moves_done:
+            instructions.append(_Instruction(0, option, moves_done, moved))
+            moves_done = moved
         if row < count and not option:
             statement = _LINE.match(lines[row])
             if statement is None:

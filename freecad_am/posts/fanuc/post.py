@@ -123,21 +123,21 @@ def write(program: Program) -> dict[str, bytes]:
     ]
     head = [f"  UFRAME_NUM={program.user_frame} ;", f"  UTOOL_NUM={program.tool_frame} ;"]
     groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
-    parts = packed(
+    part_groups = packed(
         groups,
         program.max_points,
         MOST_LINES - len(head) - len(remarks),
         continued(text.remark, program.woven),
     )
-    if len(parts) == 1:
+    if len(part_groups) == 1:
         refuse_calls_of_own(program, {name}, program_name)
-        return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
-    names = NAMING.parts(name, len(parts))
-    calling = head + remarks + [text.call(part) for part in names]
+        return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, part_groups[0])}
+    names = NAMING.parts(name, len(part_groups))
+    calling = head + remarks + [text.call(part_name) for part_name in names]
     files = {f"{name}.LS": text.listing(name, "Robotic AM", calling, "", _group(program))}
-    for number, (part_name, pieces) in enumerate(zip(names, parts, strict=True), 1):
-        comment = f"part {number} of {len(parts)}"
-        files[f"{part_name}.LS"] = _file(program, part_name, comment, head, pieces)
+    for number, (part_name, piece_list) in enumerate(zip(names, part_groups, strict=True), 1):
+        comment = f"part {number} of {len(part_groups)}"
+        files[f"{part_name}.LS"] = _file(program, part_name, comment, head, piece_list)
     refuse_calls_of_own(program, {*names, name}, program_name)
     return files
 
@@ -229,11 +229,11 @@ def _refuse_continuous_steps(program: Program) -> None:
     """An axis set to turn without end takes the shorter way, so a move of half a turn or more would go wrong."""
     axes = np.flatnonzero(program.continuous)
     joints = np.concatenate([run.joints for run in program.moves])[:, axes]
-    places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
+    run_numbers = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
     large = np.abs(np.diff(joints, axis=0)) > math.radians(180.0 - 0.001)
     if large.any():
         move, axis = np.argwhere(large)[0]
-        run = program.moves[places[move + 1]]
+        run = program.moves[run_numbers[move + 1]]
         turn = math.degrees(joints[move + 1, axis] - joints[move, axis])
         raise InputError(
             "ENDLESS_STEP",
@@ -303,16 +303,16 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 
 def _file(
-    program: Program, name: str, comment: str, head: list[str], pieces: Sequence[Piece]
+    program: Program, name: str, comment: str, head: list[str], piece_list: Sequence[Piece]
 ) -> bytes:
     lines, point = list(head), 0
-    runs = [piece for piece in pieces if isinstance(piece, Run)]
-    for piece in pieces:
-        if isinstance(piece, Run):
-            lines += _motion_lines(piece, point)
-            point += len(piece)
+    runs = [entry for entry in piece_list if isinstance(entry, Run)]
+    for entry in piece_list:
+        if isinstance(entry, Run):
+            lines += _motion_lines(entry, point)
+            point += len(entry)
         else:
-            lines += piece
+            lines += entry
     return text.listing(name, comment, lines, _record_text(program, runs), _group(program))
 
 
@@ -334,28 +334,28 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
     if program.motion == "joint":
         joints = np.concatenate([run.moves.joints[run.start : run.stop] for run in runs])
         slides, continuous = program.slides, np.array(program.continuous)
-        shown = np.round(np.where(slides, joints, np.degrees(joints)), 3)
-        shown[:, continuous] = numbers.within_half_turn(shown[:, continuous])
-        shown += 0.0
+        values = np.round(np.where(slides, joints, np.degrees(joints)), 3)
+        values[:, continuous] = numbers.within_half_turn(values[:, continuous])
+        values += 0.0
         return text.joint_records(
-            shown[:, :AXES],
-            shown[:, slides],
-            shown[:, AXES:][:, ~slides[AXES:]],
+            values[:, :AXES],
+            values[:, slides],
+            values[:, AXES:][:, ~slides[AXES:]],
             program.user_frame,
             program.tool_frame,
             _group(program),
         )
     poses, configuration = [], []
     for run in runs:
-        moves, part = run.moves, slice(run.start, run.stop)
+        moves, rows = run.moves, slice(run.start, run.stop)
         if moves.position is None or moves.rotation is None:
             raise InputError(
                 "NO_POSITIONS",
                 "program.motion",
                 "the program has no positions; use `motion: joint`",
             )
-        poses.append(numbers.poses(moves.position[part], moves.rotation[part]))
-        configuration += numbers.configurations(moves, program.continuous)[part]
+        poses.append(numbers.poses(moves.position[rows], moves.rotation[rows]))
+        configuration += numbers.configurations(moves, program.continuous)[rows]
     return text.pose_records(
         np.concatenate(poses), configuration, program.user_frame, program.tool_frame
     )

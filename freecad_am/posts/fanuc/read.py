@@ -68,9 +68,9 @@ def _follow(
         raise unreadable(files[name][0], "it calls itself")
     listing = listing_of(*files[name])
     run.begin(listing)
-    for position, (number, statement, first, end) in enumerate(listing.instructions):
-        if end > first:
-            _move(listing, slice(first, end), statement, run)
+    for position, (number, statement, begin, end) in enumerate(listing.instructions):
+        if end > begin:
+            _move(listing, slice(begin, end), statement, run)
         elif output := _OUTPUT.match(statement):
             _switch(output, f"{listing.file} line {number}", run)
         elif group := _GROUP.match(statement):
@@ -89,8 +89,8 @@ def _follow(
             run.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
         elif wait := _WAIT.match(statement):
             run.happens("wait", float(wait[1]), digits=0.5 * 10.0 ** -len(wait[2]))
-        elif given := _INPUT.match(statement):
-            run.happens("input", float(given[1]))
+        elif input_wait := _INPUT.match(statement):
+            run.happens("input", float(input_wait[1]))
         elif layer := _LAYER.match(statement):
             run.happens("layer", float(layer[1]))
         elif track := _TRACK.match(statement):
@@ -143,11 +143,15 @@ def _arc(arc: re.Match[str], where: str, run: Run) -> None:
     run.happens("on" if run.on else "off", float(arc[2]), ARC)
 
 
-def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
+def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:
     """Carry out moves that follow each other, all of them column by column, and the option of the last one."""
     moves, cartesian = listing.moves, listing.records.cartesian
-    unit, straight, corner = moves.unit[some], moves.straight[some], moves.corner[some]
-    rows = listing.rows(moves.point[some])
+    unit, straight, corner = (
+        moves.unit[rows_moved],
+        moves.straight[rows_moved],
+        moves.corner[rows_moved],
+    )
+    rows = listing.rows(moves.point[rows_moved])
     wrong = (
         (rows < 0)
         | (straight & (not cartesian))
@@ -157,7 +161,7 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
     if run.cartesian != cartesian and run.duration:
         wrong[:] = True
     if wrong.any():
-        _refuse(listing, some.start + int(np.argmax(wrong)), run)
+        _refuse(listing, rows_moved.start + int(np.argmax(wrong)), run)
     run.cartesian = cartesian
     frames = listing.records.frames
     alike = listing.same_frames
@@ -165,14 +169,14 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
     changes = (
         [0] if alike else [k for k in range(len(rows)) if k == 0 or selected[k] != selected[k - 1]]
     )
-    for first, end in zip(changes, [*changes[1:], len(rows)]):
-        if selected[first] != run.recorded:
-            _select(listing, int(rows[first]), run, int(moves.line[some][first]))
-        run.user_frame.extend([run.numbers[0]] * (end - first))
-        run.tool_frame.extend([run.numbers[1]] * (end - first))
+    for begin, end in zip(changes, [*changes[1:], len(rows)]):
+        if selected[begin] != run.recorded:
+            _select(listing, int(rows[begin]), run, int(moves.line[rows_moved][begin]))
+        run.user_frame.extend([run.numbers[0]] * (end - begin))
+        run.tool_frame.extend([run.numbers[1]] * (end - begin))
     run.pending.append(rows)
-    run.lines.extend(listing.file, moves.line[some])
-    value = moves.value[some, None] * _FACTORS[unit]
+    run.lines.extend(listing.file, moves.line[rows_moved])
+    value = moves.value[rows_moved, None] * _FACTORS[unit]
     for column, numbered in zip(
         (run.duration, run.speed, run.share, run.blend), (*value.T, corner)
     ):
@@ -180,14 +184,14 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
     run.deposit += bytes([run.on]) * len(rows)
     run.linear += straight.tobytes()
     if option:
-        _trigger(option, _at(listing, int(moves.line[some][-1])), run)
+        _trigger(option, _line_name(listing, int(moves.line[rows_moved][-1])), run)
 
 
 def _refuse(listing: Listing, move: int, run: Run) -> None:
     """InputError for what cannot be understood of a move."""
     moves, records = listing.moves, listing.records
     where, unit, corner = (
-        _at(listing, int(moves.line[move])),
+        _line_name(listing, int(moves.line[move])),
         int(moves.unit[move]),
         moves.corner[move],
     )
@@ -213,7 +217,7 @@ def _select(listing: Listing, row: int, run: Run, number: int) -> None:
     for word, frame in zip(("FRAME", "TOOL"), recorded, strict=True):
         if frame not in ("F", run.frame.get(word)):
             raise unreadable(
-                _at(listing, number),
+                _line_name(listing, number),
                 Text(
                     "P[{}] is recorded in another U{} than the one selected",
                     listing.records.point[row],
@@ -224,5 +228,5 @@ def _select(listing: Listing, row: int, run: Run, number: int) -> None:
     run.numbers = float(run.frame.get("FRAME", "nan")), float(run.frame.get("TOOL", "nan"))
 
 
-def _at(listing: Listing, number: int) -> str:
-    return f"{listing.file} line {number}"
+def _line_name(listing: Listing, line_number: int) -> str:
+    return f"{listing.file} line {line_number}"

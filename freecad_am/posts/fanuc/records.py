@@ -69,55 +69,55 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     several = text.count("GP") > text.count("GP1:") and re.search(
         r"^ *GP[2-8]:", text, re.MULTILINE
     )
-    more = several or "E1" in text
-    found = (
-        _with_more(file, text, positions)
-        if more
+    has_more = several or "E1" in text
+    records = (
+        _joint_records_of_groups(file, text, positions)
+        if has_more
         else _joint_records(text) or _any_records(file, text, positions)
     )
-    _check_groups(file, lines, found)
-    if (np.diff(found.point) > 0).all():
-        return found._replace(moved=_groups_of(lines))
-    order = np.argsort(found.point, kind="stable")
-    twice = np.flatnonzero(np.diff(found.point[order]) == 0)
+    _check_groups(file, lines, records)
+    if (np.diff(records.point) > 0).all():
+        return records._replace(moved=_groups_of(lines))
+    order = np.argsort(records.point, kind="stable")
+    twice = np.flatnonzero(np.diff(records.point[order]) == 0)
     if len(twice):
-        point = int(found.point[order][twice[0]])
+        point = int(records.point[order][twice[0]])
         line = _line(text, positions, point, 1)
         raise unreadable(
             file, Text("P[{}] is recorded twice, the second time in line {}", point, line)
         )
-    some = order.tolist()
-    return found._replace(
-        point=found.point[order],
-        values=found.values[order],
-        frames=[found.frames[row] for row in some],
-        configuration=[found.configuration[row] for row in some],
+    row_order = order.tolist()
+    return records._replace(
+        point=records.point[order],
+        values=records.values[order],
+        frames=[records.frames[row] for row in row_order],
+        configuration=[records.configuration[row] for row in row_order],
         moved=_groups_of(lines),
     )
 
 
 def _groups_of(lines: list[str]) -> frozenset[str]:
     """The motion groups that a program moves, by its header."""
-    given = (
+    group_lists = (
         line.partition("=")[2].strip(" ;").split(",")
         for line in lines
         if line.startswith("DEFAULT_GROUP")
     )
-    flags = next(given, ["1"])
+    flags = next(group_lists, ["1"])
     return frozenset(str(number) for number, word in enumerate(flags, 1) if word == "1")
 
 
-def _check_groups(file: str, lines: list[str], found: Records) -> None:
+def _check_groups(file: str, lines: list[str], records: Records) -> None:
     """The groups that a program moves are those that it has positions of."""
     moved = _groups_of(lines)
-    if len(found.point) and moved != {"1", found.group or "1"}:
+    if len(records.point) and moved != {"1", records.group or "1"}:
         number = next((k for k, line in enumerate(lines, 1) if line.startswith("DEFAULT_GROUP")), 1)
         raise unreadable(
             f"{file} line {number}",
             Text(
                 "its header moves groups {}, and its positions are of groups {}",
                 ", ".join(sorted(moved)),
-                ", ".join(sorted({"1", found.group or "1"})),
+                ", ".join(sorted({"1", records.group or "1"})),
             ),
         )
 
@@ -125,8 +125,8 @@ def _check_groups(file: str, lines: list[str], found: Records) -> None:
 def _line(text: str, positions: int, point: int, again: int = 0) -> int:
     """The line of the record of a position, or of the one that records it again."""
     starts = [match.start() for match in re.finditer(rf"^P\[{point}\b", text, re.MULTILINE)]
-    before = text.count("\n", 0, starts[min(again, len(starts) - 1)])
-    return before + positions + 2
+    lines_before = text.count("\n", 0, starts[min(again, len(starts) - 1)])
+    return lines_before + positions + 2
 
 
 def _place(file: str, text: str, positions: int, point: int) -> str:
@@ -134,13 +134,15 @@ def _place(file: str, text: str, positions: int, point: int) -> str:
     return f"{file} line {_line(text, positions, point)}"
 
 
-def _with_more(file: str, text: str, positions: int) -> Records:
+def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
     """The joint positions of a text with a track or two motion groups, all alike."""
     values, frames, decimals, points = [], [], 99, []
     groups: set[tuple[str, int, bool]] = set()
     for record in _MORE.finditer(text):
-        point, user, tool, *own, track, group, other_user, other_tool, rest = record.groups()
-        external = _AXIS.findall(rest or "")
+        point, user, tool, *robot_values, track, group, other_user, other_tool, external_text = (
+            record.groups()
+        )
+        external = _AXIS.findall(external_text or "")
         count = len(external)
         due = [(str(axis), "," if axis < count else "") for axis in range(1, count + 1)]
         if [(axis, comma) for axis, _, comma in external] != due or (
@@ -150,7 +152,7 @@ def _with_more(file: str, text: str, positions: int) -> Records:
                 _place(file, text, positions, int(point)),
                 Text("the second group of P[{}] is not understood", point),
             )
-        texts = [*own, *([track] if track else []), *(value for _, value, _ in external)]
+        texts = [*robot_values, *([track] if track else []), *(value for _, value, _ in external)]
         points.append(int(point))
         values.append([float(value) for value in texts])
         frames.append((user, tool))

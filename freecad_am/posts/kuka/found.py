@@ -68,11 +68,11 @@ def read_moves(run: Run) -> ReadMoves:
     """The moves of all that was followed."""
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
     values, rounding = np.array(run.values), np.array(run.rounding)
-    half, seen = run.half_digits, linear[:, None]
-    a, b, c = np.radians(np.where(seen, values[:, 3:], np.nan)).T
+    half, is_linear = run.half_digits, linear[:, None]
+    a, b, c = np.radians(np.where(is_linear, values[:, 3:], np.nan)).T
     any_line = bool(linear.any())
     external = np.array(run.external)
-    joints = np.radians(np.hstack((np.where(seen, np.nan, values), external)))
+    joints = np.radians(np.hstack((np.where(is_linear, np.nan, values), external)))
     joints[:, 6:] = np.where(np.isin(run.numbers, run.slides), external, joints[:, 6:])
     return ReadMoves(
         None if np.isnan(joints).all() else joints,
@@ -82,7 +82,7 @@ def read_moves(run: Run) -> ReadMoves:
         linear,
         np.isnan(rounding),
         tuple(run.events),
-        position=np.where(seen, values[:, :3], np.nan) if any_line else None,
+        position=np.where(is_linear, values[:, :3], np.nan) if any_line else None,
         rotation=_about(2, a) @ _about(1, b) @ _about(0, c) if any_line else None,
         position_digits=half.get("places", 0.0),
         rotation_digits=float(np.radians(half.get("turns", 0.0))),
@@ -103,10 +103,10 @@ def read_moves(run: Run) -> ReadMoves:
 def _about(axis: int, angle: Array) -> Array:
     """(n, 3, 3) rotations about X, Y or Z."""
     turned = np.zeros((len(angle), 3, 3))
-    one, other = (axis + 1) % 3, (axis + 2) % 3
+    next_axis, last_axis = (axis + 1) % 3, (axis + 2) % 3
     turned[:, axis, axis] = 1.0
-    turned[:, one, one] = turned[:, other, other] = np.cos(angle)
-    turned[:, other, one], turned[:, one, other] = np.sin(angle), -np.sin(angle)
+    turned[:, next_axis, next_axis] = turned[:, last_axis, last_axis] = np.cos(angle)
+    turned[:, last_axis, next_axis], turned[:, next_axis, last_axis] = np.sin(angle), -np.sin(angle)
     return turned
 
 

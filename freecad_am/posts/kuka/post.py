@@ -189,21 +189,26 @@ def write(program: Program) -> dict[str, bytes]:
     moved = text.Lines(program)
     groups = list(grouped(program, moved, lambda block: _instructions(program, block)))
     refuse_leads([*switched_ahead(program), *moved.ahead])
-    parts = packed(groups, program.max_points, _NO_END, whole)
+    part_groups = packed(groups, program.max_points, _NO_END, whole)
     used = [*([text.SCHEDULE] if _scheduled(program) else []), *arc.names(program)]
     refuse_names_of_data(program, {name}, used)
-    if len(parts) == 1:
+    if len(part_groups) == 1:
         refuse_calls_of_own(program, {name}, program_name)
-        return {f"{name}.src": text.module(name, [*remarks, *_body(program, parts[0])])}
-    names = NAMING.parts(name, len(parts))
+        return {f"{name}.src": text.module(name, [*remarks, *_body(program, part_groups[0])])}
+    names = NAMING.parts(name, len(part_groups))
     refuse_calls_of_own(program, {name, *names}, program_name)
     refuse_names_of_data(program, names, used)
     files = {}
-    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
-        head = text.remark(f"part {number} of {len(parts)}")
-        files[f"{part}.src"] = text.module(part, [*head, *_body(program, pieces)])
-    remarks += text.remark(f"{len(parts)} parts of {sum(map(len, files.values()))} bytes in all")
-    return {f"{name}.src": text.module(name, [*remarks, *(f"{part}()" for part in names)]), **files}
+    for number, (part_name, piece_list) in enumerate(zip(names, part_groups, strict=True), 1):
+        head = text.remark(f"part {number} of {len(part_groups)}")
+        files[f"{part_name}.src"] = text.module(part_name, [*head, *_body(program, piece_list)])
+    remarks += text.remark(
+        f"{len(part_groups)} parts of {sum(map(len, files.values()))} bytes in all"
+    )
+    return {
+        f"{name}.src": text.module(name, [*remarks, *(f"{part_name}()" for part_name in names)]),
+        **files,
+    }
 
 
 def program_name(name: str, where: str) -> str:
@@ -252,16 +257,16 @@ def _refuse(program: Program) -> None:
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     _refuse_schedules(program)
-    for what, number, last in (
+    for what, number, highest in (
         ("tool_frame", program.tool_frame, LAST_TOOL),
         ("user_frame", program.user_frame, LAST_BASE),
     ):
-        if number > last:
+        if number > highest:
             raise InputError(
                 "UNSUPPORTED_FRAME",
                 f"program.{what}",
                 "the controller has numbers up to {}, not {}; use one of these",
-                last,
+                highest,
                 number,
             )
     refuse_continuous(program)
@@ -275,15 +280,15 @@ def _refuse(program: Program) -> None:
 def _refuse_schedules(program: Program) -> None:
     refuse_schedules(program, LAST_OUTPUT - text.BITS + 1, LAST_SCHEDULE)
     arc.refuse_post_flow(program)
-    own = range(program.schedule_output, program.schedule_output + text.BITS)
-    if _scheduled(program) and program.deposit_output in own:
+    schedule_outputs = range(program.schedule_output, program.schedule_output + text.BITS)
+    if _scheduled(program) and program.deposit_output in schedule_outputs:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
             "$OUT[{}] to $OUT[{}] carry the schedule, and one of them switches the "
             "deposit; use other ones, or another program.deposit_output",
-            own[0],
-            own[-1],
+            schedule_outputs[0],
+            schedule_outputs[-1],
         )
 
 
@@ -292,9 +297,11 @@ def _scheduled(program: Program) -> bool:
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
-    seen = f", seen from the face of MACHINE_DEF[{program.unit}]" if program.on_positioner else ""
+    reference = (
+        f", seen from the face of MACHINE_DEF[{program.unit}]" if program.on_positioner else ""
+    )
     yield (
-        f"BASE_DATA[{program.user_frame}] is the program origin{seen}, TOOL_DATA[{program.tool_frame}] the tip of the"
+        f"BASE_DATA[{program.user_frame}] is the program origin{reference}, TOOL_DATA[{program.tool_frame}] the tip of the"
         " nozzle:"
     )
     for what, six in (("BASE", program.station), ("TOOL", program.carried)):
@@ -344,7 +351,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
 _STAND = "WAIT SEC 0"
 
 
-def _body(program: Program, pieces: Sequence[Piece]) -> list[str]:
+def _body(program: Program, piece_list: Sequence[Piece]) -> list[str]:
     unit, base = f"MACHINE_DEF[{program.unit}]", f"BASE_DATA[{program.user_frame}]"
     coupled = [f"$BASE=EK({unit}.ROOT,{unit}.MECH_TYPE,{base})"] if program.on_positioner else []
     lines = [
@@ -356,13 +363,13 @@ def _body(program: Program, pieces: Sequence[Piece]) -> list[str]:
         "$IPO_MODE=#BASE",
         "$ORI_TYPE=#VAR",
     ]
-    said: dict[str, str] = {}
-    for piece in pieces:
+    settings: dict[str, str] = {}
+    for entry in piece_list:
         lines += (
-            text.spoken(piece.words[piece.start : piece.stop], said)
-            if isinstance(piece, Run)
-            else piece
+            text.spoken(entry.words[entry.start : entry.stop], settings)
+            if isinstance(entry, Run)
+            else entry
         )
-        if isinstance(piece, list) and any(line.startswith(arc.CALL) for line in piece):
-            said.clear()  # what ArcTech sets is not known
+        if isinstance(entry, list) and any(line.startswith(arc.CALL) for line in entry):
+            settings.clear()  # what ArcTech sets is not known
     return [*lines, _STAND]

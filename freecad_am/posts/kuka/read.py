@@ -57,26 +57,26 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
-    found = {}
+    by_name = {}
     for file in sorted(files):
         lines = files[file].decode("latin-1").replace("\r\n", "\n").rstrip("\n").split("\n")
-        found[_routine(file, lines).lower()] = (file, lines)
+        by_name[_routine(file, lines).lower()] = (file, lines)
     called = {
         call[1].lower()
-        for _, lines in found.values()
+        for _, lines in by_name.values()
         for line in lines
         if (call := _CALLED.match(line))
     }
-    main = [name for name in found if name not in called]
+    main = [name for name in by_name if name not in called]
     if len(main) != 1:
         raise not_read(
             "program", Text("{} programs are called by none of the others, expected one", len(main))
         )
-    run = Run(found)
+    run = Run(by_name)
     _go(main[0], run)
     if not run.speed:
         raise not_read("program", "there are no moves")
-    if len(run.followed) != len(found):
+    if len(run.followed) != len(by_name):
         raise not_read("program", "there are modules that are never run, or run twice")
     return read_moves(run)
 
@@ -115,7 +115,7 @@ def _go(name: str, run: Run) -> None:
     for number, line in enumerate(lines[3:-1], 4):
         where = f"{file} line {number}"
         if _TO_AXES.match(line) or _STRAIGHT.match(line):
-            _moved(line, run, where)
+            _follow_move(line, run, where)
         elif of_arc(line):
             _arc(line, run, where)
         elif trigger := _TRIGGER.match(line):
@@ -133,7 +133,7 @@ def _go(name: str, run: Run) -> None:
         elif track := _TRACK.match(line):
             run.slides += (int(track[1]),)
         elif not line.startswith(";"):
-            _done(line, run, where)
+            _follow_instruction(line, run, where)
     if not run.standing or run.arc.begun or run.trigger:
         raise not_read(file, "it ends before the last move does")
 
@@ -173,9 +173,9 @@ def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
     run.state["EK"] = float(coupled[1])
 
 
-def _declare(declared: re.Match[str], before: list[str], run: Run, where: str) -> None:
+def _declare(declared: re.Match[str], earlier_lines: list[str], run: Run, where: str) -> None:
     """Name a group of outputs in a module, which comes before its instructions."""
-    if any(not line.startswith(";") for line in before):
+    if any(not line.startswith(";") for line in earlier_lines):
         raise not_read(where, "it is declared behind an instruction")
     run.signals[declared[1]] = int(declared[2]), int(declared[3])
 
@@ -227,7 +227,7 @@ def _one_output(number: str, run: Run, where: str) -> None:
     run.output = number
 
 
-def _done(line: str, run: Run, where: str) -> None:
+def _follow_instruction(line: str, run: Run, where: str) -> None:
     """An instruction, neither move nor setting: it is read ahead but for waits, so outputs and calls come after one."""
     if not any(form.match(line) for form in (_PAUSE, _AWAITED, _SWITCHED, _CALLED)):
         if line.startswith("TRIGGER") and not run.standing:
@@ -274,7 +274,7 @@ def _stopped(run: Run, where: str) -> bool:
     return True
 
 
-def _moved(line: str, run: Run, where: str) -> None:
+def _follow_move(line: str, run: Run, where: str) -> None:
     straight, state = _STRAIGHT.match(line), run.state
     if not run.arc.moved(straight is not None, bool(straight and straight[8])):
         raise not_read(

@@ -47,9 +47,9 @@ def remark(text: str) -> list[str]:
     return [f"; {line}" for line in textwrap.wrap(plain(text), WIDTH)]
 
 
-def signal(first: int) -> list[str]:
+def signal(first_output: int) -> list[str]:
     """The declaration of the outputs that tell a schedule."""
-    return [f"SIGNAL {SCHEDULE} $OUT[{first}] TO $OUT[{first + BITS - 1}]"]
+    return [f"SIGNAL {SCHEDULE} $OUT[{first_output}] TO $OUT[{first_output + BITS - 1}]"]
 
 
 def wait(seconds: float) -> list[str]:
@@ -57,7 +57,7 @@ def wait(seconds: float) -> list[str]:
     return [f"WAIT SEC {max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
 
 
-def shown(joints: Array, slides: Mask) -> Array:
+def controller_values(joints: Array, slides: Mask) -> Array:
     """Axis values (n, axes) in degrees as the text has them, those that slide (axes,) in mm."""
     values = np.where(slides, joints, np.degrees(joints))
     rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
@@ -100,7 +100,7 @@ class Lines:
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         """`settings|move` of each move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
-        values = shown(moves.joints, self._slides)
+        values = controller_values(moves.joints, self._slides)
         if moves.interpolation == LINEAR_MOVE:
             assert moves.position is not None and moves.rotation is not None
             size = self._rounding(moves)
@@ -142,10 +142,10 @@ class Lines:
         """Settings of a share, percent, of the speeds of the external axes; none where there are none."""
         return self._shares % ((share,) * self._shares.count("%"))
 
-    def _percent(self, moves: Moves, shown: Array) -> list[int]:
+    def _percent(self, moves: Moves, values: Array) -> list[int]:
         """Whole percents of the largest joint speeds: the fastest axis gets through its step in the time of the move."""
-        before = shown[:1] if self._before is None else self._before[None]
-        share = (np.abs(np.diff(shown, axis=0, prepend=before)) / self._nominal).max(axis=1)
+        previous = values[:1] if self._before is None else self._before[None]
+        share = (np.abs(np.diff(values, axis=0, prepend=previous)) / self._nominal).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             percent = 100.0 * share / moves.duration
         percent = np.where(share > 0.0, percent, 100.0)
@@ -163,11 +163,11 @@ class Lines:
                 percent[wrong][0],
                 LEAST_PERCENT,
             )
-        whole = np.clip(np.rint(percent), LEAST_PERCENT, 100)
+        percents = np.clip(np.rint(percent), LEAST_PERCENT, 100)
         if self._before is not None or len(moves) > 1:
             # whole percents may be more than were planned, and the move shorter
-            self._switched(moves, float(100.0 * share[-1] / whole[-1]))
-        return [int(value) for value in whole]
+            self._switched(moves, float(100.0 * share[-1] / percents[-1]))
+        return [int(value) for value in percents]
 
     def _switched(self, moves: Moves, seconds: float, corner: bool = False) -> None:
         """Keep how much of the last move is left, where it switches the deposit."""
@@ -184,8 +184,8 @@ class Lines:
         return math.floor(1000.0 * min(0.005 * self._blend * shortest, 100.0)) / 1000.0
 
 
-def spoken(words: Sequence[str], said: dict[str, str]) -> list[str]:
-    """The lines of moves, with the settings before them that differ from what is `said` so far, and become it."""
+def spoken(words: Sequence[str], current_settings: dict[str, str]) -> list[str]:
+    """The lines of moves, with the settings before them that differ from what is `current_settings` so far, and become it."""
     lines: list[str] = []
     for word in words:
         *settings, move = word.split("|")
@@ -193,11 +193,11 @@ def spoken(words: Sequence[str], said: dict[str, str]) -> list[str]:
             if setting.startswith(switching.TRIGGER):
                 lines += setting.splitlines()
                 if arc.CALL in setting:
-                    said.clear()  # what ArcTech sets is not known
+                    current_settings.clear()  # what ArcTech sets is not known
                 continue
             key = setting[: max(setting.find("="), 8)]
-            if said.get(key) != setting:
-                said[key] = setting
+            if current_settings.get(key) != setting:
+                current_settings[key] = setting
                 lines.append(setting)
         lines.append(move)
     return lines

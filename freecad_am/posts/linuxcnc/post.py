@@ -112,25 +112,29 @@ def write(program: Program) -> dict[str, bytes]:
             program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)
         )
     )
-    parts = packed(groups, program.max_points, _NO_END, whole)
-    if len(parts) == 1:
+    part_groups = packed(groups, program.max_points, _NO_END, whole)
+    if len(part_groups) == 1:
         return {
-            f"{name}.ngc": _file([*remarks, *_modes(program), *_lines(program, parts[0]), "M2"])
+            f"{name}.ngc": _file(
+                [*remarks, *_modes(program), *_lines(program, part_groups[0]), "M2"]
+            )
         }
-    names = NAMING.parts(name, len(parts))
+    names = NAMING.parts(name, len(part_groups))
     refuse_calls_of_own(program, {name, *names}, program_name)
     files = {
         f"{name}.ngc": _file(
-            [*remarks, *_modes(program), *(f"o<{part}> call" for part in names), "M2"]
+            [*remarks, *_modes(program), *(f"o<{part_name}> call" for part_name in names), "M2"]
         )
     }
-    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+    for number, (part_name, piece_list) in enumerate(zip(names, part_groups, strict=True), 1):
         inside = [
-            _remark(f"part {number} of {len(parts)}"),
+            _remark(f"part {number} of {len(part_groups)}"),
             *_modes(program),
-            *_lines(program, pieces),
+            *_lines(program, piece_list),
         ]
-        files[f"{part}.ngc"] = _file([f"o<{part}> sub", *inside, f"o<{part}> endsub", "M2"])
+        files[f"{part_name}.ngc"] = _file(
+            [f"o<{part_name}> sub", *inside, f"o<{part_name}> endsub", "M2"]
+        )
     return files
 
 
@@ -336,31 +340,31 @@ def _dwell(seconds: float) -> list[str]:
     return common.dwell("P", seconds)
 
 
-def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
-    return lines_of(pieces, lambda run: _motion(program, run))
+def _lines(program: Program, piece_list: Sequence[Piece]) -> list[str]:
+    return lines_of(piece_list, lambda run: _motion(program, run))
 
 
 def _motion(program: Program, run: Run) -> list[str]:
     """Moves through all points of a run; what follows a run waits for its end."""
-    moves, part = run.moves, slice(run.start, run.stop)
+    moves, rows = run.moves, slice(run.start, run.stop)
     names = list(program.axis_names)
-    values = numbers.shown(moves.joints[part], program.axis_kinds)
+    values = numbers.controller_values(moves.joints[rows], program.axis_kinds)
     if moves.interpolation == LINEAR_MOVE:
         assert moves.position is not None
         rotary = np.array([kind == ROTARY for kind in program.axis_kinds])
         values = np.hstack(
-            [np.round(moves.position[part], numbers.DECIMALS) + 0.0, values[:, rotary]]
+            [np.round(moves.position[rows], numbers.DECIMALS) + 0.0, values[:, rotary]]
         )
         names = [
             *"XYZ",
             *(name for name, turns in zip(names, rotary.tolist(), strict=True) if turns),
         ]
-    blocks = numbers.blocks(numbers.rows(numbers.template(names), values), run.words[part])
+    blocks = numbers.blocks(numbers.rows(numbers.template(names), values), run.words[rows])
     ahead = len(blocks) - len(values)
-    for row in np.flatnonzero(moves.halt[part]).tolist():
+    for row in np.flatnonzero(moves.halt[rows]).tolist():
         blocks[ahead + row] = f"{EXACT_STOP}\n{blocks[ahead + row]}\n{_through(program)}"
     # queued: it takes effect where the next move begins, and corners are rounded all the same
-    text = numbers.with_wire(program, moves, blocks, f"M67 {_wire(program)}")
+    text = numbers.insert_wire_statements(program, moves, blocks, f"M67 {_wire(program)}")
     return [line for block in text for line in block.split("\n")]
 
 

@@ -124,7 +124,7 @@ def _is_sub(name: str, lines: list[tuple[str, str]]) -> bool:
 
 def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
     """Where each line is, and its words without comments."""
-    found = []
+    located_lines = []
     for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
         layer = _LAYER.match(line.strip())
         text = line.strip() if layer else " ".join(_COMMENT.sub(" ", line).split())
@@ -134,8 +134,8 @@ def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
                 "a comment that may be carried out, or a line that is too long",
             )
         if text:
-            found.append((f"{file} line {number}", text))
-    return found
+            located_lines.append((f"{file} line {number}", text))
+    return located_lines
 
 
 def _follow(
@@ -191,13 +191,15 @@ def _sets_mode(text: str, state: _State) -> bool:
     if corners := _CORNERS.match(text):
         state.track.exact = text == "G61.1"
         # G61 stops where it must; another tolerance for points than for corners is none that was asked for
-        known = corners[2] and corners[2] == corners[3]
-        state.track.rounding = float(corners[2]) if known else 0.0 if corners[1] else float("inf")
+        is_known = corners[2] and corners[2] == corners[3]
+        state.track.rounding = (
+            float(corners[2]) if is_known else 0.0 if corners[1] else float("inf")
+        )
     elif tool := _TOOL.match(text):
         state.track.tool = float(tool[1])
-    elif given := _INPUT.match(text):
+    elif input_wait := _INPUT.match(text):
         state.track.rests()
-        state.track.happens("input", float(given[1]) + 1.0)
+        state.track.happens("input", float(input_wait[1]) + 1.0)
     elif dwell := _DWELL.match(text):
         state.track.rests()
         state.track.waits(dwell[1])

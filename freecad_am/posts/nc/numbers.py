@@ -25,7 +25,7 @@ SHORTEST_WAY = 0.01
 TIME, PATH = "G93", "G94"
 
 
-def shown(joints: Array, kinds: Sequence[str]) -> Array:
+def controller_values(joints: Array, kinds: Sequence[str]) -> Array:
     """Joint values (n, axes) in mm and deg, as the text has them."""
     factor = np.array([1.0 if kind == LINEAR else math.degrees(1.0) for kind in kinds])
     values: Array = np.round(joints * factor, DECIMALS) + 0.0
@@ -63,23 +63,25 @@ def wire(program: Program, speeds: Sequence[float]) -> list[str]:
     return [_significant(value, WIRE_DIGITS) if value > 1e-9 else "0" for value in values]
 
 
-def with_wire(program: Program, moves: Moves, lines: Sequence[str], statement: str) -> list[str]:
+def insert_wire_statements(
+    program: Program, moves: Moves, lines: Sequence[str], statement: str
+) -> list[str]:
     """The lines of a run of moves, the last ones one per move, with the statement that sets the analogue output in front of
     each move at which its value changes. The first value was told before the run."""
     if moves.wire is None:
         return list(lines)
     values = wire(program, moves.wire.tolist())
-    changed = [value != before for before, value in zip(values, values[1:])]
-    rest = len(lines) - len(values) + 1
+    changed = [value != previous for previous, value in zip(values, values[1:])]
+    head_count = len(lines) - len(values) + 1
     statements = [
         [statement.format(value)] if new else []
         for new, value in zip(changed, values[1:], strict=True)
     ]
     return [
-        *lines[:rest],
+        *lines[:head_count],
         *(
             line
-            for words, move in zip(statements, lines[rest:], strict=True)
+            for words, move in zip(statements, lines[head_count:], strict=True)
             for line in (*words, move)
         ),
     ]
@@ -106,21 +108,21 @@ class Feeds:
 
         Raises InputError MOVE_SPEED or MOVE_TIME, naming the bead.
         """
-        at = shown(moves.joints, self.kinds)
-        start = at[0] if self.before is None else self.before
-        self.before = at[-1]
+        axis_values = controller_values(moves.joints, self.kinds)
+        start = axis_values[0] if self.before is None else self.before
+        self.before = axis_values[-1]
         if moves.interpolation == LINEAR_MOVE:
             self.after_tip = True
             return [f"{PATH} {feed(value)}" for value in _tip_feeds(moves).tolist()]
         inverse = _inverse_times(moves)
-        steps = np.diff(np.concatenate([start[None], at]), axis=0)
-        way = np.linalg.norm(steps[:, self.linear], axis=1)
-        speeds = 60.0 * slide_feeds(start, at, 60.0 / inverse, self.kinds)
-        turning = way == 0.0
+        steps = np.diff(np.concatenate([start[None], axis_values]), axis=0)
+        slide_lengths = np.linalg.norm(steps[:, self.linear], axis=1)
+        speeds = 60.0 * slide_feeds(start, axis_values, 60.0 / inverse, self.kinds)
+        turning = slide_lengths == 0.0
         speeds[turning] = (np.linalg.norm(steps[:, ~self.linear], axis=1) * inverse)[turning]
         by_speed = (speeds > 0.0) & (speeds < self.slowest)
         if self.path_feed and moves.kind != RAPID:
-            by_speed |= (way >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
+            by_speed |= (slide_lengths >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
         by_speed[0] &= not self.after_tip  # a text that ended in a position does not tell the way
         self.after_tip = False
         return [
@@ -134,13 +136,15 @@ class Feeds:
 def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
     """G1 blocks of these words and feeds, the sort of feed in front, and in the blocks that change it."""
     lines, sort = [], ""
-    for word, (before, value) in zip(words, (feed.split() for feed in feeds), strict=True):
+    for word, (sort_of_feed, value) in zip(words, (feed.split() for feed in feeds), strict=True):
         if not sort:
-            lines.append(before)
+            lines.append(sort_of_feed)
         lines.append(
-            f"{before} G1 {word} {value}" if sort not in ("", before) else f"G1 {word} {value}"
+            f"{sort_of_feed} G1 {word} {value}"
+            if sort not in ("", sort_of_feed)
+            else f"G1 {word} {value}"
         )
-        sort = before
+        sort = sort_of_feed
     return lines
 
 

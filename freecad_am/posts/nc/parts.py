@@ -53,9 +53,9 @@ def refuse_table(program: Program, post: str) -> None:
         )
 
 
-def refuse_words(program: Program, taken: frozenset[str]) -> None:
+def refuse_words(program: Program, reserved: frozenset[str]) -> None:
     """Raises InputError DEPOSIT_WORD for what cannot switch the deposit: no M or H words, the same one twice, or words with
-    another meaning (`taken`; H for all of these)."""
+    another meaning (`reserved`; H for all of these)."""
     words = {
         "program.nc.deposit_on": program.nc.deposit_on,
         "program.nc.deposit_off": program.nc.deposit_off,
@@ -70,8 +70,8 @@ def refuse_words(program: Program, taken: frozenset[str]) -> None:
                 "{!r} is not a word such as M7 or H2=1; give one for on and one for off",
                 word,
             )
-        if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in taken or (
-            word.startswith("H") and "H" in taken
+        if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in reserved or (
+            word.startswith("H") and "H" in reserved
         ):
             raise InputError(
                 "DEPOSIT_WORD",
@@ -85,14 +85,14 @@ def refuse_words(program: Program, taken: frozenset[str]) -> None:
         )
 
 
-def refuse_wire_output(program: Program, last: int) -> None:
-    """Raises InputError WIRE_OUTPUT where the program tells the speed of the wire by an analogue output beyond `last`."""
-    if any(run.wire is not None for run in program.moves) and program.nc.wire_output > last:
+def refuse_wire_output(program: Program, highest: int) -> None:
+    """Raises InputError WIRE_OUTPUT where the program tells the speed of the wire by an analogue output beyond `highest`."""
+    if any(run.wire is not None for run in program.moves) and program.nc.wire_output > highest:
         raise InputError(
             "WIRE_OUTPUT",
             "program.nc.wire_output",
             "the controller's program sets analogue outputs 1 to {}, not {}; use one of these",
-            last,
+            highest,
             program.nc.wire_output,
         )
 

@@ -34,12 +34,12 @@ class Shape:
         words = [_SHAPED.match(word) for word in block if word not in (ahead, "G1")]
         self.names = [word[1] for word in words if word]
         self.shorter = {word[1] for word in words if word and word[2] == "=DC("}
-        parts = [
+        patterns = [
             f" {word[1]}{re.escape(word[2])}({_NUMBER}){re.escape(word[4])}"
             for word in words
             if word
         ]
-        self._pattern = re.compile((f"(?:{ahead} )?G1" if ahead else "G1") + "".join(parts))
+        self._pattern = re.compile((f"(?:{ahead} )?G1" if ahead else "G1") + "".join(patterns))
 
     @staticmethod
     def of(text: str, ahead: str = "") -> Shape | None:

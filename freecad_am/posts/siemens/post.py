@@ -373,7 +373,7 @@ def _motion(program: Program, run: Run) -> list[str]:
     for row in np.flatnonzero(moves.stops[part]).tolist():
         blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
     # a synchronized action of one block: it takes effect where that begins, without a stop
-    worded = numbers.with_wire(
+    worded = numbers.insert_wire_statements(
         program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}")
     )
     # the time of one block would be that of all those compressed into one, and so would the wire's speed
@@ -385,7 +385,7 @@ def _motion(program: Program, run: Run) -> list[str]:
 
 def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
     """The template and the values of the axes; one without end in [0, 360), by the shorter way."""
-    values = numbers.shown(joints, program.axis_kinds)
+    values = numbers.controller_values(joints, program.axis_kinds)
     continuous = np.array(program.continuous)
     values[:, continuous] = np.round(values[:, continuous] % 360.0, numbers.DECIMALS) % 360.0
     words = [

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.collision.bodies import of_bodies
+from freecad_am.core.collision.bodies import build_bodies
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.obstacles import Obstacles
 from freecad_am.core.geometry.obstacles import Body
@@ -124,7 +124,7 @@ def test_cutting_up_large_faces_changes_nothing():
     tip, axis = rng.uniform(-30, 30, (2000, 3)), unit(rng.normal(size=(2000, 3)))
     vertices = rng.uniform(-200, 200, (30, 3))
     body = Body("slabs", vertices, np.arange(30).reshape(-1, 3))
-    found = of_bodies([body], tip, frustum.reach).touched(frustum, tip, axis)
+    found = build_bodies([body], tip, frustum.reach).touched(frustum, tip, axis)
     wanted = np.zeros(2000, dtype=bool)
     for corners in body.corners():
         wanted |= frustum.meets_triangles(corners - tip[:, None], axis)
@@ -133,4 +133,4 @@ def test_cutting_up_large_faces_changes_nothing():
 
 def test_nothing_there_touches_nothing():
     tip, axis = np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1))
-    assert not of_bodies([], tip, 10.0).touched(Frustum(0.5, 0.36, 0.7, 60.0), tip, axis).any()
+    assert not build_bodies([], tip, 10.0).touched(Frustum(0.5, 0.36, 0.7, 60.0), tip, axis).any()

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.collision.bodies import of_bodies
+from freecad_am.core.collision.bodies import build_bodies
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.inside import inside_of
 from freecad_am.core.geometry.obstacles import Body, disc
@@ -57,7 +57,7 @@ def pipe(inner, outer, half):
 
 def touched(body, tip, axis=UP, nozzle=NOZZLE):
     tip = np.atleast_2d(np.asarray(tip, dtype=float))
-    return of_bodies([body], tip, nozzle.reach).touched(
+    return build_bodies([body], tip, nozzle.reach).touched(
         nozzle, tip, np.broadcast_to(axis, tip.shape)
     )
 

@@ -118,7 +118,7 @@ def test_what_touches_is_what_points_of_beads_inside_of_the_nozzle_say():
         [np.linspace(-30, 30, 13), 6 * np.sin(np.linspace(0, 5, 13)), np.linspace(0, 4, 13)], axis=1
     )
     up, width, height = np.array([0.0, 0.0, 1.0]), 8.0, 2.0
-    laid = deposit.of_beads(points, np.tile(up, (13, 1)), width, height, [0])
+    laid = deposit.build_deposit(points, np.tile(up, (13, 1)), width, height, [0])
     there = scene([], points, 100.0, laid)
     axis, tip = units(rng, 400), rng.uniform(-45, 45, (400, 3))
     found, away = there.touched(NOZZLE, tip, axis), there.distance(NOZZLE, tip, axis)
@@ -157,7 +157,7 @@ def test_distances_from_bodies_are_those_of_their_sampled_faces_and_none_inside(
 
 def test_a_piece_is_there_from_its_moment_on_and_a_corner_has_its_outer_side():
     points = np.array([[0.0, 0, 0], [20, 0, 0], [20, 20, 0], [20, 40, 0]])
-    laid = deposit.of_beads(
+    laid = deposit.build_deposit(
         points, np.tile([0.0, 0.0, 1.0], (4, 1)), 8.0, 2.0, [0], np.array([10, 11, 12, 13])
     )
     there = scene([], points, 100.0, laid)
@@ -174,7 +174,7 @@ def test_the_bead_being_laid_and_its_neighbours_are_not_touched_but_a_finished_o
     """Two beads of one layer overlap by a quarter; one of an earlier layer stands in the way."""
     line = np.stack([np.linspace(0, 40, 41), np.zeros(41), np.zeros(41)], axis=1)
     points = np.concatenate([line, line + [0, 6.0, 0]])
-    laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (82, 1)), 8.0, 2.0, [0, 41])
+    laid = deposit.build_deposit(points, np.tile([0.0, 0.0, 1.0], (82, 1)), 8.0, 2.0, [0, 41])
     there = scene([], points, 100.0, laid)
     nozzle = depositing(0.5, SLOPE, 60.0, 2.0)
     lean = np.array([[np.sin(0.6), 0.0, np.cos(0.6)], [0.0, -np.sin(0.6), np.cos(0.6)]])
@@ -187,7 +187,10 @@ def test_the_bead_being_laid_and_its_neighbours_are_not_touched_but_a_finished_o
 def test_what_is_exempt_may_differ_from_look_to_look():
     points = np.array([[-20.0, 0, 0], [20, 0, 0]])
     there = scene(
-        [], points, 100.0, deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (2, 1)), 8.0, 2.0, [0])
+        [],
+        points,
+        100.0,
+        deposit.build_deposit(points, np.tile([0.0, 0.0, 1.0], (2, 1)), 8.0, 2.0, [0]),
     )
     tip, up = np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1))
     tip[:, 2] = [0.0, 1.0, 1.0]
@@ -204,7 +207,7 @@ def test_memory_is_linear():
             [],
             points,
             0.0,
-            deposit.of_beads(points, np.tile([0.0, 0, 1.0], (count, 1)), 8.0, 1.0, [0]),
+            deposit.build_deposit(points, np.tile([0.0, 0, 1.0], (count, 1)), 8.0, 1.0, [0]),
         )
         tip = points + [0.0, 9.0, 0.0]
         tracemalloc.start()
@@ -228,7 +231,7 @@ def test_deposit_made_part_by_part_is_touched_as_all_of_it(monkeypatch):
     )
     build /= np.linalg.norm(build, axis=1, keepdims=True)
     starts = np.array([0, 90, 91, 400])
-    whole = deposit.of_beads(points, build, width, height, starts, foot=3.0)
+    whole = deposit.build_deposit(points, build, width, height, starts, foot=3.0)
     tip, axis = rng.uniform(-26.0, 26.0, (4000, 3)) + [0.0, 0.0, 2.0], units(rng, 4000)
     moment, own = rng.integers(0, 720, 4000), rng.integers(0, 700, 4000)
     late = np.full(4000, 700)
@@ -256,7 +259,7 @@ def test_the_layer_being_laid_is_told_the_same_with_and_without_looking_at_each_
     rng = np.random.default_rng(20)
     below, mine = meander(600), meander(1500) + [0.0, 2.0, 1.5]
     points = np.concatenate([below, mine])
-    laid = deposit.of_beads(
+    laid = deposit.build_deposit(
         points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), 4.0, 1.5, [0, len(below)], foot=3.0
     )
     at = rng.integers(len(below) + 50, len(points), 6000)
@@ -285,7 +288,7 @@ def test_pieces_next_to_the_tip_are_not_looked_at_one_by_one(monkeypatch):
     work = []
     for count in (2000, 8000, 32000):
         points = meander(count)
-        laid = deposit.of_beads(
+        laid = deposit.build_deposit(
             points, np.tile([0.0, 0.0, 1.0], (count, 1)), 4.0, 1.5, [0], foot=3.0
         )
         at = np.linspace(count // 2, count - 1, 200).astype(int)

@@ -5,18 +5,20 @@ import numpy as np
 import pytest
 
 from freecad_am.core.collision import obstacles, separation, slabs
-from freecad_am.core.collision.deposit import of_beads
+from freecad_am.core.collision.deposit import build_deposit
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.tree import BRANCH
 
 
 def bead(random, count, step, width, height, short):
-    """A bead that winds through space, as `of_beads` cuts it."""
+    """A bead that winds through space, as `build_deposit` cuts it."""
     way = np.cumsum(random.normal(scale=0.2, size=(count, 3)), axis=0) + [1.0, 0.0, 0.0]
     points = np.cumsum(step * way / np.linalg.norm(way, axis=1, keepdims=True), axis=0)
     build = np.cross(np.gradient(points, axis=0), random.normal(size=3))
     build /= np.linalg.norm(build, axis=1, keepdims=True)
-    return points, of_beads(points, build, width, height, np.array([0, count // 2]), short=short)
+    return points, build_deposit(
+        points, build, width, height, np.array([0, count // 2]), short=short
+    )
 
 
 def nozzles(random, points, count):
@@ -61,7 +63,7 @@ def test_a_box_lies_as_its_pieces_do():
     """Of a flat straight bead that leans, the box is as flat."""
     along, up = np.array([1.0, 2.0, 2.0]) / 3.0, np.array([2.0, 1.0, -2.0]) / 3.0
     points = np.arange(65)[:, None] * 0.1 * along
-    beads = of_beads(points, np.tile(up, (65, 1)), 6.0, 0.4, np.array([0]), short=True)
+    beads = build_deposit(points, np.tile(up, (65, 1)), 6.0, 0.4, np.array([0]), short=True)
     boxes = slabs.of_pieces(beads.corners, beads.radius, BRANCH)
     sizes = np.sort(2.0 * np.linalg.norm(boxes.sides, axis=2), axis=1)
     assert sizes == pytest.approx(

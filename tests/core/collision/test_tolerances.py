@@ -5,7 +5,7 @@ less deep and a little deeper than docs/architecture.md and the file of toleranc
 import numpy as np
 import pytest
 
-from freecad_am.core.collision.deposit import of_beads
+from freecad_am.core.collision.deposit import build_deposit
 from freecad_am.core.collision.frustum import Frustum, side_height
 from freecad_am.core.collision.nozzle import depositing, travelling
 from freecad_am.core.collision.scene import scene
@@ -44,7 +44,7 @@ def wall(x):
 def bead():
     """Along Y, half of its width on either side of x = 0, from z = 0 up."""
     points = np.array([[0.0, -20.0, 0.0], [0.0, 20.0, 0.0]])
-    return of_beads(points, np.repeat(UP, 2, axis=0), WIDTH, HEIGHT, [0])
+    return build_deposit(points, np.repeat(UP, 2, axis=0), WIDTH, HEIGHT, [0])
 
 
 def meets(nozzle, x, bodies=(), deposit=None):
@@ -74,7 +74,7 @@ def test_on_rapids_a_nozzle_is_in_a_body_by_no_more_than_triangles_are_off(deep,
 def test_while_depositing_beads_are_met_exactly_and_halfway_within_a_tenth(deep, let, halfway):
     nozzle = depositing(RADIUS, 0.5, LENGTH, 0.0)
     low = nozzle.deposit.low
-    tall = of_beads(
+    tall = build_deposit(
         np.array([[0.0, -50.0, 0.0], [0.0, 50.0, 0.0]]),
         np.repeat(UP, 2, axis=0),
         WIDTH,
@@ -124,6 +124,6 @@ def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched, cl
 def test_rounding_is_no_touch_and_a_nanometre_is_one():
     solid = Frustum(RADIUS, 0.0, 0.0, LENGTH)
     points = np.array([[0.0, -20.0, 5.0], [0.0, 20.0, 5.0]])
-    line = of_beads(points, np.repeat(UP, 2, axis=0), 0.0, 0.0, [0])
+    line = build_deposit(points, np.repeat(UP, 2, axis=0), 0.0, 0.0, [0])
     for deep, touched in ((-1e-6, False), (1e-10, False), (1e-6, True)):
         assert meets(solid, RADIUS - deep, deposit=line) == touched

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.collision.deposit import of_beads
+from freecad_am.core.collision.deposit import build_deposit
 from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.kinematics import cell as cells
@@ -51,7 +51,7 @@ def rods_of(cell):
 
 def laid(points, width=8.0, height=2.0):
     """One bead through points."""
-    return of_beads(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), width, height, [0])
+    return build_deposit(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), width, height, [0])
 
 
 def anywhere(cell, count, seed):

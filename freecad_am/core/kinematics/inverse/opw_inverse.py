@@ -35,8 +35,8 @@ def solve(arm: OpwArm, poses: ArrayLike, branches: tuple[int, ...]) -> Array:
     result = np.empty((len(branches), 6, count))
     with np.errstate(invalid="ignore", divide="ignore"):
         for start in range(0, count, CHUNK):
-            piece = slice(start, start + CHUNK)
-            _solve_piece(arm, by_component[:, :, piece].copy(), branches, result[:, :, piece])
+            rows = slice(start, start + CHUNK)
+            _solve_piece(arm, by_component[:, :, rows].copy(), branches, result[:, :, rows])
     return result.transpose(0, 2, 1)
 
 
@@ -74,25 +74,25 @@ def _solve_piece(arm: OpwArm, rows: Array, branches: tuple[int, ...], out: Array
         if not slots:
             continue
         side = _side(arm, centre, distance, back)
-        triangle, lost = _triangle(arm, side)
+        triangle, unclosed = _triangle(arm, side)
         base = np.arctan2(side.sine, side.cosine)
-        if lost is not None:
-            base[lost] = np.nan
+        if unclosed is not None:
+            base[unclosed] = np.nan
         _to_machine(arm, 0, base)
         flange = _about_axis_1(side, rows)
         for down in (0, 1):
             pair = (slots.get(2 * down), slots.get(2 * down + 1))
             # the wrist solution with opw's q5 >= 0; whether that is a flip is the sign's matter
-            plain, other = pair if arm.signs[4] > 0 else pair[::-1]
-            angles = other if plain is None else plain
+            plain, flipped = pair if arm.signs[4] > 0 else pair[::-1]
+            angles = flipped if plain is None else plain
             if angles is None:
                 continue
             angles[0] = base
             # seen with q1's direction to the right, a wrist centre at the back has the upper elbow on the right
-            direction = _arm(arm, side, triangle, left=back == down, angles=angles)
+            direction = _arm(arm, side, triangle, elbow_left=back == down, angles=angles)
             _wrist(arm, rows[2], flange, direction, angles)
-            if other is not None:
-                _flip(arm, angles, other)
+            if flipped is not None:
+                _flip(arm, angles, flipped)
 
 
 def _distance(arm: OpwArm, centre: Array) -> tuple[Array, Array]:
@@ -103,10 +103,10 @@ def _distance(arm: OpwArm, centre: Array) -> tuple[Array, Array]:
     if arm.b == 0.0:
         return squared, np.sqrt(squared)
     along = squared - arm.b * arm.b
-    lost = along < -2.0 * abs(arm.b) * TOUCH
+    unreachable = along < -2.0 * abs(arm.b) * TOUCH
     np.maximum(along, 0.0, out=along)
-    if lost.any():
-        along[lost] = np.nan
+    if unreachable.any():
+        along[unreachable] = np.nan
     return squared, np.sqrt(along, out=along)
 
 
@@ -138,14 +138,14 @@ def _triangle(arm: OpwArm, side: _Side) -> tuple[_Triangle, Mask | None]:
     sine = squared - (upper - fore) ** 2
     sine *= scale
     sine *= (upper + fore) ** 2 * scale - scale * squared
-    lost = sine < -STRETCH
+    unclosed = sine < -STRETCH
     if abs(upper - fore) < TOUCH:
         # folded back on the shoulder, where axis 2 is free and the arm has no direction
-        lost |= squared < TOUCH
+        unclosed |= squared < TOUCH
     np.maximum(sine, 0.0, out=sine)
-    any_lost = lost.any()
+    any_lost = unclosed.any()
     if any_lost:
-        sine[lost] = np.nan
+        sine[unclosed] = np.nan
     np.sqrt(sine, out=sine)
     # elbow to wrist centre = common * (ahead, above) + turn * (above, -ahead); then turned from there to axis 4
     over = 1.0 / squared
@@ -162,18 +162,18 @@ def _triangle(arm: OpwArm, side: _Side) -> tuple[_Triangle, Mask | None]:
         common=(common * ahead, common * -aside),
         turn=(turn * aside, turn * ahead),
     )
-    return triangle, lost if any_lost else None
+    return triangle, unclosed if any_lost else None
 
 
 def _arm(
-    arm: OpwArm, side: _Side, triangle: _Triangle, left: bool, angles: Array
+    arm: OpwArm, side: _Side, triangle: _Triangle, elbow_left: bool, angles: Array
 ) -> tuple[Array, Array]:
     """Write axes 2 and 3 of one elbow; give sine and cosine of the angle of axis 4 from the vertical."""
     inclined = math.atan2(arm.a2, arm.c3)
     ahead, above = side.ahead, side.above
     along_ahead, along_above = ahead * triangle.along, above * triangle.along
     across_ahead, across_above = ahead * triangle.across, above * triangle.across
-    if left:
+    if elbow_left:
         along_ahead -= across_above
         along_above += across_ahead
         towards = triangle.common[0] + triangle.turn[0]
@@ -187,7 +187,7 @@ def _arm(
         np.subtract(-inclined, triangle.bend, out=angles[2])
     np.arctan2(along_ahead, along_above, out=angles[1])
     _to_machine(arm, 1, angles[1])
-    _to_machine(arm, 2, angles[2], -inclined if left else -inclined - math.pi, math.pi)
+    _to_machine(arm, 2, angles[2], -inclined if elbow_left else -inclined - math.pi, math.pi)
     sine = ahead * towards
     sine += above * sideways
     cosine = above * towards
@@ -227,24 +227,24 @@ def _wrist(
     on += height[2] * cosine
     np.arctan2(off, on, out=angles[4])
     # axis 6 with the axis 4 just found
-    rest = across[:2] * x
-    rest -= forearm[:2] * y
-    np.arctan2(rest[0], rest[1], out=angles[5])
+    sixth = across[:2] * x
+    sixth -= forearm[:2] * y
+    np.arctan2(sixth[0], sixth[1], out=angles[5])
     for axis in (3, 4, 5):
         _to_machine(arm, axis, angles[axis])
 
 
-def _flip(arm: OpwArm, angles: Array, other: Array) -> None:
+def _flip(arm: OpwArm, angles: Array, flipped: Array) -> None:
     """Write the other wrist solution of `angles`; both may be the same array."""
-    if other is not angles:
-        other[:3] = angles[:3]
-    np.negative(angles[4], out=other[4])
+    if flipped is not angles:
+        flipped[:3] = angles[:3]
+    np.negative(angles[4], out=flipped[4])
     if arm.offsets[4]:
         # both lie as far from where the wrist is stretched
-        other[4] += 2.0 * arm.signs[4] * arm.offsets[4]
-        other[4] -= 2.0 * math.pi * np.rint(other[4] * (0.5 / math.pi))
-    _half_turn(angles[3], other[3])
-    _half_turn(angles[5], other[5])
+        flipped[4] += 2.0 * arm.signs[4] * arm.offsets[4]
+        flipped[4] -= 2.0 * math.pi * np.rint(flipped[4] * (0.5 / math.pi))
+    _half_turn(angles[3], flipped[3])
+    _half_turn(angles[5], flipped[5])
 
 
 def _half_turn(angle: Array, out: Array) -> None:

@@ -20,7 +20,7 @@ from ..chain import Chain, JointFrames
 from .opw import OpwArm
 
 # how far directions (rad) and lines (mm) may be off, and what the closed form may leave: those of machine files
-STRAIGHT, NEAR_MM = 1e-8, 1e-5
+PARALLEL_TOLERANCE, NEAR_MM = 1e-8, 1e-5
 POSITION, ROTATION = 1e-6, 1e-9
 ROBOT = 6  # axes of one
 FLANGE = "flange"  # where what is refused about the flange alone is
@@ -37,9 +37,9 @@ def rooted(chain: Chain) -> tuple[Chain, Array]:
     at_rest = chain.frames(np.zeros(chain.axes))
     axis, origin = at_rest.directions[0], at_rest.origins[0]
     foot = origin - axis * float(axis @ origin)
-    if np.hypot(axis[0], axis[1]) < STRAIGHT and np.linalg.norm(foot) < NEAR_MM:
+    if np.hypot(axis[0], axis[1]) < PARALLEL_TOLERANCE and np.linalg.norm(foot) < NEAR_MM:
         return chain, np.eye(4)
-    up = axis if axis[2] >= 0.0 or abs(axis[2]) < STRAIGHT else -axis
+    up = axis if axis[2] >= 0.0 or abs(axis[2]) < PARALLEL_TOLERANCE else -axis
     new = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), up), foot)
     old = frames.inverse(new)
     return Chain(
@@ -125,25 +125,25 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
     """The point (3,) where the axes of the wrist meet, once the directions of all axes are those of such an arm."""
     z, p = at_rest.directions, at_rest.origins
     foot = p[0] - z[0] * float(z[0] @ p[0])
-    if np.hypot(z[0, 0], z[0, 1]) > STRAIGHT or np.linalg.norm(foot) > NEAR_MM:
+    if np.hypot(z[0, 0], z[0, 1]) > PARALLEL_TOLERANCE or np.linalg.norm(foot) > NEAR_MM:
         raise refused("axis 1 is not the Z of the base frame")
-    if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < STRAIGHT for axis in (2, 3)):
+    if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < PARALLEL_TOLERANCE for axis in (2, 3)):
         raise refused(
             "the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots"
         )
-    for first, second in ((0, 1), (2, 3), (3, 4), (4, 5)):
-        off = math.asin(min(1.0, abs(float(z[first] @ z[second]))))
-        if off > STRAIGHT:
+    for first_axis, second_axis in ((0, 1), (2, 3), (3, 4), (4, 5)):
+        off = math.asin(min(1.0, abs(float(z[first_axis] @ z[second_axis]))))
+        if off > PARALLEL_TOLERANCE:
             raise refused(
                 Text(
                     "axes {} and {} are {} deg apart, not 90 deg",
-                    first + 1,
-                    second + 1,
+                    first_axis + 1,
+                    second_axis + 1,
                     differing(90.0 - math.degrees(off), 90.0),
                 )
             )
     off = math.asin(min(1.0, float(np.linalg.norm(np.cross(z[1], z[2])))))
-    if off > STRAIGHT:
+    if off > PARALLEL_TOLERANCE:
         raise refused(
             Text("axes 2 and 3 are not parallel, but {:.6g} deg apart", math.degrees(off))
         )
@@ -186,7 +186,7 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     turn23 = math.atan2(float(forearm @ x), float(forearm @ up))
     across = np.cos(turn23) * x - np.sin(turn23) * up
     out = flange[:3, 2]
-    if np.linalg.norm(np.cross(out, z[5])) > STRAIGHT:
+    if np.linalg.norm(np.cross(out, z[5])) > PARALLEL_TOLERANCE:
         raise refused(
             "the Z of the flange does not lie along axis 6",
             "take the frame tool0 of a URDF, or turn the flange",
@@ -204,13 +204,13 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
     turn4 = math.atan2(-float(z[4] @ across), float(z[4] @ y))
     sign5 = 1
-    if turn4 <= -math.pi / 2.0 + STRAIGHT or turn4 > math.pi / 2.0 + STRAIGHT:
+    if turn4 <= -math.pi / 2.0 + PARALLEL_TOLERANCE or turn4 > math.pi / 2.0 + PARALLEL_TOLERANCE:
         turn4 = turn4 + math.pi if turn4 <= 0.0 else turn4 - math.pi
         sign5 = -1
     five_x = math.cos(turn4) * across + math.sin(turn4) * y
     five_y = -math.sin(turn4) * across + math.cos(turn4) * y
     bent = math.atan2(float(out @ five_x), float(out @ forearm))
-    turn5 = bent if abs(bent) > STRAIGHT else 0.0
+    turn5 = bent if abs(bent) > PARALLEL_TOLERANCE else 0.0
     six_x = math.cos(turn5) * five_x - math.sin(turn5) * forearm
     turn6 = math.atan2(float(flange[:3, 0] @ five_y), float(flange[:3, 0] @ six_x))
     turns = (turn1, turn2, _wrapped(turn23 - turn2), turn4, turn5, turn6)
@@ -243,7 +243,8 @@ def _shoulder(z: Array, p: Array) -> tuple[float, int, Array]:
     turn = math.atan2(-z[1, 0], z[1, 1])  # axis 2 is the y of the arm's plane
     ahead = float(point[0] * math.cos(turn) + point[1] * math.sin(turn))
     turned = ahead < -NEAR_MM or (
-        abs(ahead) <= NEAR_MM and not -0.5 * math.pi + STRAIGHT < turn <= 0.5 * math.pi + STRAIGHT
+        abs(ahead) <= NEAR_MM
+        and not -0.5 * math.pi + PARALLEL_TOLERANCE < turn <= 0.5 * math.pi + PARALLEL_TOLERANCE
     )
     if turned:
         turn, sign = (turn + math.pi if turn <= 0.0 else turn - math.pi), -1

@@ -77,8 +77,8 @@ class ParallelAxesArm:
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
         """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
-        found = self.inverse(poses)
-        return found, np.where(np.isnan(found[..., 0]), -1, np.arange(8)[:, None])
+        angles = self.inverse(poses)
+        return angles, np.where(np.isnan(angles[..., 0]), -1, np.arange(8)[:, None])
 
     def branch_of(self, q: ArrayLike) -> Index:
         """The configuration (...) that joint angles `q` (..., 6) are in."""
@@ -100,15 +100,15 @@ class ParallelAxesArm:
         return bent
 
     def _solved(self, poses: ArrayLike, branches: tuple[int, ...]) -> Array:
-        given = np.ascontiguousarray(poses, float)
-        count = len(given)
+        targets = np.ascontiguousarray(poses, float)
+        count = len(targets)
         tip = frames.inverse(self.tip)
         result = np.empty((len(branches), 6, count))
         with np.errstate(invalid="ignore", divide="ignore"):
             for start in range(0, count, CHUNK):
-                piece = slice(start, start + CHUNK)
-                rows = np.moveaxis(given[piece, :3] @ tip, 0, -1).copy()
-                self._solve_piece(rows, branches, result[:, :, piece])
+                rows_now = slice(start, start + CHUNK)
+                rows = np.moveaxis(targets[rows_now, :3] @ tip, 0, -1).copy()
+                self._solve_piece(rows, branches, result[:, :, rows_now])
         return result.transpose(0, 2, 1)
 
     def _solve_piece(self, rows: Array, branches: tuple[int, ...], out: Array) -> None:
@@ -116,9 +116,9 @@ class ParallelAxesArm:
         centre = rows[:, 3]
         squared = (centre[0] + HINT) ** 2 + centre[1] ** 2
         along = squared - self.offset**2
-        lost = along < -2.0 * max(abs(self.offset), TOUCH) * TOUCH
+        unreachable = along < -2.0 * max(abs(self.offset), TOUCH) * TOUCH
         along = np.sqrt(np.maximum(along, 0.0))
-        along[lost] = np.nan
+        along[unreachable] = np.nan
         for back in (0, 1):
             of_side = {
                 index & 3: out[slot] for slot, index in enumerate(branches) if index >> 2 == back
@@ -128,26 +128,26 @@ class ParallelAxesArm:
             signed = -along if back else along
             sine = (centre[1] * signed - (centre[0] + HINT) * self.offset) / squared
             cosine = ((centre[0] + HINT) * signed + centre[1] * self.offset) / squared
-            one = self._to_machine(0, np.arctan2(sine, cosine))
+            theta_1 = self._to_machine(0, np.arctan2(sine, cosine))
             # axis 6 in the arm's frame: ahead, along its normal, up
-            six = (
+            axis_6 = (
                 rows[0, 2] * cosine + rows[1, 2] * sine,
                 rows[1, 2] * cosine - rows[0, 2] * sine,
                 rows[2, 2],
             )
-            off = np.hypot(six[0], six[2])
+            off = np.hypot(axis_6[0], axis_6[2])
             # axis 5 is square to the normal and to axis 6; where these are parallel, it is free
-            five_x, five_z = six[2] / off, -six[0] / off
+            five_x, five_z = axis_6[2] / off, -axis_6[0] / off
             free = off < PARALLEL
             if free.any():
-                away = signed[free] - self.ahead, centre[2, free] - self.above
-                five_x[free], five_z[free] = self._chosen(*away)
-            bent = np.arctan2(off, six[1])
-            five = [
+                offsets = signed[free] - self.ahead, centre[2, free] - self.above
+                five_x[free], five_z[free] = self._chosen(*offsets)
+            bent = np.arctan2(off, axis_6[1])
+            axis_5 = [
                 (rows[0, k] * cosine + rows[1, k] * sine) * five_x + rows[2, k] * five_z
                 for k in (0, 1)
             ]
-            last = np.arctan2(-five[1], five[0])
+            theta_6 = np.arctan2(-axis_5[1], axis_5[0])
             for turned in (0, 1):
                 # the solution with theta 5 > 0 has axis 5 the way found
                 flip = turned if self.signs[4] > 0 else 1 - turned
@@ -160,31 +160,39 @@ class ParallelAxesArm:
                     continue
                 side = -1.0 if turned else 1.0
                 fifth = self._to_machine(4, -bent if turned else bent)
-                sixth = self._to_machine(5, last - np.copysign(math.pi, last) if turned else last)
+                sixth = self._to_machine(
+                    5, theta_6 - np.copysign(math.pi, theta_6) if turned else theta_6
+                )
                 x, z = side * five_x, side * five_z
                 ahead = signed - self.ahead - self.wrist[0] * z - self.wrist[1] * x
                 above = centre[2] - self.above + self.wrist[0] * x - self.wrist[1] * z
-                four = np.arctan2(x, z)
+                theta_234 = np.arctan2(x, z)
                 bend, towards, across = self._triangle(ahead, above)
                 for down, angles in pair:
-                    left = back == down
-                    elbow = bend if left else -bend
-                    turn = across if left else -across
-                    two = np.arctan2(ahead * towards - above * turn, above * towards + ahead * turn)
-                    angles[0], angles[4], angles[5] = one, fifth, sixth
-                    angles[1] = self._to_machine(1, two)
+                    elbow_left = back == down
+                    elbow = bend if elbow_left else -bend
+                    turn = across if elbow_left else -across
+                    theta_2 = np.arctan2(
+                        ahead * towards - above * turn, above * towards + ahead * turn
+                    )
+                    angles[0], angles[4], angles[5] = theta_1, fifth, sixth
+                    angles[1] = self._to_machine(1, theta_2)
                     angles[2] = self._to_machine(2, elbow)
-                    angles[3] = self._to_machine(3, four - two - elbow)
-                    angles[:, np.isnan(two) | np.isnan(one)] = np.nan
+                    angles[3] = self._to_machine(3, theta_234 - theta_2 - elbow)
+                    angles[:, np.isnan(theta_2) | np.isnan(theta_1)] = np.nan
 
     def _chosen(self, ahead: Array, above: Array) -> tuple[Array, Array]:
         """The direction (x, z) of axis 5, where it is free, with which the elbow is as square as it can be."""
         length = math.hypot(*self.wrist)
-        far = np.hypot(ahead, above) + HINT
-        wanted = np.clip(math.hypot(self.upper, self.fore), np.abs(far - length), far + length)
+        distance = np.hypot(ahead, above) + HINT
+        elbow_distance = np.clip(
+            math.hypot(self.upper, self.fore), np.abs(distance - length), distance + length
+        )
         # from the point of axes 5 and 6 back to axis 4, by the angle at that point towards the shoulder
         cosine = np.clip(
-            (far**2 + length**2 - wanted**2) / (2.0 * far * max(length, TOUCH)), -1.0, 1.0
+            (distance**2 + length**2 - elbow_distance**2) / (2.0 * distance * max(length, TOUCH)),
+            -1.0,
+            1.0,
         )
         turn = (
             np.arctan2(-ahead, -above)
@@ -201,11 +209,11 @@ class ParallelAxesArm:
         scale = 1.0 / (2.0 * upper * fore)
         cosine = (squared - (upper**2 + fore**2)) * scale
         sine = (squared - (upper - fore) ** 2) * scale * (((upper + fore) ** 2 - squared) * scale)
-        lost = sine < -STRETCH
+        unclosed = sine < -STRETCH
         if abs(upper - fore) < TOUCH:
-            lost |= squared < TOUCH  # folded back on the shoulder, where axis 2 is free
+            unclosed |= squared < TOUCH  # folded back on the shoulder, where axis 2 is free
         sine = np.sqrt(np.maximum(sine, 0.0))
-        sine[lost] = np.nan
+        sine[unclosed] = np.nan
         return np.arctan2(sine, cosine), upper + fore * cosine, fore * sine
 
     def _to_machine(self, axis: int, theta: Array) -> Array:

@@ -16,7 +16,7 @@ from ..chain import Chain
 from . import opw_recognition
 from .calibrated import CalibratedArm
 from .offset_wrist.arm import OffsetWristArm
-from .opw_recognition import NEAR_MM, POSITION, ROTATION, STRAIGHT, clean
+from .opw_recognition import NEAR_MM, PARALLEL_TOLERANCE, POSITION, ROTATION, clean
 from .parallel_axes import ParallelAxesArm
 from .serial_arm import SerialArm
 
@@ -112,8 +112,8 @@ def _squared_rotation(rotation: Array) -> Array:
 
 def _squared_axis(axis: Array) -> Array:
     nearest = np.round(axis)
-    near = np.linalg.norm(axis - nearest) < NEARLY_SQUARE and np.abs(nearest).sum() == 1.0
-    return np.asarray(nearest if near else axis)
+    is_square = np.linalg.norm(axis - nearest) < NEARLY_SQUARE and np.abs(nearest).sum() == 1.0
+    return np.asarray(nearest if is_square else axis)
 
 
 def _is_rotation(matrix: Array) -> bool:
@@ -122,8 +122,8 @@ def _is_rotation(matrix: Array) -> bool:
     )
 
 
-def _angle(one: Array, other: Array) -> float:
-    return 2.0 * math.asin(min(1.0, float(np.linalg.norm(one - other)) / math.sqrt(8.0)))
+def _angle(rotation: Array, reference: Array) -> float:
+    return 2.0 * math.asin(min(1.0, float(np.linalg.norm(rotation - reference)) / math.sqrt(8.0)))
 
 
 def _exact(chain: Chain) -> SerialArm:
@@ -147,7 +147,10 @@ def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
     z, p = at_rest.directions, at_rest.origins
     if not _upright(z, p) or not (_parallel(z[1], z[2]) and _parallel(z[1], z[3])):
         return None
-    if not all(_square(z[first], z[second]) for first, second in ((0, 1), (3, 4), (4, 5))):
+    if not all(
+        _square(z[first_axis], z[second_axis])
+        for first_axis, second_axis in ((0, 1), (3, 4), (4, 5))
+    ):
         return None
     meeting = _meeting(p[4], z[4], p[5], z[5])
     if meeting is None:
@@ -160,22 +163,25 @@ def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
     if min(np.hypot(*upper), np.hypot(*fore)) < NEAR_MM:
         return None
     turn1 = math.atan2(ahead[1], ahead[0] + 0.0)
-    turn2, turn23, turn234 = (math.atan2(*way) for way in (upper, fore, plane @ z[4]))
+    turn2, turn23, turn234 = (math.atan2(*segment) for segment in (upper, fore, plane @ z[4]))
     sine, cosine = math.sin(turn234), math.cos(turn234)
-    away = centre - four
-    six = z[5] if float(z[5] @ normal) > -STRAIGHT else -z[5]
+    wrist_offset = centre - four
+    six = z[5] if float(z[5] @ normal) > -PARALLEL_TOLERANCE else -z[5]
     bent = math.atan2(float(six @ np.cross(z[4], normal)), float(six @ normal))
-    last = np.eye(4)
-    last[:3, :3] = np.stack([z[4], np.cross(six, z[4]), six], axis=1)
-    last[:3, 3] = meeting
+    wrist_frame = np.eye(4)
+    wrist_frame[:3, :3] = np.stack([z[4], np.cross(six, z[4]), six], axis=1)
+    wrist_frame[:3, 3] = meeting
     arm = ParallelAxesArm(
         ahead=float(shoulder[0]),
         above=float(shoulder[1]),
         upper=float(np.hypot(*upper)),
         fore=float(np.hypot(*fore)),
-        wrist=(float(away[0] * cosine - away[1] * sine), float(away[0] * sine + away[1] * cosine)),
+        wrist=(
+            float(wrist_offset[0] * cosine - wrist_offset[1] * sine),
+            float(wrist_offset[0] * sine + wrist_offset[1] * cosine),
+        ),
         offset=float(normal @ meeting),
-        tip=frames.inverse(last) @ at_rest.flange,
+        tip=frames.inverse(wrist_frame) @ at_rest.flange,
         signs=(_sign(z[0, 2]), *(_sign(axis @ normal) for axis in z[1:4]), 1, _sign(six @ z[5])),
         zeros=tuple(
             clean(turn) for turn in (turn1, turn2, turn23 - turn2, turn234 - turn23, bent, 0.0)
@@ -191,14 +197,14 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     z, p = at_rest.directions, at_rest.origins
     if not _upright(z, p):
         raise opw_recognition.refused("axis 1 is not the Z of the base frame")
-    for first, second in ((0, 1), (2, 3)):
-        if not _square(z[first], z[second]):
-            off = math.degrees(math.acos(min(1.0, abs(float(z[first] @ z[second])))))
+    for first_axis, second_axis in ((0, 1), (2, 3)):
+        if not _square(z[first_axis], z[second_axis]):
+            off = math.degrees(math.acos(min(1.0, abs(float(z[first_axis] @ z[second_axis])))))
             raise opw_recognition.refused(
                 Text(
                     "axes {} and {} are {} deg apart, not 90 deg",
-                    first + 1,
-                    second + 1,
+                    first_axis + 1,
+                    second_axis + 1,
                     differing(off, 90.0),
                 )
             )
@@ -210,14 +216,14 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     normal = _normal(z[1], point)
     ahead = np.cross(normal, (0.0, 0.0, 1.0))
     plane = np.stack([ahead, (0.0, 0.0, 1.0)])
-    shoulder, elbow, centre = (plane @ at for at in (p[1], p[2], point))
+    shoulder, elbow, centre = (plane @ position for position in (p[1], p[2], point))
     if abs(offset := float(normal @ point)) > NEAR_MM:
         raise opw_recognition.refused(
             Text("the wrist is not spherical, and axis 4 passes {:.6g} mm off axis 1", abs(offset))
         )
     upper, fore = elbow - shoulder, centre - elbow
-    away = point - p[5] - z[5] * float(z[5] @ (point - p[5]))
-    if min(np.hypot(*upper), np.hypot(*fore), np.linalg.norm(away)) < NEAR_MM:
+    wrist_offset = point - p[5] - z[5] * float(z[5] @ (point - p[5]))
+    if min(np.hypot(*upper), np.hypot(*fore), np.linalg.norm(wrist_offset)) < NEAR_MM:
         raise opw_recognition.refused("axes that follow each other are the same line")
     turn3 = math.atan2(*fore)
     arm = OffsetWristArm(
@@ -244,33 +250,35 @@ def _flips(arm: OffsetWristArm) -> tuple[bool, bool, bool, bool]:
     """For each shoulder and elbow whether solutions with q5 < 0 mostly pass zero upwards."""
     q = np.random.default_rng(7).uniform(-math.pi, math.pi, (512, 6))
     words = arm.branch_of(q)
-    back, left = words >> 2, (words >> 1 & 1) == words >> 2
+    back, elbow_left = words >> 2, (words >> 1 & 1) == words >> 2
     rising, bent = (words & 1).astype(bool), q[:, 4] < 0.0
-    found = [np.mean((rising == bent)[2 * back + left == kind]) > 0.5 for kind in range(4)]
-    return bool(found[0]), bool(found[1]), bool(found[2]), bool(found[3])
+    flips = [np.mean((rising == bent)[2 * back + elbow_left == kind]) > 0.5 for kind in range(4)]
+    return bool(flips[0]), bool(flips[1]), bool(flips[2]), bool(flips[3])
 
 
-def _agrees(arm: SerialArm, chain: Chain, lost: float = 0.0) -> bool:
-    """Whether the arm gives back joint angles of the chain, but for a share `lost`; a slip of signs or zeros shows."""
+def _agrees(arm: SerialArm, chain: Chain, lost_share: float = 0.0) -> bool:
+    """Whether the arm gives back joint angles of the chain, but for a share `lost_share`; a slip of signs or zeros shows."""
     q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
     poses = chain.forward(q)
-    found = arm.inverse(poses)
-    there = chain.forward(np.nan_to_num(found))
-    known = np.isfinite(found).all(axis=2)
-    off = np.where(known[..., None, None], np.abs(there - poses), 0.0)
-    given = np.abs(np.exp(1j * found) - np.exp(1j * q)).max(axis=2)
+    angles = arm.inverse(poses)
+    poses_back = chain.forward(np.nan_to_num(angles))
+    solved = np.isfinite(angles).all(axis=2)
+    off = np.where(solved[..., None, None], np.abs(poses_back - poses), 0.0)
+    angle_errors = np.abs(np.exp(1j * angles) - np.exp(1j * q)).max(axis=2)
     return bool(
         off[..., :3, 3].max() < POSITION
         and off[..., :3, :3].max() < ROTATION * 10.0
-        and (np.nanmin(np.where(np.isnan(given), np.inf, given), axis=0) < 1e-5).mean()
-        >= 1.0 - lost
+        and (
+            np.nanmin(np.where(np.isnan(angle_errors), np.inf, angle_errors), axis=0) < 1e-5
+        ).mean()
+        >= 1.0 - lost_share
     )
 
 
 def _upright(z: Array, p: Array) -> bool:
     """Whether axis 1 is the Z of base_link."""
     foot = p[0] - z[0] * float(z[0] @ p[0])
-    return bool(np.hypot(z[0, 0], z[0, 1]) < STRAIGHT and np.linalg.norm(foot) < NEAR_MM)
+    return bool(np.hypot(z[0, 0], z[0, 1]) < PARALLEL_TOLERANCE and np.linalg.norm(foot) < NEAR_MM)
 
 
 def _normal(axis: Array, wrist: Array) -> Array:
@@ -284,19 +292,19 @@ def _sign(value: float) -> int:
     return 1 if value > 0.0 else -1
 
 
-def _parallel(one: Array, other: Array) -> bool:
-    return float(np.linalg.norm(np.cross(one, other))) < STRAIGHT
+def _parallel(direction: Array, reference: Array) -> bool:
+    return float(np.linalg.norm(np.cross(direction, reference))) < PARALLEL_TOLERANCE
 
 
-def _square(one: Array, other: Array) -> bool:
-    return abs(float(one @ other)) < STRAIGHT
+def _square(direction: Array, reference: Array) -> bool:
+    return abs(float(direction @ reference)) < PARALLEL_TOLERANCE
 
 
 def _meeting(p: Array, z: Array, q: Array, w: Array) -> Array | None:
     """The point (3,) where two lines that are not parallel meet, None where they pass each other."""
     across = np.cross(z, w)
     size = float(across @ across)
-    if size < STRAIGHT or abs(float((q - p) @ across)) / math.sqrt(size) > NEAR_MM:
+    if size < PARALLEL_TOLERANCE or abs(float((q - p) @ across)) / math.sqrt(size) > NEAR_MM:
         return None
-    at: Array = p + z * (float(np.cross(q - p, w) @ across) / size)
-    return at
+    meeting: Array = p + z * (float(np.cross(q - p, w) @ across) / size)
+    return meeting

@@ -41,17 +41,17 @@ def between(first: Array, second: Array, source: Array, target: Array) -> Turns:
     p, q = target @ first, source @ second
     # v = a first + b second + c across
     a, b = (p - cosine * q) / square, (q - cosine * p) / square
-    rest = (1.0 - (a * a + b * b + 2.0 * a * b * cosine)) / square
+    squared = (1.0 - (a * a + b * b + 2.0 * a * b * cosine)) / square
     with np.errstate(invalid="ignore"):
-        c = np.sqrt(np.where((rest < 0.0) & (rest > -ROUNDING), 0.0, rest))
+        c = np.sqrt(np.where((squared < 0.0) & (squared > -ROUNDING), 0.0, squared))
     plane = a[:, None] * first + b[:, None] * second
     between_ = np.stack([plane + c[:, None] * across, plane - c[:, None] * across])
     first_free, second_free = _on(target, first), _on(source, second)
-    one = np.where(first_free, 0.0 * rest, _angle(first, between_, target))
-    two = np.where(second_free, 0.0 * rest, _angle(second, source, between_))
+    first_turn = np.where(first_free, 0.0 * squared, _angle(first, between_, target))
+    second_turn = np.where(second_free, 0.0 * squared, _angle(second, source, between_))
     unreal = np.isnan(c)
-    one[:, unreal], two[:, unreal] = np.nan, np.nan
-    return Turns(one, two, first_free, second_free)
+    first_turn[:, unreal], second_turn[:, unreal] = np.nan, np.nan
+    return Turns(first_turn, second_turn, first_free, second_free)
 
 
 class ByVertical(NamedTuple):
@@ -67,9 +67,9 @@ class ByVertical(NamedTuple):
 def by_vertical(source: Array, target: Array) -> ByVertical:
     """Solution 2 of section 3.2, corrected (ERRATA): gamma = atan2(X, Y), alpha = acos(Z), and the same way back."""
     target = np.broadcast_to(target, source.shape)
-    there, back = (np.arctan2(v[0], v[1]) for v in (columns(source), columns(target)))
+    gamma, back = (np.arctan2(v[0], v[1]) for v in (columns(source), columns(target)))
     up, down = (np.arctan2(np.hypot(v[0], v[1]), v[2]) for v in (columns(source), columns(target)))
-    return ByVertical(there, up, -down, -back)
+    return ByVertical(gamma, up, -down, -back)
 
 
 class Locked(NamedTuple):
@@ -80,20 +80,20 @@ class Locked(NamedTuple):
 
 
 def with_first_locked(
-    first: Array, second: Array, at: Array | float, source: Array, target: Array
+    first: Array, second: Array, angle: Array | float, source: Array, target: Array
 ) -> Locked:
     """Four axes: the first axis stands at an angle (rad, one or (n,)); the second turns the source as near as it can."""
     target = np.broadcast_to(target, source.shape)
-    turned = frames.rotation_about(first, -np.broadcast_to(at, len(source)))
+    turned = frames.rotation_about(first, -np.broadcast_to(angle, len(source)))
     return nearest(second, source, np.einsum("nij,nj->ni", turned, target))
 
 
 def with_second_locked(
-    first: Array, second: Array, at: Array | float, source: Array, target: Array
+    first: Array, second: Array, angle: Array | float, source: Array, target: Array
 ) -> Locked:
     """Four axes: the second axis stands at an angle; the first turns."""
     target = np.broadcast_to(target, source.shape)
-    turned = frames.rotation_about(second, np.broadcast_to(at, len(source)))
+    turned = frames.rotation_about(second, np.broadcast_to(angle, len(source)))
     return nearest(first, np.einsum("nij,nj->ni", turned, source), target)
 
 
@@ -114,11 +114,11 @@ def least_residual(
         else:
             stands = _heights(source, second, first, angles)
             turns = target @ first
-        apart = (
+        residuals = (
             np.arccos(np.clip(stands, -1.0, 1.0)) - np.arccos(np.clip(turns, -1.0, 1.0))[:, None]
         )
-        found: Array = np.abs(apart).max(axis=0)
-        return found
+        largest: Array = np.abs(residuals).max(axis=0)
+        return largest
 
     for steps in (361, *[21] * 8):  # there may be several valleys: look all round, then closer
         angles = np.linspace(low, high, steps)
@@ -128,10 +128,10 @@ def least_residual(
     return best
 
 
-def _heights(vectors: Array, axis: Array, other: Array, angles: Array) -> Array:
+def _heights(vectors: Array, axis: Array, other_axis: Array, angles: Array) -> Array:
     """(n, k) other . Rot(axis, angle) vector for vectors (n, 3) and angles (k,), by Rodrigues' formula."""
-    along = (vectors @ axis) * float(axis @ other)
-    straight, sideways = vectors @ other - along, vectors @ np.cross(other, axis)
+    along = (vectors @ axis) * float(axis @ other_axis)
+    straight, sideways = vectors @ other_axis - along, vectors @ np.cross(other_axis, axis)
     turned: Array = (
         along[:, None] + straight[:, None] * np.cos(angles) + sideways[:, None] * np.sin(angles)
     )

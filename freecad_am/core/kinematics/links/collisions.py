@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...collision.bodies import of_bodies
+from ...collision.bodies import build_bodies
 from ...collision.cylinders_apart import nearer
 from ...collision.obstacles import Obstacles
 from ...collision.scene import Scene
@@ -110,7 +110,7 @@ def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
         Collision(PLATFORM, body.name, np.zeros(0, dtype=np.intp), True, True)
         for body in bodies
         if len(body.triangles)
-        and Scene(of_bodies([body], body.vertices, 0.0)).touched(plate.solid, tip, axis).any()
+        and Scene(build_bodies([body], body.vertices, 0.0)).touched(plate.solid, tip, axis).any()
     ]
 
 

@@ -30,7 +30,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...collision.bodies import of_bodies
+from ...collision.bodies import build_bodies
 from ...collision.nozzle import depositing
 from ...collision.obstacles import Obstacles
 from ...collision.scene import Scene
@@ -137,7 +137,7 @@ class ArmContact:
             wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
             groups.append(
                 Group(
-                    Scene(of_bodies([], points, 0.0), self.deposit),
+                    Scene(build_bodies([], points, 0.0), self.deposit),
                     held_part,
                     centre,
                     radius + wide,
@@ -355,5 +355,5 @@ _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 def _of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> Group:
     centre, radius = ball(body.vertices)
-    scene = Scene(of_bodies([body], body.vertices, 0.0, max(LINK_PIECE, SHARE * 2.0 * radius)))
+    scene = Scene(build_bodies([body], body.vertices, 0.0, max(LINK_PIECE, SHARE * 2.0 * radius)))
     return Group(scene, links, centre, radius, seen_from)

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...collision.bodies import Bodies, of_bodies
+from ...collision.bodies import Bodies, build_bodies
 from ...geometry.cylinders import Cylinder, row
 from ...geometry.obstacles import Body
 from ..external import ExternalAxes
@@ -45,7 +45,7 @@ class ExternalLink:
     @cached_property
     def solid(self) -> Bodies:
         """The body as nozzles are looked at against it."""
-        return of_bodies([self.body], self.body.vertices, 0.0, EDGE)
+        return build_bodies([self.body], self.body.vertices, 0.0, EDGE)
 
     @property
     def name(self) -> str:

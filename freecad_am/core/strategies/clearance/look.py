@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...collision.bodies import of_bodies
+from ...collision.bodies import build_bodies
 from ...geometry.obstacles import Body
 from ...issues import ERROR, Issue, Text
 from ...parameters.cell import NozzleParameters
@@ -69,7 +69,7 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
         np.concatenate([bead.tool for bead in beads]),
     )
     around = nozzle_of(nozzle).bodies
-    near = of_bodies(bodies, points, around.reach)
+    near = build_bodies(bodies, points, around.reach)
     hit = near.touched(around, points, tool) | near.touched(around, *halfway(beads, tool))
     if not hit.any():
         return []

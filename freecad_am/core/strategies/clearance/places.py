@@ -90,7 +90,7 @@ def space_of(
             ]
         )
     looked = nozzle_of(nozzle, float(heights.max()), lean)
-    made = deposit.of_beads if often else deposit.in_parts
+    made = deposit.build_deposit if often else deposit.in_parts
     obstacles = made(points, build, toolpath.widths, heights, starts, foot=looked.foot)
     # a bead that closes a gap overlaps those about the gap, of layers below too
     own = np.where(np.repeat([bead.closing for bead in beads], counts), 0, own)

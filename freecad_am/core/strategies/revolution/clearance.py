@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...collision import deposit
-from ...collision.bodies import Bodies, of_bodies
+from ...collision.bodies import Bodies, build_bodies
 from ...collision.nozzle import Nozzle, depositing
 from ...collision.obstacles import Obstacles
 from ...collision.scene import Scene
@@ -94,7 +94,7 @@ class Clearance:
         own = self.deposit
         width, tall = own.size
         directions = _in_space(build, own.azimuth)
-        beads = deposit.of_beads(
+        beads = deposit.build_deposit(
             own.points,
             directions,
             width,
@@ -144,7 +144,7 @@ def of_nozzle(
     frame = np.eye(4)
     frame[2, 3] = platform.height
     plates = [disc(2.0 * platform.radius, frame)] if platform.radius > 0.0 else []
-    bodies = of_bodies(plates, deposit.points, looked.reach)
+    bodies = build_bodies(plates, deposit.points, looked.reach)
     return Clearance(
         tips, deposit, looked.larger(chord_error + CONVERGED), looked.foot, bodies, between
     )
