@@ -2,8 +2,8 @@
 """A region hardly wider than a bead: one ring that feeds as much as the region holds.
 
 A contour half a bead inside the border of such a region is so short that its bead lies over itself in the middle: it
-covers all of the region and feeds little of it. A ring nearer to the border is longer. The one that feeds the region's area
-at the usual spacing is taken; what it lays flows to the middle.
+covers all of the region and feeds little of it. A ring nearer to the border is longer. The one that feeds the region's area,
+as wide as a bead, is taken; what it lays flows to the middle.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def balanced(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> list
     is wide, and feeds too little; a dot where that ring is too short for a bead."""
     if len(curves) > 1 or any(curve.dot for curve in curves) or len(region.borders()) > 1:
         return list(curves)
-    fed = sum(beads.spacing * length(curve.points, curve.closed) for curve in curves)
+    fed = sum(2.0 * beads.inset * length(curve.points, curve.closed) for curve in curves)
     if region.area > math.pi * (2.0 * beads.inset) ** 2 or fed >= LESS * region.area:
         return list(curves)
     if not region.grown(-beads.inset, beads.chord_error):
@@ -50,7 +50,7 @@ def _ring(region: Region, beads: Beads) -> Array | None:
 
     def lacking(depth: float) -> float:
         border = inside(depth)
-        return 0.0 if border is None else region.area - beads.spacing * length(border, True)
+        return 0.0 if border is None else region.area - 2.0 * beads.inset * length(border, True)
 
     if not lacking(0.0) < 0.0 < lacking(beads.inset):
         return None

@@ -122,8 +122,8 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
 def dot(region: Region, beads: Beads) -> PlaneCurve:
     """A short bead in the middle of a region narrower than a bead and about as long as wide: its length, and its width where
     it would be too short, are such that the region is filled."""
-    long = max(region.area / beads.spacing, beads.shortest)
-    share = region.area / (beads.spacing * long)
+    long = max(region.area / (2.0 * beads.inset), beads.shortest)
+    share = region.area / (2.0 * beads.inset * long)
     share = min(max(share, beads.narrowest), 1.0)
     middle = region.middle if region.contains(region.middle[None])[0] else region.inside()
     reach = 0.5 * long * region.axis()

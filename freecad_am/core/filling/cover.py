@@ -103,7 +103,7 @@ def _widths(curve: PlaneCurve, beads: Beads) -> tuple[list[Line], list[float]]:
     what is fed along it covers."""
     if curve.dot:
         share = 1.0 if curve.share is None else curve.share[0]
-        fed = beads.spacing * share * length(curve.points, curve.closed)
+        fed = 2.0 * beads.inset * share * length(curve.points, curve.closed)
         middle = curve.points.mean(axis=0)
         ends = middle + DOT * (curve.points[[0, len(curve.points) // 2]] - middle)
         return [(ends, False)], [math.sqrt(fed / math.pi) / beads.inset]

@@ -911,3 +911,23 @@ def test_curved_layers_are_not_compared_with_what_lies_between_planes():
     part, left, beside = made.volumes
     assert part == pytest.approx(2 * 16 * 16 * 32.0, rel=1e-3)
     assert left < 0.06 * part and beside < 0.06 * part
+
+
+@pytest.mark.parametrize("radius", [1.5, 2.2, 2.6, 3.0, 3.5, 4.0])
+def test_rods_of_beads_that_overlap_are_fed_by_the_width_of_these(radius):
+    """The wire is fed for 5 mm, also where beads are 4 mm apart."""
+    made = planned(
+        rod(radius, 96),
+        layer_height=2.0,
+        bead_spacing=4.0,
+        direction="0 0 1",
+        process=ProcessParameters(bead_width=5.0),
+    )
+    assert made.bead_width == 5.0 and len(made.layers) == 6
+    for layer in made.layers:
+        (bead,) = layer.beads
+        wide = np.full(len(bead), 5.0) if bead.width is None else bead.width
+        step = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+        volume = float(0.5 * (wide[1:] + wide[:-1]) @ step)
+        assert volume == pytest.approx(math.pi * radius**2, rel=0.025)
+    assert not [one for one in made.issues if one.code in ("OPEN_GAP", "NO_BEAD")]
