@@ -5,6 +5,8 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from freecad_am.batch.job.part import bring
+from freecad_am.batch.job.part_source import PartSource
 from freecad_am.core.issues import InputError
 
 PANELS = {
@@ -90,3 +92,27 @@ def test_a_frozen_stage_is_not_exported(person, saved, tmp_path):
     saved.recompute()
     assert saved.Program.Status == "up to date"
     api.export(saved.Program, str(tmp_path / "program"))
+
+
+@pytest.mark.parametrize("frozen", ["Box", "Cut"])
+def test_a_value_set_of_what_was_frozen_when_it_was_saved(person, tmp_path, frozen):
+    """Files do not tell what is frozen: a value set in the opened file changes the part, frozen or not."""
+    if App.Version()[:2] != ["1", "0"]:
+        pytest.skip(
+            "FreeCAD freezes objects since 1.0, and 1.1 saves no document with frozen objects"
+        )
+    document = App.newDocument("Frozen")
+    box, hole = document.addObject("Part::Box", "Box"), document.addObject("Part::Box", "Hole")
+    hole.Length, hole.Width, hole.Height = 2, 2, 10
+    cut = document.addObject("Part::Cut", "Cut")
+    cut.Base, cut.Tool = box, hole
+    document.recompute()
+    person.select(document.getObject(frozen))
+    person.gui.runCommand("Std_ToggleFreeze")
+    document.saveAs(str(tmp_path / "frozen.FCStd"))
+    box.Length = 20
+    document.recompute()
+    assert cut.Shape.Volume == pytest.approx(960)  # it is frozen, or what it is made of
+    job = App.newDocument("Job")
+    part = bring(job, PartSource(document.FileName, "Cut", settings=(("Box", "Length", "30 mm"),)))
+    assert part.Shape.Volume == pytest.approx(30 * 10 * 10 - 40)
