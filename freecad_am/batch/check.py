@@ -29,7 +29,7 @@ from freecad_am.core.preflight import clearance, joints
 from freecad_am.core.preflight.promise import Promise, row_place
 from freecad_am.core.read_moves import ReadMoves
 from freecad_am.core.simulation import rapid_look, waypoints
-from freecad_am.core.simulation.margins import on_deposit
+from freecad_am.core.simulation.margins import spread_to_deposit_rows
 from freecad_am.objects.checks import controllers
 from freecad_am.posts import catalogue
 from freecad_am.read_back import driven, switched
@@ -259,8 +259,8 @@ def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:
     found = joints.promises(
         motion,
         cell,
-        on_deposit(motion.deposit, condition),
-        on_deposit(motion.deposit, least),
+        spread_to_deposit_rows(motion.deposit, condition),
+        spread_to_deposit_rows(motion.deposit, least),
         DIGITS,
     )
     found[1] = replace(

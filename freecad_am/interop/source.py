@@ -36,7 +36,7 @@ def motion_of(obj: Any) -> tuple[Motion, tuple[str, ...], tuple[str, ...]]:
     obj = _path_of(obj)
     value = obj.Proxy.value(obj)
     if obj.Proxy.kind == "toolpath":
-        return deposit.alone(value), (), ()
+        return deposit.deposit_motion(value), (), ()
     arm = machine.load(obj.Cell.Machine, user_machines.folders())
     return value.motion, arm.columns, arm.units
 

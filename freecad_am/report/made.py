@@ -14,7 +14,7 @@ from freecad_am.core.motion import Motion
 from freecad_am.core.process.deposit import balance as deposit_balance
 from freecad_am.core.process.deposit import spacing
 from freecad_am.core.simulation import deposit
-from freecad_am.core.simulation.margins import on_deposit
+from freecad_am.core.simulation.margins import spread_to_deposit_rows
 from freecad_am.core.strategies.families import family_of
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.core.types import Array
@@ -51,7 +51,9 @@ class Made:
         source = Source(self.toolpath, self.motion, process)
         if planned is not None:
             judged = planned.joint_path.judged(self.motion)
-            condition, threshold = (on_deposit(self.motion.deposit, column) for column in judged)
+            condition, threshold = (
+                spread_to_deposit_rows(self.motion.deposit, column) for column in judged
+            )
             source = Source(self.toolpath, self.motion, process, self.cell, condition, threshold)
         platform = self.job.cell.platform_diameter if self.job.cell else None
         alone = len(self.job.features) == 1 and family_of(self.job.features[0].strategy).filled
@@ -63,7 +65,7 @@ class Made:
 def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
     """The toolpath as it is run, and its motion: that of the deposit alone where nothing was planned."""
     if results.planned is None:
-        return results.toolpath, deposit.alone(
+        return results.toolpath, deposit.deposit_motion(
             results.toolpath, 0 if cell is None else len(cell.machine.columns)
         )
     return results.planned.joint_path.toolpath(results.toolpath), results.planned.motion

@@ -112,7 +112,7 @@ def test_without_a_cell_the_deposit_alone():
     path = Toolpath(
         (Layer((bead(0.0, True),)), Layer((bead(1.0, True), bead(1.5, True)))), np.eye(4), 1.0, 0.01
     )
-    motion = deposit.alone(path)
+    motion = deposit.deposit_motion(path)
     rows = list(csv.DictReader(io.StringIO("".join(waypoints.text(motion)))))
     assert list(rows[0]) == [*COLUMNS.split(",")[:15], "class"] and {
         row["class"] for row in rows

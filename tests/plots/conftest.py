@@ -8,7 +8,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.planning import comparison
 from freecad_am.core.simulation import deposit
-from freecad_am.core.simulation.margins import on_deposit
+from freecad_am.core.simulation.margins import spread_to_deposit_rows
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.plots.source import Source
 from tests.core.planned_dome import planned_dome
@@ -21,7 +21,9 @@ def dome():
         lead_on=0.5, travel_speed=8.0, between_layers=BetweenLayersParameters(lift=15.0, wait=2.0)
     )
     toolpath, cell, path, motion = planned_dome(9.0, process)
-    condition, threshold = (on_deposit(motion.deposit, column) for column in path.judged(motion))
+    condition, threshold = (
+        spread_to_deposit_rows(motion.deposit, column) for column in path.judged(motion)
+    )
     source = Source(path.toolpath(toolpath), motion, process, cell, condition, threshold, 0.1)
     return source, comparison.path_figures(path, cell, JointParameters())
 
@@ -44,4 +46,4 @@ def modelled():
             )
         )
     toolpath = Toolpath(tuple(layers), np.eye(4), 2.0, 0.1)
-    return Source(toolpath, deposit.alone(toolpath), ProcessParameters(bead_model="csw"))
+    return Source(toolpath, deposit.deposit_motion(toolpath), ProcessParameters(bead_model="csw"))

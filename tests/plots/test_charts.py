@@ -211,7 +211,7 @@ def test_volumes_and_sections_of_plane_layers(modelled):
     part = box((-20, -15, 0), (20, 15, 13), "block")
     solids = stacked([part], SolidParameters(), "block")
     toolpath = planned(part, fill="lines", contour=True)
-    source = Source(toolpath, deposit.alone(toolpath), ProcessParameters(), solids=solids)
+    source = Source(toolpath, deposit.deposit_motion(toolpath), ProcessParameters(), solids=solids)
     volume, share = catalogue.picture("volumes", source).charts
     of_part, laid = (one.y for one in volume.curves)
     np.testing.assert_allclose(

@@ -57,21 +57,21 @@ def achievable_feed(
     Where accelerations are known the machine comes to rest where a program does: at both ends of every bead and of every
     rapid. Rows without joint values are left as asked.
     """
-    most = np.asarray(max_speed, float)
+    speed_limits = np.asarray(max_speed, float)
     shares = np.nan_to_num(
-        speed_ratios(motion.joints, np.nan_to_num(motion.duration), most), posinf=0.0
+        speed_ratios(motion.joints, np.nan_to_num(motion.duration), speed_limits), posinf=0.0
     )
     ratio = shares.max(axis=1, initial=0.0)
     factor = np.ones(len(motion))
     over = ratio > 1.0 + OVER
     factor[over] = 1.0 / ratio[over]
     axis = np.where(over, shares.argmax(axis=1), -1)
-    largest = np.broadcast_to(np.asarray(max_acceleration, float), most.shape)
+    largest = np.broadcast_to(np.asarray(max_acceleration, float), speed_limits.shape)
     if np.isfinite(largest).any() and len(motion) > 1:
         factor, axis = _accelerated(motion, factor, axis, largest)
     slowed = factor < 1.0 - OVER
-    asked = np.nan_to_num(motion.duration)
-    duration = asked / factor
+    planned_duration = np.nan_to_num(motion.duration)
+    duration = planned_duration / factor
     return AchievableFeed(
         ratio=ratio,
         axis=np.where(slowed, axis, -1),
@@ -79,7 +79,7 @@ def achievable_feed(
         achieved=motion.speed * factor,
         duration=duration,
         slowed=slowed,
-        lost=float((duration - asked).sum()),
+        lost=float((duration - planned_duration).sum()),
     )
 
 
@@ -104,20 +104,23 @@ def _accelerated(
     if not len(moving):
         return factor, axis
     time, square = np.nan_to_num(motion.duration)[moving], factor[moving] ** 2
-    way = _Way.of(rates[moving], time, square, largest, _blocks(motion)[moving])
-    node = way.fastest()
-    gain, by_speed = way.gain(node)
+    profile = _Way.of(rates[moving], time, square, largest, _blocks(motion)[moving])
+    node = profile.fastest()
+    gain, by_speed = profile.gain(node)
     # bends are told at nodes, and go on between two that have one
     mean = _mean_rate(
-        node[:-1], node[1:], np.minimum(square, np.maximum(way.bound[:-1], way.bound[1:])), gain
+        node[:-1],
+        node[1:],
+        np.minimum(square, np.maximum(profile.bound[:-1], profile.bound[1:])),
+        gain,
     )
     result, limiting = factor.copy(), axis.copy()
     slower = mean < factor[moving] - OVER
     result[moving[slower]] = mean[slower]
     # a bend that is as fast as it can be is to blame, else the ramp
-    worst = np.where(node[1:] < node[:-1], way.bound[1:], way.bound[:-1])
+    worst = np.where(node[1:] < node[:-1], profile.bound[1:], profile.bound[:-1])
     bent = np.minimum(node[:-1], node[1:]) > BENT * worst
-    by_bend = np.where(node[1:] < node[:-1], way.by_bend[1:], way.by_bend[:-1])
+    by_bend = np.where(node[1:] < node[:-1], profile.by_bend[1:], profile.by_bend[:-1])
     limiting[moving[slower]] = np.where(bent, by_bend, by_speed)[slower]
     return result, limiting
 
@@ -142,10 +145,10 @@ class _Way:
         bend[1:-1] = np.abs(np.diff(speed, axis=0)) / (0.5 * (time[:-1] + time[1:]))[:, None]
         with np.errstate(divide="ignore", invalid="ignore"):
             bounds = np.where(bend > 0.0, largest / bend, np.inf)
-        most = np.zeros(len(bend))
-        most[1:-1] = np.where(block[1:] == block[:-1], np.minimum(square[:-1], square[1:]), 0.0)
+        highest = np.zeros(len(bend))
+        highest[1:-1] = np.where(block[1:] == block[:-1], np.minimum(square[:-1], square[1:]), 0.0)
         return _Way(
-            np.abs(speed), time, bend, largest, most, bounds.min(axis=1), bounds.argmin(axis=1)
+            np.abs(speed), time, bend, largest, highest, bounds.min(axis=1), bounds.argmin(axis=1)
         )
 
     def fastest(self) -> Array:
@@ -174,8 +177,8 @@ class _Way:
     def gain(self, ceiling: Array) -> tuple[Array, Index]:
         """(m,) by how much p^2 may change over each segment while it is below the ceiling, and the axis that bounds it."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            left = self.largest - np.where(self.bend > 0.0, self.bend * ceiling[:, None], 0.0)
-            margin = np.maximum(np.minimum(left[:-1], left[1:]), 0.0)
+            remaining = self.largest - np.where(self.bend > 0.0, self.bend * ceiling[:, None], 0.0)
+            margin = np.maximum(np.minimum(remaining[:-1], remaining[1:]), 0.0)
             slopes = np.where(self.speed > 0.0, 2.0 * margin / self.speed, np.inf)
         return np.minimum(slopes.min(axis=1) * self.time, _ANY), slopes.argmin(axis=1)
 
@@ -188,10 +191,10 @@ def _blocks(motion: Motion) -> Integers:
     return blocks
 
 
-def _mean_rate(start: Array, end: Array, most: Array, gain: Array) -> Array:
-    """The mean pace (m,) over segments on which p^2 goes from `start` to `end`, by way of `most` where `gain`, the most it
+def _mean_rate(start: Array, end: Array, highest: Array, gain: Array) -> Array:
+    """The mean pace (m,) over segments on which p^2 goes from `start` to `end`, by way of `highest` where `gain`, the most it
     can change by, lets it."""
-    top = np.minimum(most, 0.5 * (start + end + gain))
+    top = np.minimum(highest, 0.5 * (start + end + gain))
     up, down = np.maximum(top - start, 0.0), np.maximum(top - end, 0.0)
     safe = np.where(gain > 0.0, gain, 1.0)
     even = np.maximum(1.0 - (up + down) / safe, 0.0)

@@ -35,34 +35,37 @@ class ArmTouches:
 
 def deposit_obstacles(motion: Motion, width: float, height: float) -> Obstacles | None:
     """The deposit of a motion as arms can touch it; width of beads where the motion does not tell it, and height, mm."""
-    some = motion.deposit
-    if not some.any():
+    deposit_rows = motion.deposit
+    if not deposit_rows.any():
         return None
-    wide = np.where(np.isnan(motion.width[some]), width, motion.width[some])
+    wide = np.where(np.isnan(motion.width[deposit_rows]), width, motion.width[deposit_rows])
     return Beads(
-        motion.position[some],
-        motion.build[some],
-        motion.tool[some],
+        motion.position[deposit_rows],
+        motion.build[deposit_rows],
+        motion.tool[deposit_rows],
         wide,
         np.full(len(wide), height),
-        motion.point[some] == 0,
+        motion.point[deposit_rows] == 0,
     ).solid(LINK_GRAIN)
 
 
-def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> ArmTouches:
+def arm_touches(motion: Motion, arm: ArmContact, max_places: int | None = None) -> ArmTouches:
     """What the arm touches on the way, at so many places at most. Rows without joint values touch nothing."""
     n = len(motion)
     link, what = np.full(n, NONE, dtype=np.int64), np.full(n, NONE, dtype=np.int64)
-    joints, row, step = places(motion.joints, most, tracks_of(arm.cell))
-    before: Index = np.cumsum(motion.deposit) - motion.deposit
-    found = arm.touches(joints, before[row])
+    joints, row, step = places(motion.joints, max_places, tracks_of(arm.cell))
+    deposited_before: Index = np.cumsum(motion.deposit) - motion.deposit
+    touches = arm.touches(joints, deposited_before[row])
     # rows that lie closer than the places looked at are as the next of these is: every run of rows ends with one
-    known = np.flatnonzero(motion.reachable)
-    here = np.searchsorted(row, known)
-    link[known], what[known] = found.link[here], found.what[here]
+    reachable = np.flatnonzero(motion.reachable)
+    next_place = np.searchsorted(row, reachable)
+    link[reachable], what[reachable] = touches.link[next_place], touches.what[next_place]
     # and of the places of a row the first one that touches counts
-    rows, first = np.unique(row[found.any], return_index=True)
-    link[rows], what[rows] = found.link[found.any][first], found.what[found.any][first]
+    rows, first_places = np.unique(row[touches.any], return_index=True)
+    link[rows], what[rows] = (
+        touches.link[touches.any][first_places],
+        touches.what[touches.any][first_places],
+    )
     return ArmTouches(link, what, arm.names, step, arm.links)
 
 
@@ -74,7 +77,7 @@ def tracks_of(cell: Cell) -> Mask:
 
 
 def places(
-    joints: Array, most: int | None = None, sliding: Mask | None = None
+    joints: Array, max_places: int | None = None, sliding: Mask | None = None
 ) -> tuple[Array, Index, float]:
     """Joints (k, axes) along a motion (n, axes), the rows (k,) whose segments they are on, rising, and the step, rad.
 
@@ -83,23 +86,25 @@ def places(
     are none.
     """
     n = len(joints)
-    known: Mask = np.asarray(np.isfinite(joints).all(axis=1))
-    goes_on = known & np.append(False, known[:-1])[:n]  # from the row before
-    far = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
+    reachable: Mask = np.asarray(np.isfinite(joints).all(axis=1))
+    goes_on = reachable & np.append(False, reachable[:-1])[:n]  # from the row before
+    travel = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
     if sliding is not None and sliding.any():
-        far[:, sliding] *= STEP / SLIDE
-    moved = np.where(goes_on, far.max(axis=1, initial=0.0), 0.0)
-    way = np.cumsum(moved)
-    whole = float(way[-1]) if n else 0.0
-    step = max(STEP, whole / (MAX_LOOKS if most is None else most))
-    at = np.arange(step, whole, step)
+        travel[:, sliding] *= STEP / SLIDE
+    moved = np.where(goes_on, travel.max(axis=1, initial=0.0), 0.0)
+    travelled = np.cumsum(moved)
+    total = float(travelled[-1]) if n else 0.0
+    step = max(STEP, total / (MAX_LOOKS if max_places is None else max_places))
+    positions = np.arange(step, total, step)
     inner = np.searchsorted(
-        way, at, side="left"
+        travelled, positions, side="left"
     )  # rows that move, so that both of their ends are known
-    share = (at - way[inner - 1]) / moved[inner]
-    ends = np.flatnonzero(known & ~(goes_on & np.append(goes_on[1:], False)[:n]))
+    share = (positions - travelled[inner - 1]) / moved[inner]
+    ends = np.flatnonzero(reachable & ~(goes_on & np.append(goes_on[1:], False)[:n]))
     row = np.concatenate([inner, ends])
     share = np.concatenate([share, np.ones(len(ends))])[:, None]
-    seen = np.where(share < 1.0, joints[row - 1] * (1.0 - share) + joints[row] * share, joints[row])
+    sampled = np.where(
+        share < 1.0, joints[row - 1] * (1.0 - share) + joints[row] * share, joints[row]
+    )
     order = np.lexsort((share[:, 0], row))
-    return seen[order], row[order], step
+    return sampled[order], row[order], step

@@ -15,19 +15,21 @@ from ..parameters.process import ProcessParameters
 def figures(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
     """Of each class that beads are of, in the usual order: number of beads, mm and s of deposit, lead times left out, least
     and largest mm/s, its schedule, and its weave where any has one. Nothing of motions from before there were classes."""
-    found: list[dict[str, Any]] = []
-    way = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
+    class_rows: list[dict[str, Any]] = []
+    step_lengths = np.linalg.norm(
+        np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1
+    )
     for number, name in enumerate(CLASSES):
-        mine = motion.deposit & (motion.bead_class == number)
-        rows = mine & motion.moves
+        in_class = motion.deposit & (motion.bead_class == number)
+        rows = in_class & motion.moves
         if not rows.any():
             continue
-        beads = motion.layer[mine] * (1 + motion.bead[mine].max()) + motion.bead[mine]
-        found.append(
+        beads = motion.layer[in_class] * (1 + motion.bead[in_class].max()) + motion.bead[in_class]
+        class_rows.append(
             {
                 "class": name,
                 "beads": len(np.unique(beads)),
-                "length_mm": float(way[rows].sum()),
+                "length_mm": float(step_lengths[rows].sum()),
                 "deposit_s": float(np.nan_to_num(motion.duration)[rows].sum()),
                 "travel_speed_mm_s": {
                     "min": float(motion.speed[rows].min()),
@@ -37,4 +39,4 @@ def figures(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
                 **({"weave": process.for_class(name).weave or None} if process.weaves else {}),
             }
         )
-    return found
+    return class_rows

@@ -37,19 +37,23 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
 
 def _mean_heights(toolpath: Toolpath) -> Array:
     """(layers,) mm, how high layers are in the mean of their beads: those that were fitted to a scan are uneven."""
-    found = toolpath.layer_heights
+    layer_heights = toolpath.layer_heights
     for number, layer in enumerate(toolpath.layers):
         if any(bead.height is not None for bead in layer.beads):
             sums = np.zeros(2)
             for bead in layer.beads:
                 length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
-                high = np.full(len(bead), found[number]) if bead.height is None else bead.height
+                high = (
+                    np.full(len(bead), layer_heights[number])
+                    if bead.height is None
+                    else bead.height
+                )
                 sums += (0.5 * length @ (high[1:] + high[:-1]), length.sum())
-            found[number] = sums[0] / sums[1]
-    return found
+            layer_heights[number] = sums[0] / sums[1]
+    return layer_heights
 
 
-def fed(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> float | None:
+def fed_volume(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> float | None:
     """mm^3 of wire fed while depositing, lead times left out; None where the speed of the wire is not known, or there is
     none."""
     nominal = toolpath.wire_feed or np.nan
@@ -59,7 +63,7 @@ def fed(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> float
     return total if np.isfinite(total) else None
 
 
-def alone(toolpath: Toolpath, axes: int = 0) -> Motion:
+def deposit_motion(toolpath: Toolpath, axes: int = 0) -> Motion:
     """The deposit alone, for a job that has no joint path: no rapid rows, durations from length and speed.
 
     `axes` columns of joints that no point has.

@@ -11,11 +11,11 @@ import numpy as np
 from ..types import Array, Integers, Mask
 
 
-def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:
+def speed_ratios(joints: Array, duration: Array, speed_limits: Array) -> Array:
     """(n, a) mean joint speed on the segment that ends at each row, as a share of what the axis can do.
 
     joints: (n, a) rad or mm. duration: (n,) s of that segment; where it takes no time the ratio is 0, or infinite if an
-    axis moves all the same. most: (a,) rad/s or mm/s, infinite where not known.
+    axis moves all the same. speed_limits: (a,) rad/s or mm/s, infinite where not known.
     """
     moved = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
     lasts = duration[:, None] > 0.0
@@ -23,15 +23,18 @@ def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:
         lasts, moved / np.where(lasts, duration[:, None], 1.0), np.where(moved > 0.0, np.inf, moved)
     )
     return np.divide(
-        speed, most, out=np.zeros_like(speed), where=np.isfinite(most) | np.isnan(speed)
+        speed,
+        speed_limits,
+        out=np.zeros_like(speed),
+        where=np.isfinite(speed_limits) | np.isnan(speed),
     )
 
 
-def on_deposit(deposit: Mask, values: Array) -> Array:
+def spread_to_deposit_rows(deposit: Mask, values: Array) -> Array:
     """(n,) the values (k,) of the k rows that deposit, such as the condition of a joint path's beads; NaN on the others."""
-    found = np.full(len(deposit), np.nan)
-    found[deposit] = values
-    return found
+    all_rows = np.full(len(deposit), np.nan)
+    all_rows[deposit] = values
+    return all_rows
 
 
 def from_next(deposit: Mask, point: Integers, values: Array) -> Array:
@@ -39,7 +42,7 @@ def from_next(deposit: Mask, point: Integers, values: Array) -> Array:
 
     deposit, point: (n,) as in a motion.
     """
-    first = np.flatnonzero(deposit & (point == 0))
-    found = values.copy()
-    found[first] = values[np.minimum(first + 1, len(values) - 1)]
-    return found
+    first_rows = np.flatnonzero(deposit & (point == 0))
+    shifted = values.copy()
+    shifted[first_rows] = values[np.minimum(first_rows + 1, len(values) - 1)]
+    return shifted

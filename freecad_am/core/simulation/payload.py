@@ -30,18 +30,20 @@ def issues(
 ) -> list[Issue]:
     """At most one of each machine that carries the part and is overloaded, and one where the part is too far out, where
     that begins."""
-    if all(np.isinf([one.payload.kg, one.payload.from_axis]).all() for one in cell.carriers):
+    if all(
+        np.isinf([carrier.payload.kg, carrier.payload.from_axis]).all() for carrier in cell.carriers
+    ):
         return []
     deposited = KG * process.density * np.nan_to_num(volumes(motion, process, toolpath))
     bodies, centre = enclosed(toolpath.surroundings)
     bodies *= KG * process.density
-    mass, found = bodies + np.cumsum(deposited), []
+    mass, issue_list = bodies + np.cumsum(deposited), []
     for machine in cell.carriers:
         over = mass > machine.payload.kg
         if over.any():
             row = int(over.argmax())
-            found.append(
-                _at(
+            issue_list.append(
+                _issue_at(
                     motion,
                     row,
                     Text(
@@ -58,8 +60,8 @@ def issues(
     out = cell.carriers[-1].payload.from_axis
     if np.isfinite(out):
         from_axis = _from_axis(cell, cell.carriers[-1], motion.position, deposited, bodies, centre)
-        found += _too_far(motion, cell.carriers[-1], mass, from_axis)
-    return found
+        issue_list += _too_far(motion, cell.carriers[-1], mass, from_axis)
+    return issue_list
 
 
 def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> float:
@@ -71,8 +73,8 @@ def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessPar
 def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> list[Issue]:
     """About a part of masses (n,) kg with moments (n,) kg mm about the last axis."""
     load = machine.payload
-    most = load.from_axis * (mass if np.isinf(load.kg) else load.kg)
-    over = moment > most * (1.0 + 1e-9)
+    max_moment = load.from_axis * (mass if np.isinf(load.kg) else load.kg)
+    over = moment > max_moment * (1.0 + 1e-9)
     if not over.any():
         return []
     row = int(over.argmax())
@@ -84,7 +86,7 @@ def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> li
     )
     out = moment[row] / mass[row]
     return [
-        _at(
+        _issue_at(
             motion,
             row,
             Text(
@@ -106,19 +108,19 @@ def _from_axis(
     cell: Cell, machine: Machine, position: Array, deposited: Array, bodies: float, centre: Array
 ) -> Array:
     """(n,) kg mm, the moment of the part about the last axis of what carries it, after each row."""
-    rest = machine.chain.frames(np.zeros(machine.chain.axes))
-    to_flange = frames.inverse(rest.flange)
-    axis = to_flange[:3, :3] @ rest.directions[-1]
-    through = to_flange[:3, :3] @ rest.origins[-1] + to_flange[:3, 3]
+    frames_at_rest = machine.chain.frames(np.zeros(machine.chain.axes))
+    to_flange = frames.inverse(frames_at_rest.flange)
+    axis = to_flange[:3, :3] @ frames_at_rest.directions[-1]
+    through = to_flange[:3, :3] @ frames_at_rest.origins[-1] + to_flange[:3, 3]
     middles = 0.5 * (position + np.concatenate([position[:1], position[:-1]]))
     arms = np.cross(cell.on_carrier(np.nan_to_num(middles)) - through, axis)
-    own = np.cross(cell.on_carrier(centre[None]) - through, axis)
+    own_moment = np.cross(cell.on_carrier(centre[None]) - through, axis)
     return np.asarray(
-        np.linalg.norm(bodies * own + np.cumsum(deposited[:, None] * arms, axis=0), axis=1)
+        np.linalg.norm(bodies * own_moment + np.cumsum(deposited[:, None] * arms, axis=0), axis=1)
     )
 
 
-def _at(motion: Motion, row: int, message: str) -> Issue:
+def _issue_at(motion: Motion, row: int, message: str) -> Issue:
     return Issue(
         ERROR,
         CODE,

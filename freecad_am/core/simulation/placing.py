@@ -62,9 +62,9 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     A robot takes the rotation and branch with the most room to its limits; all axes are 0 where it does not reach. Turning
     axes of a machine with rotary axes are at 0.
     """
-    place, chain = np.asarray(point, float), cell.machine.chain
+    target, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:
-        on_flange, _ = cell.on_flange(place[None], cell.mount[None, :3, 2])
+        on_flange, _ = cell.on_flange(target[None], cell.mount[None, :3, 2])
         return np.asarray(
             FiveAxis(chain).placed(np.zeros((1, TURNING)), on_flange, cell.station)[0]
         )
@@ -72,12 +72,12 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     assert arm is not None  # a cell has no other robots
     rotations = np.linspace(0.0, 2.0 * np.pi, _ROTATIONS, endpoint=False)
     external = np.zeros((_ROTATIONS, chain.axes))
-    places, axes = np.tile(place, (_ROTATIONS, 1)), np.tile(cell.mount[:3, 2], (_ROTATIONS, 1))
-    flange = cell.flange_poses(places, axes, rotations, external)
+    targets, axes = np.tile(target, (_ROTATIONS, 1)), np.tile(cell.mount[:3, 2], (_ROTATIONS, 1))
+    flange = cell.flange_poses(targets, axes, rotations, external)
     branches = range(8) if cell.branch is None else (cell.branch,)
-    found = np.concatenate([arm.inverse_branch(flange, branch) for branch in branches])
-    found = np.arctan2(np.sin(found), np.cos(found))
-    found = np.pad(found, ((0, 0), (0, chain.axes - found.shape[1])))
-    margin = np.nan_to_num(cell.limits.smallest(found).margin, nan=-np.inf)
+    solutions = np.concatenate([arm.inverse_branch(flange, branch) for branch in branches])
+    solutions = np.arctan2(np.sin(solutions), np.cos(solutions))
+    solutions = np.pad(solutions, ((0, 0), (0, chain.axes - solutions.shape[1])))
+    margin = np.nan_to_num(cell.limits.smallest(solutions).margin, nan=-np.inf)
     best = int(np.argmax(margin))
-    return np.asarray(found[best]) if np.isfinite(margin[best]) else np.zeros(chain.axes)
+    return np.asarray(solutions[best]) if np.isfinite(margin[best]) else np.zeros(chain.axes)

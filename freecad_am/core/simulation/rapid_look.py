@@ -39,7 +39,7 @@ def looked_at(
     bodies: Sequence[Body],
     width: float,
     height: float,
-    most: int,
+    max_places: int,
 ) -> RapidsLooked:
     """Whether the nozzle meets bodies, the platform or beads that are there by then on any rapid, which runs straight in the
     joints; at so many places at most, evenly along all rapids.
@@ -53,21 +53,21 @@ def looked_at(
         cell.machine.chain,
         Size(0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length),
     )
-    way, corners = np.zeros(len(rows)), [np.zeros((0, 3))]
-    for some in _pieces(len(rows)):
-        joints = start[some, None] + SHARES[:, None] * turned[some, None]
+    travel, corners = np.zeros(len(rows)), [np.zeros((0, 3))]
+    for rows_now in _pieces(len(rows)):
+        joints = start[rows_now, None] + SHARES[:, None] * turned[rows_now, None]
         tip, axis = (
-            each.reshape(len(some), len(SHARES), 3)
-            for each in cell.tip_in_part(chain.forward(joints.reshape(-1, chain.axes)))
+            column.reshape(len(rows_now), len(SHARES), 3)
+            for column in cell.tip_in_part(chain.forward(joints.reshape(-1, chain.axes)))
         )
         for end in (tip, tip + size.length * axis):
-            way[some] = np.maximum(
-                way[some], np.linalg.norm(np.diff(end, axis=1), axis=2).sum(axis=1)
+            travel[rows_now] = np.maximum(
+                travel[rows_now], np.linalg.norm(np.diff(end, axis=1), axis=2).sum(axis=1)
             )
         corners += [tip.min(axis=(0, 1))[None], tip.max(axis=(0, 1))[None]]
     # a row more for each move: both of its ends are looked at
-    step = max(STEP, float(way.sum()) / max(most - 2 * len(rows), 1))
-    count = 2 + np.floor(way / step).astype(np.intp)
+    step = max(STEP, float(travel.sum()) / max(max_places - 2 * len(rows), 1))
+    count = 2 + np.floor(travel / step).astype(np.intp)
     move = np.repeat(np.arange(len(rows)), count)
     share = (np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(
         count - 1, count
@@ -80,18 +80,22 @@ def looked_at(
     around = scene(stands, np.concatenate(corners), reach, ends.deposit) if len(rows) else None
     deposited = np.cumsum(motion.deposit)[rows]
     met = np.zeros(len(rows), dtype=bool)
-    for some in _pieces(len(move)):
+    for rows_now in _pieces(len(move)):
         assert around is not None
-        own = move[some]
-        tip, axis = cell.tip_in_part(chain.forward(start[own] + share[some, None] * turned[own]))
-        hit = around.touched(ends.nozzle(tip, deposited[own]), tip, axis, deposited[own])
-        met[own[hit]] = True
-    touched, place = rows[met], None
+        moves_now = move[rows_now]
+        tip, axis = cell.tip_in_part(
+            chain.forward(start[moves_now] + share[rows_now, None] * turned[moves_now])
+        )
+        hit = around.touched(
+            ends.nozzle(tip, deposited[moves_now]), tip, axis, deposited[moves_now]
+        )
+        met[moves_now[hit]] = True
+    touched, first_touch = rows[met], None
     if len(touched):
         row = touched[0]
-        place = (int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]))
-    return RapidsLooked(len(rows), len(move), step, touched, place)
+        first_touch = (int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]))
+    return RapidsLooked(len(rows), len(move), step, touched, first_touch)
 
 
 def _pieces(count: int) -> list[Index]:
-    return [np.arange(first, min(first + PIECE, count)) for first in range(0, count, PIECE)]
+    return [np.arange(begin, min(begin + PIECE, count)) for begin in range(0, count, PIECE)]

@@ -30,19 +30,19 @@ def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[li
 
     radius: of the table, mm. torch: mm from the tip of the nozzle to where the head begins.
     """
-    found: list[list[Solid]] = [[] for _ in range(chain.axes + 1)]
-    first, stands = int(np.flatnonzero(chain.sliding)[0]), standing_link(chain)
+    solids_of_links: list[list[Solid]] = [[] for _ in range(chain.axes + 1)]
+    first_slide, stands = int(np.flatnonzero(chain.sliding)[0]), standing_link(chain)
     at_zero = chain.frames(np.zeros(chain.axes))
-    _head(at_zero.directions[:first], at_zero.origins[:first], torch, found)
+    _head(at_zero.directions[:first_slide], at_zero.origins[:first_slide], torch, solids_of_links)
     _table(
         at_zero.directions[stands:],
         at_zero.origins[stands:],
         at_zero.flange,
         radius,
-        found[stands:],
+        solids_of_links[stands:],
     )
     back = frames.inverse(chain.links(np.zeros(chain.axes)))
-    return [[solid.moved(pose) for solid in link] for pose, link in zip(back, found)]
+    return [[solid.moved(pose) for solid in link] for pose, link in zip(back, solids_of_links)]
 
 
 def _head(directions: Array, origins: Array, torch: float, found: list[list[Solid]]) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
-from .deposit import fed, volumes
+from .deposit import fed_volume, volumes
 from .timeline import Timeline
 
 MM3_PER_CM3 = 1000.0
@@ -54,7 +54,7 @@ def totals(
         rapid_length=float(np.nan_to_num(length)[~deposits].sum()),
         volume=volume,
         mass=volume / MM3_PER_CM3 * process.density,
-        fed=fed(motion, process, toolpath),
+        fed=fed_volume(motion, process, toolpath),
     )
 
 

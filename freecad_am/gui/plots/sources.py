@@ -15,7 +15,7 @@ from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.planning.program import build as programs
 from ...core.simulation import deposit
-from ...core.simulation.margins import on_deposit
+from ...core.simulation.margins import spread_to_deposit_rows
 from ...objects import user_machines
 from ...objects.solid_feature import SolidFeature
 from ...objects.stage import stage_of
@@ -64,7 +64,12 @@ def maker_of(obj: Any) -> Callable[[], Source]:
     solids, cut_at = _filled(toolpath_object.Feature)
     if kind_of(path) == TOOLPATH:
         return lambda: Source(
-            toolpath, deposit.alone(toolpath), process, band=band, solids=solids, cut_at=cut_at
+            toolpath,
+            deposit.deposit_motion(toolpath),
+            process,
+            band=band,
+            solids=solids,
+            cut_at=cut_at,
         )
     planned, settings, folders = (
         path.Proxy.value(path),
@@ -79,7 +84,8 @@ def maker_of(obj: Any) -> Callable[[], Source]:
         motion, run = planned.motion, planned.joint_path.toolpath(toolpath)
         cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
         condition, threshold = (
-            on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion)
+            spread_to_deposit_rows(motion.deposit, column)
+            for column in planned.joint_path.judged(motion)
         )
         if start is not None:
             rows = programs.rows_from(motion, start)

@@ -15,7 +15,7 @@ from ...core.motion import Motion
 from ...core.parameters.program import ProgramParameters
 from ...core.planning.beads import moving_tool, steps
 from ...core.planning.program import build as programs
-from ...core.simulation.margins import on_deposit
+from ...core.simulation.margins import spread_to_deposit_rows
 from ...posts import catalogue
 from ..joint_path import Planned
 
@@ -41,7 +41,8 @@ def as_run(
     soon after others for its controller, and only from where it starts."""
     motion = planned.motion
     condition, threshold = (
-        on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion)
+        spread_to_deposit_rows(motion.deposit, column)
+        for column in planned.joint_path.judged(motion)
     )
     if settings is None:
         return AsRun(motion, condition, threshold, issues)

@@ -256,7 +256,7 @@ def test_the_volume_is_that_of_layers_as_high_as_they_were_fitted(block):
     process = ProcessParameters(travel_speed=6.0)
     low = fit(block, points_on(lambda x, y: -1.2 + 0.0 * x))
     planned, laid = (
-        deposit.volumes(deposit.alone(path), process, path).sum() for path in (block, low)
+        deposit.volumes(deposit.deposit_motion(path), process, path).sum() for path in (block, low)
     )
     total = HEIGHT * len(block.layers)
     assert laid / planned == pytest.approx((total + 1.2) / total, rel=2e-3)

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from freecad_am.core.simulation.grown import LEAST, heights
+from freecad_am.core.simulation.grown import MIN_HEIGHT_MM, heights
 
 
 def test_each_point_has_the_height_of_the_nearest_piece_of_its_layer():
@@ -19,4 +19,4 @@ def test_each_point_has_the_height_of_the_nearest_piece_of_its_layer():
             assert layer[k] == 3 and np.isnan(found[k])
             continue
         nearest = min(own, key=lambda row: float(np.sum((row[:3] - points[k]) ** 2)))
-        assert found[k] == max(nearest[4], LEAST)
+        assert found[k] == max(nearest[4], MIN_HEIGHT_MM)

@@ -4,7 +4,7 @@
 import numpy as np
 
 from freecad_am.core.kinematics.limits import margins
-from freecad_am.core.simulation.margins import from_next, on_deposit, speed_ratios
+from freecad_am.core.simulation.margins import from_next, speed_ratios, spread_to_deposit_rows
 
 LOWER, UPPER = np.array([-2.0, -np.inf, 0.5, -1.0]), np.array([2.0, np.inf, 1.5, 3.0])
 
@@ -64,7 +64,7 @@ def test_no_time_is_no_speed_unless_an_axis_jumps():
 def test_values_of_beads_stand_on_the_rows_that_deposit():
     deposit = np.array([False, True, True, False, True, True])
     point = np.array([0, 0, 1, 0, 0, 1])
-    spread = on_deposit(deposit, np.array([1.0, 2.0, 3.0, 4.0]))
+    spread = spread_to_deposit_rows(deposit, np.array([1.0, 2.0, 3.0, 4.0]))
     assert np.array_equal(spread, [np.nan, 1, 2, np.nan, 3, 4], equal_nan=True)
     assert np.array_equal(
         from_next(deposit, point, spread), [np.nan, 2, 2, np.nan, 4, 4], equal_nan=True

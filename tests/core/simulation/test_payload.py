@@ -144,7 +144,7 @@ def on_face(toolpath, places, platform):
 def found(toolpath, path, process=None, **more):
     process = process or ProcessParameters()
     return payload.issues(
-        deposit.alone(toolpath), cell_with(path, toolpath, **more), toolpath, process
+        deposit.deposit_motion(toolpath), cell_with(path, toolpath, **more), toolpath, process
     )
 
 
@@ -223,14 +223,14 @@ def test_robots_that_hold_the_part_and_what_is_not_told(toolpath):
     heavy = ProcessParameters(
         density=DENSITY * 10.1 / grown(toolpath, toolpath.bead_width or 0.0)[0].sum()
     )
-    (issue,) = payload.issues(deposit.alone(toolpath), held, toolpath, heavy)
+    (issue,) = payload.issues(deposit.deposit_motion(toolpath), held, toolpath, heavy)
     assert "carries no more" in issue.message and "more than 10 kg" in issue.message
     tool = cells.resolve(dataclasses.replace(parameters, setup="tool-on-robot"), toolpath.frame)
-    assert payload.issues(deposit.alone(toolpath), tool, toolpath, heavy) == []
+    assert payload.issues(deposit.deposit_motion(toolpath), tool, toolpath, heavy) == []
     unknown = cells.resolve(
         dataclasses.replace(parameters, machine="fanuc-arcmate120ic"), toolpath.frame
     )
-    assert payload.issues(deposit.alone(toolpath), unknown, toolpath, heavy) == []
+    assert payload.issues(deposit.deposit_motion(toolpath), unknown, toolpath, heavy) == []
 
 
 @pytest.mark.parametrize("load", [{"kg": -1}, {"kg": "many"}, {"from_axis": 0}, {"grams": 3}])
@@ -241,7 +241,7 @@ def test_payloads_that_are_none(positioner, load):
 
 
 def promised(toolpath, cell, process):
-    motion = deposit.alone(toolpath)
+    motion = deposit.deposit_motion(toolpath)
     return carried(motion, cell, toolpath, process, payload.issues(motion, cell, toolpath, process))
 
 
