@@ -27,8 +27,8 @@ from .tried import POINTS, Tried, some_of
 
 REMEDY, NO_REMEDY = "REMEDY", "NO_REMEDY"
 CHANGES = 16  # that are tried, about
-LONGEST = 20_000  # points of a job that is planned anew as a whole
-WHOLE = 3  # times that it is
+MAX_POINTS_REPLANNED = 20_000  # points of a job that is planned anew as a whole
+MAX_FULL_PLANS = 3  # times that it is
 LONGEST_SEARCH = 60.0  # s on the clock, of a search
 RETRACTS = (50.0, 100.0, 5.0)  # mm
 FULL_TURN = (-math.pi, math.pi)
@@ -38,8 +38,10 @@ def most_points(toolpath: Toolpath, issues: Sequence[Issue]) -> int:
     """How many points are planned anew at most to find what makes a job with these issues feasible, 0 of a feasible one."""
     if not has_errors(list(issues)):
         return 0
-    some = min(POINTS, CHANGES * some_of(toolpath, _failed(issues)).point_count)
-    return some + (WHOLE * toolpath.point_count if toolpath.point_count <= LONGEST else 0)
+    sampled_count = min(POINTS, CHANGES * some_of(toolpath, _failed(issues)).point_count)
+    return sampled_count + (
+        MAX_FULL_PLANS * toolpath.point_count if toolpath.point_count <= MAX_POINTS_REPLANNED else 0
+    )
 
 
 class _Late(Exception):
@@ -69,7 +71,7 @@ def remedies(
     try:
         return _searched(job, path, issues, in_time, tried)
     except _Late:
-        done = Text.joined("; ", tried[:-1]) if len(tried) > 1 else Text("none")
+        tried_text = Text.joined("; ", tried[:-1]) if len(tried) > 1 else Text("none")
         return [
             Issue(
                 NOTE,
@@ -77,7 +79,7 @@ def remedies(
                 Text(
                     "the search for what makes the job feasible stopped after {:.0f} s; tried in vain by then: {}",
                     longest,
-                    done,
+                    tried_text,
                 ),
             )
         ]
@@ -92,20 +94,20 @@ def _searched(
 ) -> list[Issue]:
     """The note on what helps; changes are added to those tried as they are."""
     failed = _failed(issues)
-    points, whole = POINTS, WHOLE
+    points, full_plans_left = POINTS, MAX_FULL_PLANS
     for change in _changes(job, path, issues):
         progress(1.0, Text("looking for what would make it feasible: {}", change.remedy))
         try:
             toolpath = change.toolpath()
-            some = some_of(toolpath, failed)
-            points -= some.point_count
+            sampled = some_of(toolpath, failed)
+            points -= sampled.point_count
             if points < 0:
                 break
             tried.append(change.remedy)
-            if has_errors(change.issues(some, False, progress)):
+            if has_errors(change.issues(sampled, False, progress)):
                 continue
-            if toolpath.point_count > LONGEST:
-                count = len(some.layers)
+            if toolpath.point_count > MAX_POINTS_REPLANNED:
+                count = len(sampled.layers)
                 return [
                     Issue(
                         NOTE,
@@ -118,7 +120,7 @@ def _searched(
                         ),
                     )
                 ]
-            whole -= 1
+            full_plans_left -= 1
             if not has_errors(change.issues(toolpath, True, progress)):
                 return [
                     Issue(
@@ -127,7 +129,7 @@ def _searched(
                         Text("with {} this job is feasible; tried, not applied", change.remedy),
                     )
                 ]
-            if not whole:
+            if not full_plans_left:
                 break
         except AmError:  # what cannot be asked for is not a remedy
             continue

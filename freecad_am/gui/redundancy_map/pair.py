@@ -89,7 +89,7 @@ def pair_of(source: Source, at: tuple[int, int], axes: tuple[int, int], offsets:
     values = rotation_across.span(
         source.task(source.branch), source.beads[bead], point, axes[1], ROWS
     )
-    cells = rotation_across.of_two(source.beads, source.cell, at, axes, (offsets, values))
+    cells = rotation_across.across_two_axes(source.beads, source.cell, at, axes, (offsets, values))
     here = float(redundancy_map.planned_external(source.beads[bead])[point, axes[1]])
     return Pair(
         source,

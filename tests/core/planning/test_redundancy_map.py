@@ -221,9 +221,9 @@ def test_columns_are_even_and_have_the_ends_of_beads(dome, funnel):
             assert of_bead[0] == 0 and of_bead[-1] == len(bead) - 1 and (np.diff(of_bead) > 0).all()
             assert np.array_equal(at.points.position[at.bead == k], bead.points[of_bead])
             assert np.array_equal(at.points.parameter[at.bead == k], bead.parameter[of_bead])
-        few = spin_map.columns(beads, cell, 3 * spin_map.LEAST)
+        few = spin_map.columns(beads, cell, 3 * spin_map.MIN_POINTS_PER_BEAD)
         assert list(np.unique(few.bead)) == [0, len(beads) // 2, len(beads) - 1]
-        assert (np.bincount(few.bead)[np.unique(few.bead)] == spin_map.LEAST).all()
+        assert (np.bincount(few.bead)[np.unique(few.bead)] == spin_map.MIN_POINTS_PER_BEAD).all()
         for k in np.unique(few.bead):
             assert few.point[few.bead == k][-1] == len(beads[k]) - 1
 
@@ -503,7 +503,7 @@ def test_two_external_axes_against_each_other_are_as_one_at_a_time(on_positioner
     values = tuple(
         spin_across.span(task, beads[1], 7, axis, count) for axis, count in ((2, 9), (1, 5))
     )
-    pairs = spin_across.of_two(beads, cell, at, (2, 1), values)
+    pairs = spin_across.across_two_axes(beads, cell, at, (2, 1), values)
     assert len(pairs) == 45 and (pairs.bead == 1).all() and (pairs.point == 7).all()
     found = spin_map.redundancy_map(task, pairs, spin_map.ROTATION, values=np.array([rotation]))
     shown = spin_across.in_rows(spin_map.picture(task, found, 0), 5)

@@ -16,7 +16,7 @@ from ...kinematics.links.gaps import Gaps
 from ...types import Array, Index, Mask
 from ..points import Points
 from ..rotation import basis
-from ..rotation.refine import FAR_OFF, KEPT, Linear, Refined, refine_along
+from ..rotation.refine import CONSTRAINT_TOLERANCE, FAR_OFF, Linear, Refined, refine_along
 from ..rotation.refine_state import state_of
 from ..task import Task
 from .kept import ArmKept, Place
@@ -48,7 +48,11 @@ def refined_clear(
         state = state_of(task, points, thresholds, trial, slopes=False)
         value, gap, slope = _looked(task, gaps, points, trial, moment, pending)
         clear = points.worst(gap.min(axis=0)) >= 0.0
-        good = clear & (state.constraints >= -KEPT).all(axis=1) & np.isfinite(state.objective)
+        good = (
+            clear
+            & (state.constraints >= -CONSTRAINT_TOLERANCE).all(axis=1)
+            & np.isfinite(state.objective)
+        )
         better = pending & good & ~(state.objective > objective * (1.0 - UNCHANGED))
         best[better], objective[better] = trial[better], state.objective[better]
         pending &= better | ~clear

@@ -79,7 +79,7 @@ def way_round(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) 
     route = _shortest(route, ranges, free)
     for _ in range(SHORTENED):
         if len(route) > 2:
-            route = _pulled(route, ranges, free, fits)
+            route = _shorten_by_pulling(route, ranges, free, fits)
     return _shortest(route, ranges, free)[1:-1]
 
 
@@ -136,50 +136,50 @@ def _find_meeting(
     return int(added[best]), int(nearest[best])
 
 
-def _shortest(way: Array, ranges: Ranges, free: Free) -> Array:
+def _shortest(route: Array, ranges: Ranges, free: Free) -> Array:
     """The soonest way by some of the places (m, axes) of one, the first and the last among them; moves from each to the next
     are clear."""
-    count = len(way)
-    first, last = np.triu_indices(count, 1)
-    clear = last == first + 1
-    others = np.flatnonzero(~clear)
-    clear[others] = free(way[first[others]], way[last[others]])
+    count = len(route)
+    start_rows, end_rows = np.triu_indices(count, 1)
+    clear = end_rows == start_rows + 1
+    unchecked = np.flatnonzero(~clear)
+    clear[unchecked] = free(route[start_rows[unchecked]], route[end_rows[unchecked]])
     lasts = np.full((count, count), np.inf)
-    lasts[first, last] = np.where(
-        clear, np.maximum(ranges.lasts(way[first], way[last]), SHORTEST_RAPID), np.inf
+    lasts[start_rows, end_rows] = np.where(
+        clear, np.maximum(ranges.lasts(route[start_rows], route[end_rows]), SHORTEST_RAPID), np.inf
     )
-    soonest, before = np.zeros(count), np.zeros(count, dtype=np.intp)
-    for place in range(1, count):
-        total = soonest[:place] + lasts[:place, place]
-        before[place] = int(total.argmin())
-        soonest[place] = total[before[place]]
-    kept = [count - 1]
-    while kept[-1]:
-        kept.append(int(before[kept[-1]]))
-    return way[kept[::-1]]
+    soonest, predecessors = np.zeros(count), np.zeros(count, dtype=np.intp)
+    for number in range(1, count):
+        total = soonest[:number] + lasts[:number, number]
+        predecessors[number] = int(total.argmin())
+        soonest[number] = total[predecessors[number]]
+    chosen_numbers = [count - 1]
+    while chosen_numbers[-1]:
+        chosen_numbers.append(int(predecessors[chosen_numbers[-1]]))
+    return route[chosen_numbers[::-1]]
 
 
-def _pulled(way: Array, ranges: Ranges, free: Free, fits: Fits) -> Array:
+def _shorten_by_pulling(route: Array, ranges: Ranges, free: Free, fits: Fits) -> Array:
     """A way (m, axes) with each place between both ends where it is, or nearer to halfway between its neighbours, so that
     all of it takes the least time; its moves are clear."""
-    inner, halfway = way[1:-1], 0.5 * (way[:-2] + way[2:])
+    inner, halfway = route[1:-1], 0.5 * (route[:-2] + route[2:])
     pulled = inner[:, None] + PULLS[:, None] * (halfway - inner)[:, None]
-    stands = fits(pulled.reshape(-1, way.shape[1])).reshape(len(inner), len(PULLS))
+    stands = fits(pulled.reshape(-1, route.shape[1])).reshape(len(inner), len(PULLS))
     stands[:, 0] = True
-    layers = [way[:1], *(some[here] for some, here in zip(pulled, stands)), way[-1:]]
-    first = [np.repeat(some, len(then), axis=0) for some, then in zip(layers[:-1], layers[1:])]
-    last = [np.tile(then, (len(some), 1)) for some, then in zip(layers[:-1], layers[1:])]
-    a, b = np.concatenate(first), np.concatenate(last)
+    layers = [route[:1], *(some[here] for some, here in zip(pulled, stands)), route[-1:]]
+    starts = [np.repeat(some, len(then), axis=0) for some, then in zip(layers[:-1], layers[1:])]
+    stops = [np.tile(then, (len(some), 1)) for some, then in zip(layers[:-1], layers[1:])]
+    a, b = np.concatenate(starts), np.concatenate(stops)
     lasts = np.where(free(a, b), np.maximum(ranges.lasts(a, b), SHORTEST_RAPID), np.inf)
-    soonest, before, done = np.zeros(1), [], 0
+    soonest, choices, offset = np.zeros(1), [], 0
     for some, then in zip(layers[:-1], layers[1:]):
-        total = soonest[:, None] + lasts[done : done + len(some) * len(then)].reshape(
+        total = soonest[:, None] + lasts[offset : offset + len(some) * len(then)].reshape(
             len(some), len(then)
         )
-        before.append(total.argmin(axis=0))
-        soonest, done = total.min(axis=0), done + len(some) * len(then)
-    place, found = 0, []
-    for some, choice in zip(layers[::-1], [*before[::-1], None]):
-        found.append(some[place])
-        place = 0 if choice is None else int(choice[place])
-    return np.array(found[::-1])
+        choices.append(total.argmin(axis=0))
+        soonest, offset = total.min(axis=0), offset + len(some) * len(then)
+    position, pulled_route = 0, []
+    for some, choice in zip(layers[::-1], [*choices[::-1], None]):
+        pulled_route.append(some[position])
+        position = 0 if choice is None else int(choice[position])
+    return np.array(pulled_route[::-1])

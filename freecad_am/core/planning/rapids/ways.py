@@ -83,9 +83,12 @@ class RapidWays:
             self.legs[end] = leg
             if leg is None and failure is not None:
                 self.failures[end] = failure
-        lost = np.array([end for end, leg in self.legs.items() if leg is None], dtype=np.intp)
+        unreachable = np.array(
+            [end for end, leg in self.legs.items() if leg is None], dtype=np.intp
+        )
         for end, leg in zip(
-            lost.tolist(), self.retracts.asked(lost, np.full(len(lost), self.retract))
+            unreachable.tolist(),
+            self.retracts.asked(unreachable, np.full(len(unreachable), self.retract)),
         ):
             self.legs[end] = leg
 
@@ -95,140 +98,150 @@ class RapidWays:
 
     def _way(self, k: int, legs: Mapping[int, Leg | None], round_: Array | None = None) -> Way:
         """Way k by legs; round_: (m, axes) the places by which it leads from one to the other, where it is not straight."""
-        before = self.beads[k - 1] if k else None
+        previous = self.beads[k - 1] if k else None
         path = self.beads[k] if k < len(self.beads) else None
-        away, onto = legs.get(2 * k - 1), legs.get(2 * k)
+        retract, onto = legs.get(2 * k - 1), legs.get(2 * k)
         rows: list[Array] = []
         role: list[int] = []
-        if away is not None:
-            rows += list(away.joints)
+        if retract is not None:
+            rows += list(retract.joints)
             role += [RETRACT] * len(rows)
         if path is not None:
             onward = [path.joints[0]] if onto is None else [*onto.joints[::-1], path.joints[0]]
             travels = [] if round_ is None else list(round_)
             rows += [*travels, *onward]
             role += [TRAVEL] * (1 + len(travels)) + [APPROACH] * (len(onward) - 1)
-        start = None if before is None else before.joints[-1]
+        start = None if previous is None else previous.joints[-1]
         joints = np.array(rows).reshape(-1, self.cell.machine.chain.axes)
         if start is None or path is None:
             return Way(start, joints, np.array(role, dtype=np.int64))
         return self._in_shorter_turns(Way(start, joints, np.array(role, dtype=np.int64)))
 
-    def _in_shorter_turns(self, way: Way) -> Way:
+    def _in_shorter_turns(self, rapid: Way) -> Way:
         """The way with more rows, straight in the joints, where an endless axis would turn too far at once."""
-        assert way.start is not None
-        whole = np.vstack([way.start, way.joints])
+        assert rapid.start is not None
+        rows_with_start = np.vstack([rapid.start, rapid.joints])
         continuous = self.cell.limits.continuous
         turn = np.fmax.reduce(
-            np.abs(whole[1:, continuous] - whole[:-1, continuous]), axis=1, initial=0.0
+            np.abs(rows_with_start[1:, continuous] - rows_with_start[:-1, continuous]),
+            axis=1,
+            initial=0.0,
         )  # none of NaN
         if turn.max() <= LARGEST_TURN:
-            return way
+            return rapid
         rows: list[Array] = []
         role: list[int] = []
         singular: float | None = None
-        for start, end, kind, far in zip(whole[:-1], whole[1:], way.role.tolist(), turn.tolist()):
-            between, least = self._between(start, end, step_count(far, LARGEST_TURN))
-            singular = least if singular is None else singular
+        for start, end, kind, turn_size in zip(
+            rows_with_start[:-1], rows_with_start[1:], rapid.role.tolist(), turn.tolist()
+        ):
+            between, lowest_condition = self._between(
+                start, end, step_count(turn_size, LARGEST_TURN)
+            )
+            singular = lowest_condition if singular is None else singular
             rows += [*between, end]
             role += [kind] * (len(between) + 1)
-        return Way(way.start, np.array(rows), np.array(role, dtype=np.int64), singular)
+        return Way(rapid.start, np.array(rows), np.array(role, dtype=np.int64), singular)
 
     def _between(self, start: Array, end: Array, moves: int) -> tuple[list[Array], float | None]:
         """Rows that cut a move into so many, or a few more where one of them is near a singularity; and how near, where that
         does not help."""
-        ways = [
+        subdivisions = [
             [start + (end - start) * (k / count) for k in range(1, count)]
             for count in range(moves, moves + MORE_MOVES + 1)
         ]
-        if moves == 1 or not np.isfinite(ways[0]).all():
-            return ways[0], None
-        least = [float(self.retracts.condition(np.array(rows)).min()) for rows in ways]
-        for rows, condition in zip(ways, least):
+        if moves == 1 or not np.isfinite(subdivisions[0]).all():
+            return subdivisions[0], None
+        lowest_conditions = [
+            float(self.retracts.condition(np.array(rows)).min()) for rows in subdivisions
+        ]
+        for rows, condition in zip(subdivisions, lowest_conditions):
             if condition >= self.retracts.floor:
                 return rows, None
-        return ways[0], least[0]
+        return subdivisions[0], lowest_conditions[0]
 
-    def _moves(self, k: int, way: Way) -> Moves:
+    def _moves(self, k: int, rapid: Way) -> Moves:
         """The moves of way k as they are looked at."""
-        joints = way.joints if way.start is None else np.vstack([way.start, way.joints])
+        joints = rapid.joints if rapid.start is None else np.vstack([rapid.start, rapid.joints])
         return Moves(
             joints[:-1], joints[1:], np.full(max(len(joints) - 1, 0), self.rows[k], dtype=np.intp)
         )
 
-    def _met(self, some: Sequence[int], ways: Sequence[Way]) -> list[int]:
+    def _find_collisions(self, numbers: Sequence[int], rapids: Sequence[Way]) -> list[int]:
         """The ways, of those numbered, on which anything is met."""
-        moves = [self._moves(k, way) for k, way in zip(some, ways)]
+        moves = [self._moves(k, rapid) for k, rapid in zip(numbers, rapids)]
         if not moves:
             return []
-        together = Moves(*(np.concatenate(parts) for parts in zip(*moves)))
+        together = Moves(*(np.concatenate(columns) for columns in zip(*moves)))
         met = ~self._clear_moves(together)
-        number = np.repeat(np.arange(len(moves)), [len(one.start) for one in moves])
-        return [some[k] for k in np.unique(number[met]).tolist()]
+        number = np.repeat(
+            np.arange(len(moves)), [len(moves_of_rapid.start) for moves_of_rapid in moves]
+        )
+        return [numbers[k] for k in np.unique(number[met]).tolist()]
 
     def _clear_moves(self, moves: Moves) -> Mask:
         """(k,) whether nothing is met on moves."""
         met = self.obstacles.met(moves)
         if self.cell.part_moves or self.cell.external_links:
             met |= nozzle_obstacles.find_contacts(self.cell, moves.start, moves.end).any(axis=0)
-        left = np.flatnonzero(~met)
-        if self.arm is not None and len(left):
-            move, touched = check_moves(self.arm, *moves.of(left))
-            met[left[move[touched.any]]] = True
+        remaining = np.flatnonzero(~met)
+        if self.arm is not None and len(remaining):
+            move, touched = check_moves(self.arm, *moves.of(remaining))
+            met[remaining[move[touched.any]]] = True
         return ~met
 
     def _clear(self) -> tuple[list[int], set[int]]:
         """Finds other ways where something is met, higher or aside; the ways that this leaves, and those beyond help."""
         sound = self.retracts.sound
-        some = [k for k in range(len(self.ways)) if sound[self.ends(k)].all()]
-        met = self._met(some, [self.ways[k] for k in some])
+        candidates = [k for k in range(len(self.ways)) if sound[self.ends(k)].all()]
+        met = self._find_collisions(candidates, [self.ways[k] for k in candidates])
         # where a link is too near at the very end of a bead, no way off or onto it helps
         hopeless = self._standing_too_near(met)
         met = [k for k in met if k not in hopeless]
         for attempt in self.attempts:
             if not met:
                 break
-            met = self._without_cleared(met, attempt)
+            met = self._retry_with(met, attempt)
         return list(met), hopeless
 
     def _lead_round(self, met: Sequence[int]) -> list[int]:
         """Leads ways round what is met on them; those where none was found."""
-        left = []
+        unsolved = []
         for k in met:
             ends = (
                 {}
                 if k in (0, len(self.beads))
                 else {2 * k - 1: self.beads[k - 1].joints[-1], 2 * k: self.beads[k].joints[0]}
             )
-            found = self.led.found(ends, self.legs, self.attempts, self.rows[k])
-            if found is None:
-                left.append(k)
+            detour = self.led.found(ends, self.legs, self.attempts, self.rows[k])
+            if detour is None:
+                unsolved.append(k)
                 continue
-            legs, places = found
-            self.ways[k] = self._way(k, legs, places)
+            legs, via_points = detour
+            self.ways[k] = self._way(k, legs, via_points)
             self.legs.update(legs)
             for end in legs:
                 self.failures.pop(end, None)
             self.led.ways.append(k)
-        return left
+        return unsolved
 
-    def _standing_too_near(self, some: Sequence[int]) -> set[int]:
+    def _standing_too_near(self, numbers: Sequence[int]) -> set[int]:
         """The ways, of those numbered, at whose beginning or end on a bead a link of the arm is too near to something."""
-        if self.arm is None or not some:
+        if self.arm is None or not numbers:
             return set()
-        ends = [(k, self.beads[k - 1].joints[-1]) for k in some if k > 0]
-        ends += [(k, self.beads[k].joints[0]) for k in some if k < len(self.beads)]
+        ends = [(k, self.beads[k - 1].joints[-1]) for k in numbers if k > 0]
+        ends += [(k, self.beads[k].joints[0]) for k in numbers if k < len(self.beads)]
         touches = self.arm.touches(
             np.array([joints for _, joints in ends]), np.array([self.rows[k] for k, _ in ends])
         )
-        return {k for (k, _), near in zip(ends, touches.any) if near}
+        return {k for (k, _), is_near in zip(ends, touches.any) if is_near}
 
-    def _without_cleared(self, met: Sequence[int], attempt: Attempt) -> list[int]:
+    def _retry_with(self, met: Sequence[int], attempt: Attempt) -> list[int]:
         """Takes an attempt for the ways where nothing is met with it; the others."""
         # without a retract distance the machine stays where the last bead ends
-        some = [k for k in met if self.retract > 0.0 or k < len(self.beads)]
-        ends = np.array(sorted({end for k in some for end in self.ends(k)}), dtype=np.intp)
-        found, _ = self.retracts.found(
+        candidates = [k for k in met if self.retract > 0.0 or k < len(self.beads)]
+        ends = np.array(sorted({end for k in candidates for end in self.ends(k)}), dtype=np.intp)
+        legs_found, _ = self.retracts.found(
             ends,
             np.full(len(ends), attempt.height),
             attempt.direction,
@@ -236,19 +249,19 @@ class RapidWays:
             thorough=False,
         )
         legs: dict[int, Leg | None] = {
-            end: leg for end, leg in zip(ends.tolist(), found) if leg is not None
+            end: leg for end, leg in zip(ends.tolist(), legs_found) if leg is not None
         }
-        able = [k for k in some if all(end in legs for end in self.ends(k))]
-        tried = {k: self._way(k, legs) for k in able}
-        still = set(self._met(able, list(tried.values())))
+        able = [k for k in candidates if all(end in legs for end in self.ends(k))]
+        attempts_by_number = {k: self._way(k, legs) for k in able}
+        still = set(self._find_collisions(able, list(attempts_by_number.values())))
         for k in able:
             if k not in still:
-                self.ways[k] = tried[k]
+                self.ways[k] = attempts_by_number[k]
                 for end in self.ends(k):
                     self.legs[end] = legs[end]
                     self.failures.pop(end, None)
                 self.raised.append(k)
-        return [k for k in met if k not in tried or k in still]
+        return [k for k in met if k not in attempts_by_number or k in still]
 
     def place(self, k: int) -> BeadPath:
         """The bead that way k is told of: that which it leads to, or the last one."""
@@ -257,16 +270,16 @@ class RapidWays:
     def reasons(self, k: int) -> list[str]:
         """What the nozzle meets on way k."""
         moves = self._moves(k, self.ways[k])
-        found = self.obstacles.names(moves)
+        names = self.obstacles.names(moves)
         if self.cell.part_moves or self.cell.external_links:
             met = nozzle_obstacles.find_contacts(self.cell, moves.start, moves.end)
             adjacent = [
                 name
-                for name, here in zip(nozzle_obstacles.in_the_way(self.cell), met)
-                if here.any()
+                for name, hits in zip(nozzle_obstacles.in_the_way(self.cell), met)
+                if hits.any()
             ]
-            found += [name for name in adjacent if name not in found]
-        return found
+            names += [name for name in adjacent if name not in names]
+        return names
 
     def arm_issue(self, k: int) -> Issue | None:
         """What a link comes too near on way k, where one does."""
@@ -275,6 +288,9 @@ class RapidWays:
         _, touched = check_moves(self.arm, *self._moves(k, self.ways[k]))
         if not touched.any.any():
             return None
-        first, path = int(np.argmax(touched.any)), self.place(k)
-        link, what = self.arm.links[touched.link[first]], self.arm.names[touched.what[first]]
+        first_touch, path = int(np.argmax(touched.any)), self.place(k)
+        link, what = (
+            self.arm.links[touched.link[first_touch]],
+            self.arm.names[touched.what[first_touch]],
+        )
         return clearance_issue(self.cell, link, what, path.layer, path.index, on_way=True)

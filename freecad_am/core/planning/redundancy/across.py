@@ -17,48 +17,48 @@ from .map import Columns, Picture, alone, planned_external
 
 
 def across(
-    beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axis: int, values: Array
+    beads: Sequence[Bead], cell: Cell, bead_point: tuple[int, int], axis: int, values: Array
 ) -> Columns:
     """One point of the beads, at (bead, point), with values (C,) rad or mm of one of the external axes, the others as they
     are planned there: a column of each."""
-    return _with(beads, cell, at, (axis,), (values,))
+    return _columns_with_external(beads, cell, bead_point, (axis,), (values,))
 
 
-def of_two(
+def across_two_axes(
     beads: Sequence[Bead],
     cell: Cell,
-    at: tuple[int, int],
+    bead_point: tuple[int, int],
     axes: tuple[int, int],
     values: tuple[Array, Array],
 ) -> Columns:
     """One point of the beads, at (bead, point), with all pairs of values (C,) and (R,), rad or mm, of two external axes, the
     others as they are planned there: R rows of C columns, one row after the other."""
     across, up = np.meshgrid(*values)
-    return _with(beads, cell, at, axes, (across.ravel(), up.ravel()))
+    return _columns_with_external(beads, cell, bead_point, axes, (across.ravel(), up.ravel()))
 
 
-def in_rows(of: Picture, rows: int) -> Picture:
+def in_rows(picture: Picture, rows: int) -> Picture:
     """A picture (1, R C) of pairs as one (R, C)."""
     return dataclasses.replace(
-        of,
-        margin=of.margin.reshape(rows, -1),
-        condition=of.condition.reshape(rows, -1),
-        threshold=of.threshold.reshape(rows, -1),
-        outside=of.outside.reshape(rows, -1),
-        forbidden=of.forbidden.reshape(rows, -1),
-        arm=None if of.arm is None else of.arm.reshape(rows, -1),
+        picture,
+        margin=picture.margin.reshape(rows, -1),
+        condition=picture.condition.reshape(rows, -1),
+        threshold=picture.threshold.reshape(rows, -1),
+        outside=picture.outside.reshape(rows, -1),
+        forbidden=picture.forbidden.reshape(rows, -1),
+        arm=None if picture.arm is None else picture.arm.reshape(rows, -1),
     )
 
 
-def _with(
+def _columns_with_external(
     beads: Sequence[Bead],
     cell: Cell,
-    at: tuple[int, int],
+    bead_point: tuple[int, int],
     axes: tuple[int, ...],
     values: tuple[Array, ...],
 ) -> Columns:
     """One point with external axes elsewhere: each at values (n,)."""
-    bead, point = at
+    bead, point = bead_point
     count = len(values[0])
     external = np.tile(planned_external(beads[bead])[point], (count, 1))
     for axis, value in zip(axes, values, strict=True):
@@ -77,9 +77,12 @@ def _with(
 def span(task: Task, bead: Bead, point: int, axis: int, count: int) -> Array:
     """(count,) values of an external axis over its range, or over a turn about where it is planned at a point, if that is
     less."""
-    own = task.cell.robot.chain.axes + axis
-    here = float(planned_external(bead)[point, axis])
-    low, high = float(task.cell.limits.lower[own]), float(task.cell.limits.upper[own])
-    if not task.cell.machine.chain.sliding[own]:
-        low, high = max(low, here - np.pi), min(high, here + np.pi)
+    machine_axis = task.cell.robot.chain.axes + axis
+    planned_value = float(planned_external(bead)[point, axis])
+    low, high = (
+        float(task.cell.limits.lower[machine_axis]),
+        float(task.cell.limits.upper[machine_axis]),
+    )
+    if not task.cell.machine.chain.sliding[machine_axis]:
+        low, high = max(low, planned_value - np.pi), min(high, planned_value + np.pi)
     return np.linspace(low, high, count)

@@ -59,15 +59,17 @@ class Sums:
     displacement: float
 
 
-def durations(beads: Sequence[Bead], kept: Sequence[Integers] | None = None) -> Array:
+def durations(beads: Sequence[Bead], point_indices: Sequence[Integers] | None = None) -> Array:
     """(T,) s from each point to the next at travel speed, as the time of the segment that ends at a point; 0 where a bead
-    begins. kept: the points of each bead that are looked at, all of them where they are not given."""
-    found = []
+    begins. point_indices: the points of each bead that are looked at, all of them where they are not given."""
+    segment_times = []
     for k, bead in enumerate(beads):
         length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
-        at = np.concatenate([[0.0], np.cumsum(length / bead.speed[1:])])
-        found.append(np.diff(at if kept is None else at[kept[k]], prepend=0.0))
-    return np.concatenate(found)
+        times = np.concatenate([[0.0], np.cumsum(length / bead.speed[1:])])
+        segment_times.append(
+            np.diff(times if point_indices is None else times[point_indices[k]], prepend=0.0)
+        )
+    return np.concatenate(segment_times)
 
 
 def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Array) -> Followed:
@@ -95,16 +97,16 @@ def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Arr
     )
 
 
-def sums(of: Followed) -> Sums:
+def sums(curve: Followed) -> Sums:
     """The figures of a curve."""
-    ratio = of.ratio[np.isfinite(of.ratio)]
+    ratio = curve.ratio[np.isfinite(curve.ratio)]
     return Sums(
-        int((~of.good).sum()),
-        int(of.wound.sum()),
-        float(of.margin.min()),
-        float(of.condition.min()),
+        int((~curve.good).sum()),
+        int(curve.wound.sum()),
+        float(curve.margin.min()),
+        float(curve.condition.min()),
         float(ratio.max()) if len(ratio) else float("nan"),
-        float(of.displacement.sum()),
+        float(curve.displacement.sum()),
     )
 
 
@@ -116,44 +118,47 @@ def fitted(points: Points, values: Array, degree: int) -> Array:
     result = np.zeros((points.beads, degree + 1))
     low, high = points.ends
     for bead in range(points.beads):
-        part, chosen = points.only(bead)
+        bead_points, rows = points.only(bead)
         # about the middle of the bead, so that powers of large angles do not drown the rest
         middle, half = 0.5 * (low[bead] + high[bead]), 0.5 * (high[bead] - low[bead])
         share = np.vander(
-            (part.parameter - middle) / half, min(degree, len(part) - 1) + 1, increasing=True
+            (bead_points.parameter - middle) / half,
+            min(degree, len(bead_points) - 1) + 1,
+            increasing=True,
         )
-        found = np.linalg.lstsq(share, values[chosen], rcond=None)[0]
+        solution = np.linalg.lstsq(share, values[rows], rcond=None)[0]
         # in the parameter itself, by Horner: the polynomials are few and short, and their class is slow
-        for order in range(len(found) - 1, -1, -1):
+        for order in range(len(solution) - 1, -1, -1):
             shifted = result[bead] / half
             result[bead] *= -middle / half
             result[bead, 1:] += shifted[:-1]
-            result[bead, 0] += found[order]
+            result[bead, 0] += solution[order]
     return result
 
 
 def handles(task: Task, points: Points, bead: int, degree: int) -> Array:
     """(n,) parameters of a bead at which its polynomial is taken hold of: as many as it has freedoms."""
-    part, _ = points.only(bead)
-    low, high = (float(end[0]) for end in part.ends)
-    count = int(np.abs(basis.changes(task, part, degree)[0]).any(axis=0).sum())
+    bead_points, _ = points.only(bead)
+    low, high = (float(end[0]) for end in bead_points.ends)
+    count = int(np.abs(basis.changes(task, bead_points, degree)[0]).any(axis=0).sum())
     if count == 1:
         return np.array([0.5 * (low + high)])
     # the end of a bead that joins up is its start
-    joined = task.joined and bool(part.closed[0])
+    joined = task.joined and bool(bead_points.closed[0])
     return np.linspace(low, high, count, endpoint=not joined)
 
 
 def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Array:
     """(degree + 1,) the change of a bead's coefficients that moves one of its handles by 1 rad and leaves all others where
     they are; a closed bead that has to join up still does."""
-    part, _ = points.only(bead)
-    at = handles(task, points, bead, degree)
-    free = basis.changes(task, part, degree)[0]
+    bead_points, _ = points.only(bead)
+    parameters = handles(task, points, bead, degree)
+    free = basis.changes(task, bead_points, degree)[0]
     free = free[:, np.abs(free).any(axis=0)]
-    wanted = np.where(np.arange(len(at)) == handle, 1.0, 0.0)
+    unit_change = np.where(np.arange(len(parameters)) == handle, 1.0, 0.0)
     return np.asarray(
-        free @ np.linalg.solve(np.vander(at, degree + 1, increasing=True) @ free, wanted)
+        free
+        @ np.linalg.solve(np.vander(parameters, degree + 1, increasing=True) @ free, unit_change)
     )
 
 
@@ -178,30 +183,32 @@ class Compared:
 
 
 def compared(
-    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
+    task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[Compared, ...]:
     """All methods of the planner on the branch of the task, none with polynomials that are given; progress may raise."""
-    found = []
+    results = []
     for number, (method, plan) in enumerate(METHODS.items()):
         started = time.perf_counter()
-        own = replace(task, parameters=replace(task.parameters, method=method, given=(), rz="auto"))
+        method_task = replace(
+            task, parameters=replace(task.parameters, method=method, given=(), rz="auto")
+        )
 
         def part(fraction: float, text: str, done: int = number, name: str = method) -> None:
             progress((done + fraction) / len(METHODS), f"{name}: {text}")
 
         part(0.0, "planning")
-        paths, issues = plan(own, beads, places, part)
-        issues = issues + [issue for path in paths for issue in findings(own, path)]
-        found.append(
+        paths, issues = plan(method_task, beads, bead_ids, part)
+        issues = issues + [issue for path in paths for issue in findings(method_task, path)]
+        results.append(
             Compared(
                 method,
                 tuple(paths),
-                sums_of(own, paths),
+                sums_of(method_task, paths),
                 tuple(issues),
                 time.perf_counter() - started,
             )
         )
-    return tuple(found)
+    return tuple(results)
 
 
 def sums_of(task: Task, paths: Sequence[BeadPath]) -> Sums:

@@ -30,7 +30,7 @@ from ..task import Task, with_external
 
 RZ, ROTATION = "rz", "rotation"
 ROWS, MAX_COLUMNS = 181, 300
-LEAST = 12  # points of a bead, fewer of which would not show what a curve does
+MIN_POINTS_PER_BEAD = 12  # points of a bead, fewer of which would not show what a curve does
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,47 +104,57 @@ class Picture:
         return self.reachable & ~self.beyond & ~self.singular & ~self.outside
 
 
-def columns(beads: Sequence[Bead], cell: Cell, most: int = MAX_COLUMNS) -> Columns:
-    """Points of the beads, evenly among all, at most `most`; the ends of beads are among them.
+def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -> Columns:
+    """Points of the beads, evenly among all, at most `max_columns`; the ends of beads are among them.
 
-    Of more beads than have room for LEAST points each, as many as do, evenly among them.
+    Of more beads than have room for MIN_POINTS_PER_BEAD points each, as many as do, evenly among them.
     """
     counts = np.array([len(bead) for bead in beads])
-    shown = list(range(len(beads)))
-    if counts.sum() > most and LEAST * len(beads) > most:
-        shown = np.unique(
-            np.round(np.linspace(0, len(beads) - 1, max(1, most // LEAST))).astype(int)
+    bead_numbers = list(range(len(beads)))
+    if counts.sum() > max_columns and MIN_POINTS_PER_BEAD * len(beads) > max_columns:
+        bead_numbers = np.unique(
+            np.round(
+                np.linspace(0, len(beads) - 1, max(1, max_columns // MIN_POINTS_PER_BEAD))
+            ).astype(int)
         ).tolist()
-        share = np.full(len(shown), most // len(shown))
+        share = np.full(len(bead_numbers), max_columns // len(bead_numbers))
     else:
-        share = np.maximum(2, counts * most // max(int(counts.sum()), most))
-    kept = [
+        share = np.maximum(2, counts * max_columns // max(int(counts.sum()), max_columns))
+    point_indices = [
         np.unique(
             np.round(np.linspace(0, counts[k] - 1, min(int(number), int(counts[k])))).astype(
                 np.int64
             )
         )
-        for k, number in zip(shown, share)
+        for k, number in zip(bead_numbers, share)
     ]
     position, tool, parameter = (
-        np.concatenate([getattr(beads[k], name)[index] for k, index in zip(shown, kept)])
+        np.concatenate(
+            [getattr(beads[k], name)[index] for k, index in zip(bead_numbers, point_indices)]
+        )
         for name in ("points", "tool", "parameter")
     )
     return Columns(
-        np.repeat(np.array(shown), [len(index) for index in kept]),
-        np.concatenate(kept),
-        alone(cell, position, tool, parameter, external_of(cell, [beads[k] for k in shown], kept)),
+        np.repeat(np.array(bead_numbers), [len(index) for index in point_indices]),
+        np.concatenate(point_indices),
+        alone(
+            cell,
+            position,
+            tool,
+            parameter,
+            external_of(cell, [beads[k] for k in bead_numbers], point_indices),
+        ),
     )
 
 
-def external_of(cell: Cell, beads: Sequence[Bead], kept: Sequence[Index]) -> Array | None:
+def external_of(cell: Cell, beads: Sequence[Bead], point_indices: Sequence[Index]) -> Array | None:
     """(T, k) values of the external axes at so many points of beads, None of a cell without."""
     if cell.external is None:
         return None
-    found: Array = np.concatenate(
-        [planned_external(bead)[index] for bead, index in zip(beads, kept, strict=True)]
+    external_values: Array = np.concatenate(
+        [planned_external(bead)[index] for bead, index in zip(beads, point_indices, strict=True)]
     )
-    return found
+    return external_values
 
 
 def planned_external(bead: Bead) -> Array:
@@ -173,7 +183,7 @@ def alone(
 
 def redundancy_map(
     task: Task,
-    at: Columns,
+    map_columns: Columns,
     axis: str = RZ,
     bodies: Sequence[Body] = (),
     values: Array | None = None,
@@ -183,55 +193,72 @@ def redundancy_map(
     values: (R,) rad of the rows, else the whole turn.
     """
     values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
-    phi = rotation_of(task.cell, at.points.tool, values[:, None], axis)
-    joints = _of_all_branches(task, at.points, phi)
+    phi = rotation_of(task.cell, map_columns.points.tool, values[:, None], axis)
+    joints = _of_all_branches(task, map_columns.points, phi)
     margin = _margin(task, task.given_rows, joints)
     low, high = task.parameters.rotation_range
     outside = np.zeros(phi.shape, dtype=bool)
     if high - low < TURN - 1e-9:
         outside = (phi - low) % TURN > high - low + ROUNDING
     return RedundancyMap(
-        at, axis, values, phi, margin, _touching(task.cell, at.points, bodies), outside
+        map_columns,
+        axis,
+        values,
+        phi,
+        margin,
+        _touching(task.cell, map_columns.points, bodies),
+        outside,
     )
 
 
-def picture(task: Task, of: RedundancyMap, branch: int) -> Picture:
+def picture(task: Task, redundancy: RedundancyMap, branch: int) -> Picture:
     """One branch of a map, with its condition."""
-    own = dataclasses.replace(task, branch=branch)
-    points = of.columns.points
-    flange = points.frames.at(of.phi).reshape(-1, 4, 4)
-    condition = own.condition_at(flange, own.arm.inverse_branch(flange, branch)).reshape(
-        of.phi.shape
-    )
+    branch_task = dataclasses.replace(task, branch=branch)
+    points = redundancy.columns.points
+    flange = points.frames.at(redundancy.phi).reshape(-1, 4, 4)
+    condition = branch_task.condition_at(
+        flange, branch_task.arm.inverse_branch(flange, branch)
+    ).reshape(redundancy.phi.shape)
     return Picture(
         branch,
-        of.margin[branch],
+        redundancy.margin[branch],
         condition,
-        own.thresholds(points),
-        of.outside,
-        of.outside | of.touching,
+        branch_task.thresholds(points),
+        redundancy.outside,
+        redundancy.outside | redundancy.touching,
     )
 
 
 def arm_touched(
-    task: Task, of: RedundancyMap, branch: int, arm: ArmContact, moment: Index, every: int = 1
+    task: Task,
+    redundancy: RedundancyMap,
+    branch: int,
+    arm: ArmContact,
+    moment: Index,
+    row_stride: int = 1,
 ) -> Mask:
     """(R, C) the cells of a branch in which a link of the robot touches nozzle, platform, a body or the deposit there is.
 
-    moment: (C,) how many points of the deposit are there at a column. every: one of so many rows is looked at and stands for
+    moment: (C,) how many points of the deposit are there at a column. row_stride: one of so many rows is looked at and stands for
     those about it. Cells past a limit, or not allowed for another reason, are not looked at.
     """
-    count = len(of.values)
-    rows = np.arange(min(every // 2, count - 1), count, every)
-    own = dataclasses.replace(task, branch=branch)
-    points = of.columns.points
-    joints = own.arm.inverse_branch(points.frames.at(of.phi[rows]).reshape(-1, 4, 4), branch)
+    count = len(redundancy.values)
+    rows = np.arange(min(row_stride // 2, count - 1), count, row_stride)
+    branch_task = dataclasses.replace(task, branch=branch)
+    points = redundancy.columns.points
+    joints = branch_task.arm.inverse_branch(
+        points.frames.at(redundancy.phi[rows]).reshape(-1, 4, 4), branch
+    )
     if points.external is not None:
         joints = with_external(joints, np.tile(points.external, (len(rows), 1)))
-    looked = (of.margin[branch] >= -ROUNDING) & ~of.outside & ~of.touching
-    joints[~looked[rows].ravel()] = np.nan
-    found = arm.touches(joints, np.tile(moment, len(rows))).any.reshape(len(rows), -1)
-    return np.asarray(found[np.minimum(np.arange(count) // every, len(rows) - 1)] & looked)
+    considered = (
+        (redundancy.margin[branch] >= -ROUNDING) & ~redundancy.outside & ~redundancy.touching
+    )
+    joints[~considered[rows].ravel()] = np.nan
+    touches = arm.touches(joints, np.tile(moment, len(rows))).any.reshape(len(rows), -1)
+    return np.asarray(
+        touches[np.minimum(np.arange(count) // row_stride, len(rows) - 1)] & considered
+    )
 
 
 def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
@@ -260,15 +287,17 @@ def in_turns(values: Array, starts: Mask) -> Array:
     step = shortest(step)
     step[starts] = 0.0
     rising = np.cumsum(step)
-    first = np.flatnonzero(starts)
-    begin = shortest(values[first])
+    start_rows = np.flatnonzero(starts)
+    begin = shortest(values[start_rows])
     number = np.cumsum(starts) - 1
-    return np.asarray(rising - rising[first][number] + begin[number])
+    return np.asarray(rising - rising[start_rows][number] + begin[number])
 
 
-def joints_at(task: Task, at: Columns, column: int, phi: float) -> Array:
+def joints_at(task: Task, map_columns: Columns, column: int, phi: float) -> Array:
     """(8, axes) joints of all branches at one cell, in the turn that the map counts with; NaN out of reach."""
-    joints = _of_all_branches(task, at.points.each(np.array([column])), np.array([[phi]]))[:, 0, 0]
+    joints = _of_all_branches(task, map_columns.points.each(np.array([column])), np.array([[phi]]))[
+        :, 0, 0
+    ]
     turns = np.where(task.continuous, 0.0, np.round((task.middle - joints) / TURN))
     turns[:, task.cell.robot.chain.axes :] = 0.0  # external axes are where they are said to be
     return np.asarray(joints + TURN * turns)

@@ -20,19 +20,21 @@ from .evaluation import judged
 
 Place = tuple[int, int]
 
-LOW = 3.0  # times the condition asked for; from there it may fall short between two points
+LOW_CONDITION_RATIO = (
+    3.0  # times the condition asked for; from there it may fall short between two points
+)
 HALVINGS = 2  # of each segment, where it is looked at between
 CANDIDATES = 12  # rotations of a bead that are looked at there
-TOGETHER = 64  # beads; bounds the memory
+BEADS_PER_BATCH = 64  # beads; bounds the memory
 
 
 def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
     """Which of the beads do not keep all limits with their rotation, at their points or between them."""
-    found = [k for k, path in enumerate(paths) if path.margin < FITS]
+    infeasible = [k for k, path in enumerate(paths) if path.margin < FITS]
     low = [
         k
         for k, path in enumerate(paths)
-        if path.margin >= FITS and (path.condition < LOW * path.threshold).any()
+        if path.margin >= FITS and (path.condition < LOW_CONDITION_RATIO * path.threshold).any()
     ]
     if low:
         finer = [_finer(beads[k]) for k in low]
@@ -47,67 +49,79 @@ def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[i
         joints = task.joints(points, phi)
         condition = condition_margin(task.condition(points, phi, joints), task.thresholds(points))
         margin = points.worst(np.minimum(task.rows.margin(joints), condition))
-        found += [k for k, least in zip(low, margin) if least < FITS]
-    return sorted(found)
+        infeasible += [k for k, lowest_margin in zip(low, margin) if lowest_margin < FITS]
+    return sorted(infeasible)
 
 
 def where_lost(
     task: Task,
     beads: Sequence[Bead],
-    places: Sequence[Place],
+    bead_ids: Sequence[Place],
     paths: Sequence[BeadPath],
-    found: search.Found,
+    candidates_found: search.Found,
     report: Callable[[float], None],
 ) -> dict[int, BeadPath | None]:
     """What `of_beads` finds for the beads that do not keep all limits though a candidate did at few of their points. report:
     takes the share that is done; it may raise to cancel."""
-    promising = found.margin.max(axis=0) >= 0.0
+    promising = candidates_found.margin.max(axis=0) >= 0.0
     rows = [k for k in lost(task, beads, paths) if promising[k]]
-    others: dict[int, BeadPath | None] = {}
-    for start in range(0, len(rows), TOGETHER):
+    replacements: dict[int, BeadPath | None] = {}
+    for start in range(0, len(rows), BEADS_PER_BATCH):
         report(start / len(rows))
-        some = rows[start : start + TOGETHER]
-        candidates = found.of_beads(np.array(some, dtype=np.intp))
-        others |= zip(
-            some, of_beads(task, [beads[k] for k in some], [places[k] for k in some], candidates)
+        batch = rows[start : start + BEADS_PER_BATCH]
+        candidates = candidates_found.of_beads(np.array(batch, dtype=np.intp))
+        replacements |= zip(
+            batch,
+            of_beads(task, [beads[k] for k in batch], [bead_ids[k] for k in batch], candidates),
         )
-    return others
+    return replacements
 
 
 def of_beads(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], found: search.Found
+    task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], candidates_found: search.Found
 ) -> list[BeadPath | None]:
     """For each bead the path of the rotation that suits all its points, and those between them, best, refined from there
-    where that keeps all limits too; None where none does. found: the candidates of these beads, judged at few points."""
-    own, between = gather(beads, task.cell), gather([_finer(bead) for bead in beads], task.cell)
-    thresholds = task.thresholds(own)
-    here = _judged_at(task, own, thresholds, found, len(found.margin))
-    here = _judged_at(task, between, task.thresholds(between), here, CANDIDATES)
-    best, each = here.best(), np.arange(len(beads))
-    start, serves = here.coefficients[best, each], here.margin[best, each] >= 0.0
-    refined = refine.refine(task, own, thresholds, start[None], serves)
+    where that keeps all limits too; None where none does. candidates_found: the candidates of these beads, judged at few points."""
+    points, between = gather(beads, task.cell), gather([_finer(bead) for bead in beads], task.cell)
+    thresholds = task.thresholds(points)
+    judged_candidates = _judged_at(
+        task, points, thresholds, candidates_found, len(candidates_found.margin)
+    )
+    judged_candidates = _judged_at(
+        task, between, task.thresholds(between), judged_candidates, CANDIDATES
+    )
+    best, bead_rows = judged_candidates.best(), np.arange(len(beads))
+    start, serves = (
+        judged_candidates.coefficients[best, bead_rows],
+        judged_candidates.margin[best, bead_rows] >= 0.0,
+    )
+    refined = refine.refine(task, points, thresholds, start[None], serves)
     as_found = dataclasses.replace(refined, coefficients=start)
     paths: list[BeadPath | None] = [None] * len(beads)
-    for one in (refined, as_found):
-        tried = judged(task, beads, places, own, thresholds, one.coefficients, one)
-        short = lost(task, beads, tried)
+    for solution in (refined, as_found):
+        attempted = judged(
+            task, beads, bead_ids, points, thresholds, solution.coefficients, solution
+        )
+        short = lost(task, beads, attempted)
         paths = [
-            path or (other if good and k not in short else None)
-            for k, (path, other, good) in enumerate(zip(paths, tried, serves))
+            path or (attempt if good and k not in short else None)
+            for k, (path, attempt, good) in enumerate(zip(paths, attempted, serves))
         ]
     return paths
 
 
 def _judged_at(
-    task: Task, points: Points, thresholds: Array, found: search.Found, most: int
+    task: Task, points: Points, thresholds: Array, candidates: search.Found, max_count: int
 ) -> search.Found:
-    """Of the candidates of each bead that serve, the best, as many as `most` at most, judged at these points."""
-    worth = np.where(found.margin >= 0.0, found.objective, np.inf)
-    count = max(1, min(most, int((found.margin >= 0.0).sum(axis=0).max())))
-    chosen = np.argsort(worth, axis=0, kind="stable")[:count]
-    each = np.arange(points.beads)
-    judged_there = search.judge(task, points, thresholds, found.coefficients[chosen, each])
-    serves = found.margin[chosen, each] >= 0.0
+    """Of the candidates of each bead that serve, the best, as many as `max_count` at most, judged at these points."""
+    worth = np.where(candidates.margin >= 0.0, candidates.objective, np.inf)
+    count = max(1, min(max_count, int((candidates.margin >= 0.0).sum(axis=0).max())))
+    best_rows = np.argsort(worth, axis=0, kind="stable")[:count]
+    bead_rows = np.arange(points.beads)
+    judged_there = search.judge(
+        task, points, thresholds, candidates.coefficients[best_rows, bead_rows]
+    )
+    serves = candidates.margin[best_rows, bead_rows] >= 0.0
     return dataclasses.replace(
         judged_there, margin=np.where(serves, judged_there.margin, UNREACHABLE)
     )

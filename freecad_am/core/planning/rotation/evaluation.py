@@ -21,7 +21,7 @@ Place = tuple[int, int]
 def judged(
     task: Task,
     beads: Sequence[Bead],
-    places: Sequence[Place],
+    bead_ids: Sequence[Place],
     points: Points,
     threshold: Array,
     coefficients: Array,
@@ -60,5 +60,5 @@ def judged(
             refined.reason[k],
             refined.iterations[k],
         )
-        for k, (bead, (layer, index), a, b) in enumerate(zip(beads, places, ends[:-1], ends[1:]))
+        for k, (bead, (layer, index), a, b) in enumerate(zip(beads, bead_ids, ends[:-1], ends[1:]))
     ]

@@ -18,8 +18,8 @@ from ...types import Array
 Constraints = Callable[[Array], "tuple[Array, Array] | None"]
 
 REACH = 0.3  # of a first step, rad of the polynomial
-SMALLEST = 1e-5  # rad, of a step worth trying
-ENOUGH = 1e-3  # by how much constraints are wanted to be kept
+MIN_STEP_RAD = 1e-5  # rad, of a step worth trying
+SUFFICIENT_SLACK = 1e-3  # by how much constraints are wanted to be kept
 GAIN = 1e-6  # of the worst constraint, less than which ends the search
 STEPS = 40
 MOST_ROWS = 600
@@ -31,36 +31,36 @@ def approached(constraints: Constraints, start: Array) -> Array:
         linprog,  # slow to import, and most jobs on parts of revolution never need it
     )
 
-    x, reach, here = start, REACH, constraints(start)
+    x, reach, current = start, REACH, constraints(start)
     for _ in range(STEPS):
-        if here is None or reach < SMALLEST:
+        if current is None or reach < MIN_STEP_RAD:
             return x
-        value, rate = here
+        value, rate = current
         worst = float(value.min())
-        if worst >= ENOUGH:
+        if worst >= SUFFICIENT_SLACK:
             return x
         # rows that cannot become the worst within reach are left out
         lowest = value - reach * np.abs(rate).sum(axis=1)
-        rows = np.flatnonzero(lowest < max(ENOUGH, float(value.min())) + GAIN)
+        rows = np.flatnonzero(lowest < max(SUFFICIENT_SLACK, float(value.min())) + GAIN)
         rows = rows[np.argsort(lowest[rows], kind="stable")[:MOST_ROWS]]
         k = len(x)
-        # the largest t <= ENOUGH with value + rate step >= t
+        # the largest t <= SUFFICIENT_SLACK with value + rate step >= t
         solved = linprog(
             np.r_[np.zeros(k), -1.0],
             A_ub=np.c_[-rate[rows], np.ones(len(rows))],
             b_ub=value[rows],
-            bounds=[(-reach, reach)] * k + [(None, ENOUGH)],
+            bounds=[(-reach, reach)] * k + [(None, SUFFICIENT_SLACK)],
             method="highs",
         )
         if solved.x is None or solved.x[-1] < worst + GAIN:
             return x
-        tried = constraints(x + solved.x[:k])
+        trial = constraints(x + solved.x[:k])
         hoped, got = (
             solved.x[-1] - worst,
-            -np.inf if tried is None else float(tried[0].min()) - worst,
+            -np.inf if trial is None else float(trial[0].min()) - worst,
         )
         if got > 0.1 * hoped:
-            x, here = x + solved.x[:k], tried
+            x, current = x + solved.x[:k], trial
             reach *= 2.0 if got > 0.7 * hoped else 1.0
         else:
             reach = 0.25 * min(reach, float(np.abs(solved.x[:k]).max()))

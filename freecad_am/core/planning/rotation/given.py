@@ -22,38 +22,47 @@ METHOD, GIVEN = "layer-by-layer", "given"
 
 
 def coefficients(
-    parameters: JointParameters, places: Sequence[Place]
+    parameters: JointParameters, bead_ids: Sequence[Place]
 ) -> dict[int, tuple[float, ...]]:
     """The coefficients given, by number of the bead among the places (layer, index)."""
-    found = given_polynomials(parameters.given)
-    every = found.get(None)
-    chosen = {k: found.get(place, every) for k, place in enumerate(places)}
-    return {k: values for k, values in chosen.items() if values is not None}
+    polynomials = given_polynomials(parameters.given)
+    default = polynomials.get(None)
+    by_number = {k: polynomials.get(bead_id, default) for k, bead_id in enumerate(bead_ids)}
+    return {k: values for k, values in by_number.items() if values is not None}
 
 
 def paths(
     task: Task,
     beads: Sequence[Bead],
-    places: Sequence[Place],
+    bead_ids: Sequence[Place],
     fixed: Mapping[int, tuple[float, ...]],
 ) -> dict[int, BeadPath]:
     """The paths that the given coefficients make, by number of the bead."""
     if not fixed:
         return {}
-    chosen = sorted(fixed)
-    rows = np.zeros((len(chosen), max(map(len, fixed.values()))))
-    for row, k in zip(rows, chosen):
+    numbers = sorted(fixed)
+    rows = np.zeros((len(numbers), max(map(len, fixed.values()))))
+    for row, k in zip(rows, numbers):
         row[: len(fixed[k])] = fixed[k]
-    some, points = [beads[k] for k in chosen], gather([beads[k] for k in chosen], task.cell)
-    count = len(chosen)
-    none = refine.Refined(rows, np.zeros(count), (GIVEN,) * count, (0,) * count)
-    made = judged(
-        task, some, [places[k] for k in chosen], points, task.thresholds(points), rows, none
+    given_beads, points = (
+        [beads[k] for k in numbers],
+        gather([beads[k] for k in numbers], task.cell),
     )
-    return dict(zip(chosen, made))
+    count = len(numbers)
+    none = refine.Refined(rows, np.zeros(count), (GIVEN,) * count, (0,) * count)
+    bead_paths = judged(
+        task,
+        given_beads,
+        [bead_ids[k] for k in numbers],
+        points,
+        task.thresholds(points),
+        rows,
+        none,
+    )
+    return dict(zip(numbers, bead_paths))
 
 
-def not_used(parameters: JointParameters, places: Sequence[Place]) -> list[Issue]:
+def not_used(parameters: JointParameters, bead_ids: Sequence[Place]) -> list[Issue]:
     """A warning of polynomials given for beads that are not there, or to a method that takes none."""
     if parameters.given and parameters.method != METHOD:
         return [
@@ -67,15 +76,15 @@ def not_used(parameters: JointParameters, places: Sequence[Place]) -> list[Issue
                 ),
             )
         ]
-    lost = sorted(
-        place
-        for place in given_polynomials(parameters.given)
-        if place is not None and place not in set(places)
+    missing = sorted(
+        bead_id
+        for bead_id in given_polynomials(parameters.given)
+        if bead_id is not None and bead_id not in set(bead_ids)
     )
-    if not lost:
+    if not missing:
         return []
-    named = ", ".join(f"{layer}/{bead}" for layer, bead in lost[:5]) + (
-        " ..." if len(lost) > 5 else ""
+    named = ", ".join(f"{layer}/{bead}" for layer, bead in missing[:5]) + (
+        " ..." if len(missing) > 5 else ""
     )
     return [
         Issue(

@@ -69,7 +69,7 @@ def _worst(
     """Of (T, k) values of k things."""
     if not np.isfinite(values).any():
         return None
-    at, what = np.unravel_index(
+    row, what = np.unravel_index(
         np.nanargmax(values) if largest else np.nanargmin(values), values.shape
     )
-    return Worst(float(values[at, what]), int(layer[at]), labels[int(what)])
+    return Worst(float(values[row, what]), int(layer[row]), labels[int(what)])

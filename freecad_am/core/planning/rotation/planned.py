@@ -20,52 +20,59 @@ END_MM = 1e-6  # mm, of a piece's ends to points of the bead it was cut from
 def rotation_along(
     paths: Sequence[BeadPath],
     beads: Sequence[Bead],
-    places: Sequence[tuple[int, int]],
+    bead_ids: Sequence[tuple[int, int]],
     parameters: Mapping[int, Array],
 ) -> dict[int, Array]:
     """The rotation phi (rad, counted on) at parameters of beads, by their numbers among the beads of a toolpath with their
     places (layer, index): interpolated between the points of the path, 0 where the path has nothing of a bead."""
-    pieces: dict[int, list[BeadPath]] = {}
-    for piece in paths:
-        pieces.setdefault(piece.layer, []).append(piece)
-    count = Counter(layer for layer, _ in places)
-    found = {}
+    paths_by_layer: dict[int, list[BeadPath]] = {}
+    for path in paths:
+        paths_by_layer.setdefault(path.layer, []).append(path)
+    count = Counter(layer for layer, _ in bead_ids)
+    rotations = {}
     for number, parameter in parameters.items():
-        (layer, index), bead = places[number], beads[number]
-        own = pieces.get(layer, [])
-        if len(own) == count[layer]:
-            own = [piece for piece in own if piece.index == index]
+        (layer, index), bead = bead_ids[number], beads[number]
+        bead_paths = paths_by_layer.get(layer, [])
+        if len(bead_paths) == count[layer]:
+            bead_paths = [path for path in bead_paths if path.index == index]
         else:
-            own = [piece for piece in own if _cut_from(bead, piece.bead)]
-        found[number] = _along(own, bead, parameter)
-    return found
+            bead_paths = [path for path in bead_paths if _cut_from(bead, path.bead)]
+        rotations[number] = _along(bead_paths, bead, parameter)
+    return rotations
 
 
-def _cut_from(bead: Bead, piece: Bead) -> bool:
+def _cut_from(bead: Bead, section: Bead) -> bool:
     return all(
-        np.linalg.norm(bead.points - piece.points[end], axis=1).min() < END_MM for end in (0, -1)
+        np.linalg.norm(bead.points - section.points[end], axis=1).min() < END_MM for end in (0, -1)
     )
 
 
-def _along(pieces: Sequence[BeadPath], bead: Bead, parameter: Array) -> Array:
+def _along(bead_paths: Sequence[BeadPath], bead: Bead, parameter: Array) -> Array:
     span = float(bead.parameter[-1] - bead.parameter[0])
-    way = np.sign(span)
-    found = np.full(len(parameter), np.nan)
-    for piece in pieces:
-        known = way * piece.bead.parameter
+    sense = np.sign(span)
+    rotation = np.full(len(parameter), np.nan)
+    for path in bead_paths:
+        path_parameter = sense * path.bead.parameter
         # the parameter of a bead that starts elsewhere goes on across the old seam
         for turn in (0.0, span, -span):
-            at = way * (parameter + turn)
-            inside = np.isnan(found) & (at >= known[0] - 1e-9) & (at <= known[-1] + 1e-9)
-            found[inside] = np.interp(at[inside], known, piece.phi)
-    there = np.isfinite(found)
-    if not there.any():
+            position = sense * (parameter + turn)
+            inside = (
+                np.isnan(rotation)
+                & (position >= path_parameter[0] - 1e-9)
+                & (position <= path_parameter[-1] + 1e-9)
+            )
+            rotation[inside] = np.interp(position[inside], path_parameter, path.phi)
+    known_rows = np.isfinite(rotation)
+    if not known_rows.any():
         return np.zeros(len(parameter))
-    rows = np.arange(len(found))
-    found = np.asarray(np.interp(rows, rows[there], found[there]))
-    if len(pieces) == 1 and abs(float(pieces[0].bead.parameter[0] - bead.parameter[0])) < 1e-9:
-        return found
+    rows = np.arange(len(rotation))
+    rotation = np.asarray(np.interp(rows, rows[known_rows], rotation[known_rows]))
+    if (
+        len(bead_paths) == 1
+        and abs(float(bead_paths[0].bead.parameter[0] - bead.parameter[0])) < 1e-9
+    ):
+        return rotation
     # pieces and moved seams part the rotation by whole turns, within them it goes on
-    step = np.diff(found, prepend=found[:1])
-    whole = np.where(np.abs(step) > PARTED * TURN, TURN * np.round(step / TURN), 0.0)
-    return np.asarray(found - np.cumsum(whole))
+    step = np.diff(rotation, prepend=rotation[:1])
+    whole_turns = np.where(np.abs(step) > PARTED * TURN, TURN * np.round(step / TURN), 0.0)
+    return np.asarray(rotation - np.cumsum(whole_turns))

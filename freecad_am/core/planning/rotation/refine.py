@@ -22,11 +22,11 @@ from . import basis, feasible
 from .refine_state import State, slopes_of, state_of, values_of
 
 # by how little a constraint may be violated and count as kept: limits and condition have reserves many times as wide
-KEPT = 4e-7
+CONSTRAINT_TOLERANCE = 4e-7
 # runs of the optimiser, each with the constraints added that the one before came close to
 ROUNDS = 4
 FAR_OFF = 1.0  # of a constraint that does not matter; those of limits and condition are less
-SMALLEST = 1e-9  # objective that an objective is set against
+MIN_OBJECTIVE_SCALE = 1e-9  # objective that an objective is set against
 STATIONARY = "stationary at the start found by the search"
 OUT_OF_LIMITS = "no polynomial found that keeps all limits"
 
@@ -47,7 +47,7 @@ def refine(
     points: Points,
     thresholds: Array,
     starts: Array,
-    wanted: Mask | None = None,
+    selected: Mask | None = None,
     report: Callable[[float], None] = lambda share: None,
 ) -> Refined:
     """Improve the coefficients of every bead, or of the wanted (B,); points are all points of the beads.
@@ -55,39 +55,39 @@ def refine(
     starts: (S, B, degree + 1), the first the one to be preferred; NaN where a bead has no further one. Closed beads that
     join up stay joined. report: called before each bead with the share that is done; it may raise to cancel.
     """
-    first = state_of(task, points, thresholds, starts[0], slopes=False)
+    initial = state_of(task, points, thresholds, starts[0], slopes=False)
     tolerance = task.parameters.tolerance
     alone = (
         np.isnan(starts[1:]).any(axis=(0, 2))
         if len(starts) > 1
         else np.ones(points.beads, dtype=bool)
     )
-    done = (
-        np.isfinite(first.objective)
-        & (first.predicted <= tolerance)
-        & (first.constraints >= 0.0).all(axis=1)
+    finished = (
+        np.isfinite(initial.objective)
+        & (initial.predicted <= tolerance)
+        & (initial.constraints >= 0.0).all(axis=1)
         & alone
     )
-    if wanted is not None:
-        done |= ~wanted
-    coefficients, objective = starts[0].copy(), first.objective.copy()
+    if selected is not None:
+        finished |= ~selected
+    coefficients, objective = starts[0].copy(), initial.objective.copy()
     reasons = [STATIONARY] * points.beads
     iterations = [0] * points.beads
     directions = basis.changes(task, points, starts.shape[2] - 1)
-    left = np.flatnonzero(~done)
-    for number, bead in enumerate(left):
-        report(number / len(left))
-        part, chosen = points.only(int(bead))
-        tried = [
-            _climbed(_Bead(task, part, thresholds[chosen]), start, directions[bead])
+    pending = np.flatnonzero(~finished)
+    for number, bead in enumerate(pending):
+        report(number / len(pending))
+        bead_points, rows = points.only(int(bead))
+        results = [
+            _climbed(_Bead(task, bead_points, thresholds[rows]), start, directions[bead])
             for start in starts[:, bead]
             if np.isfinite(start).all()
         ]
         best = 0
-        for k in range(1, len(tried)):
-            if _better(tried[k], tried[best]):
+        for k in range(1, len(results)):
+            if _better(results[k], results[best]):
                 best = k
-        _, objective[bead], coefficients[bead], reasons[bead], iterations[bead] = tried[best]
+        _, objective[bead], coefficients[bead], reasons[bead], iterations[bead] = results[best]
     return Refined(coefficients, objective, tuple(reasons), tuple(iterations))
 
 
@@ -103,13 +103,18 @@ class Linear:
 
 
 def refine_along(
-    task: Task, points: Points, thresholds: Array, start: Array, directions: Array, more: Linear
+    task: Task,
+    points: Points,
+    thresholds: Array,
+    start: Array,
+    directions: Array,
+    extra_constraints: Linear,
 ) -> tuple[Array, str, int]:
-    """Of one bead the coefficients (degree + 1,), better than those it starts with as long as `more` holds; why and after
+    """Of one bead the coefficients (degree + 1,), better than those it starts with as long as `extra_constraints` holds; why and after
     how many iterations the optimiser stopped. directions: (degree + 1, degree + 1) what may change, as `basis.changes`
     gives it; thresholds (T,)."""
     used = directions[:, np.abs(directions).any(axis=0)]
-    return _slsqp(_Bead(task, points, thresholds, more), start, used)
+    return _slsqp(_Bead(task, points, thresholds, extra_constraints), start, used)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,33 +131,37 @@ class _Bead:
 
     def constraints(self, coefficients: Array, free: Array) -> tuple[Array, Array] | None:
         """All constraints at all points (r,) and their derivatives (r, k) along the free columns; None out of reach."""
-        found = _at_all_points(self.task, self.points, self.thresholds, coefficients[None], free)
-        if self.more is None or found is None:
-            return found
+        values_and_rates = _at_all_points(
+            self.task, self.points, self.thresholds, coefficients[None], free
+        )
+        if self.more is None or values_and_rates is None:
+            return values_and_rates
         shape = self.points.powers(len(coefficients) - 1)
         value = self.more.value + self.more.slope * (shape @ coefficients - self.more.at)
         rate = (self.more.slope[:, :, None] * (shape @ free)).reshape(-1, free.shape[1])
-        return np.append(found[0], value.ravel()), np.concatenate([found[1], rate])
+        return np.append(values_and_rates[0], value.ravel()), np.concatenate(
+            [values_and_rates[1], rate]
+        )
 
     def worth(self, coefficients: Array) -> tuple[float, float]:
         """By how much the constraints are violated at worst, and the objective: the less the better."""
         state = self.state(coefficients)
         worst = float(np.nan_to_num(state.constraints, nan=-1.0).min())
         violated = max(0.0, -worst) if np.isfinite(state.objective[0]) else np.inf
-        return (violated if violated > KEPT else 0.0, float(state.objective[0]))
+        return (violated if violated > CONSTRAINT_TOLERANCE else 0.0, float(state.objective[0]))
 
 
-def _better(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
+def _better(result: tuple[Any, ...], reference: tuple[Any, ...]) -> bool:
     """Whether (violation, objective, ...) is less than another by more than rounding."""
-    if not alike(one[0], other[0]) or not alike(other[0], one[0]):
-        return bool(one[0] < other[0])
-    return not bool(alike(other[1], one[1]))
+    if not alike(result[0], reference[0]) or not alike(reference[0], result[0]):
+        return bool(result[0] < reference[0])
+    return not bool(alike(reference[1], result[1]))
 
 
 def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float, Array, str, int]:
     """Optimised degree by degree, so that a higher one is never worse: violation, objective, coefficients, why and after
     how many iterations the last degree stopped."""
-    here, worth, reason, iterations = start, bead.worth(start), STATIONARY, 0
+    current, worth, reason, iterations = start, bead.worth(start), STATIONARY, 0
     used = np.flatnonzero(np.abs(directions).any(axis=0))
     for count in range(1, len(used) + 1):
         # an open bead of the first degree has been looked at in the search for slope and offset at once
@@ -160,15 +169,15 @@ def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float
             continue
         free = directions[:, used[:count]]
         if worth[0] > 0.0:
-            here, worth = _brought_in(bead, here, free, worth)
+            current, worth = _brought_in(bead, current, free, worth)
             if worth[0] > 0.0:
                 reason = OUT_OF_LIMITS
                 continue
-        found, reason, iterations = _slsqp(bead, here, free)
-        better = bead.worth(found)
+        optimised, reason, iterations = _slsqp(bead, current, free)
+        better = bead.worth(optimised)
         if better <= worth:
-            here, worth = found, better
-    return (*worth, here, reason, iterations)
+            current, worth = optimised, better
+    return (*worth, current, reason, iterations)
 
 
 def _brought_in(
@@ -188,11 +197,14 @@ def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, in
     x, reason, iterations = np.zeros(directions.shape[1]), STATIONARY, 0
     rows = np.zeros(0, dtype=np.int64)
     for _ in range(ROUNDS):
-        known = bead.constraints(start + directions @ x, directions)
-        if known is None:
+        constraint_state = bead.constraints(start + directions @ x, directions)
+        if constraint_state is None:
             break
-        before, rows = len(rows), np.union1d(rows, _tightest(known[0], len(bead.points)))
-        if len(rows) == before:
+        previous_count, rows = (
+            len(rows),
+            np.union1d(rows, _tightest(constraint_state[0], len(bead.points))),
+        )
+        if len(rows) == previous_count:
             break
         result = _run(bead, start, directions, x, rows)
         x, reason, iterations = result.x, str(result.message), iterations + int(result.nit)
@@ -218,33 +230,43 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
         key = x.tobytes()
         if key not in everywhere:
             everywhere.clear()
-            found = bead.constraints(start + directions @ x, directions)
-            lost = np.full(len(rows), -1.0), np.zeros((len(rows), len(x)))
-            everywhere[key] = lost if found is None else (found[0][rows], found[1][rows])
+            values_and_rates = bead.constraints(start + directions @ x, directions)
+            unreachable = np.full(len(rows), -1.0), np.zeros((len(rows), len(x)))
+            everywhere[key] = (
+                unreachable
+                if values_and_rates is None
+                else (values_and_rates[0][rows], values_and_rates[1][rows])
+            )
         return everywhere[key]
 
     # first steps are as long as the gradient: where constraints turn it aside, one of an objective much below 1 is none
-    scale = 1.0 if bead.more is None else max(float(state(x).objective[0]), SMALLEST)
+    scale = 1.0 if bead.more is None else max(float(state(x).objective[0]), MIN_OBJECTIVE_SCALE)
 
     def objective(x: Array) -> float:
         value = float(state(x).objective[0]) / scale
         return value if np.isfinite(value) else 1e6
 
-    kept = [
+    constraint_list = [
         {"type": "ineq", "fun": lambda x: constraints(x)[0], "jac": lambda x: constraints(x)[1]}
     ]
     if (
         bead.more is not None
     ):  # changes are of the size of a rotation, so that together they stay within reach
-        most, each = bead.more.reach / len(x), np.eye(len(x))
-        both = np.concatenate([each, -each])
-        kept.append({"type": "ineq", "fun": lambda x: most - both @ x, "jac": lambda x: -both})
+        max_change, unit_matrix = bead.more.reach / len(x), np.eye(len(x))
+        both_signs = np.concatenate([unit_matrix, -unit_matrix])
+        constraint_list.append(
+            {
+                "type": "ineq",
+                "fun": lambda x: max_change - both_signs @ x,
+                "jac": lambda x: -both_signs,
+            }
+        )
     # scipy's stubs do not know a list of constraint dictionaries with their own types
     return minimize(  # type: ignore[call-overload]
         objective,
         x,
         jac=lambda x: np.nan_to_num(state(x).gradient[0]) @ directions / scale,
-        constraints=kept,
+        constraints=constraint_list,
         method="SLSQP",
         options={
             "ftol": bead.task.parameters.tolerance,
@@ -259,10 +281,10 @@ def _tightest(values: Array, points: int) -> Integers:
     value = values.reshape(-1, points)
     padded = np.pad(value, ((0, 0), (1, 1)), constant_values=np.inf)
     lowest = (value <= padded[:, :-2]) & (value <= padded[:, 2:])
-    tried = lowest.copy()
-    tried[:, 1:] |= lowest[:, :-1]
-    tried[:, :-1] |= lowest[:, 1:]
-    return np.flatnonzero((tried & (value < FAR_OFF)).ravel())
+    reported = lowest.copy()
+    reported[:, 1:] |= lowest[:, :-1]
+    reported[:, :-1] |= lowest[:, 1:]
+    return np.flatnonzero((reported & (value < FAR_OFF)).ravel())
 
 
 def _at_all_points(

@@ -58,9 +58,13 @@ def state_of(
             np.zeros((points.beads, len(value), powers.shape[1])),
         )
     slope = slopes_of(task, phi, phi_rate, joints, rates, matrix)
-    at = np.stack([_where_worst(points, row, least) for row, least in zip(value, worst)])
+    worst_points = np.stack(
+        [_where_worst(points, row, lowest) for row, lowest in zip(value, worst)]
+    )
     rows = np.arange(len(value))[:, None]
-    constraint_rates = (slope[rows, at][:, :, None] * powers[at]).transpose(1, 0, 2)
+    constraint_rates = (slope[rows, worst_points][:, :, None] * powers[worst_points]).transpose(
+        1, 0, 2
+    )
     return State(objective, gradient, np.full(points.beads, np.nan), worst.T, constraint_rates)
 
 
@@ -77,12 +81,14 @@ def _state_in_pieces(
     where that tells that it is kept, which is at all but a few points."""
     length = task.parameters.characteristic_length
     rates, ratio = np.empty_like(joints), np.empty(len(points))
-    for some in in_pieces(len(points)):
-        rates[some], matrix = task.rotation_rates(points.frames.of(some), phi[some], joints[some])
+    for rows_now in in_pieces(len(points)):
+        rates[rows_now], matrix = task.rotation_rates(
+            points.frames.of(rows_now), phi[rows_now], joints[rows_now]
+        )
         bound = jac.condition_bound(matrix, length)
-        open_ = bound < thresholds[some] * (1.0 + CONDITION_RESERVE)
+        open_ = bound < thresholds[rows_now] * (1.0 + CONDITION_RESERVE)
         bound[open_] = jac.condition(matrix[open_], length)
-        ratio[some] = bound
+        ratio[rows_now] = bound
     rates *= phi_rate[:, None]
     gradient = _gradient(points, criteria.joint_rate(task, points, joints, rates), powers)
     worst = points.worst(values_of(task, thresholds, phi, joints, ratio))
@@ -114,12 +120,14 @@ def _partly_unreachable(
     )
     if b == 1:
         return state
-    lost = np.add.reduceat(np.isnan(joints).any(axis=1), points.first) > 0
-    for bead in np.flatnonzero(~lost):
-        part, chosen = points.only(int(bead))
-        one = state_of(task, part, thresholds[chosen], coefficients[bead : bead + 1], slopes)
+    unreachable = np.add.reduceat(np.isnan(joints).any(axis=1), points.first) > 0
+    for bead in np.flatnonzero(~unreachable):
+        bead_points, point_rows = points.only(int(bead))
+        bead_state = state_of(
+            task, bead_points, thresholds[point_rows], coefficients[bead : bead + 1], slopes
+        )
         for name in ("objective", "gradient", "predicted", "constraints", "constraint_rates"):
-            getattr(state, name)[bead] = getattr(one, name)[0]
+            getattr(state, name)[bead] = getattr(bead_state, name)[0]
     return state
 
 
@@ -179,11 +187,11 @@ def _predicted(
         return np.asarray(np.linalg.norm(gradient, axis=1))
     change = [_between(rates * power[:, None], points) for power in powers.T]
     curvature = np.empty((points.beads, len(change), len(change)))
-    for j, one in enumerate(change):
-        weighed = one * task.weights
-        for k, other in enumerate(change[: j + 1]):
+    for j, change_j in enumerate(change):
+        weighed = change_j * task.weights
+        for k, change_k in enumerate(change[: j + 1]):
             curvature[:, j, k] = curvature[:, k, j] = 2.0 * points.total(
-                np.einsum("ia,ia->i", weighed, other)
+                np.einsum("ia,ia->i", weighed, change_k)
             )
     curvature = np.swapaxes(free, 1, 2) @ curvature @ free
     inverse = np.linalg.pinv(curvature, rcond=1e-10, hermitian=True)

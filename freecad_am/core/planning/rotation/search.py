@@ -31,7 +31,7 @@ TIE = 1e-6
 # poses handled at once, so that they stay in the processor's cache and a long job does not fill the memory
 CHUNK = 30_000
 # times that conditions are looked at, the last time all that are not known of beads of which more are asked for
-LOOKS = 5
+MAX_CONDITION_PASSES = 5
 # sigma_min / sigma_max lies between the bound 1 / kappa_F and its 6-fold: kappa_2 <= kappa_F <= 6 kappa_2
 BOUND_SPREAD = 6.0
 
@@ -50,8 +50,12 @@ class Found:
 
     def of_slope(self, slope: float) -> Found:
         """The candidates of one slope alone."""
-        chosen = np.abs(self.coefficients[:, 0, 1] - slope) < 1e-9
-        return Found(self.coefficients[chosen], self.objective[chosen], self.margin[chosen])
+        candidate_rows = np.abs(self.coefficients[:, 0, 1] - slope) < 1e-9
+        return Found(
+            self.coefficients[candidate_rows],
+            self.objective[candidate_rows],
+            self.margin[candidate_rows],
+        )
 
     def of_beads(self, beads: Index) -> Found:
         """The candidates of some beads (k,) alone."""
@@ -63,8 +67,8 @@ class Found:
 
     def is_best(self, margin: Array) -> Mask:
         """(C, B) which candidates are the best ones if their margins are these, (C, B)."""
-        found: Mask = np.arange(len(margin))[:, None] == self._best(margin)
-        return found
+        best_mask: Mask = np.arange(len(margin))[:, None] == self._best(margin)
+        return best_mask
 
     def _best(self, margin: Array) -> Integers:
         feasible = margin >= 0.0
@@ -98,14 +102,15 @@ def everywhere(
     coefficients[:, :, 0] = offset_grid[:, None]
     if degree > 0:
         coefficients[:, :, 1] = slope_grid[:, None]
-    found = judge(task, points, thresholds, coefficients, conditions=not best_alone)
-    apart = np.abs(slope_grid - np.round(slope_grid)) > 1e-9
-    found.margin[np.ix_(apart, joined)] = UNREACHABLE
+    candidates = judge(task, points, thresholds, coefficients, conditions=not best_alone)
+    not_whole = np.abs(slope_grid - np.round(slope_grid)) > 1e-9
+    candidates.margin[np.ix_(not_whole, joined)] = UNREACHABLE
     if best_alone:
-        found = replace(
-            found, margin=with_conditions(task, points, thresholds, found, found.is_best)
+        candidates = replace(
+            candidates,
+            margin=with_conditions(task, points, thresholds, candidates, candidates.is_best),
         )
-    return found
+    return candidates
 
 
 def with_conditions(
@@ -114,11 +119,11 @@ def with_conditions(
     """(C, B) margins of candidates that were judged by limits alone, with their condition, which only takes from it, where
     that matters: whatever of the margins is `asked` for, (C, B), until all of that is known."""
     margin, known, each = found.margin.copy(), found.margin < 0.0, np.arange(points.beads)
-    for look in range(LOOKS):
+    for look in range(MAX_CONDITION_PASSES):
         new = asked(margin) & ~known
         if not new.any():
             break
-        if look == LOOKS - 1:
+        if look == MAX_CONDITION_PASSES - 1:
             new = ~known & new.any(axis=0)
         some = np.argsort(~new, axis=0, kind="stable")[: new.sum(axis=0).max()]
         looked = judge(task, points, thresholds, found.coefficients[some, each]).margin
