@@ -1497,9 +1497,34 @@
         <translation>: il y est jusqu&apos;à {0} mm plus large, d&apos;après le modèle de cordon ; au-dessous de {1} mm/s rien n&apos;a été mesuré</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <source>; and rows that were laid alike were measured differently: {0}; measure these again</source>
+        <translation>; et des lignes déposées de la même façon ont été mesurées différemment : {0} ; mesurez-les à nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>; between the edges of its triangles it runs smoothly, up to {0} mm off them, about as far as they are off what they stand for</source>
         <translation>; entre les arêtes de ses triangles elle court régulièrement, à {0} mm d&apos;eux au plus, à peu près autant qu&apos;ils s&apos;écartent de ce qu&apos;ils représentent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>; it was taken as it was measured, in the part&apos;s coordinates</source>
+        <translation>; il a été pris tel que mesuré, dans les coordonnées de la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>; it was turned by {0} deg and its origin moved by {1} mm onto the plan</source>
+        <translation>; il a été tourné de {0} deg et son origine déplacée de {1} mm pour venir sur le plan</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
+        <source>; its {0} face(s), about {1}, are each sound</source>
+        <translation>; ses {0} face(s), autour de {1}, sont saines une à une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
+        <source>; {0}</source>
+        <translation>; {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -2710,6 +2735,11 @@
         <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>Faces that lean out over nothing by more than this angle are red in the 3D view</source>
         <translation>Les faces qui surplombent le vide de plus que cet angle sont rouges dans la vue 3D</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
+        <source>Face{0} at {1} is damaged</source>
+        <translation>Face{0} en {1} est endommagée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -7973,8 +8003,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>beads {0} mm wide (process.bead_width) lie {1} mm apart (strategy.bead_spacing): the wire feeds {2} mm3 for each mm of bead, {3} times the {4} mm3 that it has room for; set strategy.bead_spacing to {5} mm, process.bead_width to {6} mm, or process.fill_width to spacing</source>
-        <translation>des cordons larges de {0} mm (process.bead_width) sont espacés de {1} mm (strategy.bead_spacing) : le fil apporte {2} mm3 par mm de cordon, {3} fois les {4} mm3 qui ont de la place ; fixez strategy.bead_spacing à {5} mm, process.bead_width à {6} mm, ou process.fill_width à spacing</translation>
+        <source>beads {0} mm wide (process.bead_width) lie {1} mm apart (strategy.bead_overlap): the wire feeds {2} mm3 for each mm of bead, {3} times the {4} mm3 that it has room for; {5}</source>
+        <translation>des cordons larges de {0} mm (process.bead_width) sont espacés de {1} mm (strategy.bead_overlap) : le fil apporte {2} mm3 par mm de cordon, {3} fois les {4} mm3 qui y tiennent ; {5}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>beads {0} mm wide (process.bead_width) lie {1} mm apart (strategy.bead_spacing): the wire feeds {2} mm3 for each mm of bead, {3} times the {4} mm3 that it has room for; {5}</source>
+        <translation>des cordons larges de {0} mm (process.bead_width) sont espacés de {1} mm (strategy.bead_spacing) : le fil apporte {2} mm3 par mm de cordon, {3} fois les {4} mm3 qui y tiennent ; {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
@@ -8155,6 +8190,21 @@
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>choose a robot with six that turn; those beside it are `cell.external`</source>
         <translation>choisissez un robot qui en a six rotatifs ; ceux d&apos;à côté sont dans `cell.external`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
+        <source>choose a solid part for the wall to grow on</source>
+        <translation>choisissez une pièce solide sur laquelle la paroi s&apos;élève</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/substrate.py"/>
+        <source>choose a solid part or a closed mesh for the wall to grow on</source>
+        <translation>choisissez une pièce solide ou un maillage fermé sur lequel la paroi s&apos;élève</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>choose solids or closed meshes to deposit</source>
+        <translation>choisissez des solides ou des maillages fermés à déposer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
@@ -9312,11 +9362,6 @@
         <translation>il n&apos;a pas de forme ; choisissez un objet qui a une forme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/hub.py"/>
-        <source>it has no solid; choose solids or closed meshes to deposit</source>
-        <translation>il n&apos;a pas de solide ; choisissez des solides ou des maillages fermés à déposer</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
         <source>it has no types</source>
         <translation>il n&apos;a pas de types</translation>
@@ -9592,6 +9637,16 @@
         <translation>ce n&apos;est pas un fichier PLY qui commence par ses sommets ; exportez-le de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>it is no solid, but {0} closed shell(s) of {1} face(s); make solids of them (Part, Convert to solid), or {2}</source>
+        <translation>ce n&apos;est pas un solide, mais {0} coque(s) fermée(s) de {1} face(s) ; faites-en des solides (Part, Convertir en solide), ou {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>it is no solid, but {0} face(s) that enclose nothing, as nothing is joined to the edge at {1} of {2}; {3}, or {4}</source>
+        <translation>ce n&apos;est pas un solide, mais {0} face(s) qui n&apos;enferment rien, car rien n&apos;est joint à l&apos;arête en {1} de {2} ; {3}, ou {4}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
         <source>it is none of signs and a coupling of axes 2 and 3; copy the file itself</source>
         <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
@@ -9647,14 +9702,9 @@
         <translation>ce n&apos;est pas un projet en millimètres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
-        <source>it is not a solid; choose a solid part for the wall to grow on</source>
-        <translation>ce n&apos;est pas un solide ; choisissez une pièce solide sur laquelle la paroi doit croître</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/substrate.py"/>
-        <source>it is not a solid; choose a solid part or a closed mesh for the wall to grow on</source>
-        <translation>ce n&apos;est pas un solide ; choisissez une pièce solide ou un maillage fermé sur lequel la paroi doit croître</translation>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>it is not a solid; {0}</source>
+        <translation>ce n&apos;est pas un solide ; {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -11622,6 +11672,11 @@
         <translation>des lignes du tableau de cordons ont les mêmes réglages et des mesures différentes : {0} ; mesurez ces cordons de nouveau ou retirez une ligne de chaque paire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <source>rows that were laid alike were measured differently: {0}; with both of each pair beads would get wider with speed; measure these beads again, or leave the wrong one out</source>
+        <translation>des lignes déposées de la même façon ont été mesurées différemment : {0} ; avec les deux de chaque paire, les cordons s&apos;élargiraient avec la vitesse ; mesurez ces cordons à nouveau, ou retirez la ligne fausse</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>run as fast as the axes can follow, beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
@@ -11682,6 +11737,31 @@
         <translation>composant sélectionné</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>set strategy.bead_overlap to {0} %, or feed less wire</source>
+        <translation>réglez strategy.bead_overlap à {0} %, ou apportez moins de fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>set strategy.bead_overlap to {0} %, or leave it out and set process.fill_width to spacing</source>
+        <translation>réglez strategy.bead_overlap à {0} %, ou omettez-le et réglez process.fill_width à spacing</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>set strategy.bead_spacing to {0} mm, or feed less wire</source>
+        <translation>réglez strategy.bead_spacing à {0} mm, ou apportez moins de fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>set strategy.bead_spacing to {0} mm, process.bead_width to {1} mm, or process.fill_width to spacing</source>
+        <translation>réglez strategy.bead_spacing à {0} mm, process.bead_width à {1} mm, ou process.fill_width à spacing</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>set strategy.layer_height to {0} mm, or feed less wire</source>
+        <translation>réglez strategy.layer_height à {0} mm, ou apportez moins de fil</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>several columns are {0}: {1}; keep the one that was measured</source>
         <translation>plusieurs colonnes sont {0} : {1} ; gardez celle qui a été mesurée</translation>
@@ -11695,6 +11775,11 @@
         <location filename="../../freecad_am/core/planning/plan.py"/>
         <source>several solutions of this arm bear the same configuration; along each bead the one it begins with is followed</source>
         <translation>plusieurs solutions de ce bras ont la même configuration ; le long de chaque cordon, celle du début est suivie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>sew them (Part, Shape builder: Shell from faces, then Solid from shell), or export the part as a solid from CAD, as STEP rather than as IGES</source>
+        <translation>cousez-les (Part, Générateur de formes : Coque à partir de faces, puis Solide à partir d&apos;une coque), ou exportez la pièce comme solide depuis la CAO, en STEP plutôt qu&apos;en IGES</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -12368,13 +12453,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>the geometry kernel cannot divide this face into triangles; repair it (Part, Check geometry), or redraw it</source>
-        <translation>le noyau géométrique ne peut pas diviser cette face en triangles ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
+        <source>the geometry kernel cannot divide this face, about {0}, into triangles; repair it (Part, Check geometry), or redraw it</source>
+        <translation>le noyau géométrique ne peut pas diviser en triangles cette face, autour de {0} ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>the geometry kernel cannot work with this shape ({0}); repair it (Part, Check geometry), or redraw its faces</source>
-        <translation>le noyau géométrique ne peut pas traiter cette forme ({0}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
+        <source>the geometry kernel cannot work with this shape ({0}{1}); repair it (Part, Check geometry), or redraw its faces</source>
+        <translation>le noyau géométrique ne peut pas travailler avec cette forme ({0}{1}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/along/field.py"/>
@@ -13025,6 +13110,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>the set {0} is missing; add it</source>
         <translation>le jeu {0} manque ; ajoutez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the setting {0} of Cura</source>
+        <translation>le réglage {0} de Cura</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -14405,6 +14495,11 @@
         <location filename="../../freecad_am/core/planning/external/rule.py"/>
         <source>{0} are polynomials per bead, the method {1} has none; use method: {2}, or external_axes: {3}</source>
         <translation>{0} : ce sont des polynômes par cordon, la méthode {1} n&apos;en a pas ; utiliser method : {2}, ou external_axes : {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/between_cuts.py"/>
+        <source>{0} at {1} ({2} mm high, {3} of its {4} cm3)</source>
+        <translation>{0} en {1} (haut de {2} mm, {3} de ses {4} cm3)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
@@ -16187,6 +16282,11 @@
         <translation>{0} solide(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposés</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/between_cuts.py"/>
+        <source>{0} solid(s) lie between the cuts of two layers, {1} mm apart, and get no bead, {2} cm3 in all: {3}{4}; set strategy.layer_height to at most their height, or fuse them with the solid beside them</source>
+        <translation>{0} solide(s) se trouvent entre les coupes de deux couches, distantes de {1} mm, et ne reçoivent aucun cordon, {2} cm3 en tout : {3}{4} ; réglez strategy.layer_height à leur hauteur au plus, ou fusionnez-les avec le solide voisin</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>{0} solids on {1} ({2})</source>
         <translation>{0} solides sur {1} ({2})</translation>
@@ -16602,6 +16702,11 @@
         <translation>{0} : seule une numérisation dans les coordonnées de la pièce dit jusqu&apos;où une pièce a grandi ; donnez none</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: settings of Cura that are not applied, so that the solids are deposited as their meshes are: {1}{2}</source>
+        <translation>{0} : réglages de Cura qui ne sont pas appliqués, si bien que les solides sont déposés tels que sont leurs maillages : {1}{2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0}: solids are built up on the hub, which is there before</source>
         <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
@@ -16635,6 +16740,11 @@
         <location filename="../../freecad_am/core/issues.py"/>
         <source>{0}: {1}</source>
         <translation>{0} : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: {1} = {2}</source>
+        <translation>{0} : {1} = {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/stl_check.py"/>

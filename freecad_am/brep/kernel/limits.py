@@ -16,7 +16,7 @@ from freecad_am.core.types import Array, Index
 
 from ...core.geometry.formatting import place
 from ...core.geometry.walls.surface import dot
-from ...core.issues import InputError, Text, Word
+from ...core.issues import InputError, Text
 
 # since FreeCAD 1.0 some faults are a plain RuntimeError, the base of these
 FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)
@@ -42,7 +42,7 @@ def reported(label: str, shape: Any = None) -> Iterator[None]:
             "the geometry kernel cannot work with this shape ({}{}); repair it (Part, Check geometry), or "
             "redraw its faces",
             what,
-            Word(_damaged(shape)),
+            _damaged(shape),
         ) from error
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...core.geometry.formatting import place
-from ...core.issues import InputError, Text, Word
+from ...core.issues import InputError, Text
 
 SEW = Text(
     "sew them (Part, Shape builder: Shell from faces, then Solid from shell), or export the part as a solid from CAD, "
@@ -20,7 +20,7 @@ def no_solid(source: Any, label: str, wanted: str) -> InputError:
     """The error NO_SOLID for a Part.Shape, or None. wanted: what to choose instead, for the end of the sentence."""
     faces = [] if source is None or source.isNull() else list(source.Faces)
     if not faces:
-        return InputError("NO_SOLID", label, "it is not a solid; {}", Word(wanted))
+        return InputError("NO_SOLID", label, "it is not a solid; {}", wanted)
     if source.Shells and all(shell.isClosed() for shell in source.Shells):
         return InputError(
             "NO_SOLID",
@@ -28,16 +28,18 @@ def no_solid(source: Any, label: str, wanted: str) -> InputError:
             "it is no solid, but {} closed shell(s) of {} face(s); make solids of them (Part, Convert to solid), or {}",
             len(source.Shells),
             len(faces),
-            Word(wanted),
+            wanted,
         )
+    edge, face = _open_edge(faces)
     return InputError(
         "NO_SOLID",
         label,
         "it is no solid, but {} face(s) that enclose nothing, as nothing is joined to the edge at {} of {}; {}, or {}",
         len(faces),
-        *_open_edge(faces),
-        Word(SEW),
-        Word(wanted),
+        edge,
+        face,
+        SEW,
+        wanted,
     )
 
 

@@ -237,11 +237,15 @@ def _record(
 def _moved(motion: Array) -> str:
     """In words, how a scan was laid onto what was planned."""
     if np.array_equal(motion, np.eye(4)):
-        return "; it was taken as it was measured, in the part's coordinates"
+        return Text("; it was taken as it was measured, in the part's coordinates")
     angle = math.degrees(
         math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(motion[:3, :3])) - 1.0))))
     )
-    return f"; it was turned by {angle:.3f} deg and its origin moved by {np.linalg.norm(motion[:3, 3]):.3f} mm onto the plan"
+    return Text(
+        "; it was turned by {:.3f} deg and its origin moved by {:.3f} mm onto the plan",
+        angle,
+        float(np.linalg.norm(motion[:3, 3])),
+    )
 
 
 def _slope(planned: Sequence[Scanned]) -> float:

@@ -182,8 +182,8 @@ def fit(
             "COLLINEAR_TABLE",
             label,
             "{}{}",
-            Word(_alike(radius, speed, equivalent)),
-            Word(_besides(contradictions)),
+            _alike(radius, speed, equivalent),
+            _besides(contradictions),
         )
     fits = [_fit(terms, column) for column in (width, height)]
     if fits[0].m <= 0.0:
@@ -281,8 +281,10 @@ def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
         if not np.isinf(column).any() and np.ptp(column) <= FLATTEST * column.max()
     ]
     if not same and np.ptp(equivalent) <= FLATTEST * equivalent.max():
-        return "all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed"
-    text = Text.joined(", and ", same) or "speeds and radii vary only together"
+        return Text(
+            "all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed"
+        )
+    text = Text.joined(", and ", same) if same else Text("speeds and radii vary only together")
     return Text(
         "{}; measure at least two speeds{}", text, Word("" if straight else " and two radii")
     )

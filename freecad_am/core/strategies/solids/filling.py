@@ -352,7 +352,7 @@ def over_fed(
         section,
         fed,
         spacing * height,
-        Word(_wider_apart(strategy, process, model, section)),
+        _wider_apart(strategy, process, model, section),
     )
     return [Issue(WARNING, "BEAD_SPACING", text)]
 
