@@ -118,7 +118,7 @@ JOBS = (
 def run() -> list[Row]:
     """The least distance between what is kept apart, of each job, against what was asked for."""
     found = []
-    for job in choose(JOBS, JOBS[2:3]):
+    for job in choose(JOBS, JOBS[:1]):
         near, kept = (_judged(job, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm"))
         assert near is None or near < CLEARANCE, (
             f"nothing to keep apart: {near:.1f} mm between {job.name}"
