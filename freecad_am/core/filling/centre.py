@@ -23,6 +23,7 @@ NETWORK = 12.0  # squares of half a bead's width: a region that large, without r
 RIB = 0.6  # of a bead's width; what stands out thicker than that in the mean is a rib
 SLIVER = 1.0  # of the chord error; of what is narrower its border is as good as its middle, which takes long to find there
 DOT = 5.0  # of half a bead's width; round regions narrower than a bead are no larger than that
+LEAST_BARE = 0.01  # of the square of half a bead's width; rounding leaves thousands of smaller places between beads
 ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 
 
@@ -145,7 +146,7 @@ def bare_parts(
         return []
     reached = along(lines, beads.inset, max(beads.chord_error, COARSE * beads.inset))
     parts = []
-    for part in region.without(reached):
+    for part in region.without(reached, least_area=LEAST_BARE * beads.inset**2):
         if part.extent <= 2.0 * beads.inset:
             continue
         border = part.borders()[0]

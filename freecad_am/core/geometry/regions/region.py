@@ -157,14 +157,18 @@ class Region:
             _buffered(self.shape, distance, chord_error), SLIVER * self.extent**2, self.sheet
         )
 
-    def without(self, others: Iterable[Region], wide: float = 0.0) -> tuple[Region, ...]:
+    def without(
+        self, others: Iterable[Region], wide: float = 0.0, least_area: float = 0.0
+    ) -> tuple[Region, ...]:
         """What is left when others are taken away. wide: mm; of pieces too small for a circle of that diameter, which may be
-        very many, those are left out of which `grown` by minus half of it leaves nothing whatever its arcs."""
+        very many, those are left out of which `grown` by minus half of it leaves nothing whatever its arcs. least_area: mm2;
+        smaller pieces are left out."""
         away = shapely().ops.unary_union([other.shape for other in others])
         left = self.shape.difference(away)
         if wide > 0.0:
             left = _apart(left, STRAIGHT * self.extent)
-        return _parts(left, max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2), self.sheet)
+        least = max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2, least_area)
+        return _parts(left, least, self.sheet)
 
     def common(self, others: Iterable[Region], every_point: bool = False) -> tuple[Region, ...]:
         """What it shares with others. every_point: as `regions`."""
