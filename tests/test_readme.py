@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from freecad_am.batch import cli
-from freecad_am.batch.arguments import command_parsers
+from freecad_am.batch.arguments import COMMANDS, command_parsers
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.posts import catalogue
 
@@ -67,7 +66,7 @@ def test_links_lead_somewhere(page):
 
 
 def test_commands_are_shown():
-    assert {words[0] for page, words in SHOWN if page == "README.md"} == {*cli.COMMANDS, *LAUNCHED}
+    assert {words[0] for page, words in SHOWN if page == "README.md"} == {*COMMANDS, *LAUNCHED}
 
 
 @pytest.mark.parametrize(
@@ -78,7 +77,7 @@ def test_commands_parse(page, words):
     if command in LAUNCHED:
         assert re.fullmatch(LAUNCHED[command], " ".join(rest)), words
         return
-    assert command in cli.COMMANDS
+    assert command in COMMANDS
     if not rest:
         return  # a command by its name alone
     options = vars(command_parsers()[1][command].parse_args(rest))
@@ -93,13 +92,16 @@ def test_the_launcher_tells_of_the_same_commands():
     ).stdout
     assert {
         line.split()[0] for line in usage.splitlines() if line.startswith("  ") and line[2] != " "
-    } == {*cli.COMMANDS, *LAUNCHED}
+    } == {*COMMANDS, *LAUNCHED}
 
 
 def test_packages_are_those_the_launcher_installs():
     launcher = (ROOT / "freecad-am").read_text(encoding="utf-8")
-    wanted = set(re.findall(r"_packages='(.+)'", launcher)[0].split())
-    wanted |= set(re.search(r'testing_packages="\$planning_packages (.+)"', launcher)[1].split())
+    wanted = set(" ".join(re.findall(r"_packages='(.+)'", launcher)).split())
+    testing = re.search(
+        r'testing_packages="\$planning_packages \$reference_packages (.+)"', launcher
+    )
+    wanted |= set(testing[1].split())
     paragraph = (
         (ROOT / "README.md")
         .read_text(encoding="utf-8")

@@ -39,7 +39,7 @@ def command_parsers() -> tuple[Parser, dict[str, Parser]]:
         help="folder of the outputs; without it out/<name> beside the job",
     )
     parsers = {}
-    for name, (summary, has_outputs, add_arguments) in _COMMANDS.items():
+    for name, (summary, has_outputs, add_arguments) in COMMANDS.items():
         parser = commands.add_parser(
             name,
             prog=f"{PROGRAM} {name}",
@@ -157,7 +157,7 @@ def _process_count(text: str) -> int:
 
 
 # of each command: what it does, whether it writes outputs, and what adds its arguments
-_COMMANDS: dict[str, tuple[str, bool, Callable[[Parser], None]]] = {
+COMMANDS: dict[str, tuple[str, bool, Callable[[Parser], None]]] = {
     "plan": ("plan one job, from part to programs", True, _add_plan),
     "export": ("recompute a saved document and write its programs", True, _add_export),
     "batch": ("plan one job per row of a table of job keys", True, _add_batch),

@@ -12,7 +12,6 @@ import sys
 from typing import Any
 
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
-COMMANDS = ("plan", "export", "batch", "inspect", "check", "place", "machines")
 SHAPES = ("plan", "export", "inspect", "place")  # commands that read shapes
 
 
@@ -66,11 +65,11 @@ def _run(argv: list[str], session: Any) -> int:
                 "{!r} holds bytes that are not UTF-8; use a name in UTF-8",
                 shown,
             )
-    if command not in COMMANDS:
+    if command not in parsers:
         import difflib
 
-        near = difflib.get_close_matches(command, (*COMMANDS, "demo", "test", "bench", "docs"), n=1)
-        hint = f"did you mean {near[0]}?" if near else f"use one of {', '.join(COMMANDS)}"
+        near = difflib.get_close_matches(command, (*parsers, "demo", "test", "bench", "docs"), n=1)
+        hint = f"did you mean {near[0]}?" if near else f"use one of {', '.join(parsers)}"
         raise InputError("USAGE", "command line", "there is no command {!r}; {}", command, hint)
     parser = parsers[command]
     if "-h" in words or "--help" in words:

@@ -163,17 +163,17 @@ def narrowed(
 def _smoothed(line: Array, values: Array, closed: bool, reach: float) -> Array:
     """The values (n - 1,) of the edges of a line (n, 2), averaged over `reach` mm to either side: a bead whose width changes
     at once has a kink in its path, or a dent in its side."""
-    ends = arcs(line)
-    length = ends[-1]
+    way = arcs(line)
+    length = way[-1]
     reach = min(reach, 0.5 * length)
-    sums = np.r_[0.0, np.cumsum(values * np.diff(ends))]
+    sums = np.r_[0.0, np.cumsum(values * np.diff(way))]
     if closed:
-        ends = np.r_[ends[:-1] - length, ends, ends[1:] + length]
+        ends = np.r_[way[:-1] - length, way, way[1:] + length]
         sums = np.r_[sums[:-1] - sums[-1], sums, sums[1:] + sums[-1]]
     else:
-        ends = np.r_[-length, ends, 2.0 * length]
+        ends = np.r_[-length, way, 2.0 * length]
         sums = np.r_[-length * values[0], sums, sums[-1] + length * values[-1]]
-    middles = 0.5 * (arcs(line)[1:] + arcs(line)[:-1])
+    middles = 0.5 * (way[1:] + way[:-1])
     rise = np.interp(middles + reach, ends, sums) - np.interp(middles - reach, ends, sums)
     return np.asarray(rise / (2.0 * reach))
 

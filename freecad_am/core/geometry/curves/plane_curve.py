@@ -148,7 +148,8 @@ def fractions(points: Array) -> Array:
 
 
 def divided(points: Array, count: Index) -> tuple[Array, Mask]:
-    """An open polyline (n, 2) with its edges in so many (n - 1,) equal parts each, and which points (m,) it had before."""
+    """An open polyline (n, 2), or (n, 3) in space, with its edges in so many (n - 1,) equal parts each, and which points (m,)
+    it had before."""
     edge = np.repeat(np.arange(len(count)), count)
     number = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
     inner = points[edge] + (number / count[edge])[:, None] * np.diff(points, axis=0)[edge]

@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from ...collision.inside import inside_of
 from ...geometry.curves.guide import Guide
+from ...geometry.curves.plane_curve import divided
 from ...geometry.developable import Developable
 from ...geometry.formatting import place
 from ...geometry.mesh.orientation import connected_pieces
@@ -21,6 +22,7 @@ from ...geometry.mesh.solid import SolidMesh
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group, SolidsOnHub
 from ...geometry.plane import Plane
+from ...geometry.step_count import step_counts
 from ...issues import WARNING, Issue, Text
 from ...layers.planes.field import ASIDE, EXACT
 from ...parameters.filled import FilledParameters
@@ -175,7 +177,6 @@ def _along(beads: Sequence[Bead], step: float) -> Array:
     """Points (n, 3) along the middles of beads, no more than `step` mm apart."""
     points = []
     for bead in beads:
-        way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))]
-        at = np.linspace(0.0, way[-1], int(np.ceil(way[-1] / step)) + 1)
-        points.append(np.stack([np.interp(at, way, bead.points[:, k]) for k in range(3)], axis=1))
+        lengths = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+        points.append(divided(bead.points, step_counts(lengths, step))[0])
     return np.concatenate(points)
