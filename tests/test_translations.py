@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.geometry.mesh.repair import repaired
+from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.issues import AmError, Issue, Text
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.process import ProcessParameters
@@ -381,7 +381,7 @@ def test_what_was_mended_of_a_mesh_is_told_in_french(told):
         [0, 6, 4],
     ]
     faces[0], faces[9:] = faces[0][::-1], [faces[9], faces[9]]
-    issues = repaired(points, np.array(faces), "box", hole=20.0).issues
+    issues = repair_mesh(points, np.array(faces), "box", hole=20.0).issues
     assert {issue.code for issue in issues} == {"MESH_REPAIRED", "MENDED"}
     text = " ".join(told(issue.message) for issue in issues)
     for words in (

@@ -16,8 +16,8 @@ from freecad_am.core.types import Array
 
 from ..core.geometry.columns import lengths
 from ..core.geometry.developable import Developable
-from ..core.geometry.mesh.manifold import holes, separated
-from ..core.geometry.mesh.repair import Repaired, crossing_messages, mended_issues, repaired
+from ..core.geometry.mesh.manifold import find_holes, separate_vertices
+from ..core.geometry.mesh.repair import Repaired, crossing_messages, mended_issues, repair_mesh
 from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.obstacles import Body
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
@@ -61,7 +61,7 @@ def bodies_of(
             points, triangles = source.vertices, source.triangles
         else:
             points, triangles = (np.array([tuple(row) for row in rows]) for rows in source.Topology)
-        found = repaired(
+        found = repair_mesh(
             np.asarray(points, dtype=np.float64),
             np.asarray(triangles, dtype=np.intp),
             label,
@@ -123,11 +123,12 @@ def _meshed(
         mesh.refuse_unsound(label, of_shape=True, touching=touching)
     except InputError as unsound:
         try:
-            found = repaired(vertices, mesh.triangles, label, mend, touching)
+            found = repair_mesh(vertices, mesh.triangles, label, mend, touching)
             return found._replace(issues=(*found.issues, *issues))
         except InputError:
             widest = max(
-                (hole.size for hole in holes(separated(vertices, mesh.triangles))), default=0.0
+                (hole.size for hole in find_holes(separate_vertices(vertices, mesh.triangles))),
+                default=0.0,
             )
         if widest <= mend:
             raise

@@ -13,7 +13,7 @@ import pytest
 from freecad_am import api
 from freecad_am.brep.files import mesh_difference, three_mf
 from freecad_am.brep.files.read import mesh_content, read_mesh
-from freecad_am.core.geometry.mesh.repair import repaired
+from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.issues import InputError
 
@@ -139,7 +139,7 @@ def test_moves_of_items_and_of_components_in_components_follow_one_another(tmp_p
         solid = SolidMesh(points, corners[4 * k : 4 * k + 4])
         assert solid.volume == pytest.approx(abs(np.linalg.det(way[:3, :3])), rel=1e-12)
         assert set(np.unique(solid.triangles)) == set(range(4 * k, 4 * k + 4)) and len(own) == 4
-    assert len(repaired(points, corners, "part").solids) == 4
+    assert len(repair_mesh(points, corners, "part").solids) == 4
 
 
 def test_objects_in_further_files_and_a_model_in_another_place(tmp_path):

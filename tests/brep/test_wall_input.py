@@ -338,7 +338,7 @@ def test_a_branch_that_comes_out_on_both_sides_grows_on_both_and_one_from_the_bo
 
 
 def test_a_mesh_that_comes_to_no_end_is_not_said_to_have_too_many_triangles(monkeypatch):
-    monkeypatch.setattr(sheet, "refined", lambda *args, **more: None)
+    monkeypatch.setattr(sheet, "refine_mesh", lambda *args, **more: None)
     with pytest.raises(InputError) as caught:
         wall_on(half_tube(), (), slab(), 4.0, "Wall", "Slab")
     assert caught.value.code == "TOO_FINE"

@@ -21,7 +21,7 @@ def patch_wall(
     uv = np.empty((len(triangles), 3, 2))
     for k, patch in enumerate(patches):
         mine = owner == k
-        uv[mine] = patch.unwrapped(
+        uv[mine] = patch.unwrap(
             patch.inverse(vertices[triangles[mine]].reshape(-1, 3)).reshape(-1, 3, 2)
         )
     bare = PatchWall(

@@ -17,7 +17,7 @@ import numpy as np
 from freecad_am.core.types import Array, Index
 
 from ...core.geometry.mesh.facets import doubled_areas
-from ...core.geometry.mesh.polygon import triangulated
+from ...core.geometry.mesh.polygon import triangulate
 from ...core.issues import NOTE, InputError, Issue, Text
 
 CONTENT = "FILE_CONTENT"
@@ -169,7 +169,7 @@ class ObjMesh:
                 len(vertices),
             )
         large = [
-            np.array(face)[triangulated(vertices[face])] for face in self._faces if len(face) > 4
+            np.array(face)[triangulate(vertices[face])] for face in self._faces if len(face) > 4
         ]
         corners = np.concatenate([self._small_faces(vertices), *large])
         used, corners = np.unique(corners, return_inverse=True)
@@ -194,7 +194,7 @@ class ObjMesh:
         normals = doubled_areas(vertices[halves].reshape(-1, 3, 3)).reshape(-1, 2, 3)
         dented = (normals[:, 0] * normals[:, 1]).sum(axis=1) <= 0.0
         for k in np.flatnonzero(dented):
-            halves[k] = fours[k][triangulated(vertices[fours[k]])]
+            halves[k] = fours[k][triangulate(vertices[fours[k]])]
         numbers = np.r_[np.flatnonzero(counts == 3), np.repeat(np.flatnonzero(counts == 4), 2)]
         in_order = np.argsort(numbers, kind="stable")
         return np.concatenate([threes, halves.reshape(-1, 3)])[in_order]

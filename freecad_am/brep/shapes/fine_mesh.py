@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.geometry.mesh.refined import Edges, quartered
+from ...core.geometry.mesh.refined import Edges, quarter_triangles
 from ...core.issues import InputError
 from ..walls.sheet_places import Places
 from ..walls.surface_patch import patch_of
@@ -56,7 +56,7 @@ def _fine(shape: Any, chord: float) -> Tessellation:
     )
     places = Places(shape, patches, nodes, vertices, edge)
     for _ in range(times):
-        vertices, triangles, owner = quartered(vertices, triangles, owner, places.middles)
+        vertices, triangles, owner = quarter_triangles(vertices, triangles, owner, places.middles)
     return Tessellation(vertices, triangles, owner, [])
 
 

@@ -124,10 +124,10 @@ def off_mesh(vertices: Array, triangles: Integers, points: Array) -> Array:
 
 def _off_pieces(vertices: Array, triangles: Integers, points: Array) -> Array:
     """The same, each piece of the mesh mended and looked at by itself."""
-    from ...core.geometry.mesh.repair import repaired  # few parts are meshes
+    from ...core.geometry.mesh.repair import repair_mesh  # few parts are meshes
 
     try:
-        pieces = repaired(vertices, triangles.astype(np.intp), "", np.inf, True).solids
+        pieces = repair_mesh(vertices, triangles.astype(np.intp), "", np.inf, True).solids
     except InputError:  # the side of the nearest triangle is all there is
         return np.maximum(_signed(_searched(vertices, triangles), points), 0.0)
     away = np.min(
@@ -212,7 +212,7 @@ def _searched(vertices: Array, triangles: Any) -> Search:
 
 
 def _away(search: Search, points: Array) -> Array:
-    return np.concatenate([search.away(some) for some in _pieces(points)])
+    return np.concatenate([search.distance(some) for some in _pieces(points)])
 
 
 def _signed(search: Search, points: Array) -> Array:

@@ -14,7 +14,7 @@ from freecad_am.core.types import Array
 from ...core.collision.depths import grain, measured
 from ...core.geometry.curves.profile import RevolvedWall
 from ...core.geometry.mesh.facets import doubled_areas
-from ...core.geometry.mesh.solid import SolidMesh, spread
+from ...core.geometry.mesh.solid import SolidMesh, divide_triangles
 from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.part_depths import PartDepths, Surface
 from ..kernel.limits import FAULTS
@@ -128,6 +128,8 @@ def _places(body: Body, on: Any) -> Surface:
         return Surface(*(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)))
     across = doubled_areas(corners)
     twice: Array = np.linalg.norm(across, axis=1)
-    points, of = spread(corners, grain(corners, float(2.0 * np.sqrt(0.5 * twice.sum() / PLACES))))
+    points, of = divide_triangles(
+        corners, grain(corners, float(2.0 * np.sqrt(0.5 * twice.sum() / PLACES)))
+    )
     areas = (0.5 * twice / np.maximum(np.bincount(of, minlength=len(corners)), 1))[of]
     return Surface(points, (across / np.maximum(twice, 1e-300)[:, None])[of], areas)

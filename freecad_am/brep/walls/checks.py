@@ -16,7 +16,7 @@ from freecad_am.core.types import Array, Index, Mask
 from ...core.geometry.formatting import place
 from ...core.geometry.mesh.refined import Edges, boundary
 from ...core.geometry.walls.patch_wall import PatchWall
-from ...core.geometry.walls.rims import parts
+from ...core.geometry.walls.rims import connected_parts
 from ...core.geometry.walls.surface import dot, normals
 from ...core.geometry.walls.surface_wall import SurfaceWall
 from ...core.issues import InputError
@@ -37,7 +37,7 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
     corner = wall.vertices[ends]
     middle = corner.mean(axis=1)
     tree = cKDTree(middle)
-    count, part = parts(wall, np.ones(len(wall.vertices), dtype=bool))
+    count, part = connected_parts(wall, np.ones(len(wall.vertices), dtype=bool))
     near = np.asarray(tree.query(middle, k=min(16, len(middle)))[1]).reshape(len(middle), -1)
     other = (owner[near] != owner[:, None]) | (part[ends[near, 0]] != part[ends[:, 0]][:, None])
     apart = ~(ends[near][:, :, :, None] == ends[:, None, None, :]).any(axis=(2, 3))

@@ -17,11 +17,11 @@ from ...core.geometry.mesh.edge_runs import CORNER, runs
 from ...core.geometry.mesh.facets import doubled_areas
 from ...core.geometry.mesh.refined import boundary
 from ...core.geometry.obstacles import Body
-from ...core.geometry.walls.contact import first_curves, levels, splined
+from ...core.geometry.walls.contact import first_curves, fit_splines, ground_distances
 from ...core.geometry.walls.ground import PlaneGround
 from ...core.geometry.walls.mesh_wall import MAX_TRIANGLES, MeshWall, mesh_wall
 from ...core.geometry.walls.patch_wall import FirstCurve
-from ...core.geometry.walls.rims import parts, rims_of, with_ends
+from ...core.geometry.walls.rims import connected_parts, find_rims, mark_ends
 from ...core.geometry.walls.surface import dot
 from ...core.issues import NOTE, InputError, Issue, Text
 from .patch_wall import EQUAL, from_substrate, several_loops
@@ -61,7 +61,7 @@ def find_mesh_wall(
             enough,
         )
     wall = mesh_wall(body.vertices, body.triangles.astype(np.intp), height, label, mend)
-    rims = rims_of(wall)
+    rims = find_rims(wall)
     if start_edges:
         start = _from_edges(wall, start_edges, label)
     elif substrate is not None:
@@ -75,7 +75,7 @@ def find_mesh_wall(
         wall,
         first=tuple(start.first),
         behind=start.behind,
-        rims=with_ends(wall, rims, tuple(start.first), start.behind),
+        rims=mark_ends(wall, rims, tuple(start.first), start.behind),
         issues=tuple(issues),
         ground=_lowest(wall) if substrate is None else None,
     )
@@ -101,7 +101,7 @@ def _curve(loop: Array) -> FirstCurve:
     before = loop - np.roll(loop, 1, axis=0)
     before /= np.maximum(np.linalg.norm(before, axis=1, keepdims=True), 1e-300)
     sharp = dot(before, np.roll(before, -1, axis=0)) < np.cos(CORNER)
-    return FirstCurve(*splined(loop, sharp, True), True)
+    return FirstCurve(*fit_splines(loop, sharp, True), True)
 
 
 def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
@@ -157,8 +157,8 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
     flat = np.abs(normal[:, 2]) > UPRIGHT * np.linalg.norm(normal, axis=1)
     if (flat & (corner[:, :, 2] < lowest + FLOOR * height).all(axis=1)).any():
         ground = PlaneGround(lowest + ABOVE * height)
-        value = levels(wall, ground)
-        first, _ = first_curves(wall, ground, value, rims_of(wall))
+        value = ground_distances(wall, ground)
+        first, _ = first_curves(wall, ground, value, find_rims(wall))
         text = Text(
             "the first layer runs {:g} mm over the floor of {}, which is not deposited",
             ABOVE * height,
@@ -187,7 +187,7 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
 
 def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
     """InputError GAP where a piece of the wall hangs together with nothing that layers start from."""
-    number, part = parts(wall, ~start.behind)
+    number, part = connected_parts(wall, ~start.behind)
     if number < 2:
         return
     near = cKDTree(np.vstack([one.points for one in start.first]))

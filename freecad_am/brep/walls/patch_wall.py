@@ -14,9 +14,9 @@ from freecad_am.core.types import Mask
 
 from ...core.geometry.formatting import at_least, count, deviation, place
 from ...core.geometry.walls import contact
-from ...core.geometry.walls.ground import nearest
+from ...core.geometry.walls.ground import nearest_point
 from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
-from ...core.geometry.walls.rims import outward_volume, parts, rims_of, with_ends
+from ...core.geometry.walls.rims import connected_parts, find_rims, mark_ends, outward_volume
 from ...core.issues import NOTE, InputError, Issue, Text
 from .checks import refuse_creases, refuse_gaps, refuse_tight, smallest_radii
 from .cuts import refuse_crossing, refuse_folded
@@ -53,7 +53,7 @@ def find_patch_wall(
     refuse_gaps(wall, label)
     refuse_crossing(wall, label)
     wall = _outward(wall, shape)
-    rims = rims_of(wall)
+    rims = find_rims(wall)
     issues: list[Issue] = []
     if start_edges:
         first = curves_of(shape, start_edges, wall, label)
@@ -69,7 +69,7 @@ def find_patch_wall(
         wall,
         first=tuple(first),
         behind=behind,
-        rims=with_ends(wall, rims, tuple(first), behind),
+        rims=mark_ends(wall, rims, tuple(first), behind),
         issues=tuple(issues),
         ground=float(wall.vertices[:, 2].min()) if substrate is None else None,
     )
@@ -176,8 +176,8 @@ def from_substrate(
     """Where a wall leaves its substrate, which of its vertices (n,) lie behind that, and notes. InputError NO_CONTACT,
     INSIDE, OWN_SUBSTRATE."""
     ground = substrate.ground(wall.mesh.typical_edge)
-    value = contact.levels(wall, ground)
-    if np.abs(value).max() < contact.TOUCH + getattr(
+    value = contact.ground_distances(wall, ground)
+    if np.abs(value).max() < contact.TOUCH_MM + getattr(
         wall, "smoothing", 0.0
     ):  # a mesh's smooth surface is off it
         raise InputError(
@@ -189,7 +189,7 @@ def from_substrate(
         )
     outside = value >= 0.0
     if outside.all():
-        at, gap = nearest(wall.vertices, ground, value)
+        at, gap = nearest_point(wall.vertices, ground, value)
         raise InputError(
             "NO_CONTACT",
             label,
@@ -198,10 +198,10 @@ def from_substrate(
             substrate.label,
             place(wall.vertices[at]),
             gap,
-            contact.TOUCH,
+            contact.TOUCH_MM,
         )
     if not outside.any():
-        at, depth = nearest(wall.vertices, ground, value)
+        at, depth = nearest_point(wall.vertices, ground, value)
         raise InputError(
             "INSIDE",
             label,
@@ -244,7 +244,7 @@ def _stays_in(wall: PatchWall, outside: Mask, substrate: Substrate) -> Mask:
     pipe), while another part does."""
     low, high = substrate.solid.vertices.min(axis=0), substrate.solid.vertices.max(axis=0)
     leaves = ((wall.vertices < low - 1e-3) | (wall.vertices > high + 1e-3)).any(axis=1)
-    count, part = parts(wall, outside)
+    count, part = connected_parts(wall, outside)
     goes = np.zeros(count, dtype=bool)
     goes[part[outside & leaves]] = True
     dropped = outside.copy()

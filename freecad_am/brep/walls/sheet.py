@@ -13,9 +13,9 @@ import Part
 
 from freecad_am.core.types import Array, Index
 
-from ...core.geometry.mesh.collapsed import collapsed
+from ...core.geometry.mesh.collapsed import collapse_edges
 from ...core.geometry.mesh.facets import doubled_areas
-from ...core.geometry.mesh.refined import Edges, count_halved, flipped, refined
+from ...core.geometry.mesh.refined import Edges, count_halved, flip_edges, refine_mesh
 from ...core.geometry.walls.patch import Patch
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot
@@ -50,7 +50,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     triangles = _turned(triangles, owner, names, label)
     places = Places(shape, patches, nodes, vertices, edge)
     made = (
-        refined(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES)
+        refine_mesh(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES)
         if about < 2 * MAX_TRIANGLES
         else None
     )
@@ -58,21 +58,21 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
         made is None and about < MAX_TRIANGLES
     ):  # long needles, as on slanted tubes: turned edges reach from side to side
         places = Places(shape, patches, nodes, vertices, edge)
-        made = refined(
-            vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES, turned=False
+        made = refine_mesh(
+            vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES, flip=False
         )
     if made is None:
         raise _too_fine(edge, about, label)
     vertices, triangles, owner = made
-    triangles, owner = collapsed(vertices, triangles, owner, COLLAPSE * edge, edge)
-    triangles = flipped(vertices, triangles, owner)
+    triangles, owner = collapse_edges(vertices, triangles, owner, COLLAPSE * edge, edge)
+    triangles = flip_edges(vertices, triangles, owner)
     uv = np.empty((len(triangles), 3, 2))
     turned = []
     for k, patch in enumerate(patches):
         mine = owner == k
         used, index = np.unique(triangles[mine], return_inverse=True)
         found = places.parameters(k, vertices, used)
-        uv[mine] = patch.unwrapped(found[np.ravel(index)].reshape(-1, 3, 2))
+        uv[mine] = patch.unwrap(found[np.ravel(index)].reshape(-1, 3, 2))
         turned.append(facing(patch, vertices[triangles[mine]]))
     used, index = np.unique(triangles, return_inverse=True)
     vertices, triangles = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
@@ -162,7 +162,8 @@ def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Ind
     two = np.flatnonzero(edges.count == 2)
     one, other = edges.faces[two].T
     ways = [
-        forward[face, np.argmax(edges.of[face] == two[:, None], axis=1)] for face in (one, other)
+        forward[face, np.argmax(edges.of_triangle[face] == two[:, None], axis=1)]
+        for face in (one, other)
     ]
     against = ways[0] == ways[1]
     count = len(names)

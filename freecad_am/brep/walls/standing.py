@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import Part
 
-from ...core.geometry.walls.contact import TOUCH
+from ...core.geometry.walls.contact import TOUCH_MM
 from ..shapes.tessellate import DEFLECTION, triangles_of
 
 SAMPLES = 9
@@ -27,7 +27,7 @@ def standing_edges(faces: Sequence[Any], lowest: float) -> list[Any]:
             points = np.array(
                 [tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, SAMPLES)]
             )
-            if points[:, 2].max() < lowest + TOUCH:
+            if points[:, 2].max() < lowest + TOUCH_MM:
                 at = np.round([*points[SAMPLES // 2], edge.Length], DIGITS) + 0.0
                 found.setdefault(tuple(at.tolist()), []).append(edge)
     return [edges[0] for edges in found.values() if len(edges) == 1]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...core.geometry.formatting import place
-from ...core.geometry.mesh.repair import repaired
+from ...core.geometry.mesh.repair import repair_mesh
 from ...core.geometry.mesh.solid import SolidMesh
 from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.ground import ExactGround, FacetGround, Ground
@@ -113,7 +113,7 @@ def mesh_solid(
     try:
         solid.refuse_unsound(label)
     except InputError:
-        found = repaired(
+        found = repair_mesh(
             np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), label, mend
         )
         begin = np.cumsum([0, *(len(one.vertices) for one in found.solids)])

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.mesh.facets import doubled_areas
-from ..geometry.mesh.solid import spread
+from ..geometry.mesh.solid import divide_triangles
 from ..geometry.obstacles import Body
 from ..geometry.walls.part_depths import Surface
 from ..types import Array, Index
@@ -47,7 +47,7 @@ def measured(
     probes = _probes(surface)
     sense, half = _inward(probes, inside, slack)
     inward = sense * surface.normals
-    middles, triangle_of = spread(part.corners(), grain(part.corners(), 2.0 * spacing))
+    middles, triangle_of = divide_triangles(part.corners(), grain(part.corners(), 2.0 * spacing))
     deep = _depths(middles, surface, inward, half, spacing)
     weight = (
         _areas(part)[triangle_of]

@@ -80,7 +80,9 @@ def _off(points: Array, body: Body) -> Array:
     """Distance (k,), mm, of some of points (n, 3) from the body."""
     some = points[np.unique(np.linspace(0, len(points) - 1, LOOKED).astype(np.intp))]
     solid = SolidMesh(body.vertices, body.triangles)
-    return np.asarray(solid.searched(0.02 * float(np.ptp(body.vertices, axis=0).max())).away(some))
+    return np.asarray(
+        solid.searched(0.02 * float(np.ptp(body.vertices, axis=0).max())).distance(some)
+    )
 
 
 def extent(points: Array) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.mesh.refined import refined
+from ..geometry.mesh.refined import refine_mesh
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.obstacles import Body
 from ..types import Array, Mask
@@ -31,7 +31,7 @@ def scanned(body: Body, scan: Scan, ways: Array) -> Body:
     was not scanned stays."""
     longest = max(float(np.ptp(body.vertices, axis=0).max()) / PARTS, FINEST)
     owner = np.zeros(len(body.triangles), dtype=np.intp)
-    found = refined(
+    found = refine_mesh(
         body.vertices, body.triangles, owner, longest, lambda middle, *_: middle, MAX_TRIANGLES
     )
     vertices, triangles = (body.vertices, body.triangles) if found is None else found[:2]

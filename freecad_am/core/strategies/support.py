@@ -251,7 +251,7 @@ class _Ground:
 
 def _away(search: Search, points: Array) -> Array:
     """Distances (k,) mm of points from a body, negative inside; below a flat one, as a platform is, there is no inside."""
-    return search.away(points) if search.flat else search.signed(points)[0]
+    return search.distance(points) if search.flat else search.signed(points)[0]
 
 
 def _search(body: Body, height: float) -> Search | None:

@@ -20,10 +20,10 @@ from ...brep.walls.standing import stand
 from ...brep.walls.wall_on import named_faces
 from ...core.geometry.curves.profile import RevolvedWall
 from ...core.geometry.formatting import at_least, place
-from ...core.geometry.mesh.crossing import crossings
-from ...core.geometry.mesh.manifold import holes, separated
-from ...core.geometry.mesh.repair import WELDS, connected_triangles
-from ...core.geometry.mesh.uncrossed import uncrossed
+from ...core.geometry.mesh.crossing import find_crossings
+from ...core.geometry.mesh.manifold import find_holes, separate_vertices
+from ...core.geometry.mesh.repair import WELDS_MM, connected_triangles
+from ...core.geometry.mesh.uncrossed import remove_crossings
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Text, Word
 from ...core.layers.curved.field import STANDING
@@ -224,18 +224,18 @@ def _of_mesh(
     into one another do: no wall of one bead is that."""
     body = part.body()
     found = connected_triangles(body.vertices, body.triangles, part.label, 0.0)
-    open_ = holes(separated(found.vertices, found.triangles))
+    open_ = find_holes(separate_vertices(found.vertices, found.triangles))
     opening = max((hole.size for hole in open_), default=0.0)
     if opening <= OPEN * float(np.linalg.norm(np.ptp(body.vertices, axis=0))):
         return _solid(part, Text("{} is a mesh, which is filled", part.label), tilts, planes)
-    crossed = crossings(found.vertices, found.triangles, WELDS[-1])
+    crossed = find_crossings(found.vertices, found.triangles, WELDS_MM[-1])
     sheet = found.vertices, found.triangles
     if (
         len(crossed.pairs)
         and not edges
-        and uncrossed(*sheet, crossed.pairs, SurfaceParameters.mend, WELDS[-1]) is None
+        and remove_crossings(*sheet, crossed.pairs, SurfaceParameters.mend, WELDS_MM[-1]) is None
     ):
-        at = place(crossed.places[crossed.length.argmax()])
+        at = place(crossed.positions[crossed.length.argmax()])
         size = at_least(opening)
         why = Text(
             "{} is an open mesh that cuts itself at {} pairs of its triangles, as at {}, so it is not a wall of one bead: "

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.mesh.crossing import crossings
-from freecad_am.core.geometry.mesh.repair import repaired
+from freecad_am.core.geometry.mesh.crossing import find_crossings
+from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.issues import InputError
 
 
@@ -60,7 +60,7 @@ def test_pairs_are_those_found_one_by_one(seed):
     chance = np.random.default_rng(seed)
     middles = chance.uniform(-20.0, 20.0, (150, 1, 3))
     corners = middles + chance.normal(size=(150, 3, 3)) * chance.uniform(0.5, 8.0, (150, 1, 1))
-    pairs = crossings(corners.reshape(-1, 3), np.arange(450).reshape(-1, 3), 0.0).pairs
+    pairs = find_crossings(corners.reshape(-1, 3), np.arange(450).reshape(-1, 3), 0.0).pairs
     found = {(min(pair), max(pair)) for pair in pairs.tolist()}
     meant = set()
     low, high = corners.min(axis=1), corners.max(axis=1)
@@ -83,16 +83,16 @@ def test_neighbours_and_flat_faces_do_not_cross():
     points, faces = tube(looped(40.0), sides=40)
     turned = points @ Rotation.from_euler("xyz", [0.3, 0.7, 1.1]).as_matrix()
     for places in (points, turned, turned.astype(np.float32).astype(float)):
-        assert len(crossings(places, faces, 1e-3).pairs) == 0
-    assert len(repaired(turned, faces, "loop").solids) == 1
+        assert len(find_crossings(places, faces, 1e-3).pairs) == 0
+    assert len(repair_mesh(turned, faces, "loop").solids) == 1
 
 
 def test_triangles_that_share_a_vertex_may_cross():
     points = np.array([[0, 0, 0], [10, -5, 0], [10, 5, 0], [10, 0, -5], [10, 0, 5]], dtype=float)
-    found = crossings(points, np.array([[0, 1, 2], [0, 3, 4]]), 0.01)
+    found = find_crossings(points, np.array([[0, 1, 2], [0, 3, 4]]), 0.01)
     assert found.pairs.tolist() == [[0, 1]] or found.pairs.tolist() == [[1, 0]]
     assert found.length == pytest.approx([10.0])
-    assert found.places == pytest.approx(np.array([[5.0, 0.0, 0.0]]))
+    assert found.positions == pytest.approx(np.array([[5.0, 0.0, 0.0]]))
 
 
 @pytest.mark.parametrize("deep", [-0.004, 0.0, 0.004])
@@ -102,9 +102,9 @@ def test_what_only_touches_does_not_cross(deep):
     tip = [[0.0, 0.0, -deep], [-2.0, 1.0, 5.0], [2.0, 0.0, 5.0]]
     beside = [[1.0, -1.0, 0.0], [3.0, 30.0, 0.0], [-3.0, 30.0, 0.0]]
     points = np.array([*face, *tip, *beside])
-    assert len(crossings(points, np.arange(9).reshape(-1, 3), 0.01).pairs) == 0
+    assert len(find_crossings(points, np.arange(9).reshape(-1, 3), 0.01).pairs) == 0
     points[3, 2] = -0.5
-    assert len(crossings(points, np.arange(9).reshape(-1, 3), 0.01).pairs) == 1
+    assert len(find_crossings(points, np.arange(9).reshape(-1, 3), 0.01).pairs) == 1
 
 
 @pytest.mark.parametrize(
@@ -113,11 +113,11 @@ def test_what_only_touches_does_not_cross(deep):
 def test_a_mesh_that_cuts_itself_is_refused_with_the_place(turn):
     points, faces = tube(looped(1.0))
     with pytest.raises(InputError) as found:
-        repaired(points @ turn, faces, "loop")
+        repair_mesh(points @ turn, faces, "loop")
     assert found.value.code == "SELF_CROSSING" and found.value.where == "loop"
     told = [float(number) for number in found.value.message.split("(")[1].split(")")[0].split(",")]
     assert np.linalg.norm(turn @ told) < 5.0  # the tube passes itself at the origin
-    repaired(tube(looped(40.0))[0] @ turn, faces, "loop")
+    repair_mesh(tube(looped(40.0))[0] @ turn, faces, "loop")
 
 
 def test_long_triangles_and_flat_faces_of_many_are_no_work():

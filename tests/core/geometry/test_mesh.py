@@ -61,7 +61,7 @@ def test_only_what_is_linked_is_joined():
     mesh = sheet()
     x = mesh.vertices[:, 0]
     members, seeds = (x < 1.0) | (x > 5.0), x < -8.0
-    assert (mesh.joined(members, seeds) == (x < 1.0)).all()
+    assert (mesh.connected_members(members, seeds) == (x < 1.0)).all()
     assert mesh.longest_edge == pytest.approx(np.sqrt(2.0))
     assert mesh.typical_edge == pytest.approx(1.0)
 

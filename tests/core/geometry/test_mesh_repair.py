@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.mesh.refined import Edges
-from freecad_am.core.geometry.mesh.repair import repaired
+from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.issues import InputError
 
 
@@ -28,7 +28,7 @@ def told(result):
 
 def test_a_sound_mesh_stays_as_it_is():
     points, faces = ball()
-    found = repaired(points, faces, "ball")
+    found = repair_mesh(points, faces, "ball")
     assert len(found.solids) == 1 and not found.issues
     assert len(found.solids[0].triangles) == len(faces)
     assert found.solids[0].volume > 0.0
@@ -39,18 +39,18 @@ def test_loose_triangles_are_put_together(noise):
     points, faces = ball()
     loose = points[faces].reshape(-1, 3)
     loose = loose + np.random.default_rng(1).uniform(-0.5, 0.5, loose.shape) * noise
-    found = repaired(loose, np.arange(len(loose)).reshape(-1, 3), "ball")
+    found = repair_mesh(loose, np.arange(len(loose)).reshape(-1, 3), "ball")
     assert len(found.solids) == 1 and len(found.solids[0].vertices) == len(points)
     assert ("were made one" in told(found)) == (noise > 1e-5)
 
 
 def test_what_is_there_twice_flat_or_turned_is_mended():
     points, faces = ball()
-    volume = repaired(points, faces, "ball").solids[0].volume
+    volume = repair_mesh(points, faces, "ball").solids[0].volume
     wrong = faces.copy()
     wrong[::7] = wrong[::7, ::-1]
     wrong = np.vstack([wrong, faces[5:8], [[3, 3, 4]]])
-    found = repaired(points, wrong, "ball")
+    found = repair_mesh(points, wrong, "ball")
     assert found.solids[0].volume == pytest.approx(volume)
     assert len(found.solids[0].triangles) == len(faces)
     for words in ("without an area", "there twice", "to agree with their neighbours"):
@@ -59,8 +59,10 @@ def test_what_is_there_twice_flat_or_turned_is_mended():
 
 def test_a_missing_triangle_is_put_in():
     points, faces = ball()
-    found = repaired(points, np.delete(faces, 11, axis=0), "ball")
-    assert found.solids[0].volume == pytest.approx(repaired(points, faces, "ball").solids[0].volume)
+    found = repair_mesh(points, np.delete(faces, 11, axis=0), "ball")
+    assert found.solids[0].volume == pytest.approx(
+        repair_mesh(points, faces, "ball").solids[0].volume
+    )
     assert "1 missing triangles" in told(found)
 
 
@@ -72,10 +74,10 @@ def test_inside_out_solids_are_turned_and_pieces_told_apart():
     triangles = np.vstack(
         [faces[:, ::-1], more + len(points), inner[:, ::-1] + len(points) + len(other)]
     )
-    found = repaired(vertices, triangles, "balls")
+    found = repair_mesh(vertices, triangles, "balls")
     volumes = sorted(solid.volume for solid in found.solids)
     whole = [
-        repaired(*ball(*args), "one").solids[0].volume
+        repair_mesh(*ball(*args), "one").solids[0].volume
         for args in ((10.0,), (6.0, (40.0, 0.0, 0.0), 150, 5), (3.0, (40.0, 0.0, 0.0), 150, 6))
     ]
     np.testing.assert_allclose(volumes, [whole[1] - whole[2], whole[0]])
@@ -86,7 +88,7 @@ def test_what_is_not_safe_is_refused_with_its_place():
     points, faces = ball()
     around = np.flatnonzero((faces == 20).any(axis=1))
     with pytest.raises(InputError) as caught:
-        repaired(points, np.delete(faces, around, axis=0), "ball.stl")
+        repair_mesh(points, np.delete(faces, around, axis=0), "ball.stl")
     assert (caught.value.code, caught.value.where) == ("OPEN_MESH", "ball.stl")
     assert (
         f"{len(around)} edges" in caught.value.message and "close" in caught.value.message.lower()
@@ -94,16 +96,16 @@ def test_what_is_not_safe_is_refused_with_its_place():
     fin = np.vstack([points, points[0] * 2.0])
     apex = len(points)
     with pytest.raises(InputError) as caught:
-        repaired(fin, np.vstack([faces, [[faces[0, 0], faces[0, 1], apex]]]), "fin.stl")
+        repair_mesh(fin, np.vstack([faces, [[faces[0, 0], faces[0, 1], apex]]]), "fin.stl")
     assert caught.value.code in ("OPEN_MESH", "NON_MANIFOLD")
     shared = np.vstack([points, points[faces[0]].mean(axis=0) * 3.0])
     a, b, c = faces[0]
     tent = [[a, b, apex], [b, c, apex], [c, a, apex]]
     with pytest.raises(InputError) as caught:
-        repaired(shared, np.vstack([faces, tent]), "tent.stl")
+        repair_mesh(shared, np.vstack([faces, tent]), "tent.stl")
     assert caught.value.code == "NON_MANIFOLD" and "(" in caught.value.message
     with pytest.raises(InputError) as caught:
-        repaired(np.full((3, 3), np.nan), np.array([[0, 1, 2]]), "nothing.stl")
+        repair_mesh(np.full((3, 3), np.nan), np.array([[0, 1, 2]]), "nothing.stl")
     assert caught.value.code == "BAD_FILE"
 
 
@@ -132,7 +134,7 @@ def test_boxes_that_touch_along_an_edge_are_told_apart(turn):
     points, faces = both(
         box(), box(at=(10.0, 10.0, 0.0)), box(at=(20.0, 0.0, 0.0))
     )  # each beside the next
-    found = repaired(points @ turn, faces, "boxes")
+    found = repair_mesh(points @ turn, faces, "boxes")
     assert sorted(solid.volume for solid in found.solids) == pytest.approx([1000.0] * 3)
     for solid in found.solids:
         assert (Edges(solid.triangles).count == 2).all()
@@ -145,7 +147,7 @@ def test_boxes_that_touch_along_an_edge_are_told_apart(turn):
 
 def test_small_holes_are_closed_and_larger_ones_named():
     points, faces = ball(count=600)
-    whole = repaired(points, faces, "ball").solids[0].volume
+    whole = repair_mesh(points, faces, "ball").solids[0].volume
     gone = np.zeros(len(faces), dtype=bool)
     for vertex in (20, 200):
         gone |= (faces == vertex).any(axis=1)
@@ -153,29 +155,29 @@ def test_small_holes_are_closed_and_larger_ones_named():
         np.linalg.norm(np.ptp(points[faces[(faces == vertex).any(axis=1)]].reshape(-1, 3), axis=0))
         for vertex in (20, 200)
     )
-    found = repaired(points, faces[~gone], "ball", hole=widest + 1e-6)
+    found = repair_mesh(points, faces[~gone], "ball", hole=widest + 1e-6)
     assert len(found.solids) == 1 and found.solids[0].volume == pytest.approx(whole, rel=2e-3)
     assert found.issues[0].code == "MENDED" and "2 holes were closed" in told(found)
     with pytest.raises(InputError) as caught:
-        repaired(points, faces[~gone], "ball", hole=0.5)
+        repair_mesh(points, faces[~gone], "ball", hole=0.5)
     assert caught.value.code == "OPEN_MESH" and f"{widest:.4g} mm across" in caught.value.message
     assert "and 1 more" in caught.value.message and "strategy.mend, 0.5 mm" in caught.value.message
 
 
 def test_a_fin_and_triangles_that_cross_change_no_volume():
     points, faces = ball()
-    whole = repaired(points, faces, "ball").solids[0].volume
+    whole = repair_mesh(points, faces, "ball").solids[0].volume
     a, b = faces[0, :2]
     fin = np.vstack([points, 0.6 * (points[a] + points[b])])
-    found = repaired(fin, np.vstack([faces, [[a, b, len(points)]]]), "fin", hole=30.0)
+    found = repair_mesh(fin, np.vstack([faces, [[a, b, len(points)]]]), "fin", hole=30.0)
     assert [solid.volume for solid in found.solids] == pytest.approx([whole])
     assert "enclose nothing" in told(found)
     pushed = points.copy()
     pushed[0] *= -1.2  # through the other side
     with pytest.raises(InputError) as caught:
-        repaired(pushed, faces, "pushed")
+        repair_mesh(pushed, faces, "pushed")
     assert caught.value.code == "SELF_CROSSING"
-    found = repaired(pushed, faces, "pushed", crossing=True)
+    found = repair_mesh(pushed, faces, "pushed", crossing=True)
     assert "pairs of triangles cross" in told(found) and found.issues[-1].level == "warning"
 
 
@@ -192,18 +194,18 @@ def test_what_stands_in_the_box_of_another_is_no_cavity():
         after = (k + 1) % 8
         faces += [(k, after, after + 8), (k, after + 8, k + 8)]
     inner, turned = ball(3.0, (15.0, 20.0, 10.0))
-    found = repaired(*both((points, np.array(faces)), (inner, turned[:, ::-1])), "both")
+    found = repair_mesh(*both((points, np.array(faces)), (inner, turned[:, ::-1])), "both")
     volumes = sorted(solid.volume for solid in found.solids)
     assert volumes == pytest.approx(
-        [repaired(inner, turned, "ball").solids[0].volume, 700.0 * 20.0]
+        [repair_mesh(inner, turned, "ball").solids[0].volume, 700.0 * 20.0]
     )
 
 
 def test_a_mesh_with_every_triangle_from_both_sides_is_one_solid():
     points, faces = ball()
-    found = repaired(points, np.vstack([faces, faces[:, ::-1]]), "ball")
+    found = repair_mesh(points, np.vstack([faces, faces[:, ::-1]]), "ball")
     assert [solid.volume for solid in found.solids] == pytest.approx(
-        [repaired(points, faces, "ball").solids[0].volume]
+        [repair_mesh(points, faces, "ball").solids[0].volume]
     )
 
 
@@ -232,5 +234,5 @@ def test_a_surface_without_inside_is_refused():
             )
             faces += [(a, c, b), (b, c, d)]
     with pytest.raises(InputError) as caught:
-        repaired(points, np.array(faces, dtype=np.intp), "bottle")
+        repair_mesh(points, np.array(faces, dtype=np.intp), "bottle")
     assert caught.value.code == "NOT_ORIENTABLE"

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.mesh.polygon import triangulated
+from freecad_am.core.geometry.mesh.polygon import triangulate
 
 
 def turned(seed):
@@ -27,7 +27,7 @@ def test_triangles_cover_a_star_once(seed, backwards):
     ]
     corners = flat @ turned(seed).T + 50.0
     way = turned(seed) @ [0.0, 0.0, -1.0 if backwards else 1.0]
-    found = triangulated(corners)
+    found = triangulate(corners)
     assert found.shape == (count - 2, 3)
     a, b, c = corners[found].swapaxes(0, 1)
     along = 0.5 * np.cross(b - a, c - a) @ way
@@ -38,7 +38,7 @@ def test_corners_on_a_line_are_kept():
     """A square with corners in the middle of its sides, one after the other of which is cut off."""
     square = np.array([[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]], dtype=float)
     corners = np.column_stack([square, np.full(8, 3.0)])
-    found = triangulated(corners)
+    found = triangulate(corners)
     a, b, c = corners[found].swapaxes(0, 1)
     areas = 0.5 * np.cross(b - a, c - a)[:, 2]
     assert (

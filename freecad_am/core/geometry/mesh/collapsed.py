@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Triangle meshes made coarser: short edges are collapsed where that keeps the mesh's shape (Hoppe et al. 1993)."""
+"""Mesh coarsening: collapse short edges where that keeps the shape of the mesh (Hoppe et al.
+1993).
+"""
 
 from __future__ import annotations
 
@@ -11,51 +13,57 @@ from .facets import doubled_areas
 from .refined import Edges
 
 ROUNDS = 4
-STRAIGHT = np.cos(np.radians(25.0))  # of a turn of a curve at a vertex that may go
-UPRIGHT = np.cos(np.radians(30.0))  # of a turn of a triangle when a corner moves
+MIN_STRAIGHT_COSINE = np.cos(np.radians(25.0))  # of a turn of a curve at a vertex that may go
+MIN_NORMAL_COSINE = np.cos(np.radians(30.0))  # of a turn of a triangle when a corner moves
 
 
-def collapsed(
+def collapse_edges(
     vertices: Array, triangles: Index, owner: Index, shortest: float, longest: float
 ) -> tuple[Index, Index]:
-    """The triangles and owners that are left when edges shorter than `shortest` mm are drawn together, none becoming longer
-    than `longest`. Vertices on boundaries and between owners move along those curves alone; vertices are not renumbered."""
+    """Collapse edges shorter than `shortest` mm, without making any edge longer than `longest`
+    mm.
+
+    Vertices on boundaries and between owners move only along those curves. Vertices are not
+    renumbered. Returns the remaining triangles and their owners.
+    """
     for _ in range(ROUNDS):
         edges = Edges(triangles)
         length = np.linalg.norm(vertices[edges.ends[:, 0]] - vertices[edges.ends[:, 1]], axis=1)
-        gone, stays = _candidates(vertices, triangles, owner, edges, length < shortest)
-        if not len(gone):
+        removed, stays = _candidates(vertices, triangles, owner, edges, length < shortest)
+        if not len(removed):
             break
         into = np.arange(len(vertices))
-        rank = np.full(len(vertices), len(gone), dtype=np.intp)
-        order = np.argsort(np.linalg.norm(vertices[gone] - vertices[stays], axis=1), kind="stable")
-        gone, first = np.unique(
-            gone[order], return_index=True
-        )  # one way for each vertex, the shortest
-        stays = stays[order][first]
+        rank = np.full(len(vertices), len(removed), dtype=np.intp)
+        order = np.argsort(
+            np.linalg.norm(vertices[removed] - vertices[stays], axis=1), kind="stable"
+        )
+        removed, shortest_edge = np.unique(
+            removed[order], return_index=True
+        )  # one collapse for each vertex, the shortest
+        stays = stays[order][shortest_edge]
         target = np.full(len(vertices), -1, dtype=np.intp)
-        target[gone] = stays
-        allowed = _allowed(vertices, triangles, edges, target, longest)
+        target[removed] = stays
+        allowed = _find_allowed_collapses(vertices, triangles, edges, target, longest)
         mixed = np.random.default_rng(0).permutation(
-            np.flatnonzero(allowed[gone])
-        )  # or long rows wait for each other
-        gone, stays = gone[mixed], stays[mixed]
-        # no two next to each other: of those that touch a triangle only the first goes
-        place = np.full(len(vertices), len(gone), dtype=np.intp)
-        place[gone] = np.arange(len(gone))
-        least = np.full(len(triangles), len(gone), dtype=np.intp)
-        np.minimum(place[triangles].min(axis=1), least, out=least)
-        np.minimum.at(rank, triangles.ravel(), np.repeat(least, 3))
+            np.flatnonzero(allowed[removed])
+        )  # otherwise long rows wait for each other
+        removed, stays = removed[mixed], stays[mixed]
+        # no two adjacent collapses: only the first of the vertices of a triangle is collapsed
+        number = np.full(len(vertices), len(removed), dtype=np.intp)
+        number[removed] = np.arange(len(removed))
+        lowest_number = np.full(len(triangles), len(removed), dtype=np.intp)
+        np.minimum(number[triangles].min(axis=1), lowest_number, out=lowest_number)
+        np.minimum.at(rank, triangles.ravel(), np.repeat(lowest_number, 3))
         # rank: the first among all that a vertex's triangles touch; a collapse is free when it is so all over its ring
-        wide = np.full(len(vertices), len(gone), dtype=np.intp)
-        np.minimum.at(wide, triangles.ravel(), np.repeat(rank[triangles].min(axis=1), 3))
-        free = wide[gone] == np.arange(len(gone))
+        ring_rank = np.full(len(vertices), len(removed), dtype=np.intp)
+        np.minimum.at(ring_rank, triangles.ravel(), np.repeat(rank[triangles].min(axis=1), 3))
+        free = ring_rank[removed] == np.arange(len(removed))
         if not free.any():
             break
-        into[gone[free]] = stays[free]
+        into[removed[free]] = stays[free]
         triangles = into[triangles]
-        whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-        triangles, owner = triangles[whole], owner[whole]
+        has_area = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+        triangles, owner = triangles[has_area], owner[has_area]
     return triangles, owner
 
 
@@ -71,7 +79,7 @@ def _candidates(
     unit /= np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), 1e-300)
     np.add.at(along, edges.ends[curve, 0], unit)
     np.add.at(along, edges.ends[curve, 1], -unit)
-    straight = np.linalg.norm(along, axis=1) < np.sqrt(2.0 - 2.0 * STRAIGHT)
+    straight = np.linalg.norm(along, axis=1) < np.sqrt(2.0 - 2.0 * MIN_STRAIGHT_COSINE)
     gone = np.concatenate([edges.ends[short, 0], edges.ends[short, 1]])
     stays = np.concatenate([edges.ends[short, 1], edges.ends[short, 0]])
     bound = np.tile(curve[short], 2)
@@ -79,47 +87,53 @@ def _candidates(
     return gone[free], stays[free]
 
 
-def _allowed(
+def _find_allowed_collapses(
     vertices: Array, triangles: Index, edges: Edges, target: Index, longest: float
 ) -> Mask:
-    """Vertices (n,) whose move to their target (n,), -1 for none, turns no triangle over and makes no edge too long."""
+    """Return which vertices (n,) may move to their target (n,), -1 for none: no triangle turns
+    over and no edge becomes too long.
+    """
     allowed = target >= 0
     normal = _normals(vertices[triangles])
     for k in range(3):
-        tip, following, other = (
+        tip, following, third = (
             triangles[:, k],
             triangles[:, (k + 1) % 3],
             triangles[:, (k + 2) % 3],
         )
         to = target[tip]
-        moved = (to >= 0) & (to != following) & (to != other)
+        moved = (to >= 0) & (to != following) & (to != third)
         new = _normals(
             np.stack(
-                [vertices[to[moved]], vertices[following[moved]], vertices[other[moved]]], axis=1
+                [vertices[to[moved]], vertices[following[moved]], vertices[third[moved]]], axis=1
             )
         )
-        far = np.linalg.norm(vertices[to[moved]] - vertices[following[moved]], axis=1)
-        far = np.maximum(far, np.linalg.norm(vertices[to[moved]] - vertices[other[moved]], axis=1))
-        bad = (dot(new, normal[moved]) < UPRIGHT) | (far > longest)
+        new_length = np.linalg.norm(vertices[to[moved]] - vertices[following[moved]], axis=1)
+        new_length = np.maximum(
+            new_length, np.linalg.norm(vertices[to[moved]] - vertices[third[moved]], axis=1)
+        )
+        bad = (dot(new, normal[moved]) < MIN_NORMAL_COSINE) | (new_length > longest)
         allowed[tip[moved][bad]] = False
-    # the two ends may share no neighbours but those of their own triangles
+    # the two ends may share only the neighbours in their common triangles
     ends = np.concatenate([edges.ends, edges.ends[:, ::-1]])
     order = np.argsort(ends[:, 0], kind="stable")
     begin = np.searchsorted(ends[order, 0], np.arange(len(vertices) + 1))
-    chosen = np.flatnonzero(allowed)
-    count = begin[chosen + 1] - begin[chosen]
-    each = np.repeat(chosen, count)
-    at = np.repeat(begin[chosen] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(count.sum())
-    neighbour = ends[order[at], 1]
+    candidates = np.flatnonzero(allowed)
+    count = begin[candidates + 1] - begin[candidates]
+    candidate = np.repeat(candidates, count)
+    position = np.repeat(begin[candidates] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(
+        count.sum()
+    )
+    neighbour = ends[order[position], 1]
     base = len(vertices)
     keys = np.sort(ends[:, 0] * base + ends[:, 1])
-    asked = neighbour * base + target[each]
-    spot = np.minimum(np.searchsorted(keys, asked), len(keys) - 1)
-    common = np.bincount(each, weights=(keys[spot] == asked), minlength=len(vertices))
-    pair = np.sort(np.stack([chosen, target[chosen]], axis=1), axis=1)
-    known, wanted = (ends[:, 0] * base + ends[:, 1] for ends in (edges.ends, pair))
-    number = np.searchsorted(known, wanted)
-    allowed[chosen[common[chosen] != edges.count[number]]] = False
+    keys_asked = neighbour * base + target[candidate]
+    spot = np.minimum(np.searchsorted(keys, keys_asked), len(keys) - 1)
+    common = np.bincount(candidate, weights=(keys[spot] == keys_asked), minlength=len(vertices))
+    pair = np.sort(np.stack([candidates, target[candidates]], axis=1), axis=1)
+    known_keys, pair_keys = (ends[:, 0] * base + ends[:, 1] for ends in (edges.ends, pair))
+    number = np.searchsorted(known_keys, pair_keys)
+    allowed[candidates[common[candidates] != edges.count[number]]] = False
     return allowed
 
 

@@ -14,29 +14,32 @@ from .near_triangles import near_pairs
 
 
 class Crossings(NamedTuple):
-    """Pairs (k, 2) of triangles that cross, how long (k,) mm and about where (k, 3) mm."""
+    """Pairs (k, 2) of triangles that cross, the lengths (k,) mm of the crossings and their
+    approximate positions (k, 3) mm.
+    """
 
     pairs: Index
     length: Array
-    places: Array
+    positions: Array
 
 
-def crossings(vertices: Array, triangles: Index, least: float) -> Crossings:
-    """Where triangles (m, 3) of vertices (n, 3) cross by more than `least` mm.
+def find_crossings(vertices: Array, triangles: Index, min_length: float) -> Crossings:
+    """Find where triangles (m, 3) of vertices (n, 3) cross by more than `min_length` mm.
 
-    Each has to reach to both sides of the other, and along the line in which they cross, by more than that: what only
-    touches, as neighbours along an edge do, and faces that lie in one plane do not cross. A vertex that two share is in
-    both, whatever rounding says.
+    Each triangle of a pair must reach both sides of the other, and overlap it along their
+    line of intersection, by more than that. Triangles that only touch, such as neighbours
+    along an edge, and coplanar faces do not cross. A shared vertex is in both triangles,
+    whatever rounding says.
     """
     corners = vertices[triangles]
     planes = _planes(corners)
-    found = [
-        _crossed(corners, triangles, planes, pairs, least)
-        for pairs in near_pairs(corners, planes[:, :3], least)
+    blocks = [
+        _cross_pairs(corners, triangles, planes, pairs, min_length)
+        for pairs in near_pairs(corners, planes[:, :3], min_length)
     ]
-    if not found:
+    if not blocks:
         return Crossings(np.zeros((0, 2), dtype=np.intp), np.zeros(0), np.zeros((0, 3)))
-    return Crossings(*(np.concatenate(column) for column in zip(*found)))
+    return Crossings(*(np.concatenate(column) for column in zip(*blocks)))
 
 
 def _planes(corners: Array) -> Array:
@@ -49,51 +52,55 @@ def _planes(corners: Array) -> Array:
     return planes
 
 
-def _crossed(
-    corners: Array, triangles: Index, planes: Array, pairs: Index, least: float
+def _cross_pairs(
+    corners: Array, triangles: Index, planes: Array, pairs: Index, min_length: float
 ) -> Crossings:
-    """Those of the pairs (k, 2) that cross."""
-    pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T), least)]
-    pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T[::-1]), least)]
-    one, other = pairs.T
-    same = triangles[one][:, :, None] == triangles[other][:, None, :]
-    along = np.cross(planes[one, :3], planes[other, :3])
+    """Return which of the pairs (k, 2) cross."""
+    pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T), min_length)]
+    pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T[::-1]), min_length)]
+    a, b = pairs.T
+    same = triangles[a][:, :, None] == triangles[b][:, None, :]
+    along = np.cross(planes[a, :3], planes[b, :3])
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
-    start, end = _within(
-        corners[one],
-        np.where(same.any(axis=2), 0.0, _plane_distances(corners, planes, other, one)),
+    start, end = _triangle_span(
+        corners[a],
+        np.where(same.any(axis=2), 0.0, _plane_distances(corners, planes, b, a)),
         along,
     )
-    far = np.where(same.any(axis=1), 0.0, _plane_distances(corners, planes, one, other))
-    low, high = _within(corners[other], far, along)
-    first = np.maximum(dot(start, along), dot(low, along))
-    last = np.minimum(dot(end, along), dot(high, along))
-    keep = last - first > least
-    middle = start + (0.5 * (first + last) - dot(start, along))[:, None] * along
-    return Crossings(pairs[keep], (last - first)[keep], middle[keep])
+    distance = np.where(same.any(axis=1), 0.0, _plane_distances(corners, planes, a, b))
+    low, high = _triangle_span(corners[b], distance, along)
+    overlap_start = np.maximum(dot(start, along), dot(low, along))
+    overlap_end = np.minimum(dot(end, along), dot(high, along))
+    keep = overlap_end - overlap_start > min_length
+    middle = start + (0.5 * (overlap_start + overlap_end) - dot(start, along))[:, None] * along
+    return Crossings(pairs[keep], (overlap_end - overlap_start)[keep], middle[keep])
 
 
-def _plane_distances(corners: Array, planes: Array, one: Index, other: Index) -> Array:
-    """How far (k, 3) mm the corners of `other` are above the planes of `one`."""
-    height: Array = (corners[other] * planes[one, None, :3]).sum(axis=2) - planes[one, 3, None]
+def _plane_distances(corners: Array, planes: Array, a: Index, b: Index) -> Array:
+    """Return the heights (k, 3) mm of the corners of triangles `b` above the planes of triangles
+    `a`.
+    """
+    height: Array = (corners[b] * planes[a, None, :3]).sum(axis=2) - planes[a, 3, None]
     return height
 
 
-def _both_sides(height: Array, least: float) -> Mask:
-    both: Mask = (height.max(axis=1) > least) & (height.min(axis=1) < -least)
-    return both
+def _both_sides(height: Array, min_length: float) -> Mask:
+    crosses_plane: Mask = (height.max(axis=1) > min_length) & (height.min(axis=1) < -min_length)
+    return crosses_plane
 
 
-def _within(corners: Array, height: Array, along: Array) -> tuple[Array, Array]:
-    """First and last places (k, 3) of triangles (k, 3, 3) in a plane that their corners are `height` (k, 3) above."""
+def _triangle_span(corners: Array, height: Array, along: Array) -> tuple[Array, Array]:
+    """Return the start and end (k, 3) of triangles (k, 3, 3) in a plane that their corners are
+    `height` (k, 3) above.
+    """
     ahead, up = np.roll(corners, -1, axis=1), np.roll(height, -1, axis=1)
     passed = height * up < 0.0
     share = np.where(passed, height / np.where(passed, height - up, 1.0), 0.0)
-    places = np.concatenate([corners + share[:, :, None] * (ahead - corners), corners], axis=1)
-    at = np.einsum("kcx,kx->kc", places, along)
-    there = np.concatenate([passed, height == 0.0], axis=1)
-    row = np.arange(len(places))
+    candidates = np.concatenate([corners + share[:, :, None] * (ahead - corners), corners], axis=1)
+    position = np.einsum("kcx,kx->kc", candidates, along)
+    in_plane = np.concatenate([passed, height == 0.0], axis=1)
+    row = np.arange(len(candidates))
     return (
-        places[row, np.argmin(np.where(there, at, np.inf), axis=1)],
-        places[row, np.argmax(np.where(there, at, -np.inf), axis=1)],
+        candidates[row, np.argmin(np.where(in_plane, position, np.inf), axis=1)],
+        candidates[row, np.argmax(np.where(in_plane, position, -np.inf), axis=1)],
     )

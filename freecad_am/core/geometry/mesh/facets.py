@@ -9,8 +9,11 @@ from ...types import Array
 
 
 def doubled_areas(corners: Array) -> Array:
-    """Vectors (n, 3) normal to triangles with these corners (n, 3, 3), counter-clockwise as seen from outside, and twice as
-    long as their areas are large."""
-    one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    found: Array = np.cross(one, other)
-    return found
+    """Return outward vectors (n, 3) normal to triangles (n, 3, 3), each as long as twice the
+    area of its triangle.
+
+    Corners are counter-clockwise seen from outside.
+    """
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normals: Array = np.cross(a, b)
+    return normals

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The unit of files of triangles: STL and OBJ files do not tell it."""
+"""The unit of triangle files: STL and OBJ files do not state it."""
 
 from __future__ import annotations
 
@@ -8,12 +8,16 @@ import os
 
 from ...issues import InputError
 
-UNTOLD = (".stl", ".obj")
-MESHES = (*UNTOLD, ".3mf")
+UNITLESS_ENDINGS = (".stl", ".obj")
+MESHES = (*UNITLESS_ENDINGS, ".3mf")
 
 
 def refuse_scale(scale: float, path: str, key: str) -> None:
-    """InputError BAD_VALUE naming `key` where `scale`, mm a unit of a file, is not a length or the file tells its unit."""
+    """Reject `scale`, mm per unit of a file, if it is not a length or if the file states its
+    unit.
+
+    Raises InputError BAD_VALUE that names `key`.
+    """
     if not (math.isfinite(scale) and scale > 0.0):
         raise InputError(
             "BAD_VALUE",
@@ -21,7 +25,7 @@ def refuse_scale(scale: float, path: str, key: str) -> None:
             "{:g} mm is not a unit; give the length of one unit of the file, as 25.4 mm",
             scale,
         )
-    if scale != 1.0 and not path.lower().endswith(UNTOLD):
+    if scale != 1.0 and not path.lower().endswith(UNITLESS_ENDINGS):
         raise InputError(
             "BAD_VALUE",
             key,

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Triangles made a manifold: paired where several meet in an edge, vertices told apart, small holes closed.
+"""Make triangles a manifold: pair those that share an edge, separate vertices, close small
+holes.
 
-Where four triangles or more meet in an edge, as of two boxes that touch along it, each is paired with the one beside it
-across the solid (Gueziec et al. 2001, cutting and stitching): the mesh then bounds solids that touch there.
+Where four or more triangles share an edge, as of two boxes that touch along it, each is
+paired with its neighbour across the solid (Gueziec et al. 2001, cutting and stitching).
+The mesh then bounds solids that touch there.
 """
 
 from __future__ import annotations
@@ -18,12 +20,17 @@ from ..walls.surface import dot
 from .refined import Edges
 from .triangle_mesh import chains
 
-SEVERAL = 64  # triangles of one edge that are told apart; what has more is not a solid
+MAX_EDGE_TRIANGLES = (
+    64  # triangles at one edge that are paired; an edge with more does not belong to a solid
+)
 
 
 class Hole(NamedTuple):
-    """A loop of edges with a triangle on one side alone: its vertices (n,), against the sense of these triangles, its size,
-    the diagonal of the box about it, mm, and its middle (3,)."""
+    """A loop of edges with a triangle on one side only.
+
+    loop: vertices (n,), against the sense of the triangles. size: mm, the diagonal of its
+    bounding box. middle: (3,).
+    """
 
     loop: Index
     size: float
@@ -31,8 +38,11 @@ class Hole(NamedTuple):
 
 
 class Manifold(NamedTuple):
-    """vertices (n, 3), triangles (m, 3). open: (k, 2) begins and ends of the sides of triangles that have no neighbour.
-    split: edges at which triangles were told apart."""
+    """A mesh in which every edge has at most two triangles.
+
+    vertices (n, 3), triangles (m, 3). open: (k, 2) begins and ends of the sides of triangles
+    that have no neighbour. split: number of edges at which triangles were separated.
+    """
 
     vertices: Array
     triangles: Index
@@ -40,38 +50,45 @@ class Manifold(NamedTuple):
     split: int
 
 
-def separated(vertices: Array, triangles: Index) -> Manifold:
-    """The same triangles, with vertices of their own where their neighbours are not: across edges that more than two share,
-    or that two run along in the same sense."""
+def separate_vertices(vertices: Array, triangles: Index) -> Manifold:
+    """Give triangles their own vertices where their neighbours differ.
+
+    That is across edges shared by more than two triangles, or followed by two in the same
+    sense.
+    """
     edges = Edges(triangles)
     mates = _mates(vertices, triangles, edges)
     sides = np.flatnonzero(mates >= 0)
     face, turn = np.divmod(sides, 3)
-    other, back = np.divmod(mates[sides], 3)
+    mate_face, back = np.divmod(mates[sides], 3)
     # the end of a side is the begin of its mate
-    here = np.concatenate([sides, 3 * face + (turn + 1) % 3])
-    there = np.concatenate([3 * other + (back + 1) % 3, mates[sides]])
+    side_ends = np.concatenate([sides, 3 * face + (turn + 1) % 3])
+    mate_ends = np.concatenate([3 * mate_face + (back + 1) % 3, mates[sides]])
     count = triangles.size
-    links = coo_matrix((np.ones(len(here)), (here, there)), shape=(count, count))
+    links = coo_matrix((np.ones(len(side_ends)), (side_ends, mate_ends)), shape=(count, count))
     corner = connected_components(links, directed=False)[1]
-    _, first = np.unique(corner, return_index=True)
+    _, first_corner = np.unique(corner, return_index=True)
     corners = np.ravel(corner).reshape(-1, 3).astype(np.intp)
     bare = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)[mates < 0]
-    return Manifold(vertices[triangles.ravel()[first]], corners, bare, int((edges.count > 2).sum()))
+    return Manifold(
+        vertices[triangles.ravel()[first_corner]], corners, bare, int((edges.count > 2).sum())
+    )
 
 
 def _mates(vertices: Array, triangles: Index, edges: Edges) -> Index:
-    """The side (3 m,), 3 triangle + corner, that each side of a triangle is paired with; -1 for none."""
+    """Return the side (3 m,), 3 triangle + corner, that each side of a triangle is paired with;
+    -1 for none.
+    """
     mates = np.full(triangles.size, -1, dtype=np.intp)
     forward = (triangles < np.roll(triangles, -1, axis=1)).ravel()
-    of = edges.of.ravel()
-    order = np.argsort(of, kind="stable")
+    edge_numbers = edges.of_triangle.ravel()
+    order = np.argsort(edge_numbers, kind="stable")
     begin = np.r_[0, np.cumsum(edges.count)]
     two = np.flatnonzero(edges.count == 2)
-    one, other = order[begin[two]], order[begin[two] + 1]
-    agree = forward[one] != forward[other]
-    mates[one[agree]], mates[other[agree]] = other[agree], one[agree]
-    for edge in np.flatnonzero((edges.count > 2) & (edges.count <= SEVERAL)).tolist():
+    side_a, side_b = order[begin[two]], order[begin[two] + 1]
+    agree = forward[side_a] != forward[side_b]
+    mates[side_a[agree]], mates[side_b[agree]] = side_b[agree], side_a[agree]
+    for edge in np.flatnonzero((edges.count > 2) & (edges.count <= MAX_EDGE_TRIANGLES)).tolist():
         sides = order[begin[edge] : begin[edge + 1]]
         start, end = vertices[edges.ends[edge]]
         tips = vertices[triangles[sides // 3, (sides % 3 + 2) % 3]]
@@ -81,22 +98,25 @@ def _mates(vertices: Array, triangles: Index, edges: Edges) -> Index:
 
 
 def _angles(start: Array, end: Array, tips: Array) -> Array:
-    """The angle (k,) about an edge at which each of the tips (k, 3) lies, from the first."""
+    """Return the angles (k,) about an edge of the tips (k, 3), from the first tip."""
     axis = (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
-    away = tips - start
-    away = away - dot(away, axis)[:, None] * axis
-    turn = np.arctan2(dot(np.cross(away[0], away), axis), dot(away, away[0]))
+    offset = tips - start
+    offset = offset - dot(offset, axis)[:, None] * axis
+    turn = np.arctan2(dot(np.cross(offset[0], offset), axis), dot(offset, offset[0]))
     angles: Array = np.mod(turn, 2.0 * np.pi)
     return angles
 
 
 def _across_solid(angles: Array, forward: Mask) -> list[tuple[int, int]]:
-    """Pairs of the triangles about an edge that bound the same solid: its normal turns one that runs forward along the edge
-    on about it, so that the solid lies from one that runs backward on to the next that runs forward."""
+    """Pair the triangles about an edge that bound the same solid.
+
+    The normal of a triangle that runs forward along the edge points onwards about it, so the
+    solid extends from a triangle that runs backward to the next one that runs forward.
+    """
     order = np.lexsort((forward, angles)).tolist()
     pairs: list[tuple[int, int]] = []
     open_: list[int] = []
-    for k in order + order:  # a second round for what is open at its end
+    for k in order + order:  # a second round for triangles still open at the end of the first
         if not forward[k]:
             if all(k not in pair for pair in pairs) and k not in open_:
                 open_.append(k)
@@ -105,34 +125,36 @@ def _across_solid(angles: Array, forward: Mask) -> list[tuple[int, int]]:
     return pairs
 
 
-def holes(mesh: Manifold) -> list[Hole]:
-    """The holes, the largest first."""
+def find_holes(mesh: Manifold) -> list[Hole]:
+    """Return the holes, largest first."""
     start, end = mesh.open.T
-    vertices, known = (
+    vertices, starts = (
         mesh.vertices,
         np.unique(start),
-    )  # a vertex has one side that begins there, and one that ends
-    following = np.full(len(known), -1, dtype=np.intp)
-    following[np.searchsorted(known, end)] = np.searchsorted(known, start)
-    found = []
+    )  # each vertex has one side that begins and one that ends there
+    following = np.full(len(starts), -1, dtype=np.intp)
+    following[np.searchsorted(starts, end)] = np.searchsorted(starts, start)
+    loops = []
     for chain, closed in chains(following):
         if closed:
-            loop = known[chain]
+            loop = starts[chain]
             low, high = vertices[loop].min(axis=0), vertices[loop].max(axis=0)
-            found.append(Hole(loop, float(np.linalg.norm(high - low)), 0.5 * (low + high)))
-    return sorted(found, key=lambda hole: -hole.size)
+            loops.append(Hole(loop, float(np.linalg.norm(high - low)), 0.5 * (low + high)))
+    return sorted(loops, key=lambda hole: -hole.size)
 
 
-def filled(vertices: Array, triangles: Index, some: list[Hole]) -> tuple[Array, Index]:
-    """With holes closed: each by a triangle, or by triangles about its middle."""
-    more, added = [vertices], [triangles]
+def fill_holes(vertices: Array, triangles: Index, openings: list[Hole]) -> tuple[Array, Index]:
+    """Close holes, each by one triangle or by triangles about its middle; returns vertices and
+    triangles.
+    """
+    vertex_blocks, added = [vertices], [triangles]
     count = len(vertices)
-    for hole in some:
+    for hole in openings:
         if len(hole.loop) == 3:
             added.append(hole.loop[None])
             continue
         tip = np.full(len(hole.loop), count)
         added.append(np.stack([hole.loop, np.roll(hole.loop, -1), tip], axis=1))
-        more.append(vertices[hole.loop].mean(axis=0)[None])
+        vertex_blocks.append(vertices[hole.loop].mean(axis=0)[None])
         count += 1
-    return np.vstack(more), np.vstack(added).astype(np.intp)
+    return np.vstack(vertex_blocks), np.vstack(added).astype(np.intp)

@@ -15,28 +15,27 @@ BLOCK = 2_000_000  # pairs held at a time
 
 
 def near_pairs(middle: Array, reach: Array) -> Iterator[Index]:
-    """The pairs (k, 2), lower one first, of balls with middles (n, 3) and radii (n,) that may touch, all of them, in blocks
-    of about BLOCK.
+    """Yield all pairs (k, 2), lower number first, of balls that may touch, in blocks of about
+    BLOCK.
 
-    Balls are looked for from the largest of a class of like size among those of its own and smaller classes, so that one
-    long needle does not make neighbours of all the small ones around.
+    Balls have middles (n, 3) and radii (n,). Each size class searches among itself and the
+    smaller classes, so that one long needle does not become a neighbour of all the small
+    balls around it.
     """
     sizes = np.floor(np.log(np.maximum(reach, 1e-12)) / np.log(CLASS_RATIO)).astype(np.intp)
     for size in np.unique(sizes)[::-1]:
         largest = np.flatnonzero(sizes == size)
-        others = np.flatnonzero(sizes <= size)
-        tree, radius = cKDTree(middle[others]), 2.0 * float(reach[largest].max())
+        not_larger = np.flatnonzero(sizes <= size)
+        tree, radius = cKDTree(middle[not_larger]), 2.0 * float(reach[largest].max())
         waiting = [largest]
         while waiting:
-            mine = waiting.pop()
-            own = cKDTree(middle[mine])
-            if len(mine) > 1 and own.count_neighbors(tree, radius) > BLOCK:
-                waiting += [mine[len(mine) // 2 :], mine[: len(mine) // 2]]
+            block = waiting.pop()
+            block_tree = cKDTree(middle[block])
+            if len(block) > 1 and block_tree.count_neighbors(tree, radius) > BLOCK:
+                waiting += [block[len(block) // 2 :], block[: len(block) // 2]]
                 continue
-            found = own.sparse_distance_matrix(tree, radius, output_type="ndarray")
-            one, other = mine[found["i"]], others[found["j"]]
-            # pairs of one class are found from both sides
-            kept = (found["v"] <= reach[one] + reach[other]) & (
-                (sizes[other] < size) | (one < other)
-            )
-            yield np.sort(np.stack([one[kept], other[kept]], axis=1), axis=1)
+            candidates = block_tree.sparse_distance_matrix(tree, radius, output_type="ndarray")
+            a, b = block[candidates["i"]], not_larger[candidates["j"]]
+            # pairs within one class occur from both sides
+            touching = (candidates["v"] <= reach[a] + reach[b]) & ((sizes[b] < size) | (a < b))
+            yield np.sort(np.stack([a[touching], b[touching]], axis=1), axis=1)

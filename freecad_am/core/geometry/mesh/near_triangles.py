@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which triangles of a mesh may cross: a tree of boxes about them, descended for all pairs at once."""
+"""Candidate pairs of crossing triangles: descend a tree of bounding boxes for all pairs at
+once.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +14,16 @@ from ...types import Array, Index, Mask
 from ..columns import columns
 
 BITS = 10  # of each coordinate in the order of the leaves
-MANY = 500_000  # pairs looked at together
+MAX_BLOCK_PAIRS = 500_000  # pairs tested together
 PARALLEL = 1e-9  # 1 - cosine of the angle between normals that are one
 
 
 class _Level(NamedTuple):
-    """Nodes (n,) of the tree: their boxes low, high (3, n) mm, the mean normals (n, 3) of their triangles and between which
-    heights along these, bottom, top (n,) mm, the triangles lie."""
+    """Nodes (n,) of one level of the tree.
+
+    low, high: (3, n) mm, bounding boxes. normal: (n, 3) mean normals of the triangles.
+    bottom, top: (n,) mm, heights along these between which the triangles are.
+    """
 
     low: Array
     high: Array
@@ -28,32 +33,36 @@ class _Level(NamedTuple):
 
 
 def near_pairs(corners: Array, normals: Array, deep: float) -> Iterator[Index]:
-    """Pairs (k, 2) of triangles (m, 3, 3) with unit normals (m, 3) whose boxes reach into one another by more than `deep` mm
-    along each axis, each pair once; some at a time.
+    """Yield the pairs (k, 2) of triangles whose boxes overlap by more than `deep` mm along each
+    axis, each pair once.
 
-    Triangles in one plane, as those of a flat face, are left out by their common normal, and the axes are those of the
-    mesh's own normals, along which the long triangles of something round lie: of either there may be very many.
+    Triangles (m, 3, 3) have unit normals (m, 3). Coplanar triangles, as on a flat face, are
+    left out by their common normal. The axes are the principal axes of the normals, which
+    suit the long triangles of round shapes. Both kinds of pairs can be very numerous.
     """
     if len(corners) < 2:
         return
-    own = np.linalg.eigh(normals.T @ normals)[1]
-    corners, normals = corners @ own, normals @ own
-    order = _neighbourly(corners.mean(axis=1))
+    axes = np.linalg.eigh(normals.T @ normals)[1]
+    corners, normals = corners @ axes, normals @ axes
+    order = _spatial_order(corners.mean(axis=1))
     levels = _levels(corners[order], normals[order])
     stack = [(len(levels) - 1, np.zeros((1, 2), dtype=np.intp))]
     while stack:
-        at, pairs = stack.pop()
-        pairs = pairs[_meet(levels[at], pairs, deep)]
-        if at == 0:
+        depth, pairs = stack.pop()
+        pairs = pairs[_find_overlaps(levels[depth], pairs, deep)]
+        if depth == 0:
             pairs = pairs[pairs[:, 0] != pairs[:, 1]]
             if len(pairs):
                 yield order[pairs]
         elif len(pairs):
-            below = _below(pairs)
-            stack += [(at - 1, part) for part in np.array_split(below, -(-len(below) // MANY))]
+            below = _child_pairs(pairs)
+            stack += [
+                (depth - 1, block)
+                for block in np.array_split(below, -(-len(below) // MAX_BLOCK_PAIRS))
+            ]
 
 
-def _neighbourly(middles: Array) -> Index:
+def _spatial_order(middles: Array) -> Index:
     """The order (n,) of points along Morton's curve: neighbours in it are mostly neighbours in space."""
     size = float(np.ptp(middles, axis=0).max()) or 1.0
     cells = np.minimum(
@@ -68,7 +77,11 @@ def _neighbourly(middles: Array) -> Index:
 
 
 def _levels(corners: Array, normals: Array) -> list[_Level]:
-    """The triangles, those of two neighbours each, and so on to the one node of all; empty ones fill up."""
+    """Return the levels of the tree: pairs of neighbouring triangles first, up to one node for
+    all.
+
+    Empty triangles fill up the lowest level.
+    """
     depth = max(int(np.ceil(np.log2(len(corners)))), 1)
     spare = 2**depth - len(corners)
     low, high = corners.min(axis=1), corners.max(axis=1)
@@ -77,7 +90,7 @@ def _levels(corners: Array, normals: Array) -> list[_Level]:
         for side, fill in ((low, np.inf), (high, -np.inf))
     )
     total = np.vstack([normals, np.zeros((spare, 3))])
-    found = []
+    levels = []
     for level in range(depth + 1):
         if level:
             low, high = np.minimum(low[::2], low[1::2]), np.maximum(high[::2], high[1::2])
@@ -89,33 +102,36 @@ def _levels(corners: Array, normals: Array) -> list[_Level]:
         bottom, top = np.full(len(low), np.inf), np.full(len(low), -np.inf)
         bottom[: len(starts)] = np.minimum.reduceat(height.min(axis=1), starts)
         top[: len(starts)] = np.maximum.reduceat(height.max(axis=1), starts)
-        found.append(_Level(columns(low), columns(high), normal, bottom, top))
-    return found
+        levels.append(_Level(columns(low), columns(high), normal, bottom, top))
+    return levels
 
 
-def _meet(level: _Level, pairs: Index, deep: float) -> Mask:
-    one, other = pairs.T
-    met = np.ones(len(pairs), dtype=bool)
+def _find_overlaps(level: _Level, pairs: Index, deep: float) -> Mask:
+    a, b = pairs.T
+    overlaps = np.ones(len(pairs), dtype=bool)
     for low, high in zip(level.low, level.high):
-        met &= (high[one] - low[other] > deep) & (high[other] - low[one] > deep)
-    left = np.flatnonzero(met)
-    one, other = one[left], other[left]
-    alike = (level.normal[one] * level.normal[other]).sum(axis=1) > 1.0 - PARALLEL
-    left, one, other = left[alike], one[alike], other[alike]
-    above, below = level.top[one] - level.bottom[other], level.top[other] - level.bottom[one]
-    met[left] = (above > deep) & (below > deep)
-    return met
+        overlaps &= (high[a] - low[b] > deep) & (high[b] - low[a] > deep)
+    remaining = np.flatnonzero(overlaps)
+    a, b = a[remaining], b[remaining]
+    alike = (level.normal[a] * level.normal[b]).sum(axis=1) > 1.0 - PARALLEL
+    remaining, a, b = remaining[alike], a[alike], b[alike]
+    above, below = level.top[a] - level.bottom[b], level.top[b] - level.bottom[a]
+    overlaps[remaining] = (above > deep) & (below > deep)
+    return overlaps
 
 
-def _below(pairs: Index) -> Index:
-    """The pairs of the halves of pairs of nodes; of a node and itself, its halves with themselves and with each other."""
-    one, other = (2 * pairs).T
-    apart = one != other
+def _child_pairs(pairs: Index) -> Index:
+    """Return the pairs of the halves of node pairs.
+
+    A node paired with itself gives each half with itself and both halves with each other.
+    """
+    a, b = (2 * pairs).T
+    distinct = a != b
     return np.concatenate(
         [
-            np.stack([one, other], axis=1),
-            np.stack([one, other + 1], axis=1),
-            np.stack([one + 1, other + 1], axis=1),
-            np.stack([one + 1, other], axis=1)[apart],
+            np.stack([a, b], axis=1),
+            np.stack([a, b + 1], axis=1),
+            np.stack([a + 1, b + 1], axis=1),
+            np.stack([a + 1, b], axis=1)[distinct],
         ]
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Triangles turned alike, and closed pieces told apart: solids and the hollows in them."""
+"""Orient triangles consistently and separate closed components: solids and their cavities."""
 
 from __future__ import annotations
 
@@ -14,31 +14,36 @@ from ..walls.surface import dot
 from .refined import Edges
 from .solid import SolidMesh
 
-FLAT = 1e-9  # of the cube of its size; a closed piece of less volume encloses nothing
+MIN_VOLUME_SHARE = 1e-9  # of the cube of its size; a closed piece of less volume encloses nothing
 
 
 def connected_pieces(corners: Index) -> Index:
-    """The piece (m,) that each triangle hangs together with."""
+    """Return the connected component (m,) of each triangle."""
     edges = Edges(corners)
-    one, other = edges.faces[edges.count == 2].T
-    links = coo_matrix((np.ones(len(one)), (one, other)), shape=(len(corners), len(corners)))
-    found: Index = connected_components(links, directed=False)[1].astype(np.intp)
-    return found
+    a, b = edges.faces[edges.count == 2].T
+    links = coo_matrix((np.ones(len(a)), (a, b)), shape=(len(corners), len(corners)))
+    components: Index = connected_components(links, directed=False)[1].astype(np.intp)
+    return components
 
 
-def turned_alike(
+def orient_triangles(
     vertices: Array, corners: Index, edges: Edges, label: str, messages: list[str]
 ) -> Index:
-    """Triangles turned so that neighbours agree."""
-    turned = alike_across(corners, edges, np.arange(len(edges.ends)), messages)
+    """Return the triangles oriented so that neighbours agree.
+
+    Raises InputError NOT_ORIENTABLE.
+    """
+    turned = orient_across(corners, edges, np.arange(len(edges.ends)), messages)
     forward = turned < np.roll(turned, -1, axis=1)
-    one, other = edges.faces.T
+    face_a, face_b = edges.faces.T
     number = Edges(turned)
-    ways = [
-        forward[face, np.argmax(number.of[face] == np.arange(len(one))[:, None], axis=1)]
-        for face in (one, other)
+    senses = [
+        forward[
+            face, np.argmax(number.of_triangle[face] == np.arange(len(face_a))[:, None], axis=1)
+        ]
+        for face in (face_a, face_b)
     ]
-    wrong = ways[0] == ways[1]
+    wrong = senses[0] == senses[1]
     if wrong.any():
         where = place(vertices[edges.ends[np.argmax(wrong)]].mean(axis=0))
         raise InputError(
@@ -50,17 +55,20 @@ def turned_alike(
     return turned
 
 
-def alike_across(corners: Index, edges: Edges, two: Index, messages: list[str]) -> Index:
-    """Triangles turned so that neighbours across edges (k,) of two agree, as far as they can."""
+def orient_across(corners: Index, edges: Edges, two: Index, messages: list[str]) -> Index:
+    """Return the triangles oriented so that neighbours across the two-sided edges (k,) agree, as
+    far as possible.
+    """
     forward = corners < np.roll(corners, -1, axis=1)
-    one, other = edges.faces[two].T
-    ways = [
-        forward[face, np.argmax(edges.of[face] == two[:, None], axis=1)] for face in (one, other)
+    face_a, face_b = edges.faces[two].T
+    senses = [
+        forward[face, np.argmax(edges.of_triangle[face] == two[:, None], axis=1)]
+        for face in (face_a, face_b)
     ]
-    against = ways[0] == ways[1]
+    against = senses[0] == senses[1]
     if not against.any():
         return corners
-    flip = _flips(len(corners), one, other, against)
+    flip = _flips(len(corners), face_a, face_b, against)
     messages.append(
         Text(
             "{} triangles were turned to agree with their neighbours",
@@ -70,33 +78,38 @@ def alike_across(corners: Index, edges: Edges, two: Index, messages: list[str]) 
     return np.where(flip[:, None], corners[:, ::-1], corners)
 
 
-def _flips(count: int, one: Index, other: Index, against: Mask) -> Mask:
-    """Which triangles to turn, told from neighbour to neighbour."""
-    links = coo_matrix((np.ones(len(one)), (one, other)), shape=(count, count)).tocsr()
-    crossed = {(int(a), int(b)) for a, b in zip(one[against], other[against])}
+def _flips(count: int, face_a: Index, face_b: Index, against: Mask) -> Mask:
+    """Return which triangles to flip, propagated from neighbour to neighbour."""
+    links = coo_matrix((np.ones(len(face_a)), (face_a, face_b)), shape=(count, count)).tocsr()
+    crossed = {(int(a), int(b)) for a, b in zip(face_a[against], face_b[against])}
     crossed |= {(b, a) for a, b in crossed}
-    _, piece = connected_components(links, directed=False)
+    _, component = connected_components(links, directed=False)
     flip = np.zeros(count, dtype=bool)
-    for start in np.unique(piece, return_index=True)[1]:
-        order, before = breadth_first_order(links, start, directed=False)
+    for start in np.unique(component, return_index=True)[1]:
+        order, predecessor = breadth_first_order(links, start, directed=False)
         for face in order[1:].tolist():
-            near = int(before[face])
-            flip[face] = flip[near] ^ ((near, face) in crossed)
-    most = np.bincount(piece, weights=flip) > 0.5 * np.bincount(
-        piece
-    )  # the fewer are the wrong ones
-    turned: Mask = flip ^ most[piece]
+            parent = int(predecessor[face])
+            flip[face] = flip[parent] ^ ((parent, face) in crossed)
+    is_minority = np.bincount(component, weights=flip) > 0.5 * np.bincount(
+        component
+    )  # the minority is wrong
+    turned: Mask = flip ^ is_minority[component]
     return turned
 
 
-def solids_of(vertices: Array, corners: Index, messages: list[str]) -> tuple[SolidMesh, ...]:
-    """Pieces that hang together, outermost ones turned outside out and cavities with the solid about them."""
-    piece = connected_pieces(corners)
-    pieces = np.split(corners[np.argsort(piece, kind="stable")], np.cumsum(np.bincount(piece))[:-1])
-    low = np.array([vertices[some].min(axis=(0, 1)) for some in pieces])
-    high = np.array([vertices[some].max(axis=(0, 1)) for some in pieces])
-    volume = np.array([SolidMesh(vertices, some).volume for some in pieces])
-    bulky = np.abs(volume) > FLAT * np.linalg.norm(high - low, axis=1) ** 3
+def split_solids(vertices: Array, corners: Index, messages: list[str]) -> tuple[SolidMesh, ...]:
+    """Return the connected components as solids.
+
+    Outer components are turned outside out; cavities belong to the solid around them.
+    """
+    component = connected_pieces(corners)
+    components = np.split(
+        corners[np.argsort(component, kind="stable")], np.cumsum(np.bincount(component))[:-1]
+    )
+    low = np.array([vertices[shell].min(axis=(0, 1)) for shell in components])
+    high = np.array([vertices[shell].max(axis=(0, 1)) for shell in components])
+    volume = np.array([SolidMesh(vertices, shell).volume for shell in components])
+    bulky = np.abs(volume) > MIN_VOLUME_SHARE * np.linalg.norm(high - low, axis=1) ** 3
     if not bulky.all():
         messages.append(Text("{} pieces that enclose nothing were dropped", int((~bulky).sum())))
     about = {}
@@ -107,22 +120,22 @@ def solids_of(vertices: Array, corners: Index, messages: list[str]) -> tuple[Sol
         inside = [
             j
             for j in wider.tolist()
-            if _winding(vertices[pieces[j]], vertices[pieces[k][0, 0]]) > 0.5
+            if _winding(vertices[components[j]], vertices[components[k][0, 0]]) > 0.5
         ]
         if inside:
             about[k] = min(inside, key=lambda j: volume[j])
     outer = [k for k in np.flatnonzero(bulky).tolist() if k not in about]
     turned = [k for k in outer if volume[k] < 0.0]
     if turned:
-        many = Text("{} solids were inside out and were turned", len(turned))
-        messages.append("a solid was inside out and was turned" if len(turned) == 1 else many)
-    found = []
+        message = Text("{} solids were inside out and were turned", len(turned))
+        messages.append("a solid was inside out and was turned" if len(turned) == 1 else message)
+    solids = []
     for k in outer:
-        own = [pieces[k][:, ::-1] if volume[k] < 0.0 else pieces[k]]
-        own += [pieces[j] for j, around in about.items() if around == k]
-        used, index = np.unique(np.vstack(own), return_inverse=True)
-        found.append(SolidMesh(vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)))
-    return tuple(found)
+        shells = [components[k][:, ::-1] if volume[k] < 0.0 else components[k]]
+        shells += [components[j] for j, around in about.items() if around == k]
+        used, index = np.unique(np.vstack(shells), return_inverse=True)
+        solids.append(SolidMesh(vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)))
+    return tuple(solids)
 
 
 def _winding(corners: Array, point: Array) -> float:

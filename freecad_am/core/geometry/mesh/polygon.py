@@ -8,41 +8,52 @@ import numpy as np
 from ...types import Array, Index
 
 
-def triangulated(corners: Array) -> Index:
-    """Triangles (n - 2, 3) of a polygon with the corners (n, 3), n >= 3, by their numbers, turning as it does: ear after ear
-    is cut off along the plane of its mean normal, the least drawn out first. One that crosses itself is cut too."""
-    after = np.roll(corners, -1, axis=0)
-    normal = np.cross(corners, after).sum(axis=0)  # Newell's
+def triangulate(corners: Array) -> Index:
+    """Divide a polygon (n, 3), n >= 3, into triangles (n - 2, 3) of corner numbers, in the sense
+    of the polygon.
+
+    Ear clipping in the plane of the mean normal, the least elongated ear first. A polygon
+    that crosses itself is divided too.
+    """
+    next_corner = np.roll(corners, -1, axis=0)
+    normal = np.cross(corners, next_corner).sum(axis=0)  # Newell's
     drop = int(np.argmax(np.abs(normal)))
     flat = np.delete(corners, drop, axis=1)
     if (normal[drop] < 0.0) != (drop == 1):  # so that it turns left
         flat = flat[:, ::-1]
-    left, found = list(range(len(corners))), []
-    while len(left) > 3:
-        ear = _ear(flat[left])
-        found.append((left[ear - 1], left[ear], left[(ear + 1) % len(left)]))
-        left.pop(ear)
-    return np.array([*found, tuple(left)], dtype=np.intp)
+    remaining, ears = list(range(len(corners))), []
+    while len(remaining) > 3:
+        ear = _find_ear(flat[remaining])
+        ears.append((remaining[ear - 1], remaining[ear], remaining[(ear + 1) % len(remaining)]))
+        remaining.pop(ear)
+    return np.array([*ears, tuple(remaining)], dtype=np.intp)
 
 
-def _ear(ring: Array) -> int:
-    """The corner of a polygon (n, 2) that turns left, with no other corner in its triangle; of several the one whose
-    triangle is the least drawn out, and of none the one that turns left most."""
-    before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
-    turn = _cross(ring - before, after - ring)
+def _find_ear(ring: Array) -> int:
+    """Return the corner of a polygon (n, 2) that turns left and has no other corner in its
+    triangle.
+
+    If several qualify, the one whose triangle is least elongated; if none does, the one that
+    turns left most.
+    """
+    previous, next_corner = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
+    turn = _cross(ring - previous, next_corner - ring)
     longest = np.maximum.reduce(
-        [((a - b) ** 2).sum(axis=1) for a, b in ((ring, before), (after, ring), (before, after))]
+        [
+            ((a - b) ** 2).sum(axis=1)
+            for a, b in ((ring, previous), (next_corner, ring), (previous, next_corner))
+        ]
     )
     shape = turn / np.maximum(longest, 1e-300)
     inside = np.ones((len(ring), len(ring)), dtype=bool)  # triangle, corner
-    for a, b in ((before, ring), (ring, after), (after, before)):
+    for a, b in ((previous, ring), (ring, next_corner), (next_corner, previous)):
         inside &= _cross((b - a)[:, None], ring[None] - a[:, None]) >= 0.0
-    for own in (before, ring, after):
-        inside &= (ring[None] != own[:, None]).any(axis=2)
+    for corner in (previous, ring, next_corner):
+        inside &= (ring[None] != corner[:, None]).any(axis=2)
     clear = (turn > 0.0) & ~inside.any(axis=1)
     return int(np.argmax(np.where(clear, shape, -np.inf) if clear.any() else shape))
 
 
-def _cross(one: Array, other: Array) -> Array:
-    found: Array = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
-    return found
+def _cross(a: Array, b: Array) -> Array:
+    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A solid bounded by triangles: whether it is one, and how far points are from it, inside of it with a minus."""
+"""A solid bounded by triangles: its soundness, and distances of points from it, negative
+inside.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +17,15 @@ from ...types import Array, Index, Mask
 from ..columns import sides
 from ..formatting import place
 from ..walls.surface import dot
-from .crossing import crossings
+from .crossing import find_crossings
 from .refined import Edges
 from .triangles import closest
 
-NEAREST = 12
-SHARP = np.radians(20.0)  # facets that meet at more do not stand for something round
-PARALLEL = 1e-6  # of the cosine between the normals of triangles that lie the same way
+NEIGHBOUR_COUNT = 12
+SHARP_EDGE_RAD = np.radians(
+    20.0
+)  # facets that meet at a larger angle do not approximate a round surface
+PARALLEL = 1e-6  # of the cosine between the normals of parallel triangles
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +45,12 @@ class SolidMesh:
         return float(dot(a, np.cross(b, c)).sum() / 6.0)
 
     def refuse_unsound(self, label: str, of_shape: bool = False, touching: bool = False) -> None:
-        """InputError OPEN_MESH, NON_MANIFOLD or INSIDE_OUT with a place, unless the mesh bounds a solid. of_shape: it stands
-        for a solid with exact faces, so that there is no mesh to repair. touching: it may touch itself along edges."""
+        """Raise InputError OPEN_MESH, NON_MANIFOLD or INSIDE_OUT with a position, unless the mesh
+        bounds a solid.
+
+        of_shape: the mesh comes from a solid with exact faces, so there is no mesh to repair.
+        touching: the solid may touch itself along edges.
+        """
         edges = Edges(self.triangles)
         several = (edges.count > 2) & ~(touching & (edges.count % 2 == 0))
         for wrong, code, what, cure in (
@@ -85,7 +93,9 @@ class SolidMesh:
                 )
         half = np.stack([self.triangles, np.roll(self.triangles, -1, axis=1)], axis=2)
         sense = np.where(half[..., 0] < half[..., 1], 1, -1)
-        total = np.bincount(edges.of.ravel(), weights=sense.ravel(), minlength=len(edges.ends))
+        total = np.bincount(
+            edges.of_triangle.ravel(), weights=sense.ravel(), minlength=len(edges.ends)
+        )
         if (total != 0).any():
             where = place(self.vertices[edges.ends[np.argmax(total != 0)]].mean(axis=0))
             raise InputError(
@@ -105,18 +115,20 @@ class SolidMesh:
                 place(self.vertices.mean(axis=0)),
             )
 
-    def refuse_crossing(self, label: str, least: float) -> None:
-        """InputError SELF_CROSSING with a place where the mesh cuts itself by more than `least` mm."""
-        found = crossings(self.vertices, self.triangles, least)
-        if len(found.pairs):
-            where = place(found.places[found.length.argmax()])
+    def refuse_crossing(self, label: str, min_length: float) -> None:
+        """Raise InputError SELF_CROSSING with a position if the mesh cuts itself by more than
+        `min_length` mm.
+        """
+        pairs = find_crossings(self.vertices, self.triangles, min_length)
+        if len(pairs.pairs):
+            where = place(pairs.positions[pairs.length.argmax()])
             raise InputError(
                 "SELF_CROSSING",
                 label,
                 "it cuts itself: {} pairs of its triangles cross, for instance at {}, so that what "
                 "is inside is not known; fuse what overlaps where the part was drawn, or repair the mesh (Mesh, Analyze, "
                 "Self-intersections)",
-                len(found.pairs),
+                len(pairs.pairs),
                 where,
             )
 
@@ -134,19 +146,27 @@ class SolidMesh:
 
     @cached_property
     def sagitta(self) -> Array:
-        """How far (m,), about, each triangle lies off the round surface that it and its neighbours stand for: an eighth of
-        its width across each edge times the turn there; edges that turn by more than SHARP are meant."""
+        """Estimate how far (m,) each triangle is off the round surface that it and its neighbours
+        approximate.
+
+        An eighth of its width across each edge times the turn there. Edges that turn by more than
+        SHARP_EDGE_RAD are real edges.
+        """
         edges = Edges(self.triangles)
         two = edges.count == 2
         turn = np.zeros(len(edges.ends))
-        one, other = (self.units[edges.faces[two, side]] for side in (0, 1))
-        turn[two] = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
-        turn[turn > SHARP] = 0.0
+        normal_a, normal_b = (self.units[edges.faces[two, side]] for side in (0, 1))
+        turn[two] = np.arctan2(
+            np.linalg.norm(np.cross(normal_a, normal_b), axis=1), dot(normal_a, normal_b)
+        )
+        turn[turn > SHARP_EDGE_RAD] = 0.0
         length = np.linalg.norm(
             self.vertices[edges.ends[:, 1]] - self.vertices[edges.ends[:, 0]], axis=1
         )
-        width = np.linalg.norm(self.normals, axis=1)[:, None] / np.maximum(length[edges.of], 1e-300)
-        sagitta: Array = (0.125 * width * turn[edges.of]).max(axis=1)
+        width = np.linalg.norm(self.normals, axis=1)[:, None] / np.maximum(
+            length[edges.of_triangle], 1e-300
+        )
+        sagitta: Array = (0.125 * width * turn[edges.of_triangle]).max(axis=1)
         return sagitta
 
     @cached_property
@@ -158,15 +178,17 @@ class SolidMesh:
 
 
 class Search:
-    """Nearest triangles of a solid, from the middles of their parts no longer than `longest` mm. The side is told by
-    pseudo-normals (Baerentzen 2005)."""
+    """Nearest triangles of a solid, from the middles of their parts no longer than `longest` mm.
+
+    Pseudo-normals decide the side (Baerentzen 2005).
+    """
 
     def __init__(self, solid: SolidMesh, longest: float) -> None:
         self.vertices, self.longest = solid.vertices, longest
         vertices = solid.vertices
         sound = np.flatnonzero(np.linalg.norm(solid.normals, axis=1) > 1e-10)
         self.triangles, self.owner, self.units = solid.triangles[sound], sound, solid.units[sound]
-        middles, self.of = _spread(vertices[self.triangles], longest)
+        middles, self.of = _divide_triangles(vertices[self.triangles], longest)
         self.tree = cKDTree(middles)
 
     @cached_property
@@ -174,7 +196,7 @@ class Search:
         """Whether all triangles are parallel: there is no inside then."""
         return bool((np.abs(self.units @ self.units[0]) > 1.0 - PARALLEL).all())
 
-    def away(self, points: Array) -> Array:
+    def distance(self, points: Array) -> Array:
         """Distance (k,) of points (k, 3) from the triangles."""
         return self._nearest(points)[0]
 
@@ -197,81 +219,99 @@ class Search:
         return side * distance, foot, self.owner[triangle]
 
     def _nearest(self, points: Array) -> tuple[Array, Index, Array]:
-        """Distance (k,) of points (k, 3), the nearest of the sound triangles (k,), and the shares (k, 3) of its corners."""
-        count = min(NEAREST, len(self.of))
-        # about the middle of something round all is equally near: far points are content with a little farther
-        far = np.flatnonzero(self.tree.query(points, eps=0.3)[0] > 4.0 * self.longest)
-        close = np.setdiff1d(np.arange(len(points)), far)
-        near = np.zeros((len(points), count), dtype=np.intp)
-        for which, slack in ((far, 0.3), (close, 0.0)):
-            if len(which):
-                near[which] = self.of[
-                    np.asarray(self.tree.query(points[which], k=count, eps=slack)[1]).reshape(
+        """Return the distance (k,) of points (k, 3), the nearest sound triangle (k,) and the shares
+        (k, 3) of its corners.
+        """
+        count = min(NEIGHBOUR_COUNT, len(self.of))
+        # near the middle of a round solid all triangles are equally near, so far points accept a slightly larger distance
+        far_points = np.flatnonzero(self.tree.query(points, eps=0.3)[0] > 4.0 * self.longest)
+        close = np.setdiff1d(np.arange(len(points)), far_points)
+        nearest_triangles = np.zeros((len(points), count), dtype=np.intp)
+        for selected, slack in ((far_points, 0.3), (close, 0.0)):
+            if len(selected):
+                nearest_triangles[selected] = self.of[
+                    np.asarray(self.tree.query(points[selected], k=count, eps=slack)[1]).reshape(
                         -1, count
                     )
                 ]
         fresh = np.ones(
-            near.shape, dtype=bool
-        )  # most parts next to a point are of the same few triangles
+            nearest_triangles.shape, dtype=bool
+        )  # most parts near a point belong to the same few triangles
         for k in range(1, count):
-            fresh[:, k] = (near[:, :k] != near[:, k : k + 1]).all(axis=1)
-        corner, owner = self.vertices[self.triangles[near[fresh]]], np.nonzero(fresh)[0]
-        apart, shares = closest(corner[:, 0], corner[:, 1], corner[:, 2], points[owner])
-        distance, place = np.full(near.shape, np.inf), np.zeros(near.shape, dtype=np.intp)
-        distance[fresh], place[fresh] = apart, np.arange(len(apart))
+            fresh[:, k] = (nearest_triangles[:, :k] != nearest_triangles[:, k : k + 1]).all(axis=1)
+        corner, owner = (
+            self.vertices[self.triangles[nearest_triangles[fresh]]],
+            np.nonzero(fresh)[0],
+        )
+        part_distance, shares = closest(corner[:, 0], corner[:, 1], corner[:, 2], points[owner])
+        distance, row_of_part = (
+            np.full(nearest_triangles.shape, np.inf),
+            np.zeros(nearest_triangles.shape, dtype=np.intp),
+        )
+        distance[fresh], row_of_part[fresh] = part_distance, np.arange(len(part_distance))
         row, best = np.arange(len(points)), np.argmin(distance, axis=1)
-        return distance[row, best], near[row, best], shares[place[row, best]]
+        return distance[row, best], nearest_triangles[row, best], shares[row_of_part[row, best]]
 
     @cached_property
     def _pseudo_normals(self) -> tuple[Array, Array, Index]:
-        """At each vertex (n, 3) and edge (e, 3), and the edges (m, 3) of each sound triangle."""
+        """Return pseudo-normals at each vertex (n, 3) and edge (e, 3), and the edges (m, 3) of each
+        sound triangle.
+        """
         corner = self.vertices[self.triangles]
         at_vertex = np.zeros_like(self.vertices)
         for k in range(3):
-            one, other = (
+            edge_a, edge_b = (
                 corner[:, (k + 1) % 3] - corner[:, k],
                 corner[:, (k + 2) % 3] - corner[:, k],
             )
-            angle = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
+            angle = np.arctan2(
+                np.linalg.norm(np.cross(edge_a, edge_b), axis=1), dot(edge_a, edge_b)
+            )
             np.add.at(at_vertex, self.triangles[:, k], angle[:, None] * self.units)
         edges = Edges(self.triangles)
         at_edge = np.zeros((len(edges.ends), 3))
         for k in range(3):
-            np.add.at(at_edge, edges.of[:, k], self.units)
-        return at_vertex, at_edge, edges.of
+            np.add.at(at_edge, edges.of_triangle[:, k], self.units)
+        return at_vertex, at_edge, edges.of_triangle
 
 
-def spread(
-    corners: Array, longest: float, kept: Callable[[Array], Mask] | None = None
+def divide_triangles(
+    corners: Array, longest: float, is_kept: Callable[[Array], Mask] | None = None
 ) -> tuple[Array, Index]:
-    """Middles (k, 3) of the parts of triangles (m, 3, 3), none with a side beyond `longest` mm; the triangle of each.
-    kept: says of triangles (n, 3, 3), whole ones and parts, which (n,) are parted further; the others are left out."""
+    """Divide triangles (m, 3, 3) until no side is longer than `longest` mm.
+
+    Returns the middles (k, 3) of the parts and the triangle (k,) of each. is_kept: takes
+    triangles (n, 3, 3), whole or parts, and returns which (n,) to divide further; the others
+    are dropped.
+    """
     return (
-        _spread(corners, longest, kept)
+        _divide_triangles(corners, longest, is_kept)
         if len(corners)
         else (np.zeros((0, 3)), np.zeros(0, dtype=np.intp))
     )
 
 
-def _spread(
-    corner: Array, longest: float, kept: Callable[[Array], Mask] | None = None
+def _divide_triangles(
+    corner: Array, longest: float, is_kept: Callable[[Array], Mask] | None = None
 ) -> tuple[Array, Index]:
-    """Middles (k, 3) of the parts of triangles (m, 3, 3) with no side longer than `longest`, and the triangle of each."""
-    of, done = np.arange(len(corner)), []
+    """Divide triangles (m, 3, 3) as `divide_triangles` does, by halving the longest side."""
+    triangle, blocks = np.arange(len(corner)), []
     while len(corner):
-        if kept is not None:
-            here = kept(corner)
-            corner, of = corner[here], of[here]
+        if is_kept is not None:
+            keep = is_kept(corner)
+            corner, triangle = corner[keep], triangle[keep]
         side = sides(corner)
         top = np.argmax(side, axis=1)
         small = side[np.arange(len(top)), top] <= longest
         a, b, c = (corner[small, k] for k in range(3))
-        done.append(((a + b + c) / 3.0, of[small]))
-        corner, of, top = corner[~small], of[~small], top[~small]
+        blocks.append(((a + b + c) / 3.0, triangle[small]))
+        corner, triangle, top = corner[~small], triangle[~small], top[~small]
         a, b, c = (corner[np.arange(len(top)), (top + k) % 3] for k in range(3))
         middle = 0.5 * (a + b)
         corner = np.concatenate(
             [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
         )
-        of = np.r_[of, of]
-    return np.concatenate([one for one, _ in done]), np.concatenate([one for _, one in done])
+        triangle = np.r_[triangle, triangle]
+    return np.concatenate([block for block, _ in blocks]), np.concatenate(
+        [block for _, block in blocks]
+    )

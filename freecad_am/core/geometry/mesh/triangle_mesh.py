@@ -15,7 +15,7 @@ from ...issues import InputError
 from ...types import Array, Index, Mask
 from .triangles import cut_evenly
 
-DECIMALS = 6  # decimals of mm to which vertices of a finer mesh are told apart
+DECIMALS = 6  # decimals of mm that distinguish vertices of a finer mesh
 
 
 class LevelLine(NamedTuple):
@@ -43,34 +43,37 @@ class Mesh:
 
     @cached_property
     def border_edges(self) -> Index:
-        """The edges (k, 2) with a face on one side only, which is on their left."""
-        _, place, count = np.unique(self._sides, return_inverse=True, return_counts=True)
-        edges: Index = self._half_edges[count[place] == 1]
+        """The edges (k, 2) with one face only, which is on their left."""
+        _, edge_number, count = np.unique(self._sides, return_inverse=True, return_counts=True)
+        edges: Index = self._half_edges[count[edge_number] == 1]
         return edges
 
     @property
     def _half_edges(self) -> Index:
-        """The sides of all faces (3 m, 2), each face on the left of its own."""
+        """The sides (3 m, 2) of all faces, each face on the left of its side."""
         return self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
 
     @property
     def _sides(self) -> Index:
-        """The sides (3 m,) as numbers, the same for both faces beside an edge and in the order of its vertices. Unlike rows
-        of two, numbers are sorted quickly, and without holding up what other threads do."""
+        """The sides (3 m,) as numbers, equal for both faces at an edge and in the order of its
+        vertices.
+
+        Numbers sort faster than rows of two, and without blocking other threads.
+        """
         low, high = np.sort(self._half_edges, axis=1).astype(np.int64).T
         sides: Index = low * len(self.vertices) + high
         return sides
 
     @cached_property
     def area_vectors(self) -> Array:
-        """Of each face (m, 3): its normal, as long as its area, mm2."""
+        """Normals (m, 3) of the faces, each as long as the area of its face, mm2."""
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
         vectors: Array = 0.5 * np.cross(b - a, c - a)
         return vectors
 
     @cached_property
     def areas(self) -> Array:
-        """Of the faces (m,), mm2."""
+        """Areas (m,) of the faces, mm2."""
         areas: Array = np.linalg.norm(self.area_vectors, axis=1)
         return areas
 
@@ -87,14 +90,15 @@ class Mesh:
         return float(np.median(np.linalg.norm(a - b, axis=1)))
 
     def folded(self, angle: float) -> float:
-        """Length of the edges, mm, at which two faces meet at more than `angle` rad."""
+        """Return the length of the edges, mm, at which two faces meet at more than `angle` rad."""
         order = np.argsort(self._sides, kind="stable")
         sides, face = self._sides[order], order // 3
-        at = np.flatnonzero(sides[1:] == sides[:-1])
-        one, other = self.area_vectors[face[at]], self.area_vectors[face[at + 1]]
-        along = self.vertices[self._half_edges[order[at]]]
+        paired = np.flatnonzero(sides[1:] == sides[:-1])
+        normal_a, normal_b = self.area_vectors[face[paired]], self.area_vectors[face[paired + 1]]
+        along = self.vertices[self._half_edges[order[paired]]]
         turn = np.arctan2(
-            np.linalg.norm(np.cross(one, other), axis=1), np.einsum("ij,ij->i", one, other)
+            np.linalg.norm(np.cross(normal_a, normal_b), axis=1),
+            np.einsum("ij,ij->i", normal_a, normal_b),
         )
         return float(np.linalg.norm(along[:, 1] - along[:, 0], axis=1)[turn > angle].sum())
 
@@ -105,23 +109,25 @@ class Mesh:
 
     @cached_property
     def _faces_of(self) -> tuple[Index, Index]:
-        """Faces sorted by vertex, and where those of each vertex begin."""
+        """The faces sorted by vertex, and where the faces of each vertex begin."""
         order = np.argsort(self.faces.ravel(), kind="stable")
         counts = np.bincount(self.faces.ravel(), minlength=len(self.vertices))
         return (order // 3).astype(np.intp), np.r_[0, np.cumsum(counts)].astype(np.intp)
 
     def faces_at(self, vertices: Index) -> Index:
-        """The faces (k,) that touch the vertices."""
+        """Return the faces (k,) that touch the vertices."""
         faces, begin = self._faces_of
         count = begin[vertices + 1] - begin[vertices]
-        at = np.repeat(begin[vertices] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(
+        index = np.repeat(begin[vertices] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(
             count.sum()
         )
-        touched: Index = np.unique(faces[at])
+        touched: Index = np.unique(faces[index])
         return touched
 
-    def joined(self, members: Mask, seeds: Mask) -> Mask:
-        """The members (n,) that edges link to a seed through members alone; seeds count as members."""
+    def connected_members(self, members: Mask, seeds: Mask) -> Mask:
+        """Return the members (n,) that edges link to a seed through members only; seeds count as
+        members.
+        """
         inside = members | seeds
         pairs = self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
         pairs = pairs[inside[pairs].all(axis=1)]
@@ -133,28 +139,30 @@ class Mesh:
         return reached
 
     def part(self, faces: Index) -> tuple[Mesh, Index]:
-        """The mesh of some faces (k,) alone, and the numbers (m,) that its vertices have here."""
+        """Return the mesh of the faces (k,), and the numbers (m,) of its vertices in this mesh."""
         vertices, corners = np.unique(self.faces[faces], return_inverse=True)
         return Mesh(
             self.vertices[vertices], np.ravel(corners).reshape(-1, 3).astype(np.intp)
         ), vertices
 
     def finer(self, longest: float) -> Mesh:
-        """The mesh cut evenly so that no edge is longer than `longest` mm."""
-        points, parts = cut_evenly(self.vertices[self.faces], longest)
-        every = (np.arange(len(self.faces))[:, None, None] * points.shape[1] + parts[None]).reshape(
-            -1, 3
-        )
+        """Return the mesh cut evenly so that no edge is longer than `longest` mm."""
+        points, sub_triangles = cut_evenly(self.vertices[self.faces], longest)
+        corners = (
+            np.arange(len(self.faces))[:, None, None] * points.shape[1] + sub_triangles[None]
+        ).reshape(-1, 3)
         points = points.reshape(-1, 3)
-        _, first, same = np.unique(
+        _, representative, same = np.unique(
             np.round(points, DECIMALS) + 0.0, axis=0, return_index=True, return_inverse=True
         )
-        return Mesh(points[first], np.ravel(same)[every].astype(np.intp))
+        return Mesh(points[representative], np.ravel(same)[corners].astype(np.intp))
 
     def level_lines(self, values: Array, faces: Index) -> list[LevelLine]:
-        """The lines on the faces (k,) along which the values (n,) are zero, interpolated along edges.
+        """Return the lines on the faces (k,) along which the values (n,) are zero, interpolated
+        along edges.
 
-        InputError MESH where neighbouring faces turn opposite ways, so that lines have no sides.
+        Raises InputError MESH if neighbouring faces have opposite orientations, so that lines
+        have no sides.
         """
         corners = self.faces[faces]
         low = values[corners] < 0.0
@@ -179,8 +187,8 @@ class Mesh:
                 "wall",
                 "faces of the wall's mesh turn opposite ways: orient the faces alike",
             )
-        one, other = values[edges].T
-        t = np.clip(one / (one - other), 1e-6, 1.0 - 1e-6)[:, None]
+        start_value, end_value = values[edges].T
+        t = np.clip(start_value / (start_value - end_value), 1e-6, 1.0 - 1e-6)[:, None]
         points = (1.0 - t) * self.vertices[edges[:, 0]] + t * self.vertices[edges[:, 1]]
         rims = self.vertices[edges[:, 1]] - self.vertices[edges[:, 0]]
         rims /= np.linalg.norm(rims, axis=1, keepdims=True)
@@ -191,15 +199,18 @@ class Mesh:
 
 
 def chains(following: Index) -> list[tuple[Index, bool]]:
-    """The chains of a list of successors (n,), -1 for none, in the order of their least members: members in order, and
-    whether the chain is closed. Closed ones begin with their least member."""
+    """Return the chains of successors (n,), -1 for none, in the order of their lowest members.
+
+    Each has its members in order and whether it is closed. Closed chains begin with their
+    lowest member.
+    """
     ahead = following.tolist()
     arrives = np.zeros(len(ahead), dtype=bool)
     arrives[following[following >= 0]] = True
-    found: list[tuple[int, list[int], bool]] = []
+    ordered: list[tuple[int, list[int], bool]] = []
     unseen = bytearray(b"\x01") * len(ahead)
     starts = np.flatnonzero(~arrives).tolist()[::-1]
-    # walked along lists, which is quicker than doubling by arrays at any length
+    # walking along lists is faster than pointer doubling with arrays at any length
     while (start := starts.pop() if starts else unseen.find(1)) >= 0:
         chain, node = [], start
         while node >= 0 and unseen[node]:
@@ -207,17 +218,19 @@ def chains(following: Index) -> list[tuple[Index, bool]]:
             chain.append(node)
             node = ahead[node]
         if chain:
-            found.append((min(chain), chain, node >= 0))
-    return [(np.array(chain, dtype=np.intp), closed) for _, chain, closed in sorted(found)]
+            ordered.append((min(chain), chain, node >= 0))
+    return [(np.array(chain, dtype=np.intp), closed) for _, chain, closed in sorted(ordered)]
 
 
-def thinned(points: Array, closed: bool, least: float) -> Array:
-    """A chain of points (n, 3) without those nearer to the one before than `least` mm; the ends of an open one stay."""
+def thin_points(points: Array, closed: bool, min_step: float) -> Array:
+    """Drop points of a chain (n, 3) that are nearer than `min_step` mm to the one before; ends
+    of an open chain stay.
+    """
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    keep = np.r_[True, np.diff(np.floor(length / least)) > 0]
+    keep = np.r_[True, np.diff(np.floor(length / min_step)) > 0]
     if not closed:
         keep[-1] = True
-    elif length[-1] > least and np.linalg.norm(points[-1] - points[0]) < least:
+    elif length[-1] > min_step and np.linalg.norm(points[-1] - points[0]) < min_step:
         keep[-1] = False
-    kept: Array = points[keep]
-    return kept
+    remaining: Array = points[keep]
+    return remaining

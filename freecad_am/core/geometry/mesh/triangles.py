@@ -11,8 +11,11 @@ from ..walls.surface import dot
 
 
 def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
-    """Distance (...,) of points (..., 3) to triangles with the corners a, b, c (..., 3), and the corners' shares (..., 3) in
-    the nearest point."""
+    """Return the distance (...,) of points (..., 3) to triangles with the corners a, b, c (...,
+    3).
+
+    Also returns the shares (..., 3) of the corners in the nearest point.
+    """
     ab, ac, ap = b - a, c - a, points - a
     d00, d01, d11 = dot(ab, ab), dot(ab, ac), dot(ac, ac)
     d20, d21 = dot(ap, ab), dot(ap, ac)
@@ -36,13 +39,18 @@ def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
     )
     square[0] = np.where(inside, square[0], np.inf)
     best = np.argmin(square, axis=0)[None]
-    v, w, least = (np.take_along_axis(each, best, axis=0)[0] for each in (vs, ws, square))
-    return np.sqrt(np.maximum(least, 0.0)), np.stack([1.0 - v - w, v, w], axis=-1)
+    v, w, min_square = (
+        np.take_along_axis(candidates, best, axis=0)[0] for candidates in (vs, ws, square)
+    )
+    return np.sqrt(np.maximum(min_square, 0.0)), np.stack([1.0 - v - w, v, w], axis=-1)
 
 
 def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
-    """Triangles (m, 3, 3) cut so that no edge is longer than `longest` mm: the points (m, k, 3) in each, and the points
-    (l, 3) that the parts of any have as corners."""
+    """Cut triangles (m, 3, 3) evenly so that no edge is longer than `longest` mm.
+
+    Returns the points (m, k, 3) in each triangle, and the corner numbers (l, 3) of the parts,
+    the same for all triangles.
+    """
     edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
     n = step_count(edge, longest)
     i, j = (k.ravel() for k in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
@@ -50,7 +58,7 @@ def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
     number = np.full((n + 2, n + 2), -1)
     number[i, j] = np.arange(len(i))
     up, down = i + j < n, i + j < n - 1
-    parts = np.vstack(
+    sub_triangles = np.vstack(
         [
             np.stack(
                 [number[i[up], j[up]], number[i[up] + 1, j[up]], number[i[up], j[up] + 1]], axis=1
@@ -66,4 +74,4 @@ def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
         ]
     )
     share = np.stack([n - i - j, i, j], axis=1) / n
-    return np.einsum("sk,mkc->msc", share, corners), parts.astype(np.intp)
+    return np.einsum("sk,mkc->msc", share, corners), sub_triangles.astype(np.intp)

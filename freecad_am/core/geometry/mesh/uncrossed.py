@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...types import Array, Index, Mask
-from .crossing import crossings
-from .manifold import Hole, filled, holes, separated
+from .crossing import find_crossings
+from .manifold import Hole, fill_holes, find_holes, separate_vertices
 from .refined import Edges
 
 ROUNDS = 3  # each cuts out one ring of triangles more
@@ -25,30 +25,34 @@ class Uncrossed(NamedTuple):
     closed: list[Hole]
 
 
-def uncrossed(
-    vertices: Array, triangles: Index, pairs: Index, widest: float, least: float
+def remove_crossings(
+    vertices: Array, triangles: Index, pairs: Index, widest: float, min_length: float
 ) -> Uncrossed | None:
-    """A surface of vertices (n, 3) and triangles (m, 3), of which pairs (k, 2) cross. None where that would leave a hole
-    wider than `widest` mm, or reaches an end of the surface, or where triangles cross by more than `least` mm even then."""
+    """Cut crossing pairs (k, 2) of triangles out of a surface and close the holes.
+
+    Takes vertices (n, 3) and triangles (m, 3). Returns None if that leaves a hole wider than
+    `widest` mm, reaches an end of the surface, or if triangles still cross by more than
+    `min_length` mm.
+    """
     edges = Edges(triangles)
     at_end = np.zeros(len(vertices), dtype=bool)
     at_end[edges.ends[edges.count == 1]] = True
-    gone: Mask = np.zeros(len(triangles), dtype=bool)
-    gone[pairs] = True
+    removed: Mask = np.zeros(len(triangles), dtype=bool)
+    removed[pairs] = True
     for _ in range(ROUNDS):
-        if at_end[triangles[gone]].any():
+        if at_end[triangles[removed]].any():
             return None
-        kept = triangles[~gone]
-        found = separated(vertices, kept)
-        origin = np.empty(len(found.vertices), dtype=np.intp)
-        origin[found.triangles] = kept
-        left = [hole for hole in holes(found) if not at_end[origin[hole.loop]].any()]
-        if any(hole.size > widest for hole in left):
+        remaining = triangles[~removed]
+        manifold = separate_vertices(vertices, remaining)
+        origin = np.empty(len(manifold.vertices), dtype=np.intp)
+        origin[manifold.triangles] = remaining
+        openings = [hole for hole in find_holes(manifold) if not at_end[origin[hole.loop]].any()]
+        if any(hole.size > widest for hole in openings):
             return None
-        points, corners = filled(found.vertices, found.triangles, left)
-        if not len(crossings(points, corners, least).pairs):
-            return Uncrossed(points, corners, int(gone.sum()), left)
+        points, corners = fill_holes(manifold.vertices, manifold.triangles, openings)
+        if not len(find_crossings(points, corners, min_length).pairs):
+            return Uncrossed(points, corners, int(removed.sum()), openings)
         adjacent = np.zeros(len(vertices), dtype=bool)
-        adjacent[triangles[gone]] = True
-        gone = adjacent[triangles].any(axis=1)
+        adjacent[triangles[removed]] = True
+        removed = adjacent[triangles].any(axis=1)
     return None

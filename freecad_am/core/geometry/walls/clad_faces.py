@@ -12,9 +12,12 @@ from .patch_wall import PatchWall
 
 @dataclass(frozen=True, eq=False)
 class CladFaces:
-    """label: of the part. faces: their names. sheets: connected faces that run on smoothly, each as one; none of them starts
-    or ends anywhere. surroundings: the part itself where it is a solid, substrate and fixtures. depths: None, a face has no
-    volume."""
+    """Faces of a part to be clad.
+
+    label: of the part. faces: their names. sheets: smoothly connected faces, each group as
+    one sheet; none of them starts or ends anywhere. surroundings: the part itself if it is a
+    solid, substrate and fixtures. depths: None, a face has no volume.
+    """
 
     label: str
     faces: tuple[str, ...]
@@ -30,5 +33,5 @@ class CladFaces:
 
     @property
     def smoothing(self) -> float:
-        """How far, mm, the sheets are off what is to be covered, at most: 0 of exact faces."""
+        """Maximum distance, mm, of the sheets from the faces to be covered: 0 for exact faces."""
         return max((getattr(sheet, "smoothing", 0.0) for sheet in self.sheets), default=0.0)

@@ -15,16 +15,19 @@ from .clad_faces import CladFaces
 from .mesh_wall import MeshWall, mesh_wall
 from .surface import dot
 
-OF_SPACING = 0.5  # edges, of the bead spacing
+EDGE_SPACING_SHARE = 0.5  # edges, of the bead spacing
 
 
 def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label: str) -> CladFaces:
-    """All of a mesh of points (n, 3) and triangles (m, 3), for beads `spacing` mm apart, as one sheet: the smooth surface
-    through its facets. Layers grow to the side that its triangles are counter-clockwise from; back: to the other.
+    """Return a mesh of points (n, 3) and triangles (m, 3) as one sheet for beads `spacing` mm
+    apart.
 
-    InputError NO_FACES for a closed mesh, and those of `mesh_wall`.
+    The sheet is the smooth surface through the facets. Layers grow on the side from which the
+    triangles are counter-clockwise; `back` selects the other side.
+
+    Raises InputError NO_FACES for a closed mesh, and the errors of `mesh_wall`.
     """
-    wall = mesh_wall(points, triangles, OF_SPACING * spacing, label, 0.0)
+    wall = mesh_wall(points, triangles, EDGE_SPACING_SHARE * spacing, label, 0.0)
     if not len(wall.mesh.border_edges):
         raise InputError(
             "NO_FACES",
@@ -38,10 +41,10 @@ def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label
 
 
 def _faces_as(points: Array, triangles: Index, wall: MeshWall) -> bool:
-    """Whether a wall faces the way that most of the mesh does which it was made of."""
-    given, made = Mesh(points, triangles), wall.mesh
-    near = cKDTree(points[triangles].mean(axis=1)).query(
+    """Return whether a wall faces the same way as most of its source mesh."""
+    source, smooth = Mesh(points, triangles), wall.mesh
+    nearest = cKDTree(points[triangles].mean(axis=1)).query(
         wall.vertices[wall.triangles].mean(axis=1)
     )[1]
-    units = given.area_vectors[near] / np.maximum(given.areas[near], 1e-300)[:, None]
-    return float(dot(made.area_vectors, units).sum()) > 0.0
+    units = source.area_vectors[nearest] / np.maximum(source.areas[nearest], 1e-300)[:, None]
+    return float(dot(smooth.area_vectors, units).sum()) > 0.0

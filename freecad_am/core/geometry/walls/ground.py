@@ -22,18 +22,23 @@ class Ground(Protocol):
         """Distances (k,) mm, negative inside."""
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """The nearest points of its boundary, outer unit normals, each (k, 3), and the smooth piece (k,) they lie on."""
+        """Nearest points of the boundary, outer unit normals, each (k, 3), and the smooth piece (k,)
+        of each.
+        """
 
-    def on(self, piece: Index, points: Array) -> tuple[Array, Array]:
+    def on(self, pieces: Index, points: Array) -> tuple[Array, Array]:
         """Nearest points and normals, each (k, 3), on the pieces (k,) wherever these end."""
 
-    def sagitta(self, piece: Index) -> Array:
-        """How far (k,) the pieces may lie off what they stand for, mm."""
+    def sagitta(self, pieces: Index) -> Array:
+        """Maximum distance (k,) of the pieces from the surface that they approximate, mm."""
 
 
 class ExactGround:
-    """A solid of exact faces: its triangles (within `chord` mm of it), the face (m,) of each, the faces as patches whose
-    normals look outwards."""
+    """A solid of exact faces.
+
+    Its triangles (within `chord` mm), the face (m,) of each, and the faces as patches with
+    outward normals.
+    """
 
     facets = False
 
@@ -44,32 +49,34 @@ class ExactGround:
         self.search = solid.searched(edge)
 
     def signed(self, points: Array) -> Array:
-        """Distances; near the boundary the exact ones."""
+        """Distances; exact ones near the boundary."""
         distance, _, triangle = self.search.signed(points)
-        near = np.flatnonzero(np.abs(distance) < self.near)
-        if len(near):
-            foot, normal = self.on(self.face[triangle[near]], points[near])
-            exact = dot(points[near] - foot, normal)
-            plain = np.abs(exact - distance[near]) < self.near  # not past an edge of the solid
-            distance[near[plain]] = exact[plain]
+        near_points = np.flatnonzero(np.abs(distance) < self.near)
+        if len(near_points):
+            foot, normal = self.on(self.face[triangle[near_points]], points[near_points])
+            exact = dot(points[near_points] - foot, normal)
+            plain = (
+                np.abs(exact - distance[near_points]) < self.near
+            )  # not past an edge of the solid
+            distance[near_points[plain]] = exact[plain]
         return distance
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
         """On the exact faces."""
-        piece = self.face[self.search.signed(points)[2]]
-        return *self.on(piece, points), piece
+        pieces = self.face[self.search.signed(points)[2]]
+        return *self.on(pieces, points), pieces
 
-    def on(self, piece: Index, points: Array) -> tuple[Array, Array]:
+    def on(self, pieces: Index, points: Array) -> tuple[Array, Array]:
         """On the faces' surfaces."""
         feet, normals = np.empty_like(points), np.empty_like(points)
-        for k in np.unique(piece):
-            patch, mine = self.patches[k], piece == k
-            feet[mine], normals[mine] = patch.at(patch.inverse(points[mine]))
+        for k in np.unique(pieces):
+            patch, on_patch = self.patches[k], pieces == k
+            feet[on_patch], normals[on_patch] = patch.at(patch.inverse(points[on_patch]))
         return feet, normals
 
-    def sagitta(self, piece: Index) -> Array:
-        """None."""
-        return np.zeros(len(piece))
+    def sagitta(self, pieces: Index) -> Array:
+        """Zero."""
+        return np.zeros(len(pieces))
 
 
 class FacetGround:
@@ -86,22 +93,22 @@ class FacetGround:
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
         """On the planes of the nearest triangles."""
-        piece = self.search.signed(points)[2]
-        return *self.on(piece, points), piece
+        pieces = self.search.signed(points)[2]
+        return *self.on(pieces, points), pieces
 
-    def on(self, piece: Index, points: Array) -> tuple[Array, Array]:
+    def on(self, pieces: Index, points: Array) -> tuple[Array, Array]:
         """On the planes of triangles."""
-        normal = self.solid.units[piece]
-        corner = self.solid.vertices[self.solid.triangles[piece, 0]]
+        normal = self.solid.units[pieces]
+        corner = self.solid.vertices[self.solid.triangles[pieces, 0]]
         return points - dot(points - corner, normal)[:, None] * normal, normal
 
-    def sagitta(self, piece: Index) -> Array:
-        """By the turns between triangles."""
-        return self.solid.sagitta[piece]
+    def sagitta(self, pieces: Index) -> Array:
+        """From the turns between triangles."""
+        return self.solid.sagitta[pieces]
 
 
 class PlaneGround:
-    """What lies below z = `height` mm: a platform."""
+    """The half space below z = `height` mm: a platform."""
 
     facets = False
 
@@ -114,53 +121,56 @@ class PlaneGround:
         return above
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """Right under or over the points."""
-        piece = np.zeros(len(points), dtype=np.intp)
-        return *self.on(piece, points), piece
+        """Vertically under or over the points."""
+        pieces = np.zeros(len(points), dtype=np.intp)
+        return *self.on(pieces, points), pieces
 
-    def on(self, piece: Index, points: Array) -> tuple[Array, Array]:
-        """The same."""
+    def on(self, pieces: Index, points: Array) -> tuple[Array, Array]:
+        """Vertically under or over the points."""
         foot = points.copy()
         foot[:, 2] = self.height
         return foot, np.broadcast_to(np.array([0.0, 0.0, 1.0]), points.shape)
 
-    def sagitta(self, piece: Index) -> Array:
-        """None."""
-        return np.zeros(len(piece))
+    def sagitta(self, pieces: Index) -> Array:
+        """Zero."""
+        return np.zeros(len(pieces))
 
 
-def distances(points: Array, ground: Ground, near: float) -> Array:
-    """Distances (n,) of points from the ground, negative inside: exact for those nearer than `near` mm, of others the right
-    sign and at most the true size.
+def distances(points: Array, ground: Ground, near_distance: float) -> Array:
+    """Return the distances (n,) of points from the ground, negative inside.
 
-    A distance changes by no more than one goes: of the points in a cube that is wholly farther than its size one is asked.
+    They are exact for points nearer than `near_distance` mm; others have the right sign and
+    at most the true size. A distance changes by no more than the distance travelled, so one
+    point is enough in a cube that is wholly farther than its size.
     """
     value, open_ = np.empty(len(points)), np.arange(len(points))
     size = float(np.ptp(points, axis=0).max(initial=0.0)) / 4.0
-    while len(open_) and size > near:
+    while len(open_) and size > near_distance:
         cube = np.floor((points[open_] - points.min(axis=0)) / size).astype(np.intp)
-        _, one, of = np.unique(
+        _, representative, cube_of_point = np.unique(
             cube @ np.array([1, 1 << 20, 1 << 40]), return_index=True, return_inverse=True
         )
-        asked = open_[one]
-        found, of = ground.signed(points[asked]), np.ravel(of)
-        away = np.linalg.norm(points[open_] - points[asked][of], axis=1)
-        least = np.abs(found[of]) - away
-        certain = least > near
-        value[open_[certain]] = (np.sign(found[of]) * least)[certain]
+        probes = open_[representative]
+        probe_values, cube_of_point = ground.signed(points[probes]), np.ravel(cube_of_point)
+        offset = np.linalg.norm(points[open_] - points[probes][cube_of_point], axis=1)
+        bound = np.abs(probe_values[cube_of_point]) - offset
+        certain = bound > near_distance
+        value[open_[certain]] = (np.sign(probe_values[cube_of_point]) * bound)[certain]
         open_, size = open_[~certain], 0.5 * size
     value[open_] = ground.signed(points[open_])
     return value
 
 
-def nearest(points: Array, ground: Ground, value: Array) -> tuple[int, float]:
-    """Which point comes nearest to the boundary of the ground, and its distance, given those of `distances`."""
+def nearest_point(points: Array, ground: Ground, value: Array) -> tuple[int, float]:
+    """Return the point nearest to the boundary of the ground, and its distance, given the values
+    of `distances`.
+    """
     order = np.argsort(np.abs(value), kind="stable")
-    best, least = int(order[0]), np.inf
-    for some in np.array_split(order, max(1, len(order) // 256)):
-        if abs(float(value[some[0]])) > least:
+    best, min_distance = int(order[0]), np.inf
+    for block in np.array_split(order, max(1, len(order) // 256)):
+        if abs(float(value[block[0]])) > min_distance:
             break
-        exact = np.abs(ground.signed(points[some]))
-        if exact.min() < least:
-            best, least = int(some[np.argmin(exact)]), float(exact.min())
-    return best, least
+        exact = np.abs(ground.signed(points[block]))
+        if exact.min() < min_distance:
+            best, min_distance = int(block[np.argmin(exact)]), float(exact.min())
+    return best, min_distance

@@ -14,15 +14,15 @@ from scipy.sparse.csgraph import connected_components
 from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array, Index, Mask
 from ..formatting import deviation, place
-from ..mesh.collapsed import collapsed
-from ..mesh.crossing import crossings
+from ..mesh.collapsed import collapse_edges
+from ..mesh.crossing import find_crossings
 from ..mesh.facets import doubled_areas
-from ..mesh.refined import Edges, flipped, refined
-from ..mesh.repair import WELDS, connected_triangles, mended_issues
+from ..mesh.refined import Edges, flip_edges, refine_mesh
+from ..mesh.repair import WELDS_MM, connected_triangles, mended_issues
 from ..mesh.smooth import SmoothMesh
 from ..mesh.solid import Search, SolidMesh
 from ..mesh.triangle_mesh import Mesh
-from ..mesh.uncrossed import uncrossed
+from ..mesh.uncrossed import remove_crossings
 from .patch_wall import PatchWall
 from .rims import outward_volume
 from .surface import dot
@@ -35,10 +35,10 @@ CREASE = np.cos(
 PLANE = np.cos(
     np.radians(3.0)
 )  # and for facets larger than the mesh's edges where it would run across such meetings
-ACROSS = 0.05  # of the length of an edge, mm off the facets from which on this is looked at
+MAX_BETWEEN_SHARE = 0.05  # of the length of an edge: distance from the facets beyond which areas are divided further
 FOLD = 0.25  # rad between facets: a bend whose radius is less than four edges, which they cannot follow
-PIECE = 1000  # places done together; bounds the memory
-REPORTED_FROM_MM = 0.02  # mm off the mesh that the smooth surface may be before it is told
+BLOCK_SIZE = 1000  # places done together; bounds the memory
+REPORTED_FROM_MM = 0.02  # mm between mesh and smooth surface beyond which this is reported
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class MeshWall(PatchWall):
 
     @property
     def folds(self) -> float:
-        """Of what is deposited."""
+        """Length of the sharp edges in the deposited part."""
         ahead = self.triangles[~self.behind[self.triangles].any(axis=1)]
         return Mesh(self.vertices, ahead).folded(FOLD)
 
@@ -89,21 +89,28 @@ class _Read(NamedTuple):
 
 
 def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: float) -> MeshWall:
-    """The wall of points (n, 3) and triangles (m, 3), with edges of `edge` mm, that starts nowhere yet. mend: the largest
-    hole that is closed, mm; see `mesh_repair.connected_triangles`.
+    """Build the wall of points (n, 3) and triangles (m, 3), with edges of `edge` mm, that starts
+    nowhere yet.
 
-    InputError BAD_FILE, NO_SOLID, SELF_INTERSECTION, TOO_FINE.
+    mend: mm, size of the largest hole that is closed; see `repair.connected_triangles`.
+
+    Raises
+    ------
+    InputError
+        BAD_FILE, NO_SOLID, SELF_INTERSECTION, TOO_FINE.
     """
-    read = _read(points, triangles, label, mend)
-    facets = SolidMesh(read.vertices, read.triangles).searched(edge)
-    wall = _meshed(read, _areas(read.vertices, read.triangles), facets, edge, label)
+    source = _read(points, triangles, label, mend)
+    facets = SolidMesh(source.vertices, source.triangles).searched(edge)
+    wall = _mesh_wall(source, _areas(source.vertices, source.triangles), facets, edge, label)
     if (
-        wall.between > ACROSS * edge
-    ):  # edges of the mesh run across a valley or a ridge of large facets
-        other = _meshed(read, _areas(read.vertices, read.triangles, edge), facets, edge, label)
-        wall = other if other.between < wall.between else wall
-    off = wall.smoothing
-    if off <= REPORTED_FROM_MM or wall.samples is None:
+        wall.between > MAX_BETWEEN_SHARE * edge
+    ):  # edges of the mesh cut across a valley or a ridge of large facets
+        finer_areas = _mesh_wall(
+            source, _areas(source.vertices, source.triangles, edge), facets, edge, label
+        )
+        wall = finer_areas if finer_areas.between < wall.between else wall
+    max_offset = wall.smoothing
+    if max_offset <= REPORTED_FROM_MM or wall.samples is None:
         return wall
     farthest = wall.samples[np.argmax(np.linalg.norm(wall.vertices - wall.samples, axis=1))]
     return replace(
@@ -116,7 +123,7 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
                 Text(
                     "{}: where facets meet at an angle the wall runs smoothly, up to {} mm off them, at {}",
                     label,
-                    deviation(off),
+                    deviation(max_offset),
                     place(farthest),
                 ),
             ),
@@ -124,27 +131,30 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
     )
 
 
-def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) -> MeshWall:
-    """The smooth wall through facets, whose areas `owner` (m,) tells apart. InputError TOO_FINE."""
-    made = refined(
-        read.vertices,
-        read.triangles,
+def _mesh_wall(source: _Read, owner: Index, facets: Search, edge: float, label: str) -> MeshWall:
+    """Build the smooth wall through facets that belong to the areas `owner` (m,).
+
+    Raises InputError TOO_FINE.
+    """
+    mesh = refine_mesh(
+        source.vertices,
+        source.triangles,
         owner,
         edge,
         lambda middles, adjacent, ends: middles,
         MAX_TRIANGLES,
     )
-    if made is None:
-        made = refined(
-            read.vertices,
-            read.triangles,
+    if mesh is None:
+        mesh = refine_mesh(
+            source.vertices,
+            source.triangles,
             owner,
             edge,
             lambda middles, adjacent, ends: middles,
             MAX_TRIANGLES,
-            turned=False,
+            flip=False,
         )
-    if made is None:
+    if mesh is None:
         raise InputError(
             "TOO_FINE",
             label,
@@ -153,18 +163,18 @@ def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) 
             edge,
             MAX_TRIANGLES,
         )
-    vertices, corners, owner = made
-    corners, owner = collapsed(vertices, corners, owner, COLLAPSE * edge, edge)
-    corners = flipped(vertices, corners, owner)
+    vertices, corners, owner = mesh
+    corners, owner = collapse_edges(vertices, corners, owner, COLLAPSE * edge, edge)
+    corners = flip_edges(vertices, corners, owner)
     used, index = np.unique(corners, return_inverse=True)
     samples, corners = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
-    wall = _bare(samples, corners, label, read.issues)
+    wall = _bare(samples, corners, label, source.issues)
     if outward_volume(wall) < 0.0:
-        wall = _bare(samples, corners[:, ::-1].copy(), label, read.issues)
+        wall = _bare(samples, corners[:, ::-1].copy(), label, source.issues)
     smooth, _ = wall.smooth.project(samples)
     middles = wall.smooth.project(samples[wall.triangles].mean(axis=1))[0]
-    pieces = np.array_split(middles, max(1, len(middles) // PIECE))
-    between = max(float(facets.away(some).max()) for some in pieces)
+    blocks = np.array_split(middles, max(1, len(middles) // BLOCK_SIZE))
+    between = max(float(facets.distance(block).max()) for block in blocks)
     return MeshWall(
         smooth,
         wall.triangles,
@@ -176,7 +186,7 @@ def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) 
         (),
         label,
         (),
-        read.issues,
+        source.issues,
         samples=samples,
         between=between,
     )
@@ -206,12 +216,14 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
             label,
             "the mesh has no triangles, or points that are not numbers; export it again",
         )
-    found = connected_triangles(points, triangles, label, mend)
-    mended = list(found.mended)
-    crossed = crossings(found.vertices, found.triangles, WELDS[-1])
+    surface = connected_triangles(points, triangles, label, mend)
+    mended = list(surface.mended)
+    crossed = find_crossings(surface.vertices, surface.triangles, WELDS_MM[-1])
     if len(crossed.pairs):
-        at = place(crossed.places[crossed.length.argmax()])
-        plain = uncrossed(found.vertices, found.triangles, crossed.pairs, mend, WELDS[-1])
+        position = place(crossed.positions[crossed.length.argmax()])
+        plain = remove_crossings(
+            surface.vertices, surface.triangles, crossed.pairs, mend, WELDS_MM[-1]
+        )
         if plain is None:
             raise InputError(
                 "SELF_INTERSECTION",
@@ -220,39 +232,39 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
                 "repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with holes of up to "
                 "strategy.mend closed",
                 len(crossed.pairs),
-                at,
+                position,
             )
         size = max((hole.size for hole in plain.closed), default=0.0)
         mended.append(
             Text(
                 "{} triangles that cross were cut out, as at {}, which left holes of up to {:.3g} mm across",
                 plain.cut_out,
-                at,
+                position,
                 size,
             )
         )
-        found = found._replace(vertices=plain.vertices, triangles=plain.triangles)
-    return _Read(found.vertices, found.triangles, (*found.issues, *mended_issues(label, mended)))
+        surface = surface._replace(vertices=plain.vertices, triangles=plain.triangles)
+    return _Read(
+        surface.vertices, surface.triangles, (*surface.issues, *mended_issues(label, mended))
+    )
 
 
 def _areas(vertices: Array, triangles: Index, edge: float = np.inf) -> Index:
-    """The smooth area (m,) that each triangle belongs to. edge: mm; triangles larger than that are one area only where they
-    are nearly of one plane."""
+    """Return the smooth area (m,) of each triangle.
+
+    edge: mm; triangles larger than that share an area only if they are nearly coplanar.
+    """
     corner = vertices[triangles]
     normal = doubled_areas(corner)
     size = np.linalg.norm(normal, axis=1)
     normal /= np.maximum(size, 1e-300)[:, None]
     large = size > edge * np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(
         axis=1
-    )  # the least of its heights
+    )  # its smallest height
     edges = Edges(triangles)
-    one, other = edges.faces[edges.count == 2].T
-    smooth: Mask = dot(normal[one], normal[other]) > np.where(
-        large[one] & large[other], PLANE, CREASE
-    )
+    a, b = edges.faces[edges.count == 2].T
+    smooth: Mask = dot(normal[a], normal[b]) > np.where(large[a] & large[b], PLANE, CREASE)
     count = len(triangles)
-    links = coo_matrix(
-        (np.ones(int(smooth.sum())), (one[smooth], other[smooth])), shape=(count, count)
-    )
+    links = coo_matrix((np.ones(int(smooth.sum())), (a[smooth], b[smooth])), shape=(count, count))
     areas: Index = connected_components(links, directed=False)[1].astype(np.intp)
     return areas

@@ -12,13 +12,13 @@ from ...types import Array, Index
 def derivatives(
     knots: tuple[Array, Array], poles: Array, u: Array, v: Array
 ) -> tuple[Array, Array, Array]:
-    """Points and derivatives along u and v, each (n, 3), at the parameters u, v (n,).
+    """Return points and derivatives along u and v, each (n, 3), at the parameters u, v (n,).
 
-    knots: of both directions, with the ends repeated. poles: (k, l, 4) as w x, w y, w z, w.
+    knots: for both directions, with the ends repeated. poles: (k, l, 4) as w x, w y, w z, w.
     """
     inside = [
-        np.clip(at, *bounds(knot, poles.shape[axis]))
-        for axis, (knot, at) in enumerate(zip(knots, (u, v)))
+        np.clip(parameter, *bounds(knot, poles.shape[axis]))
+        for axis, (knot, parameter) in enumerate(zip(knots, (u, v)))
     ]
     point, along, around, twist = _rational(knots, poles, *inside)
     du, dv = (u - inside[0])[:, None], (v - inside[1])[:, None]
@@ -42,8 +42,8 @@ def _rational(
     rows = first_u[:, None] + np.arange(basis_u.shape[2])
     columns = first_v[:, None] + np.arange(basis_v.shape[2])
     local = poles[rows[:, :, None], columns[:, None, :]]
-    both = np.einsum("nap,npqk->naqk", basis_u.transpose(1, 0, 2), local)
-    all_ = np.einsum("nbq,naqk->nabk", basis_v.transpose(1, 0, 2), both)
+    rows_summed = np.einsum("nap,npqk->naqk", basis_u.transpose(1, 0, 2), local)
+    all_ = np.einsum("nbq,naqk->nabk", basis_v.transpose(1, 0, 2), rows_summed)
     weight = all_[:, 0, 0, 3:]
     point = all_[:, 0, 0, :3] / weight
     along = (all_[:, 1, 0, :3] - all_[:, 1, 0, 3:] * point) / weight
@@ -57,24 +57,27 @@ def _rational(
     return point, along, around, twist
 
 
-def _basis(knots: Array, count: int, at: Array) -> tuple[Index, Array]:
-    """The first of the degree + 1 poles that matter at each place (n,), and their shares (2, n, degree + 1): of the
-    point, of the derivative."""
+def _basis(knots: Array, count: int, parameter: Array) -> tuple[Index, Array]:
+    """Return the first of the degree + 1 relevant poles for each parameter (n,), and their
+    shares.
+
+    Shares are (2, n, degree + 1): for the point, for the derivative.
+    """
     degree = len(knots) - count - 1
-    span = np.clip(np.searchsorted(knots, at, side="right") - 1, degree, count - 1)
-    values = np.ones((len(at), 1))
+    span = np.clip(np.searchsorted(knots, parameter, side="right") - 1, degree, count - 1)
+    values = np.ones((len(parameter), 1))
     lower = values
     for p in range(1, degree + 1):
         steps = np.arange(1, p + 1)
-        left, right = (
-            at[:, None] - knots[span[:, None] + 1 - steps],
-            knots[span[:, None] + steps] - at[:, None],
+        to_left, right = (
+            parameter[:, None] - knots[span[:, None] + 1 - steps],
+            knots[span[:, None] + steps] - parameter[:, None],
         )
-        share = values / (right + left[:, ::-1])
+        share = values / (right + to_left[:, ::-1])
         lower = values
-        values = np.zeros((len(at), p + 1))
+        values = np.zeros((len(parameter), p + 1))
         values[:, :-1] += right * share
-        values[:, 1:] += left[:, ::-1] * share
+        values[:, 1:] += to_left[:, ::-1] * share
     slopes = np.zeros_like(values)
     if degree:
         steps = np.arange(1, degree + 1)

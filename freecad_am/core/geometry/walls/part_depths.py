@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a part's volume lies about the surface that its beads run on: what beads of some width deposit of it, and beside it.
+"""How a part's volume is distributed about the surface that its beads follow.
 
-A bead is as wide as its width says and lies on the side of the surface where the part is; on a surface within the part, as
-the middle of two walls, it lies half on each side. What is measured at places spread evenly is an estimate, good to about
-a hundredth of the part.
+It says how much of the part beads of some width deposit, and how much they miss. A bead
+is as wide as its width and is on the side of the surface where the part is; on a surface
+within the part, as in the middle of two walls, it is half on each side. The figures are
+estimates from evenly spread samples, good to about a hundredth of the part.
 """
 
 from __future__ import annotations
@@ -26,11 +27,15 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class PartDepths:
-    """label: what messages call the part. volume: mm3 of its solids, 0 of a part without. area: mm2 that beads run on.
-    depths: (k,) mm, sorted: how wide a bead must be for each equal share of the part, inf for what lies under no bead.
-    thickness: (m,) mm, sorted: how far the part reaches under each equal share of the surface. faces: names of the faces
-    that no bead runs on, with face_depths (f,), as `depths` for the middle of each, and face_areas (f,) mm2. aside: names
-    and mm3 of solids that beads run on no face of."""
+    """Depths of a part under the surface that its beads follow.
+
+    label: name of the part in messages. volume: mm3 of its solids, 0 without solids. area:
+    mm2 that beads cover. depths: (k,) mm, sorted: bead width needed for each equal share of
+    the part, inf for a share under no bead. thickness: (m,) mm, sorted: how far the part
+    reaches under each equal share of the surface. faces: names of the faces that no bead
+    follows, with face_depths (f,), as `depths` for the middle of each, and face_areas (f,)
+    mm2. aside: names and mm3 of solids of which no face carries beads.
+    """
 
     label: str
     volume: float
@@ -42,8 +47,8 @@ class PartDepths:
     face_areas: tuple[float, ...] = ()
     aside: tuple[tuple[str, float], ...] = ()
 
-    def within(self, width: float) -> float:
-        """Volume of the part, mm3, that beads of a width, mm, deposit."""
+    def volume_within(self, width: float) -> float:
+        """Return the volume of the part, mm3, that beads of a width, mm, deposit."""
         return self.volume * float(np.mean(self.depths <= width)) if len(self.depths) else 0.0
 
     def outside(self, width: float) -> float:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One smooth piece of a wall: an exact surface whose nearest points and normals are told for many points at once."""
+"""One smooth piece of a wall: an exact surface with nearest points and normals for many
+points at once.
+"""
 
 from __future__ import annotations
 
@@ -23,20 +25,22 @@ PLANE, CYLINDER, CONE, SPHERE, TORUS, SPLINE = (
     "spline",
 )
 STEPS = 40
-STILL = 1e-10  # mm; a step that is shorter ends the search of a nearest point
-SAMPLES = 6  # per span of knots, for the start of that search
+MIN_MOVE_MM = 1e-10  # mm; a step that is shorter ends the search of a nearest point
+SAMPLES = 6  # per span of knots, for the start of the search
 
 
 @dataclass(frozen=True, eq=False)
 class Patch:
     """A surface in part coordinates, mm and rad.
 
-    kind and sizes, in the patch's own frame (4, 4), u and v as OpenCASCADE has them:
-    PLANE (): u, v are X and Y. CYLINDER (radius): azimuth u, height v. CONE (radius at v = 0, half angle, growing with v):
-    azimuth, length along the side. SPHERE (radius): azimuth, latitude. TORUS (bend, tube): azimuth, angle around the
-    tube from its outside. SPLINE (): the B-spline of the knots and the poles (k, l, 4) as w x, w y, w z, w.
-    sign: +1 where the cross product of the derivatives along u and v points to the wall's outer side, else -1.
-    periods: of u and of v where the surface closes, else 0.
+    The meaning of u and v in the patch's own frame (4, 4) follows OpenCASCADE, by kind and
+    sizes: PLANE (): u, v are X and Y. CYLINDER (radius): azimuth u, height v. CONE (radius at
+    v = 0, half angle, growing with v): azimuth, length along the side. SPHERE (radius):
+    azimuth, latitude. TORUS (bend, tube): azimuth, angle around the tube from its outside.
+    SPLINE (): the B-spline of the knots and the poles (k, l, 4) as w x, w y, w z, w.
+
+    sign: +1 where the cross product of the derivatives along u and v points to the wall's
+    outer side, else -1. periods: of u and of v where the surface closes, else 0.
     """
 
     kind: str
@@ -49,13 +53,16 @@ class Patch:
     poles: Array | None = None
 
     def inverse(self, points: Array, start: Array | None = None) -> Array:
-        """(u, v) (n, 2) of the nearest points to points (n, 3): of all, or the one downhill from start (n, 2), where the
-        search is not closed form."""
+        """Return (u, v) (n, 2) of the surface points nearest to points (n, 3).
+
+        Where the search is iterative, `start` (n, 2) selects the local minimum downhill from
+        there.
+        """
         x, y, z = columns(self._local(points))
         if self.kind == PLANE:
             return np.stack([x, y], axis=1)
         if self.kind == SPLINE:
-            return self._searched(points, self._nearest_sample(points) if start is None else start)
+            return self._search(points, self._nearest_sample(points) if start is None else start)
         azimuth, reach = np.arctan2(y, x), np.hypot(x, y)
         if self.kind == CYLINDER:
             return np.stack([azimuth, z], axis=1)
@@ -72,57 +79,61 @@ class Patch:
         )
 
     def at(self, uv: Array) -> tuple[Array, Array]:
-        """Points and unit normals to the outer side, each (n, 3), at (u, v) (n, 2)."""
+        """Return points and unit normals to the outer side, each (n, 3), at (u, v) (n, 2)."""
         if self.kind == SPLINE:
             point, along, around = self._derivatives(uv)
             return point, self.sign * self._spline_normal(uv, np.cross(along, around))
         u, v = columns(uv)
         zero = np.zeros_like(u)
         if self.kind == PLANE:
-            return self._placed(
+            return self._to_part(
                 np.stack([u, v, zero], axis=1), np.stack([zero, zero, zero + 1.0], axis=1)
             )
         out, axis = np.stack([np.cos(u), np.sin(u), zero], axis=1), np.array([0.0, 0.0, 1.0])
         if self.kind == CYLINDER:
-            return self._placed(self.sizes[0] * out + v[:, None] * axis, out)
+            return self._to_part(self.sizes[0] * out + v[:, None] * axis, out)
         if self.kind == CONE:
             radius, slope = self.sizes
             point = (radius + v * np.sin(slope))[:, None] * out + (v * np.cos(slope))[
                 :, None
             ] * axis
-            return self._placed(point, np.cos(slope) * out - np.sin(slope) * axis)
+            return self._to_part(point, np.cos(slope) * out - np.sin(slope) * axis)
         normal = np.cos(v)[:, None] * out + np.sin(v)[:, None] * axis
         if self.kind == SPHERE:
-            return self._placed(self.sizes[0] * normal, normal)
-        return self._placed(self.sizes[0] * out + self.sizes[1] * normal, normal)
+            return self._to_part(self.sizes[0] * normal, normal)
+        return self._to_part(self.sizes[0] * out + self.sizes[1] * normal, normal)
 
     def area(self, uv: Array) -> Array:
-        """Of a spline: how much of the surface a step of u and v spans at (u, v) (n, 2), 1 where that is as usual on it."""
+        """Return the area of a spline surface per step of u and v at (u, v) (n, 2), relative to its
+        typical value.
+        """
         _, along, around = self._derivatives(uv)
         share: Array = np.linalg.norm(np.cross(along, around), axis=1) / self._typical_area
         return share
 
-    def unwrapped(self, uv: Array) -> Array:
-        """(u, v) of the corners of triangles (m, 3, 2), shifted by periods to lie next to each first corner."""
+    def unwrap(self, uv: Array) -> Array:
+        """Return (u, v) of the corners of triangles (m, 3, 2), shifted by periods next to each first
+        corner.
+        """
         uv = uv.copy()
         for axis, period in enumerate(self.periods):
             if period > 0.0:
-                apart = uv[:, 1:, axis] - uv[:, :1, axis]
-                uv[:, 1:, axis] -= period * np.round(apart / period)
+                gap = uv[:, 1:, axis] - uv[:, :1, axis]
+                uv[:, 1:, axis] -= period * np.round(gap / period)
         return uv
 
     def _local(self, points: Array) -> Array:
         local: Array = (points - self.frame[:3, 3]) @ self.frame[:3, :3]
         return local
 
-    def _placed(self, points: Array, normals: Array) -> tuple[Array, Array]:
+    def _to_part(self, points: Array, normals: Array) -> tuple[Array, Array]:
         turn = self.frame[:3, :3].T
         return points @ turn + self.frame[:3, 3], self.sign * (normals @ turn)
 
     # ---- splines, whose poles are in part coordinates
 
     @cached_property
-    def _own(self) -> tuple[tuple[Array, Array], Array]:
+    def _spline(self) -> tuple[tuple[Array, Array], Array]:
         if self.knots_u is None or self.knots_v is None or self.poles is None:
             raise ValueError("a spline needs knots and poles")
         return (self.knots_u, self.knots_v), self.poles
@@ -130,11 +141,11 @@ class Patch:
     @cached_property
     def bounds(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Ranges of u and v of a spline."""
-        (u, v), poles = self._own
+        (u, v), poles = self._spline
         return nurbs.bounds(u, poles.shape[0]), nurbs.bounds(v, poles.shape[1])
 
     def _derivatives(self, uv: Array) -> tuple[Array, Array, Array]:
-        knots, poles = self._own
+        knots, poles = self._spline
         uv = uv.copy()
         for axis, period in enumerate(self.periods):
             if period > 0.0:
@@ -144,27 +155,27 @@ class Patch:
 
     @cached_property
     def _samples(self) -> tuple[cKDTree, Array]:
-        knots, _ = self._own
+        knots, _ = self._spline
         lines = []
         for knot, (low, high) in zip(knots, self.bounds):
             spans = np.unique(np.clip(knot, low, high))
             fine = spans[:-1, None] + np.diff(spans)[:, None] * (np.arange(SAMPLES) + 0.5) / SAMPLES
             lines.append(np.r_[low, fine.ravel(), high])
-        uv = np.stack([one.ravel() for one in np.meshgrid(*lines, indexing="ij")], axis=1)
+        uv = np.stack([grid.ravel() for grid in np.meshgrid(*lines, indexing="ij")], axis=1)
         return cKDTree(self._derivatives(uv)[0]), uv
 
     def _nearest_sample(self, points: Array) -> Array:
         tree, uv = self._samples
-        near: Array = uv[tree.query(points)[1]]
-        return near
+        nearest: Array = uv[tree.query(points)[1]]
+        return nearest
 
-    def _searched(self, points: Array, start: Array) -> Array:
-        """Gauss-Newton; the points that stand still are left out of further steps."""
+    def _search(self, points: Array, start: Array) -> Array:
+        """Search by Gauss-Newton; points that have converged are left out of further steps."""
         uv, busy = start.copy(), np.arange(len(points))
         reach = np.array([high - low for low, high in self.bounds])
         for _ in range(STEPS):
-            at, along, around = self._derivatives(uv[busy])
-            gap = points[busy] - at
+            feet, along, around = self._derivatives(uv[busy])
+            gap = points[busy] - feet
             a, b, c = dot(along, along), dot(along, around), dot(around, around)
             p, q = dot(along, gap), dot(around, gap)
             determinant = np.maximum(a * c - b * b, 1e-14 * a * c + 1e-300)
@@ -172,7 +183,7 @@ class Patch:
             step = np.clip(step, -0.1 * reach, 0.1 * reach)
             uv[busy] += step
             moved = np.abs(step[:, 0]) * np.sqrt(a) + np.abs(step[:, 1]) * np.sqrt(c)
-            busy = busy[moved > STILL]
+            busy = busy[moved > MIN_MOVE_MM]
             if not len(busy):
                 break
         return uv

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall of any connected smooth pieces on a substrate: exact pieces, a mesh over all of them, where it starts and ends."""
+"""A wall of connected smooth pieces on a substrate: exact pieces, a mesh over all, start and
+end curves.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +23,15 @@ from .part_depths import PartDepths
 from .patch import TORUS, Patch
 from .surface import dot
 
-NEAREST = 8  # triangles, by their middles, among which the nearest one of a point is sought
+NEIGHBOUR_COUNT = 8  # triangles, by their middles, among which the nearest one of a point is sought
 
 
 @dataclass(frozen=True, eq=False)
 class FirstCurve:
     """A loop or chain in which layers start.
 
-    points: (k, 3) mm; a closed one does not repeat its first point. into, out: (k, 3) unit tangents where the curve arrives
-    at and leaves each point; they differ at corners alone.
+    points: (k, 3) mm; a closed curve does not repeat its first point. into, out: (k, 3) unit
+    tangents where the curve arrives at and leaves each point; they differ only at corners.
     """
 
     points: Array
@@ -52,11 +54,12 @@ class FirstCurve:
 
 @dataclass(frozen=True, eq=False)
 class Rim:
-    """A stretch of the wall's boundary, without corners.
+    """A stretch of the wall's boundary without corners.
 
-    points: (k, 3) mm, at every vertex of the mesh; a closed one repeats its first point. end: True where layers finish, at
-    an upper edge; False for a side (an end of a first curve lies on it), for the edge of an opening around which layers
-    run on, and for what lies on or in the substrate.
+    points: (k, 3) mm, at every vertex of the mesh; a closed rim repeats its first point. end:
+    True where layers finish, at an upper edge. It is False for a side (an end of a first
+    curve is on it), for the edge of an opening around which layers continue, and for a rim on
+    or in the substrate.
     """
 
     points: Array
@@ -72,11 +75,13 @@ class Rim:
 class PatchWall:
     """A wall in part coordinates, mm.
 
-    vertices (n, 3) on the wall and triangles (m, 3), counter-clockwise seen from the wall's outer side, of the whole wall.
-    patch: (m,) the number in `patches` of each triangle's own; uv: (m, 3, 2) the parameters of its corners there.
-    first: where layers start. behind: (n,) True for vertices on the substrate's side of that, which are not deposited.
-    surroundings: bodies to keep the nozzle clear of, the substrate first. depths: how the part lies about the wall.
-    ground: mm along Z of the plane that it stands on, through its lowest place, where nothing carries it but the platform.
+    vertices (n, 3) and triangles (m, 3) of the whole wall, counter-clockwise seen from its
+    outer side. patch: (m,) the number in `patches` for each triangle; uv: (m, 3, 2) the
+    parameters of its corners there. first: where layers start. behind: (n,) True for vertices
+    on the substrate's side of the start curves, which are not deposited. surroundings: bodies
+    to keep the nozzle clear of, the substrate first. depths: how the part is distributed
+    about the wall. ground: mm along Z of the plane through the lowest point of the wall,
+    where only the platform carries it.
     """
 
     vertices: Array
@@ -96,24 +101,26 @@ class PatchWall:
 
     @property
     def frame(self) -> Array:
-        """(4, 4) the wall's own frame in part coordinates: that of the part, raised to what the wall stands on."""
+        """The wall's frame (4, 4) in part coordinates: the part frame, raised to the ground of the
+        wall.
+        """
         frame = np.eye(4)
         frame[2, 3] = 0.0 if self.ground is None else self.ground
         return frame
 
     @property
     def symmetry_normal(self) -> Array | None:
-        """Unit normal (3,) of the plane of the bend of a torus that closes around; other walls are not known to have one."""
-        whole = (
+        """Unit normal (3,) of the bend plane of a torus that closes around; None for other walls."""
+        is_full_torus = (
             len(self.patches) == 1
             and self.patches[0].kind == TORUS
             and all(rim.closed for rim in self.rims)
         )
-        return np.array(self.patches[0].frame[:3, 2]) if whole else None
+        return np.array(self.patches[0].frame[:3, 2]) if is_full_torus else None
 
     @property
     def mesh_vertices(self) -> int:
-        """How many vertices the mesh has that stands for it; 0 of exact pieces."""
+        """Number of vertices of the mesh that approximates the wall; 0 for exact pieces."""
         return 0
 
     @property
@@ -127,26 +134,28 @@ class PatchWall:
         return Mesh(self.vertices, self.triangles)
 
     def project(self, points: Array) -> tuple[Array, Array]:
-        """Nearest points of the wall and unit normals to its outer side, each (k, 3); beyond an edge of the wall those of
-        the surface that ends there."""
+        """Return nearest points of the wall and unit normals to its outer side, each (k, 3).
+
+        Beyond an edge of the wall they belong to the surface that ends there.
+        """
         points, normals, _ = self.located(points)
         return points, normals
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """As `project`, and the number of the patch (k,) that each lies on."""
+        """As `project`, with the patch number (k,) of each point."""
         triangle, share = self._nearest(points)
         patch = self._across_joints(points, triangle)
         feet, normals = np.empty_like(points), np.empty_like(points)
         for k in np.unique(patch):
-            mine = np.flatnonzero(patch == k)
-            one = self.patches[k]
-            own = self.patch[triangle[mine]] == k
-            start = np.einsum("nk,nkc->nc", share[mine], self.uv[triangle[mine]])
-            uv = np.empty((len(mine), 2))
-            uv[own] = one.inverse(points[mine[own]], start[own])
-            if not own.all():
-                uv[~own] = one.inverse(points[mine[~own]])
-            feet[mine], normals[mine] = one.at(uv)
+            rows = np.flatnonzero(patch == k)
+            surface = self.patches[k]
+            same_patch = self.patch[triangle[rows]] == k
+            start = np.einsum("nk,nkc->nc", share[rows], self.uv[triangle[rows]])
+            uv = np.empty((len(rows), 2))
+            uv[same_patch] = surface.inverse(points[rows[same_patch]], start[same_patch])
+            if not same_patch.all():
+                uv[~same_patch] = surface.inverse(points[rows[~same_patch]])
+            feet[rows], normals[rows] = surface.at(uv)
         return feet, normals, patch
 
     # ---- the nearest triangle
@@ -160,31 +169,36 @@ class PatchWall:
         return cKDTree(self._corners.mean(axis=1))
 
     def _nearest(self, points: Array) -> tuple[Index, Array]:
-        """The nearest triangle (k,) of each point and the shares (k, 3) of its corners in the foot."""
-        count = min(NEAREST, len(self.triangles))
-        near = np.asarray(self._middles.query(points, k=count)[1]).reshape(len(points), count)
-        corner = self._corners[near]
+        """Return the nearest triangle (k,) of each point and the shares (k, 3) of its corners in the
+        foot.
+        """
+        count = min(NEIGHBOUR_COUNT, len(self.triangles))
+        candidates = np.asarray(self._middles.query(points, k=count)[1]).reshape(len(points), count)
+        corner = self._corners[candidates]
         distance, share = closest(
             corner[:, :, 0], corner[:, :, 1], corner[:, :, 2], points[:, None]
         )
         best = np.argmin(distance, axis=1)
         row = np.arange(len(points))
-        return near[row, best].astype(np.intp), share[row, best]
+        return candidates[row, best].astype(np.intp), share[row, best]
 
-    # ---- the side of the joints between patches, which the mesh tells only to its chord error
+    # ---- the side of the joints between patches, which the mesh gives only to its chord error
 
     def _across_joints(self, points: Array, triangle: Index) -> Index:
-        """The patch (k,) of each point, given its nearest triangle: next to a joint, that on the point's side of it."""
+        """Return the patch (k,) of each point, given its nearest triangle.
+
+        Next to a joint it is the patch on the point's side.
+        """
         patch = self.patch[triangle]
         joints = self._joints
         if joints is None:
             return patch
-        near = np.flatnonzero(joints.touched[triangle])
-        if not len(near):
+        near_joint = np.flatnonzero(joints.touched[triangle])
+        if not len(near_joint):
             return patch
-        p = points[near]
+        p = points[near_joint]
         arc = np.asarray(joints.tree.query(p, k=min(3, len(joints.start)))[1]).reshape(
-            len(near), -1
+            len(near_joint), -1
         )
         start, end = joints.start[arc], joints.end[arc]
         t = np.clip(
@@ -194,22 +208,22 @@ class PatchWall:
             1.0,
         )
         off = np.linalg.norm(start + t[..., None] * (end - start) - p[:, None], axis=-1)
-        row, best = np.arange(len(near)), np.argmin(off, axis=1)
+        row, best = np.arange(len(near_joint)), np.argmin(off, axis=1)
         arc, t = arc[row, best], t[row, best]
         for _ in range(3):
-            at, slope, bend = joints.at(arc, t)
-            rate = dot(slope, slope) - dot(p - at, bend)
+            foot, slope, bend = joints.evaluate(arc, t)
+            rate = dot(slope, slope) - dot(p - foot, bend)
             t = np.clip(
-                t + dot(p - at, slope) / np.maximum(rate, 0.1 * dot(slope, slope)), 0.0, 1.0
+                t + dot(p - foot, slope) / np.maximum(rate, 0.1 * dot(slope, slope)), 0.0, 1.0
             )
-        at, slope, _ = joints.at(arc, t)
+        foot, slope, _ = joints.evaluate(arc, t)
         normal = (1.0 - t)[:, None] * joints.start_normal[arc] + t[:, None] * joints.end_normal[arc]
-        left = dot(p - at, np.cross(normal, slope)) > 0.0
-        # only between the two patches that meet there: beyond a corner of the joints the triangle is right
+        on_left = dot(p - foot, np.cross(normal, slope)) > 0.0
+        # only between the two patches that meet there: beyond a corner of the joints the triangle decides
         pair = joints.pair[arc]
-        joined = (pair == patch[near][:, None]).any(axis=1)
+        joined = (pair == patch[near_joint][:, None]).any(axis=1)
         patch = patch.copy()
-        patch[near[joined]] = np.where(left, pair[:, 0], pair[:, 1])[joined]
+        patch[near_joint[joined]] = np.where(on_left, pair[:, 0], pair[:, 1])[joined]
         return patch
 
     @cached_property
@@ -219,12 +233,12 @@ class PatchWall:
         order = np.lexsort((np.arange(len(half)), half.max(axis=1), half.min(axis=1)))
         low, high = half.min(axis=1)[order], half.max(axis=1)[order]
         twin = np.flatnonzero((low[1:] == low[:-1]) & (high[1:] == high[:-1]))
-        one, other = order[twin], order[twin + 1]
-        apart = owner[one] != owner[other]
-        one, other = one[apart], other[apart]
-        if not len(one):
+        side_a, side_b = order[twin], order[twin + 1]
+        between_patches = owner[side_a] != owner[side_b]
+        side_a, side_b = side_a[between_patches], side_b[between_patches]
+        if not len(side_a):
             return None
-        edge = half[one]
+        edge = half[side_a]
         slopes = tangents(self.vertices, edge)
         length = np.linalg.norm(self.vertices[edge[:, 1]] - self.vertices[edge[:, 0]], axis=1)[
             :, None
@@ -233,10 +247,12 @@ class PatchWall:
         on_joint[edge] = True
         start, end = self.vertices[edge[:, 0]], self.vertices[edge[:, 1]]
         normals = np.empty((2, len(edge), 3))
-        for k in np.unique(owner[one]):
-            mine = owner[one] == k
+        for k in np.unique(owner[side_a]):
+            on_patch = owner[side_a] == k
             for side, points in enumerate((start, end)):
-                normals[side, mine] = self.patches[k].at(self.patches[k].inverse(points[mine]))[1]
+                normals[side, on_patch] = self.patches[k].at(
+                    self.patches[k].inverse(points[on_patch])
+                )[1]
         touched: Mask = np.asarray(on_joint[self.triangles].any(axis=1))
         return _Joints(
             start,
@@ -245,7 +261,7 @@ class PatchWall:
             slopes[:, 1] * length,
             normals[0],
             normals[1],
-            np.stack([owner[one], owner[other]], axis=1),
+            np.stack([owner[side_a], owner[side_b]], axis=1),
             cKDTree(0.5 * (start + end)),
             touched,
         )
@@ -265,8 +281,8 @@ class _Joints(NamedTuple):
     tree: cKDTree
     touched: Mask
 
-    def at(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
-        """Points, first and second derivatives (n, 3) of arcs at t in [0, 1]."""
+    def evaluate(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
+        """Return points, first and second derivatives (n, 3) of arcs at t in [0, 1]."""
         t = t[:, None]
         start, end, a, b = (
             self.start[arc],

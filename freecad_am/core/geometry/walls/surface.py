@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a wall must offer to the slicing, and the analytic walls.
+"""The interface of a wall to slicing, and the analytic walls.
 
-A wall is a map (u, v) -> point: layers rise with u, v runs around. Parameters are arrays of one shape (...),
-points and derivatives (..., 3), mm. `period` is the period of v, or None where the wall is open in v.
+A wall is a map (u, v) -> point: layers rise with u, v runs around. Parameters are arrays
+of one shape (...), points and derivatives (..., 3), mm. `period` is the period of v, or
+None if the wall is open in v.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall around a closed direction that stands on a substrate: its surface, where it starts and where it ends."""
+"""A wall around a closed direction on a substrate: its surface, its start and its end."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ TORUS, CONE, TABLE = "torus", "cone", "table"
 class SurfaceWall:
     """A wall in part coordinates, mm and rad.
 
-    kind: TORUS with sizes (bend, tube), CONE with sizes (radius, slope), or TABLE with the parameters u (n,) and v (m,)
-    and the points table (n, m, 3). frame: (4, 4) pose of the surface's own frame in the part. end: u of the upper edge;
-    layers rise from the substrate to it. first: (m, 3) closed chain of points in part coordinates in which the wall leaves
-    the substrate, the first not repeated. faces: names of the wall's faces. surroundings: the substrate, then fixtures.
-    depths: how the part lies about the wall.
+    kind: TORUS with sizes (bend, tube), CONE with sizes (radius, slope), or TABLE with the
+    parameters u (n,) and v (m,) and the points table (n, m, 3). frame: (4, 4) pose of the
+    surface's own frame in the part. end: u of the upper edge; layers rise from the substrate
+    to it. first: (m, 3) closed chain of points in part coordinates in which the wall leaves
+    the substrate, the first not repeated. faces: names of the wall's faces. surroundings: the
+    substrate, then fixtures. depths: how the part is distributed about the wall.
     """
 
     kind: str

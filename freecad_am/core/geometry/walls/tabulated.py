@@ -31,9 +31,9 @@ class Tabulated:
         self._period = period
         self.u, self.v, self.points = u, v, points
         if period is not None:
-            at = np.arange(-WRAPPED, len(v) + WRAPPED)
-            v = v[at % len(v)] + period * (at // len(v))
-            points = points[:, at % len(self.v)]
+            column = np.arange(-WRAPPED, len(v) + WRAPPED)
+            v = v[column % len(v)] + period * (column // len(v))
+            points = points[:, column % len(self.v)]
         self._splines = [RectBivariateSpline(u, v, points[..., k]) for k in range(3)]
         self._tree: cKDTree | None = None
 
@@ -62,14 +62,14 @@ class Tabulated:
         return point, along, around
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
-        """(u, v) of the nearest points: Gauss-Newton from the nearest sample."""
+        """Return (u, v) of the nearest points: Gauss-Newton from the nearest sample."""
         if self._tree is None:
             self._tree = cKDTree(self.points.reshape(-1, 3))
         row, column = np.divmod(self._tree.query(points)[1], len(self.v))
         u, v = self.u[row], self.v[column]
         for _ in range(ITERATIONS):
-            at, along, around = self.derivatives(u, v)
-            gap = points - at
+            feet, along, around = self.derivatives(u, v)
+            gap = points - feet
             a, b, c = dot(along, along), dot(along, around), dot(around, around)
             p, q = dot(along, gap), dot(around, gap)
             determinant = np.maximum(a * c - b * b, 1e-300)
@@ -82,7 +82,7 @@ class Tabulated:
         return u, v
 
     def _inside(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
-        """u and v inside the table and how far u lies beyond it, (..., 1)."""
+        """Return u and v inside the table and how far u is beyond it, (..., 1)."""
         u, v = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
         inside = np.clip(u, self.u[0], self.u[-1])
         if self._period is None:

@@ -79,7 +79,7 @@ class _Solid:
         if not len(cut):
             return None
         ends = self.edges.ends
-        known, of = np.unique(self.edges.of[cut].ravel(), return_inverse=True)
+        known, of = np.unique(self.edges.of_triangle[cut].ravel(), return_inverse=True)
         low, high = above[ends[known, 0]], above[ends[known, 1]]
         crossed = (low >= 0.0) != (high >= 0.0)
         share = np.where(crossed, low / np.where(crossed, low - high, 1.0), 0.0)

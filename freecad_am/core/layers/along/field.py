@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...geometry.curves.guide import Guide
-from ...geometry.mesh.split_edges import split
+from ...geometry.mesh.split_edges import split_edges
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base
 from ...issues import ERROR, InfeasibleError, InputError, Issue, Text
@@ -58,7 +58,7 @@ class AlongCuts(PlaneCuts):
             def bends(ends: Index, normals: Array = normals) -> Mask:
                 return np.asarray((normals[ends[0]] * normals[ends[1]]).sum(axis=1) < BENDS)
 
-            points, triangles, more = split(points, triangles, bends)
+            points, triangles, more = split_edges(points, triangles, bends)
         super().__init__(np.column_stack([points[:, :2], distances]), triangles)
         self.guide, self.points = guide, points
 

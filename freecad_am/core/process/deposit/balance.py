@@ -132,8 +132,8 @@ def of_wall(depths: PartDepths, width: float) -> Balance:
         return Balance(depths.label, None, None, faces=faces, solids=depths.aside, width=width)
     outside, beads = depths.outside(width), depths.area * width
     thick = float(depths.thickness[len(depths.thickness) // 2]) if len(depths.thickness) else 0.0
-    left = depths.volume - depths.within(width)
-    rest = depths.volume - depths.within(SINGLE_BEAD_WIDTHS * width)
+    left = depths.volume - depths.volume_within(width)
+    rest = depths.volume - depths.volume_within(SINGLE_BEAD_WIDTHS * width)
     if not faces and not depths.aside and rest < NEGLIGIBLE * depths.volume:
         left = 0.0
     if outside < (SINGLE_BEAD_WIDTHS - 1.0) / SINGLE_BEAD_WIDTHS * beads:

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots
 from ...geometry.mesh.facets import doubled_areas
-from ...geometry.mesh.solid import spread
+from ...geometry.mesh.solid import divide_triangles
 from ...types import Array, Index, Mask
 
 PLACES = 20_000  # about
@@ -48,7 +48,9 @@ def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
     twice = np.linalg.norm(vectors, axis=1)
     kept = twice > 1e-12 * max(float(twice.max(initial=0.0)), 1e-300)
     corners, vectors, twice = corners[kept], vectors[kept], twice[kept]
-    points, of = spread(corners, float(np.sqrt(2.0 * twice.sum() / PLACES)))  # halves of squares
+    points, of = divide_triangles(
+        corners, float(np.sqrt(2.0 * twice.sum() / PLACES))
+    )  # halves of squares
     areas = 0.5 * twice[of] / np.bincount(of, minlength=len(corners))[of]
     return Faces(points, vectors[of] / twice[of, None], areas, np.full(len(points), side == BOTH))
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
-from ...geometry.mesh.triangle_mesh import thinned
+from ...geometry.mesh.triangle_mesh import thin_points
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...issues import Text
@@ -121,7 +121,7 @@ def step(slicing: Slicing, state: State) -> State:
         return State([], state.behind, near, state.weight)
     behind, distance = state.behind[near], feet(below, part.vertices).distance
     value = np.where(behind, -distance, distance) - height
-    low = part.joined(
+    low = part.connected_members(
         value < -ON_FRONT_MM, behind
     )  # near in space is not enough: the wall must lead there
     value = np.where(low, np.minimum(value, -1e-9 * height), np.maximum(value, 1e-9 * height))
@@ -130,7 +130,7 @@ def step(slicing: Slicing, state: State) -> State:
     for line in cut_at_rims(
         part.level_lines(value, np.arange(len(part.faces))), ends, mesh.longest_edge
     ):
-        points = thinned(line.points, line.closed, THIN * mesh.typical_edge)
+        points = thin_points(line.points, line.closed, THIN * mesh.typical_edge)
         if len(points) >= (4 if line.closed else 2):
             found = exact(slicing, below, line._replace(points=points))
             fronts += [front for front in found if _is_bead(front, below, height)]

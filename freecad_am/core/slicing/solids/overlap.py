@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.formatting import place
 from ...geometry.mesh.facets import doubled_areas
-from ...geometry.mesh.solid import Search, SolidMesh, spread
+from ...geometry.mesh.solid import Search, SolidMesh, divide_triangles
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group
 from ...issues import InputError
@@ -56,7 +56,7 @@ def _deepest(
     corners = corners[
         ((corners.min(axis=1) <= box[1]) & (corners.max(axis=1) >= box[0])).all(axis=1)
     ]
-    points, of = spread(corners, STEP)
+    points, of = divide_triangles(corners, STEP)
     normal = doubled_areas(corners)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     # surfaces that are the same tell nothing: what lies below them does

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.curves.profile import RevolvedWall
 from ...geometry.formatting import place
-from ...geometry.mesh.solid import spread
+from ...geometry.mesh.solid import divide_triangles
 from ...geometry.on_hub import SolidsOnHub
 from ...issues import WARNING, InputError, Issue, Text, Word
 from ...types import Array, Mask
@@ -132,7 +132,7 @@ def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> N
         for body in group.bodies:
             corners = body.corners()
             low = ((corners - frame[:3, 3]) @ frame[:3, 2]).min(axis=1) < -DEEP
-            middles, _ = spread(
+            middles, _ = divide_triangles(
                 corners[low], max(GRAIN * 0.5 * diameter, 1.0), over
             )  # of a large part most is beside it
             points = np.vstack([corners[low].reshape(-1, 3), middles])
