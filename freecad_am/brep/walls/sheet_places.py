@@ -74,8 +74,7 @@ class Places:
         half = 0.5 * np.linalg.norm(patch.at(one)[0] - patch.at(other)[0], axis=1)
         lost = ~known
         lost[known] = ~(
-            np.linalg.norm(patch.at(found[known])[0] - points[known], axis=1)
-            < ASTRAY * half[known]
+            np.linalg.norm(patch.at(found[known])[0] - points[known], axis=1) < ASTRAY * half[known]
         )
         found[lost] = patch.inverse(points[lost])
         # an edge across a narrow tube: the nearest place to its middle may be an end, and no halving would end

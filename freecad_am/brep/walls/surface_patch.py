@@ -142,9 +142,7 @@ def _checked(patch: Patch, face: Any, where: str) -> Patch:
         for v in np.linspace(low_v, high_v, 9)[1:-1]
     ]
     points = np.array([tuple(surface.value(u, v)) for u, v in places])
-    off = np.linalg.norm(
-        patch.at(patch.inverse(points, np.array(places)))[0] - points, axis=1
-    )
+    off = np.linalg.norm(patch.at(patch.inverse(points, np.array(places)))[0] - points, axis=1)
     if off.max() > ERROR:
         at = ", ".join(f"{number:.4g}" for number in points[np.argmax(off)])
         raise InputError(
