@@ -21,7 +21,7 @@ import numpy as np
 from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.angles import TURN, shortest
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import sampled
+from freecad_am.core.geometry.curves.sampling import sample_curve
 from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
@@ -104,7 +104,7 @@ def run() -> list[Row]:
 
 def hemisphere(layer_height: float, chord_error: float, mode: str) -> Toolpath:
     """The paper's hemisphere (Chalvin 2020, eq. 20)."""
-    meridian = sampled(
+    meridian = sample_curve(
         lambda t: (np.c_[RADIUS * np.cos(t), RADIUS * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
         [0, np.pi / 2],
     )

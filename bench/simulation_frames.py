@@ -19,7 +19,7 @@ def run_of_points(layer_height: float, points: int, document: str):
     import numpy as np
 
     from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-    from freecad_am.core.geometry.curves.sampling import sampled
+    from freecad_am.core.geometry.curves.sampling import sample_curve
     from freecad_am.core.kinematics import cell as cells
     from freecad_am.core.parameters.build_direction import BuildDirectionParameters
     from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -38,7 +38,7 @@ def run_of_points(layer_height: float, points: int, document: str):
     def dome(t):
         return np.c_[45.0 * np.cos(t), 45.0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]
 
-    wall = RevolvedWall(Meridian.chained([sampled(dome, [0, np.pi / 2])]), np.eye(4))
+    wall = RevolvedWall(Meridian.chained([sample_curve(dome, [0, np.pi / 2])]), np.eye(4))
     process, looks = ProcessParameters(), CellParameters(limits="paper")
     toolpath = revolution.plan(
         wall,

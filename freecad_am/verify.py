@@ -15,7 +15,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from .core.geometry.formatting import deviation
+from .core.geometry.formatting import format_deviation
 from .core.issues import ERROR, Issue, Text
 from .core.kinematics.cell import Cell
 from .core.motion import Motion
@@ -181,7 +181,9 @@ def _concluded(
 ) -> Verification:
     """What is looked at whatever the text is told in, rapids and limits; what the second solver said, and who solved."""
     wandered, turned, off = between.rapids_between(cell, planned, text, path, read.linear)
-    issues += planned.issue("VERIFY_BETWEEN", off, Text(WANDERS, deviation(wandered), turned))
+    issues += planned.issue(
+        "VERIFY_BETWEEN", off, Text(WANDERS, format_deviation(wandered), turned)
+    )
     issues += points.limit_issues(cell, planned, text)
     solver_issues, solvers = second
     at_points = float(np.linalg.norm(path.position - planned.position, axis=1).max())

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am import verify as verification
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import sampled
+from freecad_am.core.geometry.curves.sampling import sample_curve
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -34,7 +34,7 @@ def planned():
     def curve(t):
         return np.c_[30.0 * np.cos(t), 30.0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]
 
-    wall = RevolvedWall(Meridian.chained([sampled(curve, [0, 1.2])]), np.eye(4))
+    wall = RevolvedWall(Meridian.chained([sample_curve(curve, [0, 1.2])]), np.eye(4))
     strategy = RevolutionParameters(layer_height=6.0, chord_error=CHORD_ERROR)
     toolpath = revolution.plan(
         wall, strategy, BuildDirectionParameters(), ProcessParameters(), NozzleParameters(), 60.0

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from freecad_am.core.geometry.file_content import MB, content
+from freecad_am.core.geometry.file_content import MB, read_content
 from freecad_am.core.issues import ERROR, NOTE, InputError, Issue, Text
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import jacobian
@@ -170,7 +170,7 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
     read, remaining = {}, LARGEST_MB * MB
     for name, path in sorted(found.items()):
         try:
-            read[name] = content(path, LARGEST_MB, "BAD_FILE", name)
+            read[name] = read_content(path, LARGEST_MB, "BAD_FILE", name)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise InputError(

@@ -53,7 +53,7 @@ def _set_up(settings: dict[str, Any]) -> None:
     temporary = os.path.join(settings["folder"], "temporary")
     os.makedirs(temporary, exist_ok=True)
     os.environ["TMPDIR"] = tempfile.tempdir = temporary
-    located.travelled(settings["copies"], (versions.ROOT, settings["folder"]), settings["home"])
+    located.use_copies(settings["copies"], (versions.ROOT, settings["folder"]), settings["home"])
     user_machines.travelled(tuple(settings["machines"]))
 
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from .geometry.columns import lengths
-from .geometry.curves.outline import Outline, estimated, outline
+from .geometry.curves.outline import Outline, estimate_outline, outline
 from .geometry.fitted import Fitted, PredictedShape
 from .geometry.obstacles import Body
 from .issues import Issue
@@ -122,7 +122,7 @@ class Bead:
         neighbouring points. Corners are kept."""
         if self.tangents is not None:
             return outline(self.points, self.tangents)
-        return estimated(self.points, self.closed)
+        return estimate_outline(self.points, self.closed)
 
     def reversed(self) -> Bead:
         """The same bead run the other way."""

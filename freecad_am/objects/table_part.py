@@ -14,7 +14,7 @@ import Part
 
 from ..core.geometry.curves import ada3dp, curve_table, gcode, gcode_roles
 from ..core.geometry.curves.bead_curves import POINT_FILES, ReadCurves
-from ..core.geometry.file_content import content
+from ..core.geometry.file_content import read_content
 from ..core.issues import InputError, Word
 
 CSV, GCODE, ADA = "csv", "gcode", "ada3dp"
@@ -80,7 +80,7 @@ def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
 
 def _read(path: str, name: str, form: str) -> Points:
     try:
-        data = content(path, _LARGEST, "BAD_FILE", name)
+        data = read_content(path, _LARGEST, "BAD_FILE", name)
         if form == GCODE:  # comments may be in any encoding; commands are ASCII, and read as such
             return Points(form, data.decode(errors="replace"))
         return Points(form, base64.encodebytes(data).decode() if form == ADA else data.decode())

@@ -8,7 +8,7 @@ import numpy as np
 from freecad_am.core.types import Array, Mask
 
 from ..core.geometry.columns import lengths
-from ..core.geometry.formatting import deviation
+from ..core.geometry.formatting import format_deviation
 from ..core.issues import NOTE, Issue, Text
 from ..core.kinematics.cell import Cell
 from ..core.kinematics.chain import Chain
@@ -75,7 +75,7 @@ def point_issues(planned: Planned, path: Path) -> list[Issue]:
     tilted = lengths(path.tool - planned.tool)
     message = Text(
         "the text leads up to {} mm away from the planned point, more than its digits explain",
-        deviation(float(off.max())),
+        format_deviation(float(off.max())),
     )
     issues = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
     message = Text(

@@ -59,7 +59,7 @@ def _flat(group: Group, layer: Layer, place: int, height: float) -> str:
     else:
         surface = base.surface.offset(place * height)
         middle = middle_azimuth(base, np.vstack([bead.points for bead in layer.beads]))
-        lines = [surface.flat(line, middle) for line in lines]
+        lines = [surface.unroll(line, middle) for line in lines]
     low, high = np.vstack(lines).min(axis=0), np.vstack(lines).max(axis=0)
     pad = 0.03 * float((high - low).max())
     ratio = float((high[1] - low[1] + 2.0 * pad) / (high[0] - low[0] + 2.0 * pad))

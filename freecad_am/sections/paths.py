@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from ..core.geometry.located import expanded, is_there, located
+from ..core.geometry.located import expanded, is_there, locate
 from ..core.kinematics.machines import calibration
 from ..core.kinematics.urdf import reference as urdf_reference
 from ..core.parameters.cell import NO_SHAPE
@@ -35,7 +35,7 @@ def folder_of(path: str) -> str:
 def absolute(file: str, folder: str) -> str:
     """`file` as an absolute path; relative ones start at the absolute `folder`."""
     found = os.path.normpath(os.path.join(folder, expanded(file)))
-    located(found)  # who collects what a job is made of is told of it
+    locate(found)  # who collects what a job is made of is told of it
     return found
 
 

@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..core.geometry.file_content import content
+from ..core.geometry.file_content import read_content
 from ..core.issues import InputError, Text
 
 _INTEGER = re.compile(r"[-+]?\d{1,18}", re.ASCII)
@@ -102,7 +102,7 @@ def scalar(text: str, where: str) -> Any:
 def text_of(path: str, label: str) -> str:
     """The text of a file in UTF-8. Raises InputError NO_FILE or BAD_FILE, named `label`."""
     try:
-        return content(path, _LARGEST, "BAD_FILE", label).decode("utf-8-sig")
+        return read_content(path, _LARGEST, "BAD_FILE", label).decode("utf-8-sig")
     except FileNotFoundError:
         raise InputError("NO_FILE", path, "there is no such file; check the path") from None
     except OSError as error:

@@ -113,7 +113,7 @@ def _folders(columns: list[str], cells: list[list[str]]) -> list[str]:
 def _checked(row: Row, known: dict[Any, frozenset[str]]) -> Row:
     """The row with its error or files; `known`: files of cells met before."""
     try:
-        with located.recorded() as named:
+        with located.record_names() as named:
             found = job.from_tree(row.tree(), row.path)
     except InputError as error:
         return replace(row, error=error)
@@ -127,11 +127,11 @@ def _checked(row: Row, known: dict[Any, frozenset[str]]) -> Row:
 
 def _files_of_cell(found: job.Job) -> frozenset[str]:
     """Of its machines, with the shapes of their links. What is wrong with them is told as the row is planned."""
-    with located.recorded() as named, contextlib.suppress(InputError):
+    with located.record_names() as named, contextlib.suppress(InputError):
         cell = run.resolved_cell(found)
         for shape in () if cell is None else cell.machine.shapes:
             if shape is not None:
-                located.located(shape.path)
+                located.locate(shape.path)
     return frozenset(named)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from freecad_am.core.types import Array, Integers
 
-from ...core.geometry.located import located
+from ...core.geometry.located import locate
 from ...core.geometry.mesh.file_unit import MESHES
 from .apart import apart
 from .read import read_mesh, read_shape
@@ -25,7 +25,7 @@ def triangles(path: Path) -> tuple[Array, Integers]:
     A file is read again only where it has changed. Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or
     'BAD_FILE' naming the file.
     """
-    path = located(path)
+    path = locate(path)
     try:
         now = path.stat()
     except OSError:

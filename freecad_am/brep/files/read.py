@@ -15,7 +15,7 @@ import Mesh
 import numpy as np
 import Part
 
-from ...core.geometry.located import located
+from ...core.geometry.located import locate
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import InputError, Issue
 from ...core.types import Array, Index
@@ -45,7 +45,7 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
 
     Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or 'BAD_FILE' naming the file.
     """
-    file = located(path)
+    file = locate(path)
     where = file.name or str(path)
     suffix = file.suffix.lower()
     if not file.exists():
@@ -87,7 +87,7 @@ def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
 def mesh_content(path: str | os.PathLike[str], scale: float = 1.0) -> FileContent:
     """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. scale: mm of one unit of an STL or OBJ file,
     which tells none; a 3MF file tells its own. InputErrors as `read_shape`."""
-    file = located(path)
+    file = locate(path)
     where = file.name or str(path)
     if not file.is_file():
         raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")

@@ -12,7 +12,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.geometry.curves.sampling import Curve, sampled
+from ...core.geometry.curves.sampling import Curve, sample_curve
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +113,7 @@ def smooth_pieces(
         def one_sided(t: Array, low: float = low, high: float = high) -> tuple[Array, Array]:
             return evaluate(np.clip(t, low, high))
 
-        result.append(sampled(one_sided, [a, *inside, b]))
+        result.append(sample_curve(one_sided, [a, *inside, b]))
     return result
 
 

@@ -219,7 +219,7 @@ def _assembled(
     chain, issues = chains[0], []
     closed = contour.is_closed(chain, whole) and (not selected or _loops(chain))
     gap = contour.opening(chain) if closed and not contour.is_closed(chain) else gap
-    if gap > contour.JOIN:
+    if gap > contour.JOIN_MM:
         issues.append(
             Issue(
                 NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} is bridged", gap, label)
@@ -251,7 +251,7 @@ def _assembled(
 
 
 def _loops(chain: Chain) -> bool:
-    return contour.opening(chain) < contour.JOIN
+    return contour.opening(chain) < contour.JOIN_MM
 
 
 def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridian]:
@@ -281,7 +281,7 @@ def _step_notes(chain: Chain, label: str) -> list[Issue]:
             ),
         )
         for piece in chain
-        if (span := float(np.hypot(*(piece.points[-1] - piece.points[0])))) < contour.BRIDGE
+        if (span := float(np.hypot(*(piece.points[-1] - piece.points[0])))) < contour.BRIDGE_MM
         and len(chain) > 1
     ]
 

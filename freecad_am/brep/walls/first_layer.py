@@ -13,7 +13,7 @@ import Part
 
 from freecad_am.core.types import Array
 
-from ...core.geometry.formatting import deviation
+from ...core.geometry.formatting import format_deviation
 from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.surface import dot
 from ...core.geometry.walls.surface_wall import TABLE, TORUS, Placed, SurfaceWall
@@ -65,7 +65,9 @@ def find_wall(
     _refuse_inside(tube, solid, label, substrate_label)
     _refuse_edges(tube, points, named, label)
     found = Text(
-        "the first layer lies on the wall and on {} within {} mm", substrate_label, deviation(error)
+        "the first layer lies on the wall and on {} within {} mm",
+        substrate_label,
+        format_deviation(error),
     )
     issues = [Issue(NOTE, "FIRST_LAYER", found)]
     if len(chains) > 1:

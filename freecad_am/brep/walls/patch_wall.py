@@ -12,7 +12,7 @@ import Part
 
 from freecad_am.core.types import Mask
 
-from ...core.geometry.formatting import at_least, count, deviation, place
+from ...core.geometry.formatting import at_least, count, format_deviation, place
 from ...core.geometry.walls import contact
 from ...core.geometry.walls.ground import nearest_point
 from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
@@ -229,13 +229,13 @@ def from_substrate(
             Text(
                 "; between the edges of its triangles it runs smoothly, up to {} mm off them, about as far as they "
                 "are off what they stand for",
-                deviation(off),
+                format_deviation(off),
             )
             if off > 0.0
             else ""
         )
     else:
-        found += Text(" within {} mm", deviation(off))
+        found += Text(" within {} mm", format_deviation(off))
     return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
 
 

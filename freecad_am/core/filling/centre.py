@@ -10,7 +10,13 @@ import numpy as np
 from ..geometry.curves.plane_curve import length
 from ..geometry.regions.medial import spine
 from ..geometry.regions.region import Region, along, simplified
-from ..geometry.regions.several import HAIR, grown, longer, wider, without
+from ..geometry.regions.several import (
+    HAIR_SHARE,
+    grow_regions,
+    select_longer,
+    select_wider,
+    subtract_regions,
+)
 from ..issues import InfeasibleError
 from ..types import Array
 from .curve import Beads, PlaneCurve
@@ -37,7 +43,7 @@ def centre_beads(
     """
     found: list[PlaneCurve] = []
     for _ in range(ROUNDS):
-        gaps = wider(gaps, beads.gap, beads.chord_error)
+        gaps = select_wider(gaps, beads.gap, beads.chord_error)
         rest: list[Region] = []
         for region in gaps:
             points, closed = _spine(region, beads, 0.5 * ENDS * beads.gap)
@@ -58,8 +64,10 @@ def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Bead
     """What curves leave open, wider than the gap allowed, of what beads can reach with their middles in `inner`."""
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
     lines = [(simplified(curve.points, error, curve.closed), curve.closed) for curve in curves]
-    return wider(
-        without(grown(inner, half, error), along(lines, half, error), beads.gap), beads.gap, error
+    return select_wider(
+        subtract_regions(grow_regions(inner, half, error), along(lines, half, error), beads.gap),
+        beads.gap,
+        error,
     )
 
 
@@ -74,7 +82,7 @@ def closing(
     ends, `lines.Frame`, that lines fill."""
     gaps = left_open(curves, inner, beads)
     if ends:
-        gaps = wider(without(gaps, ends), beads.gap, beads.chord_error)
+        gaps = select_wider(subtract_regions(gaps, ends), beads.gap, beads.chord_error)
     return centre_beads(gaps, beads, ring, inner, "closing")
 
 
@@ -116,7 +124,7 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
                     )
             # what a bead has ended in, as it narrows, is narrower than the narrowest bead by far; a
             # threshold that it may lie about would give equal sections different beads
-            rest = wider(rest, max(beads.gap, beads.thinnest), beads.chord_error)
+            rest = select_wider(rest, max(beads.gap, beads.thinnest), beads.chord_error)
     return found
 
 
@@ -163,16 +171,16 @@ def outermost(
     that: necks of the region, or all of it. Places that are hardly wider than a bead, as where ribs meet, are left to the
     beads along the middle of the ribs. InfeasibleError THIN_REGION where none are wanted there."""
     if beads.thin != "refuse":
-        long = longer(inner, beads.shortest)
+        long = select_longer(inner, beads.shortest)
         inner = long if long or region.area > NETWORK * beads.inset**2 else inner
     if not inner:
         return (), single_beads((region,), beads)
-    reached = grown(inner, beads.inset, beads.chord_error)
-    parts, hair = region.without(reached), HAIR * beads.chord_error
+    reached = grow_regions(inner, beads.inset, beads.chord_error)
+    parts, hair = region.without(reached), HAIR_SHARE * beads.chord_error
     if any(part.extent > beads.inset and len(part.grown(-hair, hair)) > 1 for part in parts):
         # beads touch the border, where rounding leaves slits that join corners in one section and not
         # in an equal one
-        reached = grown(inner, beads.inset + hair, beads.chord_error)
+        reached = grow_regions(inner, beads.inset + hair, beads.chord_error)
         parts = region.without(reached)
     return inner, single_beads([part for part in parts if _is_neck(part, reached, beads)], beads)
 

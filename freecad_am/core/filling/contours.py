@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import grown, longer, shrunk, without
+from ..geometry.regions.several import grow_regions, select_longer, shrink_region, subtract_regions
 from .centre import centre_beads, outermost
 from .curve import Beads, PlaneCurve, begun, contours_of
 
@@ -31,8 +31,10 @@ def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
     while inner:
         regions.append(inner)
         open_ = region.grown(-beads.inset - (2 * k + 1) * half, error)
-        inner = longer(shrunk(region, beads.inset + (2 * k + 2) * half, error), beads.shortest)
-        gaps.append(without(open_, grown(inner, half, error), beads.gap))
+        inner = select_longer(
+            shrink_region(region, beads.inset + (2 * k + 2) * half, error), beads.shortest
+        )
+        gaps.append(subtract_regions(open_, grow_regions(inner, half, error), beads.gap))
         k += 1
     return Levels(tuple(regions), tuple(gaps), thin)
 

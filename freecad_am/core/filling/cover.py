@@ -12,7 +12,7 @@ import numpy as np
 
 from ..geometry.curves.plane_curve import length
 from ..geometry.regions.region import Region, along, simplified
-from ..geometry.regions.several import common
+from ..geometry.regions.several import intersect_regions
 from ..geometry.regions.strip import Strip
 from ..types import Array
 from .curve import Beads, PlaneCurve
@@ -83,9 +83,11 @@ def _of_regions(
     lines = [line for some, _ in widths for line in some]
     half = beads.inset * np.array([share for _, shares in widths for share in shares])
     covered = along(lines, half, beads.chord_error) if lines else ()
-    covered = common(covered, pane) if pane else covered
+    covered = intersect_regions(covered, pane) if pane else covered
     whole = math.fsum(region.area for region in regions)
-    inside = math.fsum(part.area for part in common(regions, covered)) if covered else 0.0
+    inside = (
+        math.fsum(part.area for part in intersect_regions(regions, covered)) if covered else 0.0
+    )
     area = math.fsum(part.area for part in covered)
     return Cover(whole, whole - inside, area - inside, area)
 

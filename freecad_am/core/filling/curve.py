@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import begun_at, doubled_area, length, up_to
+from ..geometry.curves.plane_curve import cut_at_length, doubled_area, length, start_at
 from ..geometry.regions.region import Region
 from ..geometry.regions.strip import Period, Strip
 from ..types import Array
@@ -55,7 +55,7 @@ class PlaneCurve:
             return self.points, self.share
         start = self.points[:1]
         if self.turns and period is not None:
-            start = period.moved(start, self.turns)
+            start = period.move_turns(start, self.turns)
         return np.vstack([self.points, start]), None if self.share is None else np.r_[
             self.share, self.share[:1]
         ]
@@ -118,12 +118,12 @@ class Beads:
     def ring(self, points: Array, number: int = 0) -> Array:
         """A ring (n, 2) with the sense and the start asked for; number: of contours outside of it."""
         turned = points[::-1] if (doubled_area(points) < 0.0) != self.clockwise else points
-        begun = begun_at(turned, self.start_of(turned))
+        begun = start_at(turned, self.start_of(turned))
         behind = 0.0 if self.spread is None else (self.spread + NEXT * number) % 1.0
         if behind == 0.0:
             return begun
         whole = np.vstack([begun, begun[:1]])
-        return begun_at(begun, up_to(whole, behind * length(begun, True))[-1])
+        return start_at(begun, cut_at_length(whole, behind * length(begun, True))[-1])
 
     def start_of(self, points: Array) -> Array:
         """The place (2,) that a ring should begin nearest to."""

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, dense, divided_by_step, nearest_among
 from ..geometry.regions.region import DIGITS, WIDTH, Region
-from ..geometry.regions.telling import telling
+from ..geometry.regions.telling import select_significant
 from ..types import Array, Index, Mask
 from .curve import Beads, PlaneCurve
 
@@ -251,10 +251,10 @@ def _with(
         np.r_[share[-1:], share, share[:1]] if curve.closed else np.r_[share[:1], share, share[-1:]]
     )
     wide = 0.5 * (ends[1:] + ends[:-1])
-    kept = corners | telling(arcs(line), wide, SHARE_TOLERANCE)
+    kept = corners | select_significant(arcs(line), wide, SHARE_TOLERANCE)
     if aside.any():
         ways = _moves(line, aside, curve.closed)
-        kept |= telling(arcs(line), np.hypot(*ways.T) / spacing, 0.25 * SHARE_TOLERANCE)
+        kept |= select_significant(arcs(line), np.hypot(*ways.T) / spacing, 0.25 * SHARE_TOLERANCE)
         line = line + ways
     if curve.closed:
         line, wide, kept = line[:-1], wide[:-1], kept[:-1]

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import turned
+from ..geometry.curves.plane_curve import rotate_points
 from ..geometry.regions.region import Region, simplified
 from ..geometry.step_count import round_down, round_up
 from ..types import Array
@@ -33,13 +33,13 @@ def families(
 
 def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
     """Pieces (2, 2) of the lines at whole periods (mm) from the origin, at an angle, rad, in a region; row by row."""
-    borders = [turned(border, -angle) for border in region.borders()]
+    borders = [rotate_points(border, -angle) for border in region.borders()]
     low, high = float(borders[0][:, 1].min()), float(borders[0][:, 1].max())
     found = []
     for k in range(round_up(low / period), round_down(high / period) + 1):
         x = crossings(borders, k * period)
         ends = np.stack([x, np.full(len(x), k * period)], axis=1).reshape(-1, 2, 2)
-        found.append([turned(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
+        found.append([rotate_points(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
     return found
 
 
@@ -74,7 +74,7 @@ def honeycomb(region: Region, spacing: float, density: float, angle: float) -> l
     found = []
     for k in range(math.floor(low / apart) - 1, math.ceil(high / apart) + 2):
         mirrored = line * np.array([1.0, -1.0 if k % 2 else 1.0]) + np.array([0.0, k * apart])
-        found.append(turned(mirrored, angle))
+        found.append(rotate_points(mirrored, angle))
     return found
 
 
@@ -115,11 +115,11 @@ def gyroid(
         for branch in (middle - half, middle + half):
             value = branch + 2.0 * math.pi * turn
             flat = np.stack([t, value] if of_x else [value, t], axis=1) * unit
-            found.append(turned(simplified(flat, chord_error), angle))
+            found.append(rotate_points(simplified(flat, chord_error), angle))
     return found
 
 
 def _box(region: Region, angle: float) -> tuple[Array, Array]:
     """Lowest and highest coordinates (2,) of a region in axes turned by an angle, rad."""
-    border = turned(region.borders()[0], -angle)
+    border = rotate_points(region.borders()[0], -angle)
     return border.min(axis=0), border.max(axis=0)

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import turned
+from ..geometry.curves.plane_curve import rotate_points
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import grown, longer, shrunk
+from ..geometry.regions.several import grow_regions, select_longer, shrink_region
 from ..geometry.step_count import round_down, step_count
 from ..types import Array
 from .centre import outermost
@@ -44,11 +44,15 @@ def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -
     curves = []
     for k in range(walls):
         if k:
-            inner = longer(shrunk(region, beads.inset + 2 * k * half, error), beads.shortest)
+            inner = select_longer(
+                shrink_region(region, beads.inset + 2 * k * half, error), beads.shortest
+            )
         curves += contours_of(inner, beads, k)
         if not inner:
             break
-    return Frame(curves, grown(inner, -2.0 * half, error), grown(inner, -half, error), thin)
+    return Frame(
+        curves, grow_regions(inner, -2.0 * half, error), grow_regions(inner, -half, error), thin
+    )
 
 
 def lines(
@@ -74,15 +78,17 @@ def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
         not framed.regions or not framed.ends
     ):  # too narrow for lines; what they would fill gets beads along its middle
         return []
-    borders = [turned(border, -angle) for region in framed.ends for border in region.borders()]
+    borders = [
+        rotate_points(border, -angle) for region in framed.ends for border in region.borders()
+    ]
     height = np.concatenate(
-        [turned(region.borders()[0], -angle)[:, 1] for region in framed.regions]
+        [rotate_points(region.borders()[0], -angle)[:, 1] for region in framed.regions]
     )
     found = []
     for level in levels_between(float(height.min()), float(height.max()), beads):
         x = crossings(borders, level)
         ends = np.stack([x, np.full(len(x), level)], axis=1).reshape(-1, 2, 2)
-        found.append([turned(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
+        found.append([rotate_points(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
     return found
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import grown, shrunk, wider, without
+from ..geometry.regions.several import grow_regions, select_wider, shrink_region, subtract_regions
 from .centre import closing
 from .curve import Beads, PlaneCurve, contours_of
 from .lattice import families, gyroid, honeycomb
@@ -67,9 +67,11 @@ def _divided(
         return ends, ()
     if not buried:
         return (), ends
-    skin = grown(without(ends, buried), beads.spacing, beads.chord_error)
-    loose = wider(without(ends, skin), LEAST_HEIGHT * beads.spacing, beads.chord_error)
-    return loose, without(ends, loose)
+    skin = grow_regions(subtract_regions(ends, buried), beads.spacing, beads.chord_error)
+    loose = select_wider(
+        subtract_regions(ends, skin), LEAST_HEIGHT * beads.spacing, beads.chord_error
+    )
+    return loose, subtract_regions(ends, loose)
 
 
 def _whole(
@@ -127,7 +129,7 @@ def _rounds(
 ) -> list[PlaneCurve]:
     """Contours so far apart, the first so far inside of a region, mm."""
     curves, k = [], 0
-    while inner := shrunk(region, first + k * apart, beads.chord_error):
+    while inner := shrink_region(region, first + k * apart, beads.chord_error):
         curves += contours_of(inner, beads, ring + k)
         k += 1
     return curves

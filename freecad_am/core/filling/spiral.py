@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import begun_at, doubled_area, length, nearest, up_to
+from ..geometry.curves.plane_curve import cut_at_length, doubled_area, length, nearest, start_at
 from ..geometry.regions.region import Region
 from ..types import Array
 from .centre import closing
@@ -76,17 +76,17 @@ def _linked(
         if way < LEAST_LENGTH * beads.spacing:
             break
         whole = np.vstack([ring, ring[:1]])
-        cut = up_to(whole, way - beads.spacing) if pieces else whole
+        cut = cut_at_length(whole, way - beads.spacing) if pieces else whole
         turned = (
             following[::-1] if (doubled_area(following) < 0.0) != beads.clockwise else following
         )
-        ahead = ring[:1] if pieces else up_to(whole, beads.spacing)[-1:]
+        ahead = ring[:1] if pieces else cut_at_length(whole, beads.spacing)[-1:]
         arrives = nearest(turned, ahead, True).points[0]
         link = cut[-1] + np.linspace(0.0, 1.0, 17)[1:-1, None] * (arrives - cut[-1])
         if np.hypot(*(arrives - cut[-1])) > LINK * beads.spacing or not _inside(link, inside):
             break
         pieces.append(cut)
-        ring = begun_at(turned, arrives)
+        ring = start_at(turned, arrives)
     pieces.append(ring)
     return pieces
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import common, grown
+from ..geometry.regions.several import grow_regions, intersect_regions
 from ..geometry.regions.strip import Strip, Window
 from .centre import centre_beads, left_open
 from .curve import Beads, PlaneCurve
@@ -33,10 +33,14 @@ def open_windows(
     """Window by window, laid flat about its middle, what is open and where beads may lie."""
     found = []
     for window, adjacent in near_windows(strip, curves, REACH * beads.spacing):
-        inner = grown(strip.flat(window, with_margin=True), -beads.inset, beads.chord_error)
+        inner = grow_regions(strip.flat(window, with_margin=True), -beads.inset, beads.chord_error)
         if inner:
             found.append(
-                (window, list(common(left_open(adjacent, inner, beads), strip.pane(window))), inner)
+                (
+                    window,
+                    list(intersect_regions(left_open(adjacent, inner, beads), strip.pane(window))),
+                    inner,
+                )
             )
     return found
 
@@ -46,7 +50,7 @@ def near_windows(
 ) -> Iterator[tuple[Window, list[PlaneCurve]]]:
     """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle."""
     curves = [
-        replace(curve, points=strip.period.followed(curve.points, curve.sheet, curve.turns))
+        replace(curve, points=strip.period.unwrap_curve(curve.points, curve.sheet, curve.turns))
         for curve in curves
     ]
     for window in strip.windows(reach):

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..geometry.curves.plane_curve import dense
 from ..geometry.regions.region import Region, regions
-from ..geometry.regions.several import grown
+from ..geometry.regions.several import grow_regions
 from ..geometry.regions.strip import Strip
 from ..geometry.step_count import round_down, round_up, step_count
 from ..types import Array, Mask
@@ -39,9 +39,9 @@ def _frame(inner: tuple[Strip | Region, ...], beads: Beads, walls: int) -> _Fram
     if not walls:
         return _Frame([], inner, beads.inset)
     curves, done = contours_of(inner, beads, 0), 1
-    while done < walls and (further := grown(inner, -2.0 * half, error)):
+    while done < walls and (further := grow_regions(inner, -2.0 * half, error)):
         curves, inner, done = curves + contours_of(further, beads, done), further, done + 1
-    return _Frame(curves, grown(inner, -half, error), beads.inset + 2.0 * half * done)
+    return _Frame(curves, grow_regions(inner, -half, error), beads.inset + 2.0 * half * done)
 
 
 def lines_round(
@@ -51,7 +51,7 @@ def lines_round(
     Closed where nothing interrupts them. density: below 1, lines are as much farther apart."""
     framed = _frame(inner, beads, walls)
     low, high = strip.levels
-    turn, within = strip.period.around, _Inside(strip, framed.ends)
+    turn, within = strip.period.u_period, _Inside(strip, framed.ends)
     curves = list(framed.curves)
     for row, level in enumerate(_levels(low + framed.inset, high - framed.inset, beads, density)):
         count = strip.period.points_round(level, beads.chord_error, beads.spacing)
@@ -59,7 +59,7 @@ def lines_round(
         inside = within.contains(np.stack([u, np.full(len(u), level)], axis=1))
         for a, b in _runs(inside[:-1]):
             uv = np.stack([u[0] + turn / count * np.arange(a, b), np.full(b - a, level)], axis=1)
-            points, whole = strip.period.unroll(uv), b - a == count
+            points, whole = strip.period.from_uv(uv), b - a == count
             back = (row % 2 == 1) if not whole else beads.clockwise
             sense = 0 if not whole else (-1 if back else 1)
             sheet = float(uv[:, 0].mean())
@@ -78,7 +78,7 @@ def lines_along(
     """Lines along generatrices, evenly round the hub, no farther apart than the spacing; on a cone that is where they are
     farthest from the apex, and they come nearer to each other towards it. Every other one runs the other way."""
     framed = _frame(inner, beads, walls)
-    turn, interior = strip.period.around, _Inside(strip, framed.ends)
+    turn, interior = strip.period.u_period, _Inside(strip, framed.ends)
     apart = beads.spacing / density
     count = step_count(turn * _stretch(strip) - 0.01 * turn, apart)
     low, high = strip.levels
@@ -97,7 +97,7 @@ def lines_along(
     )
     curves = list(framed.curves)
     for number, *levels in zip(line.tolist(), bottom, top):
-        ends = strip.period.unroll(np.stack([np.full(2, u[number]), levels], axis=1))
+        ends = strip.period.from_uv(np.stack([np.full(2, u[number]), levels], axis=1))
         curves.append(PlaneCurve(ends[::-1] if number % 2 else ends, False, "line", walls))
     curves = long_enough(curves, beads.shortest)
     return curves + (
@@ -117,7 +117,7 @@ class _Inside:
     """Parts of a strip that are asked often what lies in them."""
 
     def __init__(self, strip: Strip, parts: Sequence[Strip | Region]) -> None:
-        turn = strip.period.around
+        turn = strip.period.u_period
         reach = 0.75 * turn
         self.unrolled = [
             piece
@@ -127,12 +127,12 @@ class _Inside:
         ]
         for part in (part for part in parts if isinstance(part, Region)):
             borders = [
-                strip.period.followed(dense(border, 0.001 * turn), part.sheet)
+                strip.period.unwrap_curve(dense(border, 0.001 * turn), part.sheet)
                 for border in part.borders()
             ]
-            for hole in borders[1:] if math.isfinite(strip.period.whole) else ():
+            for hole in borders[1:] if math.isfinite(strip.period.full_turn) else ():
                 away = 0.5 * (borders[0][:, 0].min() + borders[0][:, 0].max()) - hole[0, 0]
-                hole[:, 0] += strip.period.whole * np.round(away / strip.period.whole)
+                hole[:, 0] += strip.period.full_turn * np.round(away / strip.period.full_turn)
             for k in (-1, 0, 1):
                 self.unrolled += regions([uv + np.array([k * turn, 0.0]) for uv in borders])
 

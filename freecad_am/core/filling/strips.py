@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..geometry.regions.medial import spine_round
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import grown, halves
+from ..geometry.regions.several import grow_regions, halves
 from ..geometry.regions.strip import Strip
 from ..issues import InfeasibleError
 from .centre import FINE, centre_beads
@@ -40,13 +40,13 @@ def strip_contours(
     while inner:
         curves += contours_of(inner, beads, k)
         if k - first == AFRESH:
-            start, first = grown(inner, -half, error), k + 1
+            start, first = grow_regions(inner, -half, error), k + 1
         k += 1
         before, inner = (
             inner,
-            grown(start, -(half if first else beads.inset) - 2 * (k - first) * half, error),
+            grow_regions(start, -(half if first else beads.inset) - 2 * (k - first) * half, error),
         )
-    for region in grown(before, -half, error):
+    for region in grow_regions(before, -half, error):
         if isinstance(region, Strip) and region.grown(-0.5 * beads.gap, error):
             curves += _centre(region, beads, k)
     curves = long_enough(curves, beads.shortest)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What of a solid is outside of a cylinder or cone, without cutting it there.
+"""Volume of a solid outside a cylinder or cone, without cutting the solid there.
 
-By Gauss's theorem: a field along the normals of the equidistant surfaces, none inside of the hub, of which as much comes out
-of the solid's surface as the solid has volume outside. Where rho is the distance from the axis and rho0 that of the foot on
-the hub, a layer has rho / rho0 times the area that it has there; so (rho^2 - rho0^2) / (2 rho cos a) has the divergence 1.
+By Gauss's theorem: a field along the normals of the equidistant surfaces, zero inside the
+hub, has a flux out of the solid's surface equal to the volume of the solid outside. Where
+rho is the distance from the axis and rho0 the distance of the foot on the hub, a layer
+has rho / rho0 times its area on the hub; so (rho^2 - rho0^2) / (2 rho cos a) has the
+divergence 1.
 """
 
 from __future__ import annotations
@@ -24,12 +26,14 @@ PLACES = 10_000  # of the solid's surface, if its triangles were squares
 
 
 def volume_beyond(surface: Developable, vertices: Array, triangles: Integers) -> float:
-    """Volume, mm3, of a closed mesh (n, 3), (m, 3) in the frame of a hub, outside of that; good to about 1e-4 of it."""
+    """Return the volume, mm3, of a closed mesh (n, 3), (m, 3) outside a hub, in the hub's frame;
+    accurate to about 1e-4.
+    """
     corner = vertices[triangles]
     area = doubled_areas(corner) / 2.0
     longest = float(np.sqrt(np.linalg.norm(area, axis=1).sum() / PLACES))
     volume = 0.0
-    while len(corner):  # in halves, until no side is longer
+    while len(corner):  # halve until no side is longer
         side = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
         top = np.argmax(side, axis=1)
         small = side[np.arange(len(top)), top] <= longest
@@ -45,40 +49,40 @@ def volume_beyond(surface: Developable, vertices: Array, triangles: Integers) ->
 
 
 def solids_beyond(solids: SolidsOnHub) -> float | None:
-    """Volume, mm3, of all solids outside of their hubs; None where they may overlap."""
-    found = 0.0
+    """Return the volume, mm3, of all solids outside their hubs; None if they may overlap."""
+    volume = 0.0
     for group in solids.groups:
         surface = group.base.surface
-        if isinstance(surface, Developable):  # those that overlap are refused
-            found += sum(
+        if isinstance(surface, Developable):  # overlapping solids are rejected earlier
+            volume += sum(
                 volume_beyond(surface, group.base.inside(body.vertices), body.triangles)
                 for body in group.bodies
             )
         elif any(_may_meet(*pair) for pair in combinations(group.bodies, 2)):
             return None
         else:
-            found += sum(
+            volume += sum(
                 abs(SolidMesh(body.vertices, body.triangles).volume) for body in group.bodies
             )
-    return found
+    return volume
 
 
-def _may_meet(one: Body, other: Body) -> bool:
+def _may_meet(body_a: Body, body_b: Body) -> bool:
     return bool(
         (
-            (one.vertices.min(axis=0) < other.vertices.max(axis=0))
-            & (other.vertices.min(axis=0) < one.vertices.max(axis=0))
+            (body_a.vertices.min(axis=0) < body_b.vertices.max(axis=0))
+            & (body_b.vertices.min(axis=0) < body_a.vertices.max(axis=0))
         ).all()
     )
 
 
 def _field(surface: Developable, points: Array) -> Array:
-    """The field (n, 3) at points (n, 3)."""
+    """Return the field (n, 3) at points (n, 3)."""
     cos = np.cos(surface.taper)
-    away = np.maximum(surface.distance(points), 0.0)
+    height = np.maximum(surface.distance(points), 0.0)
     rho = np.maximum(np.hypot(points[:, 0], points[:, 1]), 1e-300)
-    foot = rho - away * cos
-    found: Array = ((rho * rho - foot * foot) / (2.0 * rho * cos))[:, None] * surface.normals(
+    foot = rho - height * cos
+    field: Array = ((rho * rho - foot * foot) / (2.0 * rho * cos))[:, None] * surface.normals(
         points
     )
-    return found
+    return field

@@ -11,8 +11,8 @@ import numpy as np
 from ..types import Array, Integers, Mask
 from .columns import lengths
 
-PIECES = 8  # a shape is cut into at most so many
-LEAST_LENGTH = 0.5  # pieces are no shorter than this share of the shape's width
+MAX_PIECES = 8  # maximum number of pieces of a shape
+MIN_LENGTH_RATIO = 0.5  # pieces are no shorter than this share of the shape's width
 _ROUNDING = 1e-6  # mm
 
 
@@ -30,25 +30,27 @@ class Cylinder:
         return float(np.linalg.norm(self.end - self.start))
 
     def holds(self, points: Array) -> Mask:
-        """(n,) whether points (n, 3) are in it, or on it."""
+        """Return whether points (n, 3) are in the cylinder or on it, (n,)."""
         axis = (self.end - self.start) / self.length
         offset = points - self.start
         along = offset @ axis
-        away = lengths(offset - along[:, None] * axis)
-        held: Mask = (
+        axis_distance = lengths(offset - along[:, None] * axis)
+        is_inside: Mask = (
             (along >= -_ROUNDING)
             & (along <= self.length + _ROUNDING)
-            & (away <= self.radius + _ROUNDING)
+            & (axis_distance <= self.radius + _ROUNDING)
         )
-        return held
+        return is_inside
 
 
-def about(points: Array) -> Cylinder:
-    """The cylinder about points (n, 3): of those along their three main directions the one with the least volume."""
+def enclosing_cylinder(points: Array) -> Cylinder:
+    """Return the cylinder about points (n, 3) with the least volume, with its axis along one of
+    their three main directions.
+    """
     middle = points.mean(axis=0)
     offset = points - middle
     directions = np.linalg.eigh(offset.T @ offset)[1].T
-    found: list[tuple[float, Cylinder]] = []
+    candidates: list[tuple[float, Cylinder]] = []
     for k, axis in enumerate(directions):
         along = offset @ axis
         low, high = float(along.min()) - _ROUNDING, float(along.max()) + _ROUNDING
@@ -57,50 +59,56 @@ def about(points: Array) -> Cylinder:
         centre = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
         radius = float(lengths(flat - centre).max())
         foot = middle + centre @ across
-        found.append(
+        candidates.append(
             ((high - low) * radius**2, Cylinder(foot + low * axis, foot + high * axis, radius))
         )
-    return min(found, key=lambda one: one[0])[1]
+    return min(candidates, key=lambda candidate: candidate[0])[1]
 
 
-def row(points: Array, triangles: Integers) -> list[Cylinder]:
-    """Cylinders in a row that together hold a shape of triangles (m, 3) of points (n, 3): its pieces along its longest
-    direction, each with its cylinder."""
+def enclosing_row(points: Array, triangles: Integers) -> list[Cylinder]:
+    """Return cylinders in a row that together hold a shape of triangles (m, 3) of points (n, 3).
+
+    The shape is cut along its longest direction, and each piece has its cylinder.
+    """
     used = points[np.unique(triangles)]
-    whole = about(used)
+    whole_cylinder = enclosing_cylinder(used)
     offset = used - used.mean(axis=0)
     axis = np.linalg.eigh(offset.T @ offset)[1][:, -1]
     height = points @ axis
     low, high = float((used @ axis).min()), float((used @ axis).max())
     across = float(np.linalg.norm(offset - (offset @ axis)[:, None] * axis, axis=1).max())
-    count = int(np.clip((high - low) / max(LEAST_LENGTH * across, _ROUNDING), 1, PIECES))
+    count = int(np.clip((high - low) / max(MIN_LENGTH_RATIO * across, _ROUNDING), 1, MAX_PIECES))
     cuts = np.linspace(low, high, count + 1)
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     start, end = height[edges[:, 0]], height[edges[:, 1]]
-    # corners of the pieces are those of the shape, and where its edges cross the planes between
+    # the pieces have the corners of the shape, and the crossings of its edges with the planes between them
     crossings = []
     for cut in cuts[1:-1]:
         over = (start - cut) * (end - cut) < 0.0
         share = ((cut - start[over]) / (end[over] - start[over]))[:, None]
         crossings.append(points[edges[over, 0]] * (1.0 - share) + points[edges[over, 1]] * share)
-    found = []
+    cylinders = []
     for k in range(count):
         inside = used[(used @ axis >= cuts[k]) & (used @ axis <= cuts[k + 1])]
         borders = [crossings[j] for j in (k - 1, k) if 0 <= j < len(crossings)]
-        piece = np.concatenate([inside, *borders])
-        if len(piece):
-            found.append(about(piece))
-    volume = sum(cylinder.length * cylinder.radius**2 for cylinder in found)
-    return found if volume < whole.length * whole.radius**2 else [whole]
+        piece_points = np.concatenate([inside, *borders])
+        if len(piece_points):
+            cylinders.append(enclosing_cylinder(piece_points))
+    volume = sum(cylinder.length * cylinder.radius**2 for cylinder in cylinders)
+    return (
+        cylinders if volume < whole_cylinder.length * whole_cylinder.radius**2 else [whole_cylinder]
+    )
 
 
-def needed(cylinders: Sequence[Cylinder], points: Sequence[Array]) -> list[Cylinder]:
-    """The cylinders about points (each (n, 3)) but those whose points are all in another cylinder that stays."""
+def drop_redundant(cylinders: Sequence[Cylinder], points: Sequence[Array]) -> list[Cylinder]:
+    """Return the cylinders about points (each (n, 3)) without those whose points are all in
+    another remaining cylinder.
+    """
     order = sorted(
         range(len(cylinders)), key=lambda k: cylinders[k].length * cylinders[k].radius ** 2
     )
-    left = set(order)
+    remaining = set(order)
     for k in order:
-        if any(cylinders[j].holds(points[k]).all() for j in left - {k}):
-            left.remove(k)
-    return [cylinders[k] for k in sorted(left)]
+        if any(cylinders[j].holds(points[k]).all() for j in remaining - {k}):
+            remaining.remove(k)
+    return [cylinders[k] for k in sorted(remaining)]

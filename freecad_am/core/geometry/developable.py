@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cylinders and cones to grow on: their equidistant neighbours, and what lies on them laid flat (Dai 2020, 2.1 and 2.2).
+"""Cylinders and cones to grow on: their equidistant neighbours, and unrolling (Dai 2020, 2.1
+and 2.2).
 
-All in the hub's own frame: its axis is Z, the base circle of radius R lies at z = 0, the apex of a cone at z = H (eq. 1).
-With tan(a) = R / H a point at (rho, theta, z) is rho cos(a) + z sin(a) - R cos(a) away from the surface; since rho is never
-negative this is the nappe below the apex alone. A cylinder is the case a = 0, not a limit.
+All coordinates are in the hub's own frame: its axis is Z, the base circle of radius R is
+at z = 0, the apex of a cone at z = H (eq. 1). With tan(a) = R / H a point at (rho, theta,
+z) is rho cos(a) + z sin(a) - R cos(a) away from the surface; since rho is never negative
+this is only the nappe below the apex. A cylinder is the case a = 0, not a limit.
 
-Laid flat, x runs around the hub and y up along it: with the way s = (H - z) / cos(a) from the apex, s0 that of the base
-circle and phi = (theta - middle) sin(a), x = s sin(phi) and y = s0 - s cos(phi). Both maps are exact isometries; written
-from the base circle, not from the apex, they keep their digits however slim the cone (ERRATA on section 2.2).
+Unrolled, x runs around the hub and y up along it: with the distance s = (H - z) / cos(a)
+from the apex, s0 the distance of the base circle and phi = (theta - middle) sin(a), x = s
+sin(phi) and y = s0 - s cos(phi). Both maps are exact isometries; written from the base
+circle, not from the apex, they keep their digits however slim the cone (ERRATA on section
+2.2).
 """
 
 from __future__ import annotations
@@ -53,19 +57,24 @@ class Developable:
         return Developable(self.radius + distance / math.cos(a), height)
 
     def distance(self, points: Array) -> Array:
-        """How far (...,) mm points (..., 3) are outside the surface, along its normal; negative inside."""
+        """Return how far (...,) mm points (..., 3) are outside the surface, along its normal;
+        negative inside.
+        """
         a = self.taper
         rho = np.hypot(points[..., 0], points[..., 1])
-        away: Array = (rho - self.radius) * math.cos(a) + points[..., 2] * math.sin(a)
-        return away
+        height: Array = (rho - self.radius) * math.cos(a) + points[..., 2] * math.sin(a)
+        return height
 
     def bend(self, distance: float, extent: float) -> float:
         """The radius, mm, that beads `distance` mm further out are bent by, around a part of an extent, mm."""
         return self.radius + distance
 
     def normals(self, points: Array) -> Array:
-        """Unit normals (..., 3) out of the surface at points (..., 3); the same for all equidistant ones. On the axis, where
-        there is none, what is left of it along the axis."""
+        """Return the outward unit normals (..., 3) at points (..., 3), the same for all equidistant
+        surfaces.
+
+        On the axis, which has no radial direction, only the axial component remains.
+        """
         a = self.taper
         rho = np.hypot(points[..., 0], points[..., 1])
         level = math.cos(a) / np.maximum(rho, 1e-300)
@@ -74,14 +83,18 @@ class Developable:
             axis=-1,
         )
 
-    def along(self, at: Array, way: Array) -> tuple[Array, Array]:
-        """`distance` (n,) of points, and how it grows (n,) along vectors, both given by components (3, n)."""
+    def distance_rate(self, position: Array, direction: Array) -> tuple[Array, Array]:
+        """Return `distance` (n,) of points, and its rate (n,) along vectors, both given by
+        components (3, n).
+        """
         a = self.taper
-        x, y, z = at
+        x, y, z = position
         rho = np.hypot(x, y)
         level = math.cos(a) / np.maximum(rho, 1e-300)
-        away = (rho - self.radius) * math.cos(a) + z * math.sin(a)
-        return away, x * level * way[0] + y * level * way[1] + math.sin(a) * way[2]
+        height = (rho - self.radius) * math.cos(a) + z * math.sin(a)
+        return height, x * level * direction[0] + y * level * direction[1] + math.sin(
+            a
+        ) * direction[2]
 
     @property
     def slant(self) -> float:
@@ -93,18 +106,20 @@ class Developable:
         """Angle (rad) of the sector that a whole turn becomes on the plane; 0 for a cylinder, whose turn is a length."""
         return TURN * math.sin(self.taper)
 
-    def around(self, points: Array) -> Array:
-        """Azimuth (...,) rad of points (..., 3), in (-pi, pi]."""
+    def azimuth(self, points: Array) -> Array:
+        """Return the azimuth (...,) rad of points (..., 3), in (-pi, pi]."""
         x, y = columns(points[..., :2])
         azimuth: Array = np.arctan2(y, x)
         return azimuth
 
-    def flat(self, points: Array, middle: float = 0.0) -> Array:
-        """Points (..., 3) of the surface laid flat, (..., 2) mm; it is cut open half a turn from the azimuth `middle`."""
-        theta = np.remainder(self.around(points) - middle + math.pi, TURN) - math.pi
-        return self.flat_at(theta, points[..., 2])
+    def unroll(self, points: Array, middle: float = 0.0) -> Array:
+        """Unroll points (..., 3) of the surface to (..., 2) mm; the cut is half a turn from the
+        azimuth `middle`.
+        """
+        theta = np.remainder(self.azimuth(points) - middle + math.pi, TURN) - math.pi
+        return self.unroll_at(theta, points[..., 2])
 
-    def flat_at(self, theta: Array, z: Array) -> Array:
+    def unroll_at(self, theta: Array, z: Array) -> Array:
         """The same from azimuths past the cutting line's middle, which need not be within one turn, and heights."""
         if self.is_cylinder:
             return np.stack([self.radius * theta, z], axis=-1)
@@ -114,22 +129,22 @@ class Developable:
             [s * np.sin(phi), z / math.cos(a) + 2.0 * s * np.sin(0.5 * phi) ** 2], axis=-1
         )
 
-    def unrolled(self, flat: Array) -> tuple[Array, Array]:
-        """Azimuth past `middle` and height z, (...,), of points laid flat (..., 2)."""
+    def from_unrolled(self, flat: Array) -> tuple[Array, Array]:
+        """Return the azimuth past `middle` and the height z, (...,), of unrolled points (..., 2)."""
         x, y = columns(flat)
         if self.is_cylinder:
             return x / self.radius, y.copy()
         a = self.taper
-        rest = self.slant - y
-        s = np.hypot(x, rest)
+        to_apex = self.slant - y
+        s = np.hypot(x, to_apex)
         lower = ((2.0 * self.slant - y) * y - x * x) / (
             self.slant + s
         )  # s0 - s without cancellation
-        return np.arctan2(x, rest) / math.sin(a), lower * math.cos(a)
+        return np.arctan2(x, to_apex) / math.sin(a), lower * math.cos(a)
 
     def wrap(self, flat: Array, middle: float = 0.0) -> Array:
-        """Points (..., 3) of the surface that lie at (..., 2) when laid flat: the inverse of `flat`."""
-        theta, z = self.unrolled(flat)
+        """Return the points (..., 3) of the surface at unrolled (..., 2): the inverse of `unroll`."""
+        theta, z = self.from_unrolled(flat)
         rho = self.radius if self.is_cylinder else (self.height - z) * math.tan(self.taper)
         angle = theta + middle
         return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=-1)

@@ -10,37 +10,43 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..issues import InputError
-from .located import located
+from .located import locate
 
 MB = 1_000_000
 
 
-def content(path: str | Path, largest: int, code: str, where: str) -> bytes:
-    """All bytes of a file. `largest`: MB of what is read. InputError `code` at `where` for devices, pipes and folders, which
-    could be read without end, and for larger files; OSError and ValueError where it cannot be opened."""
-    return b"".join(_pieces(path, largest, code, where))
+def read_content(path: str | Path, largest: int, code: str, where: str) -> bytes:
+    """Return all bytes of a file.
+
+    largest: maximum size, MB. Raises InputError `code` at `where` for larger files and for
+    devices, pipes and folders, which could be read without end; OSError and ValueError if the
+    file cannot be opened.
+    """
+    return b"".join(_read_blocks(path, largest, code, where))
 
 
 def digest(path: str | Path, largest: int, code: str, where: str) -> str:
-    """SHA-256 of all bytes of a file, in hexadecimal, without having them all at once. Arguments and errors as `content`."""
-    found = hashlib.sha256()
-    for piece in _pieces(path, largest, code, where):
-        found.update(piece)
-    return found.hexdigest()
+    """Return the SHA-256 of a file, in hexadecimal, without holding all its bytes. Arguments and
+    errors as `content`.
+    """
+    checksum = hashlib.sha256()
+    for block in _read_blocks(path, largest, code, where):
+        checksum.update(block)
+    return checksum.hexdigest()
 
 
-def _pieces(path: str | Path, largest: int, code: str, where: str) -> Iterator[bytes]:
+def _read_blocks(path: str | Path, largest: int, code: str, where: str) -> Iterator[bytes]:
     waits_not = getattr(os, "O_NONBLOCK", 0)  # as for a pipe
-    descriptor = os.open(located(path), os.O_RDONLY | waits_not | getattr(os, "O_BINARY", 0))
+    descriptor = os.open(locate(path), os.O_RDONLY | waits_not | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as stream:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
             raise InputError(
                 code, where, "this is not a file but a device, a pipe or a folder; name a file"
             )
-        size = status.st_size  # of files of the kernel 0, whatever is in them
-        while size <= largest * MB and (piece := stream.read(MB)):
-            yield piece
+        size = status.st_size  # 0 for files of the kernel, whatever their content
+        while size <= largest * MB and (block := stream.read(MB)):
+            yield block
             size = max(size, stream.tell())
     if size > largest * MB:
         raise InputError(

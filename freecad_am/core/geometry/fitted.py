@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a toolpath keeps of what it was held against: a scan that its layers were fitted to, and the part that its predicted
-deposit is to hold."""
+"""Records on a toolpath: a scan that its layers were fitted to, and the comparison of its
+predicted deposit with the part.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +14,16 @@ REMAINS = "SCAN_REMAINS"  # that the last layer is still off the plan
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """file: name of the scan. points: how many of its points were used, left_out: how many face another way than the
-    layers grow. layer: number of the first layer that was fitted; layers: over how many, from that one, the deposit is led
-    back to the plan. places: (m, 3) mm in part coordinates, all over that layer as it was planned; off: (m,) mm along the
-    build direction from there to the scan. laid: (k, 3) mm, places of that layer as it is laid now, between points too;
-    left: (k,) mm from there to the scan. slope: the most that the scan rises along beads against the plan, per mm. remains:
-    mm that the last layer is still off the plan. motion: (4, 4) from where the scan was measured to the part.
+    """The fit of layers to a scan.
+
+    file: name of the scan. points: number of its points used. left_out: number that face
+    another way than the layers grow. layer: number of the first fitted layer. layers: number
+    of layers, from that one, over which the deposit returns to the plan. places: (m, 3) mm in
+    part coordinates, spread over that layer as planned; off: (m,) mm along the build
+    direction from there to the scan. laid: (k, 3) mm, positions on that layer as deposited
+    now, between points too; left: (k,) mm from there to the scan. slope: maximum rise of the
+    scan along beads against the plan, per mm. remains: mm that the last layer is still off
+    the plan. motion: (4, 4) from the scan's coordinates to the part.
     """
 
     file: str
@@ -37,11 +42,15 @@ class Fitted:
 
 @dataclass(frozen=True, eq=False)
 class DeviationMap:
-    """places: (k, 3) mm on the faces of a part, spread over them. normals: (k, 3) out of it. beyond: (k,) mm that the
-    deposit reaches beyond the faces there. worst: (w, 3) layer, bead and point nearest to each of the first w places, which
-    are those with the least, the least one first. edges: (n + 1,) mm of ranges of what it reaches; shares: (n,) of the
-    faces' area in each, of all places that were looked at. layers: (layers, 2) least and mean mm of all places nearest to
-    each layer, NaN where there are none."""
+    """The deviation of the predicted deposit from the faces of a part.
+
+    places: (k, 3) mm, spread over the faces. normals: (k, 3) outward. beyond: (k,) mm that
+    the deposit reaches beyond the faces there. worst: (w, 3) layer, bead and point nearest to
+    each of the first w places, which are the smallest, in rising order. edges: (n + 1,) mm of
+    ranges of `beyond`; shares: (n,) of the faces' area in each, over all examined places.
+    layers: (layers, 2) smallest and mean mm of the places nearest to each layer, NaN without
+    places.
+    """
 
     places: Array
     normals: Array
@@ -54,13 +63,18 @@ class DeviationMap:
 
 @dataclass(frozen=True, eq=False)
 class PredictedShape:
-    """fed, laid: mm3 that the wire feeds, and that the predicted deposit holds. edge: mm of the cubes that it is told in.
-    drift: (layers,) mm by which the surface of each layer ends above where the next one should begin, NaN where it has no
-    beads. allowance: mm asked for on all faces. places: how many of the faces were looked at. least, mean, most: mm that the
-    deposit reaches beyond the faces there, along their normals, less than 0 where the part sticks out of it. short: share of
-    the faces with less than the allowance; outside: share that sticks out. bare: share with no deposit within `reach` mm.
-    worst: (3,) mm, the place with the least; layer, bead, point: what of the path is nearest to it. deviation: what of it is
-    drawn, None of what was predicted before that was kept."""
+    """Figures of the predicted deposit.
+
+    fed, laid: mm3 that the wire feeds, and that the predicted deposit holds. edge: mm of the
+    cubes of the prediction. drift: (layers,) mm by which the surface of each layer ends above
+    where the next one should begin, NaN without beads. allowance: mm required on all faces.
+    places: number of examined positions on the faces. least, mean, most: mm that the deposit
+    reaches beyond the faces there, along their normals, negative where the part sticks out.
+    short: share of the faces with less than the allowance; outside: share that sticks out.
+    bare: share without deposit within `reach` mm. worst: (3,) mm, the position with the
+    smallest value; layer, bead, point: the path point nearest to it. deviation: the map to
+    draw, None in predictions made before it was stored.
+    """
 
     fed: float
     laid: float

@@ -12,14 +12,15 @@ def place(point: Iterable[float]) -> str:
     return "(" + ", ".join(f"{round(float(number), 3) + 0.0:g}" for number in point) + ")"
 
 
-def deviation(distance: float) -> str:
-    """How far something is off at most, a distance in mm as text; a thousandth where it is less, than which nobody measures
-    finer."""
+def format_deviation(distance: float) -> str:
+    """Format a maximum deviation in mm; at least a thousandth, below the resolution of
+    measurements.
+    """
     return f"{max(distance, 1e-3):.2g}"
 
 
-def differing(value: float, reference: float, digits: int = 6) -> str:
-    """A number as text, with so many digits that it is not the text of the reference, from which it differs."""
+def format_differing(value: float, reference: float, digits: int = 6) -> str:
+    """Format a number with enough digits that its text differs from the text of the reference."""
     return next(
         (
             text

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Rotations and poses as arrays: (..., 3, 3) rotations, (..., 4, 4) poses, mm and rad.
 
-A pose takes coordinates of its own frame to those of the frame it is given in. Leading dimensions
-are free everywhere, so that one call serves one pose and a hundred thousand.
+A pose maps coordinates of its own frame to coordinates of its parent frame. Leading
+dimensions are free everywhere, so one call serves one pose and a hundred thousand.
 """
 
 from __future__ import annotations
@@ -30,15 +30,18 @@ def inverse(poses: ArrayLike) -> Array:
     return pose(turned, -(turned @ poses[..., :3, 3:])[..., 0])
 
 
-def at(poses: Array, point: Array) -> Array:
-    """(k, 3) where a point (3,) of poses (k, 4, 4) is: in one product over the rows of all, in a third of the time of k of
-    them, and so another in the last digit."""
+def transform_point(poses: Array, point: Array) -> Array:
+    """Return the positions (k, 3) of a point (3,) in poses (k, 4, 4).
+
+    One product over the rows of all poses takes a third of the time of k products, and so may
+    differ in the last digit.
+    """
     rows = np.ascontiguousarray(poses).reshape(-1, 4)
     return np.asarray((rows @ np.append(point, 1.0)).reshape(-1, 4)[:, :3])
 
 
-def turned(poses: Array, vector: Array) -> Array:
-    """(k, 3) a vector (3,) of poses (k, 4, 4), as `at` has points."""
+def rotate_vector(poses: Array, vector: Array) -> Array:
+    """Return a vector (3,) rotated by poses (k, 4, 4), computed as in `transform_point`."""
     rows = np.ascontiguousarray(poses).reshape(-1, 4)
     return np.asarray((rows @ np.append(vector, 0.0)).reshape(-1, 4)[:, :3])
 
@@ -87,24 +90,25 @@ def bryant(six: ArrayLike) -> Array:
 
 
 def to_bryant(rotation: ArrayLike) -> Array:
-    """RX RY RZ (..., 3) of rotations (..., 3, 3): RX and RZ in [-pi, pi], RY in [-pi/2, pi/2].
+    """Return RX RY RZ (..., 3) of rotations (..., 3, 3): RX and RZ in [-pi, pi], RY in [-pi/2,
+    pi/2].
 
-    Where RY is a right angle RX and RZ are not unique (gimbal lock); RX is 0 there, and near it RZ
-    is taken with the RX found, so that the three always give the rotation back.
+    Where RY is a right angle RX and RZ are not unique (gimbal lock); RX is 0 there. Near it
+    RZ is computed with the RX obtained, so that the three always reproduce the rotation.
     """
     entries = np.moveaxis(np.asarray(rotation, float), (-2, -1), (0, 1))
-    # each entry in one piece, see `columns`
+    # each entry contiguous, see `columns`
     rotation = np.moveaxis(np.array(entries, order="C"), (0, 1), (-2, -1))
-    first = np.arctan2(-rotation[..., 1, 2], rotation[..., 2, 2])
+    rx = np.arctan2(-rotation[..., 1, 2], rotation[..., 2, 2])
     locked = np.hypot(rotation[..., 1, 2], rotation[..., 2, 2]) < 1e-12
-    first = np.where(locked, 0.0, first)
+    rx = np.where(locked, 0.0, rx)
     second = np.arctan2(rotation[..., 0, 2], np.hypot(rotation[..., 1, 2], rotation[..., 2, 2]))
-    sine, cosine = np.sin(first), np.cos(first)
+    sine, cosine = np.sin(rx), np.cos(rx)
     third = np.arctan2(
         cosine * rotation[..., 1, 0] + sine * rotation[..., 2, 0],
         cosine * rotation[..., 1, 1] + sine * rotation[..., 2, 1],
     )
-    return np.stack((first, second, third), axis=-1)
+    return np.stack((rx, second, third), axis=-1)
 
 
 def from_rpy(origin: ArrayLike, rpy: ArrayLike) -> Array:
@@ -127,7 +131,7 @@ def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
     bisector = bisector / np.where(length > 1e-14, length, 1.0)
     if opposite.any():
         bisector[opposite] = _normal_to(start[opposite])
-    # of nearly opposite vectors the sum has lost the digits of what it has along them, which is half its length
+    # the sum of nearly opposite vectors has lost the digits of its component along them, which is half its length
     along = (bisector * start).sum(axis=-1, keepdims=True)
     bisector = bisector + (0.5 * length - along) * start
     bisector /= np.linalg.norm(bisector, axis=-1, keepdims=True)
@@ -135,9 +139,11 @@ def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
 
 
 def _normal_to(vectors: Array) -> Array:
-    """Unit vectors normal to the unit vectors (..., 3): the coordinate axis least along each, made normal to it."""
-    least = np.eye(3)[np.argmin(np.abs(vectors), axis=-1)]
-    normal = np.cross(vectors, least)
+    """Return unit vectors normal to unit vectors (..., 3): the coordinate axis least along each,
+    made normal to it.
+    """
+    smallest_axis = np.eye(3)[np.argmin(np.abs(vectors), axis=-1)]
+    normal = np.cross(vectors, smallest_axis)
     result: Array = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
     return result
 

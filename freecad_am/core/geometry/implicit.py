@@ -58,7 +58,7 @@ class Round:
 
 @dataclass(frozen=True, eq=False)
 class HalfSpace:
-    """What lies below the plane through `origin` with the normal `normal`."""
+    """The half space below the plane through `origin` with the normal `normal`."""
 
     origin: Array
     normal: Array

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the files of a job are: where it says, or, of a job that has travelled to another machine, in a folder of copies.
+"""Paths of the files of a job: the stated path or, for a job moved to another machine, a
+folder of copies.
 
-Whoever opens a file of a job, or looks whether it is there, asks here; what is stored and told are the names as the job has
-them, so that a job comes to the same wherever it is planned.
+All code that opens a file of a job, or checks that it exists, asks here. Stored and
+reported names are those of the job, so planning gives the same result on every machine.
 """
 
 from __future__ import annotations
@@ -13,13 +14,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 _copies: str = ""  # the folder of copies, absolute; empty where a job is at home
-_own: tuple[str, ...] = ()  # folders of this machine all the same
+_own: tuple[str, ...] = ()  # folders of this machine nevertheless
 _home: str = ""  # of the user whose job it is
 _asked: set[str] | None = None
 
 
-def located(path: str | os.PathLike[str]) -> Path:
-    """The place where the file of this name is on this machine, whether or not it is there."""
+def locate(path: str | os.PathLike[str]) -> Path:
+    """Return the path of the file of this name on this machine, whether or not it exists."""
     name = (
         os.path.abspath(os.path.expanduser(os.fspath(path)))
         if _copies or _asked is not None
@@ -35,8 +36,8 @@ def located(path: str | os.PathLike[str]) -> Path:
 
 
 def is_there(path: str | os.PathLike[str]) -> bool:
-    """Whether there is a file of this name."""
-    return os.path.isfile(located(path))
+    """Return whether a file of this name exists."""
+    return os.path.isfile(locate(path))
 
 
 def expanded(name: str) -> str:
@@ -48,19 +49,24 @@ def expanded(name: str) -> str:
     )
 
 
-def travelled(copies: str, own: tuple[str, ...], home: str) -> None:
-    """From now on, files are in the folder `copies`, below their absolute names; those in the folders `own` are where they
-    say. home: of the user whose job it is. All are absolute."""
+def use_copies(copies: str, local_folders: tuple[str, ...], home: str) -> None:
+    """From now on, look for files in the folder `copies`, below their absolute names.
+
+    Files in the folders `local_folders` keep their paths. home: home folder of the user whose
+    job it is. All are absolute.
+    """
     global _copies, _own, _home
-    _copies, _own, _home = copies, own, home
+    _copies, _own, _home = copies, local_folders, home
 
 
 @contextlib.contextmanager
-def recorded() -> Iterator[set[str]]:
-    """Collects the absolute names of the files that are asked for meanwhile, there or not."""
+def record_names() -> Iterator[set[str]]:
+    """Collect the absolute names of the files that are requested meanwhile, whether or not they
+    exist.
+    """
     global _asked
-    before, _asked = _asked, set()
+    previous, _asked = _asked, set()
     try:
         yield _asked
     finally:
-        _asked = before
+        _asked = previous

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What stands around a wall while it is deposited: the part it grows on, fixtures, as triangles."""
+"""Bodies around a wall while it is deposited: the part it grows on, and fixtures, as
+triangles.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +31,8 @@ class Body:
         corners: Array = self.vertices[self.triangles]
         return corners
 
-    def moved(self, pose: Array) -> Body:
-        """The body moved by a pose (4, 4), mm."""
+    def move(self, pose: Array) -> Body:
+        """Return the body moved by a pose (4, 4), mm."""
         return Body(self.name, self.vertices @ pose[:3, :3].T + pose[:3, 3], self.triangles)
 
 
@@ -42,7 +44,7 @@ def box(size: tuple[float, float, float], pose: Array, name: str) -> Body:
     faces = np.array(
         [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     )
-    return Body(name, corners, np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])).moved(
+    return Body(name, corners, np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])).move(
         pose
     )
 
@@ -61,8 +63,8 @@ def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
     )
 
 
-def enclosed(around: Sequence[Body]) -> tuple[float, Array]:
-    """The volume of all closed bodies, mm3, and where its middle (3,) is."""
+def enclosed_volume(around: Sequence[Body]) -> tuple[float, Array]:
+    """Return the total volume of all closed bodies, mm3, and its centroid (3,)."""
     volume, weighted = 0.0, np.zeros(3)
     for body in around:
         edges = np.concatenate(
@@ -72,7 +74,11 @@ def enclosed(around: Sequence[Body]) -> tuple[float, Array]:
         if not np.array_equal(np.sort(edges @ (count, 1)), np.sort(edges @ (1, count))):
             continue
         corners = body.corners()
-        parts = np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
-        volume += abs(float(parts.sum()))
-        weighted += np.sign(parts.sum()) * (parts[:, None] * corners.sum(axis=1) / 4.0).sum(axis=0)
+        tetrahedra = (
+            np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+        )
+        volume += abs(float(tetrahedra.sum()))
+        weighted += np.sign(tetrahedra.sum()) * (
+            tetrahedra[:, None] * corners.sum(axis=1) / 4.0
+        ).sum(axis=0)
     return volume, weighted / volume if volume > 0.0 else weighted

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids that stand on cylinders and cones of a hub, as triangles, grouped by the surface they stand on."""
+"""Solids on cylinders and cones of a hub, as triangles, grouped by the surface on which they
+start.
+"""
 
 from __future__ import annotations
 
@@ -33,19 +35,19 @@ class Base:
         local: Array = (points - self.frame[:3, 3]) @ self.frame[:3, :3]
         return local
 
-    def placed(self, points: Array) -> Array:
-        """Points (..., 3) of the base's frame in the part."""
-        part: Array = points @ self.frame[:3, :3].T + self.frame[:3, 3]
-        return part
+    def to_part(self, points: Array) -> Array:
+        """Return points (..., 3) of the base's frame in part coordinates."""
+        in_part: Array = points @ self.frame[:3, :3].T + self.frame[:3, 3]
+        return in_part
 
-    def turned(self, vectors: Array) -> Array:
-        """Vectors (..., 3) of the base's frame in the part."""
-        part: Array = vectors @ self.frame[:3, :3].T
-        return part
+    def rotate_to_part(self, vectors: Array) -> Array:
+        """Return vectors (..., 3) of the base's frame in part coordinates."""
+        in_part: Array = vectors @ self.frame[:3, :3].T
+        return in_part
 
     def where(self, point: Array) -> str:
         """A point (3,) of the base's frame in the part, as text."""
-        return place(self.placed(point[None])[0])
+        return place(self.to_part(point[None])[0])
 
 
 class Stretch(NamedTuple):
@@ -74,7 +76,10 @@ class Stretch(NamedTuple):
 
 
 class Seat(NamedTuple):
-    """A base and where its faces are. chosen: by the user, who may mean the rest of the turn too where there is no face."""
+    """A base and the positions of its faces.
+
+    chosen: by the user, who may also mean the rest of the turn, where there is no face.
+    """
 
     base: Base
     faces: tuple[Stretch, ...]
@@ -83,8 +88,11 @@ class Seat(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Solids on one base, in the order of their azimuths. start: triangles (k, 3, 3) of the faces, in part coordinates, that
-    curved layers start on; None: where the solids stand."""
+    """Solids on one base, in the order of their azimuths.
+
+    start: triangles (k, 3, 3), in part coordinates, of the faces on which curved layers
+    start; None: the faces on the base.
+    """
 
     base: Base
     bodies: tuple[Body, ...]
@@ -93,8 +101,11 @@ class Group:
 
 @dataclass(frozen=True)
 class OwnHub:
-    """A hub that belongs to the part: volume of the whole part and of the hub, mm3; apart: name and mm3 of the solid that it
-    is, where it is one of its own."""
+    """A hub that belongs to the part.
+
+    volume, hub: mm3 of the whole part and of the hub. apart: name and mm3 of the hub's solid,
+    if it is a separate solid.
+    """
 
     volume: float
     hub: float
@@ -103,8 +114,11 @@ class OwnHub:
 
 @dataclass(frozen=True)
 class SolidsOnHub:
-    """What is to be deposited, group by group. surroundings: hub and fixtures. chord_error: mm within which the triangles
-    stand for the solids. own: the hub, where it is of the part and not deposited."""
+    """The solids to deposit, group by group.
+
+    surroundings: hub and fixtures. chord_error: mm between the triangles and the solids. own:
+    the hub, if it belongs to the part and is not deposited.
+    """
 
     label: str
     groups: tuple[Group, ...]
@@ -113,17 +127,22 @@ class SolidsOnHub:
     issues: tuple[Issue, ...] = ()
     own: OwnHub | None = None
 
-    def on_planes(self) -> bool:
-        """Whether layers are planes, one above the other, so that nothing deposited before stands above a layer."""
+    def has_plane_layers(self) -> bool:
+        """Return whether layers are planes, one above the other, so that no earlier deposit is above
+        a layer.
+        """
         return not any(isinstance(group.base.surface, Developable) for group in self.groups)
 
     @property
     def frame(self) -> Array:
-        """The frame of the feature (interface.md, mount): Z the axis of the first base, upwards in the part; origin where
-        the lowest end of the solids is; X the part's X seen along Z. Of planes Z is the stacking direction, wherever it
-        points."""
+        """The frame of the feature (interface.md, mount).
+
+        Z is the axis of the first base, upwards in the part; the origin is at the lowest end of
+        the solids; X is the part's X seen along Z. For planes Z is the stacking direction,
+        wherever it points.
+        """
         base = self.groups[0].base
-        if self.on_planes():
+        if self.has_plane_layers():
             return base.frame
         z = base.frame[:3, 2]
         z = -z if downwards(z) else z
@@ -133,8 +152,9 @@ class SolidsOnHub:
 
 
 def middle_azimuth(base: Base, points: Array) -> float:
-    """Azimuth (rad, from 0 to a turn) of the middle of the sector that points (n, 3) of the part lie in: opposite to their
-    widest gap."""
+    """Return the azimuth (rad, from 0 to a turn) of the middle of the sector of points (n, 3) of
+    the part, opposite their widest gap.
+    """
     local = base.inside(points)
     start, span = sector(np.arctan2(local[:, 1], local[:, 0]))
     middle = float(np.remainder(start + 0.5 * span, TURN))

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The plane that parts stand on, and its parallels: with what is asked of cylinders and cones too (`developable`)."""
+"""The platform plane and its parallels, with the interface of cylinders and cones
+(`developable`).
+"""
 
 from __future__ import annotations
 
@@ -19,14 +21,14 @@ class Plane:
         return Plane(self.height + distance)
 
     def distance(self, points: Array) -> Array:
-        """How far (...,) mm points (..., 3) are above it; negative below."""
+        """Return how far (...,) mm points (..., 3) are above the plane; negative below."""
         above: Array = points[..., 2] - self.height
         return above
 
     def bend(self, distance: float, extent: float) -> float:
-        """The radius, mm, that beads of a part of an extent, mm, are about bent by."""
+        """Return the approximate bend radius, mm, of beads of a part of an extent, mm."""
         return extent
 
-    def flat(self, points: Array, middle: float = 0.0) -> Array:
-        """Points (..., 3) seen from above, (..., 2) mm, whatever `middle`."""
+    def unroll(self, points: Array, middle: float = 0.0) -> Array:
+        """Return points (..., 3) seen from above, (..., 2) mm, whatever `middle`."""
         return points[..., :2].copy()

@@ -10,12 +10,15 @@ from ..types import Array
 _ROUNDS = 64  # of an iteration that halves its error and more each time
 
 
-def spread(count: int, dimensions: int) -> Array:
-    """(count, dimensions) places from 0 to 1. They step on by powers of the root of x^(dimensions + 1) = x + 1 (Roberts
-    2018); the first of them alone are as evenly spread as all."""
+def spread_points(count: int, dimensions: int) -> Array:
+    """Return points (count, dimensions) from 0 to 1, spread evenly.
+
+    They step by powers of the root of x^(dimensions + 1) = x + 1 (Roberts 2018); any first
+    points are as evenly spread as all.
+    """
     root = 1.0
     for _ in range(_ROUNDS):
         root = (1.0 + root) ** (1.0 / (dimensions + 1))
     steps = root ** -np.arange(1.0, dimensions + 1.0)
-    found: Array = np.mod(0.5 + np.arange(count)[:, None] * steps, 1.0)
-    return found
+    points: Array = np.mod(0.5 + np.arange(count)[:, None] * steps, 1.0)
+    return points

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Into how many parts a length is cut.
+"""The number of parts into which a length is cut.
 
-Lengths that are the same but for their last bits, as two versions of a geometry kernel compute them, have the same number of
-parts: without a tolerance a side of five steps would have five or six.
+Lengths equal except for their last bits, as two versions of a geometry kernel compute
+them, have the same number of parts: without a tolerance a side of five steps would have
+five or six.
 """
 
 from __future__ import annotations
@@ -16,16 +17,18 @@ from ..types import Array, Index
 TOLERANCE = 1e-9  # of a part, and of the number of parts
 
 
-def step_count(length: float, step: float, least: int = 1) -> int:
-    """The number of equal parts, none longer than `step`, that a length is cut into; at least `least`."""
-    return max(least, round_up(length / step))
+def step_count(length: float, step: float, min_count: int = 1) -> int:
+    """Return the number of equal parts, none longer than `step`, of a length; at least
+    `min_count`.
+    """
+    return max(min_count, round_up(length / step))
 
 
-def step_counts(lengths: Array, steps: Array | float, least: int = 1) -> Index:
-    """The same for many lengths."""
-    parts = np.asarray(lengths, dtype=np.float64) / steps
-    counts = np.ceil(parts - TOLERANCE * np.maximum(np.abs(parts), 1.0))
-    return np.asarray(np.maximum(counts, least), dtype=np.intp)
+def step_counts(lengths: Array, steps: Array | float, min_count: int = 1) -> Index:
+    """Return the step counts of many lengths."""
+    ratio = np.asarray(lengths, dtype=np.float64) / steps
+    counts = np.ceil(ratio - TOLERANCE * np.maximum(np.abs(ratio), 1.0))
+    return np.asarray(np.maximum(counts, min_count), dtype=np.intp)
 
 
 def round_up(number: float) -> int:

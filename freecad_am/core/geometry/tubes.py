@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads as bodies to be looked at: tubes of their width and height along polylines, standing on the points.
+"""Beads as bodies for display: tubes of their width and height along polylines, above the
+points.
 
-The section is a rounded rectangle of exactly the width and the height. Corners are mitred, ends closed.
+The section is a rounded rectangle of exactly the width and the height. Corners are
+mitred, ends closed.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ TURN = np.radians(
     20.0
 )  # a section is kept wherever the course has turned by this since the last one
 _SHARPEST = 0.5  # of the cosine of half a turn: mitres grow no longer than twice the width
-# corners of half the section, by the number of sides; the first is beside
+# corners of half the section, by the number of sides; the first is at the side
 SECTIONS = {
     4: ((1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)),
     6: ((1.0, 0.0), (0.62, 1.0), (-0.62, 1.0), (-1.0, 0.0), (-0.62, -1.0), (0.62, -1.0)),
@@ -52,32 +54,42 @@ class Mesh(NamedTuple):
 
 
 def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
-    """The frames of beads one after the other.
+    """Return the frames of consecutive beads.
 
-    points, build: (n, 3). starts: (m + 1,) first row of each bead, and n. closed: (m,), whether the last point is the first.
-    turn: (n,) rad by which the course turns at the point.
+    points, build: (n, 3). starts: (m + 1,) first row of each bead, and n. closed: (m,),
+    whether the last point is the first. The turns (n,) rad are those of the course at each
+    point.
     """
     step = np.diff(points, axis=0)
     length = np.linalg.norm(step, axis=1, keepdims=True)
     step = np.divide(step, length, out=np.zeros_like(step), where=length > 0.0)
-    first, last = starts[:-1], starts[1:] - 1
-    after, before = np.concatenate([step, step[-1:]]), np.concatenate([step[:1], step])
-    after[last], before[first] = before[last], after[first]
+    start_rows, end_rows = starts[:-1], starts[1:] - 1
+    direction_after, direction_before = (
+        np.concatenate([step, step[-1:]]),
+        np.concatenate([step[:1], step]),
+    )
+    direction_after[end_rows], direction_before[start_rows] = (
+        direction_before[end_rows],
+        direction_after[start_rows],
+    )
     round_ = np.flatnonzero(closed)
-    after[last[round_]], before[first[round_]] = after[first[round_]], before[last[round_]]
-    along = before + after
+    direction_after[end_rows[round_]], direction_before[start_rows[round_]] = (
+        direction_after[start_rows[round_]],
+        direction_before[end_rows[round_]],
+    )
+    along = direction_before + direction_after
     cosine = np.linalg.norm(along, axis=1)
-    along = np.where(
-        cosine[:, None] > 1e-6, along, before
-    )  # the course goes back where it came from
+    along = np.where(cosine[:, None] > 1e-6, along, direction_before)  # the course reverses
     side = unit(np.cross(build, along))
     up = unit(np.cross(along, side))
-    turn = np.arccos(np.clip(np.einsum("ij,ij->i", before, after), -1.0, 1.0))
+    turn = np.arccos(np.clip(np.einsum("ij,ij->i", direction_before, direction_after), -1.0, 1.0))
     return Frames(side, up, 1.0 / np.maximum(0.5 * cosine, _SHARPEST), turn)
 
 
-def kept(turn: Array, starts: Index, stride: int) -> Mask:
-    """(n,) which points get a section: each `stride`-th, the ends of beads, and more where the course turns."""
+def select_sections(turn: Array, starts: Index, stride: int) -> Mask:
+    """Return which points (n,) get a section: each `stride`-th, the ends of beads, and more
+    where the course turns.
+    """
     keep: Mask = np.arange(len(turn)) % stride == 0
     turned = np.floor(np.cumsum(turn) / TURN)
     keep[1:] |= np.diff(turned) > 0.0
@@ -88,9 +100,10 @@ def kept(turn: Array, starts: Index, stride: int) -> Mask:
 def mesh(
     points: Array, across: Frames, width: Array, height: Array, ends: Mask, sides: int
 ) -> Mesh:
-    """Tubes through points (k, 3), which are in the middle of their foot.
+    """Return tubes through points (k, 3), which are the middles of their feet.
 
-    across: of these points. width, height: (k,) mm. ends: (k,) True at the last point of a tube. sides: a key of SECTIONS.
+    across: frames at these points. width, height: (k,) mm. ends: (k,) True at the last point
+    of a tube. sides: a key of SECTIONS.
     """
     section = np.array(SECTIONS[sides])
     half_width, half_height = 0.5 * width * across.mitre, 0.5 * height
@@ -108,17 +121,19 @@ def mesh(
 
 
 def _triangles(ends: Mask, sides: int) -> NDArray[np.int32]:
-    """Seen from outside, counterclockwise where `side`, `up` and the course are right-handed."""
+    """Return the triangles, counter-clockwise seen from outside if `side`, `up` and the course
+    are right-handed.
+    """
     number, turn = np.arange(sides), np.roll(np.arange(sides), -1)
     rows = np.flatnonzero(~ends[:-1])[:, None] * sides
     low, next_low = rows + number, rows + turn
     skin = np.stack(
         [low, next_low, next_low + sides, low, next_low + sides, low + sides], axis=-1
     ).reshape(-1, 3)
-    last = np.flatnonzero(ends)
-    first = np.concatenate([[0], last[:-1] + 1])
+    end_rows = np.flatnonzero(ends)
+    start_rows = np.concatenate([[0], end_rows[:-1] + 1])
     fan = np.stack([np.zeros(sides - 2, dtype=np.intp), number[1:-1], number[2:]], axis=-1)
-    front = (first[:, None, None] * sides + fan[:, ::-1]).reshape(-1, 3)
-    back = (last[:, None, None] * sides + fan).reshape(-1, 3)
+    front = (start_rows[:, None, None] * sides + fan[:, ::-1]).reshape(-1, 3)
+    back = (end_rows[:, None, None] * sides + fan).reshape(-1, 3)
     triangles: NDArray[np.int32] = np.concatenate([skin, front, back]).astype(np.int32)
     return triangles

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..geometry.file_content import content
+from ..geometry.file_content import read_content
 from ..issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ..parameters.inspection import AUTO, UNITS
 from ..types import Array
@@ -63,7 +63,7 @@ def read(path: str | Path, unit: str = AUTO) -> Measured:
             known,
         )
     try:
-        data = content(file, LARGEST, "BAD_FILE", file.name)
+        data = read_content(file, LARGEST, "BAD_FILE", file.name)
     except (OSError, ValueError) as error:
         why = (getattr(error, "strerror", None) or str(error)).lower()
         raise InputError(

@@ -143,7 +143,7 @@ class Cell:
             return ()
         world = self.world(np.zeros((1, self.machine.chain.axes)))[0]
         to_part = self.mount @ frames.inverse(self.station) @ world
-        return tuple(body.moved(to_part) for body in self.obstacles)
+        return tuple(body.move(to_part) for body in self.obstacles)
 
     def pose_frames(
         self, position: Array, tool: Array, external: Array | None = None

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..collision.inside import inside_of
-from ..geometry.cylinders import Cylinder, about
+from ..geometry.cylinders import Cylinder, enclosing_cylinder
 from ..geometry.obstacles import Body
 from ..issues import InputError, Text, Word
 from ..parameters.cell import NozzleParameters
@@ -47,7 +47,7 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
         raise InputError(
             CODE, WHERE, "it is open, so that nobody knows what is inside of it; give closed solids"
         )
-    found = body.moved(_TURNED)
+    found = body.move(_TURNED)
     corners = found.corners()
     away = float(np.sqrt(_from_origin(corners).min()))
     if away > FARTHEST:
@@ -97,7 +97,7 @@ class _Cut:
 
 
 def _about(piece: Piece) -> Cylinder:
-    return about(piece[0][np.unique(piece[1])])
+    return enclosing_cylinder(piece[0][np.unique(piece[1])])
 
 
 def _volume(cylinder: Cylinder) -> float:

@@ -69,7 +69,7 @@ def footprints(group: Group, chord_error: float) -> list[list[Array]]:
             for body in group.bodies
         ]
         return [
-            [base.placed(loop.points) for loop in cut(facets, 0.0, chord_error)] for facets in made
+            [base.to_part(loop.points) for loop in cut(facets, 0.0, chord_error)] for facets in made
         ]
     cuts = [
         AlongCuts(base, body)
@@ -78,6 +78,6 @@ def footprints(group: Group, chord_error: float) -> list[list[Array]]:
         for body in group.bodies
     ]
     return [
-        [base.placed(PlaneLayer(0.0).wrap(loop).points) for loop in next(one.loops([chord_error]))]
+        [base.to_part(PlaneLayer(0.0).wrap(loop).points) for loop in next(one.loops([chord_error]))]
         for one in cuts
     ]

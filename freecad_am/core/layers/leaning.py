@@ -44,7 +44,7 @@ def leaning(
     ways = base.frame[:3, 2]
     if isinstance(base.surface, Guide):
         middles = base.surface.distance(inside.mean(axis=1))
-        ways = base.turned(base.surface.at(middles)[1])
+        ways = base.rotate_to_part(base.surface.at(middles)[1])
     lean = np.arcsin(np.clip(-(normals * ways).sum(axis=1), -1.0, 1.0))
     out = np.flatnonzero(
         (lean > LEAST) & (areas > 0.0) & (heights.max(axis=1) > heights.min() + standing)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 
 from ..geometry.regions.region import Region, joined, mended, regions
-from ..geometry.regions.several import grown
+from ..geometry.regions.several import grow_regions
 from ..issues import Issue
 from ..parameters.filled import SolidParameters
 from ..types import Array
@@ -63,7 +63,7 @@ def regions_of(
     for distance, loops in lots:
         read = mended(loops)
         issues += read.issues(number)
-        whole = grown(read.regions, distance, ARCS * chord_error)
+        whole = grow_regions(read.regions, distance, ARCS * chord_error)
         borders += [border for region in whole for border in region.borders()]
     if margin > 0.0:
         whole = regions(borders)

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 
 from ..geometry.regions.region import Region
-from ..geometry.regions.several import common, grown, without
+from ..geometry.regions.several import grow_regions, intersect_regions, subtract_regions
 from ..issues import WARNING, Issue, Text
 from ..parameters.filled import SolidParameters
 from .surface import Slice
@@ -66,8 +66,8 @@ def _over(
         [region for region in regions if isinstance(region, Region)]
         for regions in (layer.regions, () if below is None else below.regions)
     )
-    carried = grown(under, reach, max(ARC * reach, chord_error))
-    return [part for part in without(here, carried) if part.area > least]
+    carried = grow_regions(under, reach, max(ARC * reach, chord_error))
+    return [part for part in subtract_regions(here, carried) if part.area > least]
 
 
 def under_and_over(neighbours: Sequence[Sequence[Region]]) -> tuple[Region, ...]:
@@ -77,7 +77,7 @@ def under_and_over(neighbours: Sequence[Sequence[Region]]) -> tuple[Region, ...]
         return ()
     found = tuple(neighbours[0])
     for others in neighbours[1:]:
-        found = common(found, others)
+        found = intersect_regions(found, others)
     return found
 
 

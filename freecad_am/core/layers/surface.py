@@ -91,12 +91,14 @@ class Slice(NamedTuple):
                 if turns:
                     found.append(
                         (
-                            np.vstack([region.period.moved(border, k) for k in (-turns, 0, turns)]),
+                            np.vstack(
+                                [region.period.move_turns(border, k) for k in (-turns, 0, turns)]
+                            ),
                             False,
                         )
                     )
                 else:
-                    found += [(region.period.moved(border, k), True) for k in (-1, 0, 1)]
+                    found += [(region.period.move_turns(border, k), True) for k in (-1, 0, 1)]
         return found
 
     def where(self, point: Array) -> str:

@@ -181,7 +181,7 @@ class CurvesParameters(LayerParameters):
     def __post_init__(self) -> None:
         f.check(self, "strategy")
         self.way()
-        if not gcode_roles.wanted(self.roles):
+        if not gcode_roles.split_entries(self.roles):
             raise InputError(
                 "BAD_VALUE",
                 "strategy.roles",

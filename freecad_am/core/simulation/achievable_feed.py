@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.ramps import below
+from ..geometry.ramps import limit_growth
 from ..motion import Motion
 from ..types import Array, ArrayLike, Index, Integers, Mask
 from .margins import speed_ratios
@@ -171,7 +171,7 @@ class _Way:
         """(m + 1,) the largest p^2 below a ceiling that rises and falls no steeper than it leaves room for."""
         # p^2 never exceeds 1
         total = np.concatenate([[0.0], np.cumsum(np.minimum(self.gain(ceiling)[0], 1.0))])
-        lower: Array = np.maximum(np.minimum(below(ceiling, total), ceiling), 0.0)
+        lower: Array = np.maximum(np.minimum(limit_growth(ceiling, total), ceiling), 0.0)
         return lower
 
     def gain(self, ceiling: Array) -> tuple[Array, Index]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry import frames
-from ..geometry.obstacles import enclosed
+from ..geometry.obstacles import enclosed_volume
 from ..issues import ERROR, Issue, Text, Word
 from ..kinematics.cell import Cell
 from ..kinematics.machines.machine import Machine
@@ -35,7 +35,7 @@ def issues(
     ):
         return []
     deposited = KG * process.density * np.nan_to_num(volumes(motion, process, toolpath))
-    bodies, centre = enclosed(toolpath.surroundings)
+    bodies, centre = enclosed_volume(toolpath.surroundings)
     bodies *= KG * process.density
     mass, issue_list = bodies + np.cumsum(deposited), []
     for machine in cell.carriers:
@@ -67,7 +67,7 @@ def issues(
 def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> float:
     """kg that the finished part weighs, what it grows on included as far as that is closed."""
     deposited = np.nan_to_num(volumes(motion, process, toolpath)).sum()
-    return float(KG * process.density * (deposited + enclosed(toolpath.surroundings)[0]))
+    return float(KG * process.density * (deposited + enclosed_volume(toolpath.surroundings)[0]))
 
 
 def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> list[Issue]:

@@ -61,7 +61,7 @@ def _outlining(curve: SpaceCurve, w: Array, ends: Index) -> Array:
         some = np.repeat(np.flatnonzero(asked), len(INSIDE))
         share = np.tile(INSIDE, int(asked.sum()))
         added = outline(points, tangents).at(some, share)[0]
-        foot, slope, _ = curve.at(curve.walked(added, w[some] + share * np.diff(w)[some]))
+        foot, slope, _ = curve.at(curve.descend(added, w[some] + share * np.diff(w)[some]))
         off = np.linalg.norm(np.cross(added - foot, slope), axis=1) / np.linalg.norm(slope, axis=1)
         bad = np.unique(some[off > WITHIN])
         if not len(bad):

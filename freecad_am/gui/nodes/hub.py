@@ -102,13 +102,13 @@ def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array
             float(base.surface.distance(base.inside(body.vertices)).max()) for body in group.bodies
         )
         way = np.linspace(0.0, length, SIDES + 1)
-        return points, corners, [*lines, base.placed(base.surface.at(way)[0])]
+        return points, corners, [*lines, base.to_part(base.surface.at(way)[0])]
     if isinstance(base.surface, Plane):
         return _plane(base, np.concatenate(contours or [body.vertices for body in group.bodies]))
     low, high = _reach(base, contours or [body.vertices for body in group.bodies])
     outside = base.surface.offset(OUTSIDE * base.surface.radius)
     turn = np.linspace(0.0, 2.0 * np.pi, SIDES + 1)
-    rings = [base.placed(_ring(outside, turn, z)) for z in (low, high)]
+    rings = [base.to_part(_ring(outside, turn, z)) for z in (low, high)]
     k = np.arange(SIDES)
     corners = np.concatenate(
         [
@@ -126,7 +126,7 @@ def _plane(base: Base, around: Array) -> tuple[Array, Array, list[Array]]:
     low, high = flat.min(axis=0), flat.max(axis=0)
     more = BEYOND * float((high - low).max())
     (x0, y0), (x1, y1) = low - more, high + more
-    corners = base.placed(np.array([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]]))
+    corners = base.to_part(np.array([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]]))
     return corners, np.array([[0, 1, 2], [0, 2, 3]]), [np.concatenate([corners, corners[:1]])]
 
 

@@ -132,7 +132,9 @@ class Rows:
     @cached_property
     def sections(self) -> Index:
         """The rows that get a section of a tube."""
-        return np.flatnonzero(tubes.kept(self.frames.turn, self.starts, -(-len(self) // SECTIONS)))
+        return np.flatnonzero(
+            tubes.select_sections(self.frames.turn, self.starts, -(-len(self) // SECTIONS))
+        )
 
     @property
     def sides(self) -> int:

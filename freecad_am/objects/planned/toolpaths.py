@@ -321,7 +321,7 @@ def _solids_cleared(
     """On a hub the machine turns them, so that no vertical bounds the tool axes."""
     from ...core.strategies.solids import plan as solids_plan
 
-    if not of.wall.on_planes():
+    if not of.wall.has_plane_layers():
         return _tilted_clear(
             toolpath, of, bodies, feature, solids_plan.without_axis_limits(of.build)
         )

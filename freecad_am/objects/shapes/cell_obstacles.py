@@ -17,7 +17,7 @@ from ...core.collision.nozzle import depositing
 from ...core.collision.scene import scene
 from ...core.geometry import frames
 from ...core.geometry.file_content import digest
-from ...core.geometry.located import is_there, located
+from ...core.geometry.located import is_there, locate
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.geometry.obstacles import Body, box
 from ...core.issues import InputError
@@ -64,7 +64,7 @@ def torch_of(settings: CellParameters) -> torch.Torch | None:
     if shape == NO_SHAPE:
         return None
     try:
-        return _torch(_read(located(shape)), settings.nozzle)
+        return _torch(_read(locate(shape)), settings.nozzle)
     except InputError as error:
         raise InputError(error.code, torch.WHERE, error.message) from None
 
@@ -82,10 +82,10 @@ def _body(one: Obstacle) -> Body:
     if one.size is not None:
         return box(one.size, pose, one.name)
     try:
-        found = _read(located(one.file))
+        found = _read(locate(one.file))
     except InputError as error:
         raise InputError(error.code, f"{WHERE} {one.name}", error.message) from None
-    return dataclasses.replace(found, name=one.name).moved(pose)
+    return dataclasses.replace(found, name=one.name).move(pose)
 
 
 def _read(file: Path) -> Body:

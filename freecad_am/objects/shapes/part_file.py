@@ -13,7 +13,7 @@ import Part
 from ...brep.files.apart import apart
 from ...brep.files.read import READABLE, mesh_content, placed_mesh, shape_content
 from ...core.geometry.curves.bead_curves import POINT_FILES
-from ...core.geometry.located import is_there, located
+from ...core.geometry.located import is_there, locate
 from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ...core.issues import NOTE, InputError, Issue, Text
 from ..work import hooks
@@ -79,7 +79,7 @@ def _of_document(path: str, object_name: str, stem: str) -> tuple[Any, str, tupl
             )  # open already: it is the user's, and stays open
     return _decoded(
         hooks.carry_out(
-            lambda: apart(_shape_of_file, str(located(path)), object_name), stem, READING
+            lambda: apart(_shape_of_file, str(locate(path)), object_name), stem, READING
         )
     )
 
@@ -93,7 +93,7 @@ def changed_part(
     about the change name. patience: how many times as long as reading a file this may take. The file stays as it is.
     InputError NO_ADD_ON besides.
     """
-    place = str(located(path))
+    place = str(locate(path))
     return _decoded(apart(_shape_of_file, place, object_name, change, where, patience=patience))
 
 

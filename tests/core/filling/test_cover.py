@@ -139,25 +139,25 @@ def test_a_strip_round_a_hub_is_covered(apex, pattern, angle):
         23.0 + 0.8 * np.cos(2.0 * np.pi * 2 * u / turn),
     )
     lower, upper = np.stack([u, low], axis=1), np.stack([u, high], axis=1)[::-1]
-    (strip,) = strips([(period.unroll(lower), 1), (period.unroll(upper), -1)], period)
+    (strip,) = strips([(period.from_uv(lower), 1), (period.from_uv(upper), -1)], period)
     curves = fill(strip, BEADS, pattern, angle, DEFAULT.contour)
     assert open_places(strip, curves, BEADS) == []
     # half of it and somewhat more, for what is beside; on the plane
     reach_of = 0.35 * turn
 
     def cloud(lines):
-        cover = period.unrolled(np.vstack([shapes.dense(line, False, 0.1) for line in lines]))
+        cover = period.to_uv(np.vstack([shapes.dense(line, False, 0.1) for line in lines]))
         every = np.vstack([cover + np.array([k * turn, 0.0]) for k in (-1, 0, 1)])
-        return cKDTree(period.unroll(every[np.abs(every[:, 0]) < reach_of + 4.0 * S]))
+        return cKDTree(period.from_uv(every[np.abs(every[:, 0]) < reach_of + 4.0 * S]))
 
     grid = np.stack(
         np.meshgrid(np.arange(-reach_of, reach_of, PITCH), np.arange(-5.0, 29.0, PITCH)), axis=-1
     ).reshape(-1, 2)
     border = np.interp(grid[:, 0], u, low), np.interp(grid[:, 0], u, high)
-    within, flat = (grid[:, 1] > border[0]) & (grid[:, 1] < border[1]), period.unroll(grid)
-    edge = cloud([period.unroll(lower), period.unroll(upper)])
+    within, flat = (grid[:, 1] > border[0]) & (grid[:, 1] < border[1]), period.from_uv(grid)
+    edge = cloud([period.from_uv(lower), period.from_uv(upper)])
     lines = [
-        np.vstack([curve.points, period.moved(curve.points[:1], curve.turns)])
+        np.vstack([curve.points, period.move_turns(curve.points[:1], curve.turns)])
         if curve.closed
         else curve.points
         for curve in curves

@@ -47,7 +47,7 @@ def test_a_rod_about_points_of_a_turned_cylinder_is_that_cylinder(seed):
     ring = np.stack([radius * np.cos(angle), radius * np.sin(angle)], 1)
     ends = [np.column_stack([ring, np.full(40, z)]) for z in (0.0, length)]
     points = np.concatenate(ends) @ turn.T + random.uniform(-500, 500, 3)
-    rod = cylinders.about(points)
+    rod = cylinders.enclosing_cylinder(points)
     assert rod.holds(points).all()
     assert rod.length * rod.radius**2 <= length * radius**2 * 1.0001 + 1e-6
 
@@ -57,12 +57,12 @@ def test_a_row_of_rods_holds_a_bent_shape_between_its_vertices_too():
     bend = np.stack([300 - 100 * np.cos(turn), np.zeros(7), 100 * np.sin(turn)], 1)
     path = np.concatenate([[[200.0, 0.0, -400.0]], bend, [[700.0, 0.0, 100.0]]])
     points, triangles = tube(path, 40.0)
-    found = cylinders.row(points, triangles)
+    found = cylinders.enclosing_row(points, triangles)
     surface = spread_on(points, triangles, np.random.default_rng(1))
     assert np.any([rod.holds(surface) for rod in found], axis=0).all()
-    whole = cylinders.about(points)
+    whole = cylinders.enclosing_cylinder(points)
     volume = sum(rod.length * rod.radius**2 for rod in found)
-    assert 2 < len(found) <= cylinders.PIECES and volume < 0.4 * whole.length * whole.radius**2
+    assert 2 < len(found) <= cylinders.MAX_PIECES and volume < 0.4 * whole.length * whole.radius**2
 
 
 def test_a_ball_is_one_rod():
@@ -70,8 +70,10 @@ def test_a_ball_is_one_rod():
     path = np.stack([np.zeros(12), np.zeros(12), -30 * np.cos(angle)], 1)
     points, triangles = tube(path, 1.0)
     points[:, :2] *= np.repeat(30 * np.sin(angle), 16)[:, None]
-    assert len(cylinders.row(points, triangles)) <= 4
-    assert np.any([rod.holds(points) for rod in cylinders.row(points, triangles)], axis=0).all()
+    assert len(cylinders.enclosing_row(points, triangles)) <= 4
+    assert np.any(
+        [rod.holds(points) for rod in cylinders.enclosing_row(points, triangles)], axis=0
+    ).all()
 
 
 def test_rods_inside_others_are_left_out():
@@ -79,5 +81,5 @@ def test_rods_inside_others_are_left_out():
     large, small = random.uniform(-100, 100, (200, 3)), random.uniform(-10, 10, (50, 3))
     beside = small + [500.0, 0.0, 0.0]
     sets = [small, large, beside]
-    kept = cylinders.needed([cylinders.about(points) for points in sets], sets)
+    kept = cylinders.drop_redundant([cylinders.enclosing_cylinder(points) for points in sets], sets)
     assert len(kept) == 2 and kept[0].holds(large).all() and kept[1].holds(beside).all()

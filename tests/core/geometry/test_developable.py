@@ -33,7 +33,7 @@ def test_there_and_back(base, middle):
     points = spread(base, 4000, 1)
     size = np.abs(points).max()
     np.testing.assert_allclose(
-        base.wrap(base.flat(points, middle), middle), points, atol=1e-12 * size
+        base.wrap(base.unroll(points, middle), middle), points, atol=1e-12 * size
     )
 
 
@@ -45,7 +45,7 @@ def test_lengths_of_curves_stay(base):
     rho = base.radius * (1.0 - z / base.height)
     space = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
     lengths = [
-        np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in (space, base.flat(space))
+        np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in (space, base.unroll(space))
     ]
     np.testing.assert_allclose(lengths[1], lengths[0], rtol=1e-9)
 
@@ -53,15 +53,15 @@ def test_lengths_of_curves_stay(base):
 @pytest.mark.parametrize("base", BASES)
 def test_angles_stay(base):
     points = spread(base, 500, 2)
-    points = points[np.abs(base.around(points)) < 3.0]
+    points = points[np.abs(base.azimuth(points)) < 3.0]
     normal = base.normals(points)
     around = np.stack([-points[:, 1], points[:, 0], np.zeros(len(points))], axis=1)
     around /= np.linalg.norm(around, axis=1)[:, None]
     up = np.cross(normal, around)
     step = 1e-5 * base.radius
-    flat = base.flat(points)
+    flat = base.unroll(points)
     moved = [
-        (base.flat(points + step * way) - base.flat(points - step * way)) / (2.0 * step)
+        (base.unroll(points + step * way) - base.unroll(points - step * way)) / (2.0 * step)
         for way in (around, up)
     ]
     # derivatives of an isometry turn the tangent plane rigidly, with its outside up
@@ -99,7 +99,7 @@ def test_offsets_of_the_paper():
 def test_a_slim_cone_is_nearly_a_cylinder():
     cone, cylinder = Developable(60.0, 1e9), Developable(60.0)
     points = spread(cylinder, 100, 4)
-    np.testing.assert_allclose(cone.flat(points), cylinder.flat(points), atol=1e-4)
+    np.testing.assert_allclose(cone.unroll(points), cylinder.unroll(points), atol=1e-4)
     np.testing.assert_allclose(cone.distance(points), cylinder.distance(points), atol=1e-4)
 
 

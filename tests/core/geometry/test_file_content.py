@@ -7,7 +7,7 @@ import tracemalloc
 
 import pytest
 
-from freecad_am.core.geometry.file_content import MB, content, digest
+from freecad_am.core.geometry.file_content import MB, digest, read_content
 from freecad_am.core.issues import InputError
 
 
@@ -16,11 +16,11 @@ def test_all_bytes_and_their_digest(tmp_path, size):
     data = os.urandom(size)
     path = tmp_path / "data"
     path.write_bytes(data)
-    assert content(path, 2, "BAD_FILE", "it") == data
+    assert read_content(path, 2, "BAD_FILE", "it") == data
     assert digest(path, 2, "BAD_FILE", "it") == hashlib.sha256(data).hexdigest()
 
 
-@pytest.mark.parametrize("read", [content, digest])
+@pytest.mark.parametrize("read", [read_content, digest])
 def test_larger_files_are_refused_unread(tmp_path, read):
     path = tmp_path / "data"
     with path.open("wb") as stream:
@@ -33,7 +33,7 @@ def test_larger_files_are_refused_unread(tmp_path, read):
     assert (told.value.code, told.value.where) == ("BAD_FILE", "it") and most < MB
 
 
-@pytest.mark.parametrize("read", [content, digest])
+@pytest.mark.parametrize("read", [read_content, digest])
 def test_what_tells_no_size_is_read_up_to_the_limit(read, monkeypatch, tmp_path):
     """As files of the kernel do: what is read counts."""
     path = tmp_path / "data"
@@ -49,10 +49,10 @@ def test_what_tells_no_size_is_read_up_to_the_limit(read, monkeypatch, tmp_path)
     with pytest.raises(InputError, match="larger than 2 MB"):
         read(path, 2, "BAD_FILE", "it")
     monkeypatch.undo()
-    assert content(path, 3, "BAD_FILE", "it") == b"x" * (3 * MB)
+    assert read_content(path, 3, "BAD_FILE", "it") == b"x" * (3 * MB)
 
 
-@pytest.mark.parametrize("read", [content, digest])
+@pytest.mark.parametrize("read", [read_content, digest])
 def test_devices_pipes_and_folders_are_refused(tmp_path, read):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", tmp_path, "/dev/zero"):

@@ -3,7 +3,7 @@
 
 import pytest
 
-from freecad_am.core.geometry.formatting import at_least, count, deviation, place
+from freecad_am.core.geometry.formatting import at_least, count, format_deviation, place
 
 
 def test_places_are_told_to_a_thousandth_without_negative_zeros():
@@ -14,7 +14,7 @@ def test_places_are_told_to_a_thousandth_without_negative_zeros():
     ("distance", "text"), [(0.0, "0.001"), (2e-14, "0.001"), (0.0123, "0.012"), (0.5, "0.5")]
 )
 def test_deviations_are_told_no_finer_than_a_thousandth(distance, text):
-    assert deviation(distance) == text
+    assert format_deviation(distance) == text
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import QhullError
 
 from freecad_am.core.geometry.regions import medial
-from freecad_am.core.geometry.regions.medial import MANY, spine
+from freecad_am.core.geometry.regions.medial import MAX_UNMOVED_POINTS, spine
 from freecad_am.core.geometry.regions.region import regions
 
 
@@ -15,7 +15,7 @@ def test_the_middle_of_a_strip_is_found_from_very_many_places_too():
     """A gap of 1 % asked for places 0.014 mm apart: exactly on parallel lines they took more than a minute."""
     (strip,) = regions([np.array([[0.0, 0.0], [103.0, 0.0], [103.0, 8.0], [0.0, 8.0]])])
     before = time.process_time()
-    path, closed = spine(strip, 0.035, 222.0 / (1.2 * MANY))
+    path, closed = spine(strip, 0.035, 222.0 / (1.2 * MAX_UNMOVED_POINTS))
     assert time.process_time() - before < 4.0  # more than ten times that before
     assert not closed and np.ptp(path[:, 0]) > 103.0 - 8.0 - 0.1
     between = path[(path[:, 0] > 4.0) & (path[:, 0] < 99.0)]

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.plane_curve import nearest, nearest_of, winding
+from freecad_am.core.geometry.curves.plane_curve import nearest, nearest_on_rings, winding
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +26,7 @@ def test_nothing_is_lost_with_rings_that_are_passed_over(rings, count):
         np.array([ring.min(axis=0) for ring in rings]),
         np.array([ring.max(axis=0) for ring in rings]),
     )
-    places, away = nearest_of(rings, boxes, points)
+    places, away = nearest_on_rings(rings, boxes, points)
     each = [nearest(ring, points, closed=True) for ring in rings]
     all_away = np.array([one.distance for one in each]).reshape(len(rings), count)
     best = all_away.argmin(axis=0)

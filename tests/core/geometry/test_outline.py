@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.curves.outline import estimated, outline
+from freecad_am.core.geometry.curves.outline import estimate_outline, outline
 from freecad_am.core.toolpath import Bead
 
 
@@ -98,6 +98,6 @@ def test_a_line_between_arcs_stays_straight(closed):
     angle = np.linspace(-np.pi / 2, np.pi / 2, 9)
     right = np.c_[50 + 5 * np.cos(angle), 5 * np.sin(angle), 0 * angle]
     points = np.r_[right, -right, right[:1]]
-    found, _ = estimated(points, closed).at(np.arange(len(points) - 1), 0.5)
+    found, _ = estimate_outline(points, closed).at(np.arange(len(points) - 1), 0.5)
     off = np.abs(np.hypot(np.maximum(np.abs(found[:, 0]) - 50, 0), found[:, 1]) - 5)
     assert off.max() <= 5 * (1 - np.cos(np.pi / 16)) + 1e-12  # what the chords themselves are off

@@ -6,7 +6,7 @@ import pytest
 from scipy.integrate import quad
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import arc, line, sampled
+from freecad_am.core.geometry.curves.sampling import arc, line, sample_curve
 
 
 @pytest.mark.parametrize("radius", [0.5, 45.0, 900.0])
@@ -27,7 +27,7 @@ def test_a_curve_of_changing_curvature_is_met_everywhere():
         slope = np.stack([0.75 * np.cos(t / 4.0), np.ones_like(t)], axis=1)
         return np.stack([30.0 + 3.0 * np.sin(t / 4.0), t], axis=1), slope
 
-    meridian = Meridian.chained([sampled(wave, [0.0, 50.0])])
+    meridian = Meridian.chained([sample_curve(wave, [0.0, 50.0])])
     truth, _ = quad(
         lambda z: np.hypot(1.0, 0.75 * np.cos(z / 4.0)),
         0.0,
@@ -102,4 +102,4 @@ def test_what_is_no_curve_is_refused(points):
 
 def test_a_curve_that_stands_still_is_refused():
     with pytest.raises(ValueError, match="no direction"):
-        sampled(lambda t: (np.zeros((len(t), 2)), np.zeros((len(t), 2))), [0.0, 1.0])
+        sample_curve(lambda t: (np.zeros((len(t), 2)), np.zeros((len(t), 2))), [0.0, 1.0])

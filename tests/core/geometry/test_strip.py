@@ -31,7 +31,7 @@ def border(hub, height, middle, back=False):
     z = height(theta) * math.cos(hub.taper)
     rho = hub.radius if hub.is_cylinder else (hub.height - z) * math.tan(hub.taper)
     points = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
-    return hub.flat(points[::-1] if back else points, middle)
+    return hub.unroll(points[::-1] if back else points, middle)
 
 
 def collar(hub, middle=0.0):
@@ -45,7 +45,7 @@ def collar(hub, middle=0.0):
 
 def in_space(hub, strip, flat, turns, middle=0.0, step=0.03):
     """Dense points in space of a border or bead laid flat, over its end where it goes round."""
-    after = strip.period.moved(flat[:1], turns)
+    after = strip.period.move_turns(flat[:1], turns)
     line = np.vstack([flat, after])
     way = np.diff(line, axis=0)
     count = np.maximum(np.ceil(np.hypot(*way.T) / step).astype(int), 1)
@@ -122,7 +122,7 @@ def test_a_hole_goes_all_the_way_through():
 def test_borders_at_one_height_stay_round_a_cone(apex):
     """In (u, v) they are straight, laid flat about the apex of a cone they are arcs."""
     cone = Period(200.0 if math.isinf(apex) else 2.0, apex)
-    u = np.linspace(-0.5 * cone.around, 0.5 * cone.around, 201)[:-1]
+    u = np.linspace(-0.5 * cone.u_period, 0.5 * cone.u_period, 201)[:-1]
     strip = Strip(
         cone,
         np.stack([u, np.zeros(200)], axis=1),

@@ -80,5 +80,5 @@ def test_sections_are_kept_at_ends_at_strides_and_at_corners():
     turn = np.zeros(100)
     turn[[33, 61]] = np.pi / 2
     starts = np.array([0, 50, 100])
-    keep = np.flatnonzero(tubes.kept(turn, starts, 20))
+    keep = np.flatnonzero(tubes.select_sections(turn, starts, 20))
     assert keep.tolist() == [0, 20, 33, 40, 49, 50, 60, 61, 80, 99]

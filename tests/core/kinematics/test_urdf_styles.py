@@ -258,9 +258,12 @@ def test_arms_that_are_nearly_square_are_solved_as_they_are(robot, off_deg, tmp_
 
 def test_angles_in_reasons_have_digits_that_differ(tmp_path):
     """An axis 3 that leans too far for a right angle, by less than six digits of 90 deg show nothing of."""
-    from freecad_am.core.geometry.formatting import differing
+    from freecad_am.core.geometry.formatting import format_differing
 
-    assert differing(90.0000004, 90.0) == "90.0000004" and differing(91.25, 90.0) == "91.25"
+    assert (
+        format_differing(90.0000004, 90.0) == "90.0000004"
+        and format_differing(91.25, 90.0) == "91.25"
+    )
     text = urdf_text.text(machine.load(WRISTS[0]))
     path = tmp_path / "robot.urdf"
     path.write_text(

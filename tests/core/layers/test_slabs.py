@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from freecad_am.core.geometry.curves.guide import guide
+from freecad_am.core.geometry.curves.guide import fit_guide
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
@@ -131,7 +131,7 @@ def elbow(widening):
         < 0.0
     ):
         sides = sides[:, ::-1]
-    return Body("elbow", points, sides), Base("the guide", guide(middle, way), np.eye(4))
+    return Body("elbow", points, sides), Base("the guide", fit_guide(middle, way), np.eye(4))
 
 
 @pytest.mark.parametrize("widening", [0.0, 0.05])

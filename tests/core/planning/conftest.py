@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import sampled
+from freecad_am.core.geometry.curves.sampling import sample_curve
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -21,7 +21,7 @@ R0 = 45.0
 def sphere():
     """Eq. 20."""
     return [
-        sampled(
+        sample_curve(
             lambda t: (np.c_[R0 * np.cos(t), R0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
             [0, np.pi / 2],
         )
@@ -38,7 +38,10 @@ def laval_nozzle():
 
         return curve
 
-    return [sampled(parabola(-10.0, 100.0), [0, 96.5]), sampled(parabola(3.0, 85.0), [96.5, 128.0])]
+    return [
+        sample_curve(parabola(-10.0, 100.0), [0, 96.5]),
+        sample_curve(parabola(3.0, 85.0), [96.5, 128.0]),
+    ]
 
 
 def intake_funnel():
@@ -47,7 +50,7 @@ def intake_funnel():
     def curve(t):
         return np.c_[2 * R0 - R0 * np.cos(t), R0 * np.sin(t)], np.c_[R0 * np.sin(t), R0 * np.cos(t)]
 
-    return [sampled(curve, [0, np.pi / 2])]
+    return [sample_curve(curve, [0, np.pi / 2])]
 
 
 PARTS = {"sphere": sphere, "laval nozzle": laval_nozzle, "intake funnel": intake_funnel}

@@ -53,7 +53,7 @@ def blade(layers=2, half=12.0, width=5.0):
     for k in range(layers):
         surface = CONE.offset(2.5 * k)
         rho = surface.radius * (1.0 - 40.0 / surface.height)
-        middle = surface.flat(np.array([[rho, 0.0, 40.0]]))[0]
+        middle = surface.unroll(np.array([[rho, 0.0, 40.0]]))[0]
         angle = np.linspace(0.0, 2.0 * math.pi, 61)
         ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         across = np.linspace(-1.0, 1.0, 21)[:, None] * [half - 2.0 * width, 0.0]

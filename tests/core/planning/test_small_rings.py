@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am import verify
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import sampled
+from freecad_am.core.geometry.curves.sampling import sample_curve
 from freecad_am.core.issues import has_errors
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
@@ -25,7 +25,7 @@ def toolpath_of(radius, layer_height, top=np.pi / 2, end=2 * np.pi, process=None
     process = process or ProcessParameters()
     meridian = Meridian.chained(
         [
-            sampled(
+            sample_curve(
                 lambda t: (radius * np.c_[np.cos(t), np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
                 [0, top],
             )
@@ -105,7 +105,7 @@ def test_half_a_turn_back_to_the_next_start_is_made_in_several_moves(cell_of, li
 def test_the_tip_of_a_spiral_is_slowed_and_the_rest_is_not(cell_of):
     meridian = Meridian.chained(
         [
-            sampled(
+            sample_curve(
                 lambda t: (45.0 * np.c_[np.cos(t), np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
                 [0, np.pi / 2],
             )

@@ -10,7 +10,7 @@ import pytest
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.obstacles import box
-from freecad_am.core.geometry.spread import spread
+from freecad_am.core.geometry.spread import spread_points
 from freecad_am.core.issues import has_errors
 from freecad_am.core.motion import TRAVEL
 from freecad_am.core.parameters.joints import JointParameters
@@ -217,8 +217,10 @@ def test_a_way_is_found_through_gaps_of_two_walls_and_is_short():
 
 
 def test_places_are_spread_evenly():
-    places = spread(512, 6)
-    assert ((places >= 0.0) & (places < 1.0)).all() and (places == spread(1024, 6)[:512]).all()
+    places = spread_points(512, 6)
+    assert ((places >= 0.0) & (places < 1.0)).all() and (
+        places == spread_points(1024, 6)[:512]
+    ).all()
     for axis in range(6):
         counts = np.histogram(places[:, axis], 8, (0.0, 1.0))[0]
         assert counts.min() > 0.7 * 64 and counts.max() < 1.2 * 64

@@ -43,7 +43,7 @@ def test_chords_keep_the_error_and_corners_are_points(fronts, index, error):
     assert (np.diff(w) > 0.0).all()
     assert w[0] == low and w[-1] == low + curve.period
     assert worst(curve, w) <= error * (1.0 + 1e-3)
-    places = curve.wrapped(w)
+    places = curve.wrap(w)
     for corner in curve.w[curve.corners]:
         assert np.abs(places - corner).min() < 1e-9
 

@@ -16,7 +16,7 @@ CONE = Developable(60.0, 200.0)
 def evaluated(monkeypatch):
     """At how many points distances and normals of the base have been asked for."""
     total = [0]
-    for name in ("distance", "normals", "along"):
+    for name in ("distance", "normals", "distance_rate"):
         whole = getattr(Developable, name)
 
         def counted(self, points, *rest, whole=whole):

@@ -44,6 +44,6 @@ def test_a_flat_top_that_touches_a_layer_does_not_divide_it(surface, off, turned
     (loop,) = loops(-8.0, 16.0 + off)
     assert loop.turns == 0
     assert np.abs(surface.distance(loop.points) - 16.0).max() < 1e-9
-    area = 0.5 * doubled_area(surface.offset(16.0).flat(loop.points))
+    area = 0.5 * doubled_area(surface.offset(16.0).unroll(loop.points))
     assert 800.0 < area < 830.0  # of 20 x 40 mm seen along the normal
     assert loops(16.0 + off, 30.0) == []

@@ -24,7 +24,7 @@ COUNTS = (180, 360, 720, 1440)
 def evaluated(monkeypatch):
     """How many points of surfaces and curves have been evaluated."""
     total = [0]
-    surface, curve = Torus.derivatives, SpaceCurve.on_arcs
+    surface, curve = Torus.derivatives, SpaceCurve.evaluate_arcs
 
     def derivatives(self, u, v):
         total[0] += np.broadcast(u, v).size
@@ -35,7 +35,7 @@ def evaluated(monkeypatch):
         return curve(self, arc, t)
 
     monkeypatch.setattr(Torus, "derivatives", derivatives)
-    monkeypatch.setattr(SpaceCurve, "on_arcs", on_arcs)
+    monkeypatch.setattr(SpaceCurve, "evaluate_arcs", on_arcs)
     return total
 
 

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.filling.curve import PlaneCurve
-from freecad_am.core.geometry.curves.plane_curve import divided
+from freecad_am.core.geometry.curves.plane_curve import divide_edges
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
@@ -29,7 +29,7 @@ def test_points_that_all_but_coincide_are_one(seed):
     )
     line = np.vstack([[0.0, 0.0], np.cumsum(steps, axis=0)])
     got = needed(line, 0.01)
-    got = divided(got, RoundLayer(Developable(60.0, 200.0)).pieces(got, 0.01))[0]
+    got = divide_edges(got, RoundLayer(Developable(60.0, 200.0)).pieces(got, 0.01))[0]
     np.testing.assert_array_equal(got[[0, -1]], line[[0, -1]])
     gaps = np.linalg.norm(np.diff(got, axis=0), axis=1)
     if line[-1, 0] > 2.0 * CLOSE:

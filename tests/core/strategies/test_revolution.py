@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.curves.sampling import arc, line, sampled
+from freecad_am.core.geometry.curves.sampling import arc, line, sample_curve
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
@@ -22,7 +22,7 @@ def parabola(rho, theta, low, high):
         x = np.sqrt(2.0 * rho * (z - theta))
         return np.stack([x, z], axis=1), np.stack([rho / x, np.ones_like(z)], axis=1)
 
-    return sampled(curve, [low, high])
+    return sample_curve(curve, [low, high])
 
 
 SPHERE = Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)])

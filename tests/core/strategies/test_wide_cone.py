@@ -28,7 +28,7 @@ def flat(theta, way):
     """Places at azimuths and distances from the apex laid flat."""
     rho = way * math.sin(CONE.taper)
     z = CONE.height - way * math.cos(CONE.taper)
-    return CONE.flat(
+    return CONE.unroll(
         np.stack([rho * np.cos(theta), rho * np.sin(theta), np.broadcast_to(z, rho.shape)], axis=1)
     )
 
@@ -53,7 +53,7 @@ def ring(at):
 def test_what_is_left_of_a_ring_knows_how_far_round_it_is(at):
     (part,) = ring(at).grown(-0.5 * SPACING, 0.1)
     assert isinstance(part, Region)
-    turn = RoundLayer(CONE).period.around
+    turn = RoundLayer(CONE).period.u_period
     u = math.remainder(
         part.sheet - (at + math.pi) / (2.0 * math.pi) * turn, turn
     )  # opposite to the hole

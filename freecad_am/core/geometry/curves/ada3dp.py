@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Toolpaths of AdaOne (.ada3dp) as curves: protocol buffers of the schema that its maker's users have published.
+"""Toolpaths of AdaOne (.ada3dp) as curves: protocol buffers of a schema published by users
+of its manufacturer.
 
-Schema: ada3dp.proto of https://github.com/CEAD-group/adaone-utils (959f212). Read are positions, directions, layers and
-whether a segment deposits, and its type; speeds, axes, fans and events are the job's own matter here. Fields that the schema does
-not have are noted, and toolpaths that remove material are rejected. Directions are those in which the
-nozzle points: in the published cone, whose layers rise along Z by their height in mm, they are 0, 0, -1.
+Schema: ada3dp.proto of https://github.com/CEAD-group/adaone-utils (959f212). This module
+reads positions, directions, layers, segment types and whether a segment deposits; the job
+sets speeds, axes, fans and events itself. Fields outside the schema are noted, and
+toolpaths that remove material are rejected. Directions are those in which the nozzle
+points: in the published cone, whose layers rise along Z by their height in mm, they are
+0, 0, -1.
 """
 
 from __future__ import annotations
@@ -28,7 +31,7 @@ POINTS, PROCESS_ON, TYPE = 1, 2, 3  # PathSegment
 TOOL, MATERIAL = 10, 11
 STRATEGY, DYNAMIC_AXES = 2, (5, 6)  # Parameters
 POSITION, DIRECTION = 1, 2  # Point
-APART = 1e-6  # mm; points no farther apart are one
+MIN_STEP_MM = 1e-6  # mm; points no farther apart are one
 MAX_MM = 1e7  # mm
 # the last field of each message of the schema
 LAST_FIELD = {"toolpath": 2, "parameters": 7, "layer": 2, "segment": 11, "point": 8}
@@ -77,7 +80,7 @@ class _Run:
 
 @dataclass
 class _Seen:
-    """What of a file is not read: fields that the schema does not have, tools and materials."""
+    """Content of a file that is not read: fields outside the schema, tools and materials."""
 
     unknown: dict[str, int]
     tools: set[int]
@@ -92,13 +95,17 @@ def curves_of(data: bytes, where: str, roles: str = roles_of.PART) -> tuple[Bead
 
 
 def read(data: bytes, where: str, roles: str = roles_of.PART) -> ReadCurves:
-    """Beads of the segments that deposit and are of these roles, as `gcode.read` has them, and what is not read.
+    """Read the beads of the segments that deposit and have these roles, as `gcode.read` does,
+    and report unread content.
 
-    Raises InputError BAD_ADA3DP; BAD_VALUE for roles that the file does not have.
+    Raises
+    ------
+    InputError
+        BAD_ADA3DP; BAD_VALUE for roles that the file does not have.
     """
-    seen = _Seen({}, set(), set())
+    unread = _Seen({}, set(), set())
     try:
-        runs = list(_beads(data, where, seen))
+        runs = list(_beads(data, where, unread))
     except (ValueError, IndexError, struct.error) as error:
         raise InputError(
             CODE,
@@ -120,46 +127,46 @@ def read(data: bytes, where: str, roles: str = roles_of.PART) -> ReadCurves:
                 "a position is not a number of at most {:g} mm; export it again",
                 MAX_MM,
             )
-    runs, issues = roles_of.chosen(runs, roles, where, CODE)
+    runs, issues = roles_of.choose_runs(runs, roles, where, CODE)
     numbers = {layer: k for k, layer in enumerate(sorted({run.layer for run in runs}))}
     curves = tuple(BeadCurve(run.points, run.directions, numbers[run.layer]) for run in runs)
-    return ReadCurves(curves, (*issues, *_notes(seen, where)))
+    return ReadCurves(curves, (*issues, *_notes(unread, where)))
 
 
-def _notes(seen: _Seen, where: str) -> list[Issue]:
+def _notes(unread: _Seen, where: str) -> list[Issue]:
     messages = []
-    if seen.unknown:
-        names = ", ".join(f"{count} of a {name}" for name, count in seen.unknown.items())
+    if unread.unknown:
+        names = ", ".join(f"{count} of a {name}" for name, count in unread.unknown.items())
         messages.append(
             Text(
                 "{}: fields that the published schema does not have are not read: {}", where, names
             )
         )
-    for what, numbers in (("tools", seen.tools), ("materials", seen.materials)):
+    for what, numbers in (("tools", unread.tools), ("materials", unread.materials)):
         if len(numbers) > 1:
-            found = ", ".join(map(str, sorted(numbers)))
+            listed = ", ".join(map(str, sorted(numbers)))
             messages.append(
-                Text("{}: {} {} are taken for the one of the cell", where, Text(what), found)
+                Text("{}: {} {} are taken for the one of the cell", where, Text(what), listed)
             )
-    if seen.turns_part:
+    if unread.turns_part:
         messages.append(
             Text("{}: values of external axes are not read; the cell's own are planned anew", where)
         )
     return [Issue(NOTE, roles_of.NOT_READ, message) for message in messages]
 
 
-def _known(data: bytes, name: str, seen: _Seen) -> list[tuple[int, Value]]:
-    """The fields of a message; those that the schema does not have are counted."""
+def _counted_fields(data: bytes, name: str, unread: _Seen) -> list[tuple[int, Value]]:
+    """Return the fields of a message and count the fields outside the schema."""
     fields = list(_fields(data))
     unknown = sum(number > LAST_FIELD[name] for number, _ in fields)
     if unknown:
-        seen.unknown[name] = seen.unknown.get(name, 0) + unknown
+        unread.unknown[name] = unread.unknown.get(name, 0) + unknown
     return fields
 
 
-def _check_parameters(data: bytes, where: str, seen: _Seen) -> None:
-    """InputError BAD_ADA3DP for a strategy that deposits nothing."""
-    for number, value in _known(data, "parameters", seen):
+def _check_parameters(data: bytes, where: str, unread: _Seen) -> None:
+    """Raise InputError BAD_ADA3DP for a strategy that deposits nothing."""
+    for number, value in _counted_fields(data, "parameters", unread):
         if number == STRATEGY and value in NO_DEPOSIT:
             raise InputError(
                 CODE,
@@ -167,102 +174,106 @@ def _check_parameters(data: bytes, where: str, seen: _Seen) -> None:
                 "one of its operations is {}, which deposits nothing; export the operations that deposit alone",
                 Text(NO_DEPOSIT[int(value)]),
             )
-        seen.turns_part |= number in DYNAMIC_AXES and bool(value)
+        unread.turns_part |= number in DYNAMIC_AXES and bool(value)
 
 
-def _beads(data: bytes, where: str, seen: _Seen) -> Iterator[_Run]:
-    """The segments that deposit."""
-    for number, group in _known(data, "toolpath", seen):
+def _beads(data: bytes, where: str, unread: _Seen) -> Iterator[_Run]:
+    """Yield the segments that deposit."""
+    for number, group in _counted_fields(data, "toolpath", unread):
         if number == PARAMETERS and isinstance(group, bytes):
-            _check_parameters(group, where, seen)
+            _check_parameters(group, where, unread)
         if number != GROUPS or not isinstance(group, bytes):
             continue
-        entries = _known(group, "layer", seen)
+        entries = _counted_fields(group, "layer", unread)
         layer = next(
             (value for key, value in entries if key == LAYER and isinstance(value, int)), 0
         )
         layer -= (1 << 64) * (layer >= 1 << 63)
         for key, segment in entries:
             if key == SEGMENTS and isinstance(segment, bytes):
-                run = _segment(layer, _known(segment, "segment", seen), seen)
+                run = _segment(layer, _counted_fields(segment, "segment", unread), unread)
                 if run is not None:
                     yield run
 
 
-def _segment(layer: int, parts: list[tuple[int, Value]], seen: _Seen) -> _Run | None:
-    """A segment; None of one that does not deposit, or goes nowhere."""
-    last = dict(parts)
-    if not last.get(PROCESS_ON):
+def _segment(layer: int, fields: list[tuple[int, Value]], unread: _Seen) -> _Run | None:
+    """Return a segment; None if it does not deposit or has no length."""
+    values = dict(fields)
+    if not values.get(PROCESS_ON):
         return None
     rows = [
-        _point(value, seen) for name, value in parts if name == POINTS and isinstance(value, bytes)
+        _point(value, unread)
+        for name, value in fields
+        if name == POINTS and isinstance(value, bytes)
     ]
     if len(rows) < 2:
         return None
     points, directions = (np.array(column) for column in zip(*rows))
-    kept = np.r_[True, ~(np.linalg.norm(np.diff(points, axis=0), axis=1) <= APART)]
-    if kept.sum() < 2:
+    distinct = np.r_[True, ~(np.linalg.norm(np.diff(points, axis=0), axis=1) <= MIN_STEP_MM)]
+    if distinct.sum() < 2:
         return None
-    seen.tools.add(int(last.get(TOOL, 0)))
-    seen.materials.add(int(last.get(MATERIAL, 0)))
-    kind = int(last.get(TYPE, 0))
+    unread.tools.add(int(values.get(TOOL, 0)))
+    unread.materials.add(int(values.get(MATERIAL, 0)))
+    kind = int(values.get(TYPE, 0))
     role = TYPES[kind] if kind < len(TYPES) else f"TYPE_{kind}"
-    size = np.linalg.norm(directions[kept], axis=1)
-    known = np.isfinite(size).all() and size.min() > 1e-9
+    size = np.linalg.norm(directions[distinct], axis=1)
+    has_directions = np.isfinite(size).all() and size.min() > 1e-9
     return _Run(
         layer,
-        points[kept],
-        -directions[kept] / size[:, None] + 0.0 if known else None,
+        points[distinct],
+        -directions[distinct] / size[:, None] + 0.0 if has_directions else None,
         role if kind else None,
     )
 
 
-def _point(data: bytes, seen: _Seen) -> tuple[list[float], list[float]]:
-    """Position and direction; what is left out of a vector is 0."""
-    fields = dict(_known(data, "point", seen))
-    found = []
+def _point(data: bytes, unread: _Seen) -> tuple[list[float], list[float]]:
+    """Return position and direction; components missing from a vector are 0."""
+    fields = dict(_counted_fields(data, "point", unread))
+    vectors = []
     for name in (POSITION, DIRECTION):
         vector = dict(_fields(value)) if isinstance(value := fields.get(name, b""), bytes) else {}
-        found.append([float(vector.get(axis, 0.0)) for axis in (1, 2, 3)])
-    return found[0], found[1]
+        vectors.append([float(vector.get(axis, 0.0)) for axis in (1, 2, 3)])
+    return vectors[0], vectors[1]
 
 
 def _fields(data: bytes) -> Iterator[tuple[int, Value]]:
-    """Numbers and values of the fields of a message. ValueError for what is none."""
-    at = 0
-    while at < len(data):
-        key, at = _varint(data, at)
+    """Yield numbers and values of the fields of a message. Raises ValueError if the data is not
+    a message.
+    """
+    position = 0
+    while position < len(data):
+        key, position = _varint(data, position)
         number, kind = key >> 3, key & 7
         if number == 0:
-            raise ValueError(f"a field without a number at byte {at}")
+            raise ValueError(f"a field without a number at byte {position}")
         if kind == VARINT:
-            value, at = _varint(data, at)
+            value, position = _varint(data, position)
             yield number, value
         elif kind in (DOUBLE, FLOAT):
             size = 8 if kind == DOUBLE else 4
-            yield number, struct.unpack_from("<d" if kind == DOUBLE else "<f", data, at)[0]
-            at += size
+            yield number, struct.unpack_from("<d" if kind == DOUBLE else "<f", data, position)[0]
+            position += size
         elif kind == BYTES:
-            size, at = _varint(data, at)
-            if at + size > len(data):
+            size, position = _varint(data, position)
+            if position + size > len(data):
                 raise ValueError(f"it ends within a field of {size} bytes")
-            yield number, data[at : at + size]
-            at += size
+            yield number, data[position : position + size]
+            position += size
         else:
-            raise ValueError(f"a field of an unknown kind at byte {at}")
+            raise ValueError(f"a field of an unknown kind at byte {position}")
 
 
-def _varint(data: bytes, at: int) -> tuple[int, int]:
-    """A number of any length at a byte, and where what follows begins."""
+def _varint(data: bytes, position: int) -> tuple[int, int]:
+    """Return the variable-length number at a byte, and the position after it."""
     value = shift = 0
     while True:
-        if at >= len(data):
+        if position >= len(data):
             raise ValueError("it ends within a number")
-        byte = data[at]
-        at += 1
+        byte = data[position]
+        position += 1
         value |= (byte & 0x7F) << shift
         if byte < 0x80:
-            return value, at
+            return value, position
         shift += 7
         if shift > 63:
             raise ValueError("a number of too many bytes")

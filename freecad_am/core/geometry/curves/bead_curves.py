@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves that are to be beads as they are, with the direction in which each is laid."""
+"""Curves to deposit as beads without slicing, with the tool direction of each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...issues import Issue
 from ...types import Array
 from ..obstacles import Body
 
-# endings of files that are laid as beads, and what they are
+# endings of files whose curves become beads, and their descriptions
 POINT_FILES = {
     ".csv": "csv",
     ".gcode": "gcode",
@@ -25,8 +25,12 @@ MEETING = 1e-6  # mm between the ends of a closed curve
 
 @dataclass(frozen=True, eq=False)
 class BeadCurve:
-    """points: (n, 3) mm, of a closed one the first again as the last. directions: (n, 3) unit vectors from the deposit
-    towards the tool; None where nothing of the curve says so. layer: in which it is laid, counted from 0."""
+    """A curve deposited as one bead.
+
+    points: (n, 3) mm; a closed curve repeats its first point as the last. directions: (n, 3)
+    unit vectors from the deposit towards the tool; None if the source has no directions.
+    layer: number of its layer, from 0.
+    """
 
     points: Array
     directions: Array | None = None
@@ -43,8 +47,12 @@ class BeadCurve:
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """What is laid, in this order. surroundings: substrate and fixtures, as bodies. depths: None, a part has no volume.
-    edges: names of those of a shape that were chosen, none where all of them are; None of what is not a shape's."""
+    """Curves to deposit, in this order.
+
+    surroundings: substrate and fixtures, as bodies. depths: None, a part of curves has no
+    volume. edges: names of the chosen edges of a shape, empty if all are used; None for
+    curves that do not come from a shape.
+    """
 
     label: str
     curves: tuple[BeadCurve, ...]
@@ -55,7 +63,7 @@ class Curves:
 
 
 class ReadCurves(NamedTuple):
-    """Beads of a file, and findings about what of it is no bead."""
+    """Beads of a file, and issues about its content that does not become beads."""
 
     curves: tuple[BeadCurve, ...]
     issues: tuple[Issue, ...] = ()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pieces of meridian put together: chains in order, the walls of a closed contour, and the wall halfway between two.
+"""Meridian pieces joined into chains, the walls of a closed contour, and the wall midway
+between two walls.
 
-Everything is in the half plane (radius, height) of the axis.
+All coordinates are in the half plane (radius, height) of the axis.
 """
 
 from __future__ import annotations
@@ -14,13 +15,16 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...types import Array
-from .profile import Meridian, arc_lengths, turning
+from .profile import Meridian, arc_lengths, turning_angle
 
-JOIN = 1e-4  # mm; ends closer than this are one point
-BRIDGE = 0.2  # mm; wider gaps are not bridged
-LEVEL = 1e-4  # mm; heights closer than this are the same
-SQUARE = (np.radians(60.0), np.radians(120.0))  # corners between a wall and the rim that ends it
-RIM = 1.0 / 6.0  # of the contour; a longer piece is a wall
+JOIN_MM = 1e-4  # mm; ends closer than this are one point
+BRIDGE_MM = 0.2  # mm; wider gaps are not bridged
+LEVEL_MM = 1e-4  # mm; heights closer than this are the same
+SQUARE_RANGE_RAD = (
+    np.radians(60.0),
+    np.radians(120.0),
+)  # corners between a wall and the rim that ends it
+MAX_RIM_SHARE = 1.0 / 6.0  # of the contour; a longer piece is a wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +39,7 @@ class Piece:
     @property
     def flat(self) -> bool:
         """True where the piece is straight across the axis."""
-        return bool(np.ptp(self.points[:, 1]) < LEVEL)
+        return bool(np.ptp(self.points[:, 1]) < LEVEL_MM)
 
     def reversed(self) -> Piece:
         """The same stretch run the other way."""
@@ -50,94 +54,109 @@ def ends(chain: Chain) -> tuple[Array, Array]:
     return chain[0].points[0], chain[-1].points[-1]
 
 
-def chains(pieces: Sequence[Piece]) -> tuple[list[Chain], float]:
-    """The pieces joined end to end, nearest ends first, and the widest gap (mm) bridged.
+def chains(segments: Sequence[Piece]) -> tuple[list[Chain], float]:
+    """Join the segments end to end, nearest ends first; also returns the widest gap (mm)
+    bridged.
 
     A closed contour is one chain whose last end meets its first.
     """
-    parts: list[Chain] = [[piece] for piece in pieces]
+    chains_so_far: list[Chain] = [[segment] for segment in segments]
     widest = 0.0
-    while len(parts) > 1:
-        near = _near(parts)
-        if not near:
+    while len(chains_so_far) > 1:
+        gaps = _find_gaps(chains_so_far)
+        if not gaps:
             break
-        gap, i, j, turn_i, turn_j = min(near)
-        one = _turned(parts[i]) if turn_i else parts[i]
-        other = _turned(parts[j]) if turn_j else parts[j]
-        parts[i] = one + other
-        del parts[j]
+        gap, i, j, turn_i, turn_j = min(gaps)
+        start_chain = _reverse(chains_so_far[i]) if turn_i else chains_so_far[i]
+        end_chain = _reverse(chains_so_far[j]) if turn_j else chains_so_far[j]
+        chains_so_far[i] = start_chain + end_chain
+        del chains_so_far[j]
         widest = max(widest, gap)
-    return parts, widest
+    return chains_so_far, widest
 
 
-def _near(parts: Sequence[Chain]) -> list[tuple[float, int, int, int, int]]:
-    """Gaps (mm) of no more than BRIDGE between the ends of two chains, the numbers of the two, and whether each is to be
-    turned for the first to run on into the second."""
-    tips = np.array([ends(part) for part in parts]).reshape(-1, 2)  # first and last by turns
-    pairs = cKDTree(tips).query_pairs(1.01 * BRIDGE, output_type="ndarray")
+def _find_gaps(open_chains: Sequence[Chain]) -> list[tuple[float, int, int, int, int]]:
+    """Return gaps (mm) of at most BRIDGE_MM between the ends of two chains.
+
+    Each gap has the numbers of the two chains and whether each must be reversed so that the
+    first continues into the second.
+    """
+    tips = np.array([ends(chain) for chain in open_chains]).reshape(
+        -1, 2
+    )  # first and last ends alternate
+    pairs = cKDTree(tips).query_pairs(1.01 * BRIDGE_MM, output_type="ndarray")
     rows = np.sort(pairs, axis=1)
     gaps = np.hypot(*(tips[rows[:, 0]] - tips[rows[:, 1]]).T)
     return [
         (gap, a // 2, b // 2, 1 - a % 2, b % 2)
         for gap, (a, b) in zip(gaps.tolist(), rows.tolist(), strict=True)
-        if a // 2 != b // 2 and gap <= BRIDGE
+        if a // 2 != b // 2 and gap <= BRIDGE_MM
     ]
 
 
-def _turned(chain: Chain) -> Chain:
-    return [piece.reversed() for piece in reversed(chain)]
+def _reverse(chain: Chain) -> Chain:
+    return [segment.reversed() for segment in reversed(chain)]
 
 
 def opening(chain: Chain) -> float:
-    """The way from the last end of a chain to its first, mm."""
-    first, last = ends(chain)
-    return float(np.hypot(*(last - first)))
+    """Return the distance from the last end of a chain to its first, mm."""
+    start, end = ends(chain)
+    return float(np.hypot(*(end - start)))
 
 
-def is_closed(chain: Chain, whole: bool = False) -> bool:
-    """True when the chain bounds a section: it meets itself, or starts and ends on the axis. whole: it is all of a closed
-    surface, so it meets itself across a gap too, the widest one of its pieces, whose nearest ends are joined first."""
+def is_closed(chain: Chain, is_whole: bool = False) -> bool:
+    """Return whether the chain bounds a section: it meets itself, or starts and ends on the
+    axis.
+
+    is_whole: the chain is all of a closed surface, so it also meets itself across a gap as
+    wide as the widest one bridged between its pieces.
+    """
     meets = len(chain) > 1 or len(chain[0].points) > 2
     return (
-        (meets and opening(chain) < JOIN)
-        or _on_axis(chain)
-        or (whole and meets and opening(chain) <= BRIDGE)
+        (meets and opening(chain) < JOIN_MM)
+        or _starts_and_ends_on_axis(chain)
+        or (is_whole and meets and opening(chain) <= BRIDGE_MM)
     )
 
 
-def _on_axis(chain: Chain) -> bool:
-    first, last = ends(chain)
-    return bool(first[0] < JOIN and last[0] < JOIN)
+def _starts_and_ends_on_axis(chain: Chain) -> bool:
+    start, end = ends(chain)
+    return bool(start[0] < JOIN_MM and end[0] < JOIN_MM)
 
 
 def upright(chain: Chain) -> Chain:
-    """The chain run from its lower end up; of two ends at one height, from the one with the larger radius."""
-    first, last = ends(chain)
-    if abs(first[1] - last[1]) < LEVEL:
-        return chain if first[0] >= last[0] else _turned(chain)
-    return chain if first[1] < last[1] else _turned(chain)
+    """Return the chain in the sense from its lower end to its upper end.
+
+    With both ends at one height it starts at the end with the larger radius.
+    """
+    start, end = ends(chain)
+    if abs(start[1] - end[1]) < LEVEL_MM:
+        return chain if start[0] >= end[0] else _reverse(chain)
+    return chain if start[1] < end[1] else _reverse(chain)
 
 
 def walls(chain: Chain) -> list[Chain]:
-    """The walls of a closed contour, the one at the larger radius first.
+    """Return the walls of a closed contour, the one at the larger radius first.
 
-    The contour is cut at its lowest and highest points; flat pieces there, short rims square to both walls there, and
-    flat pieces at the ends of what is left, are end faces and no wall. A contour of a full part has one wall, of a
-    hollow part two.
+    The contour is cut at its lowest and highest points. Flat pieces there, short rims square
+    to both walls there, and flat pieces at the ends of the remaining runs are end faces, not
+    walls. The contour of a full part has one wall, of a hollow part two.
     """
-    level = np.vstack([piece.points for piece in chain])[:, 1]
+    level = np.vstack([segment.points for segment in chain])[:, 1]
     low, high = float(level.min()), float(level.max())
-    meets = opening(chain) < JOIN or (opening(chain) <= BRIDGE and not _on_axis(chain))
+    meets = opening(chain) < JOIN_MM or (
+        opening(chain) <= BRIDGE_MM and not _starts_and_ends_on_axis(chain)
+    )
     rims = _rims(chain, meets, low, high)
     runs: list[Chain] = [[]]
-    for index, piece in enumerate(chain):
-        if index in rims or (piece.flat and _at_extreme(piece.points[0], low, high)):
+    for index, segment in enumerate(chain):
+        if index in rims or (segment.flat and _at_extreme(segment.points[0], low, high)):
             runs.append([])
             continue
-        for part in _cut_at(piece, low, high):
-            if runs[-1] and _at_extreme(part.points[0], low, high):
+        for cut_segment in _cut_at(segment, low, high):
+            if runs[-1] and _at_extreme(cut_segment.points[0], low, high):
                 runs.append([])
-            runs[-1].append(part)
+            runs[-1].append(cut_segment)
     if (
         meets
         and len(runs) > 1
@@ -146,47 +165,55 @@ def walls(chain: Chain) -> list[Chain]:
         and not _at_extreme(runs[0][0].points[0], low, high)
     ):
         runs[0] = runs.pop() + runs[0]
-    found = [stripped for run in runs if (stripped := _without_flat_ends(run))]
-    return [upright(run) for run in sorted(found, key=_mean_radius, reverse=True)]
+    stripped_runs = [stripped for run in runs if (stripped := _strip_flat_ends(run))]
+    return [upright(run) for run in sorted(stripped_runs, key=_mean_radius, reverse=True)]
 
 
 def _rims(chain: Chain, meets: bool, low: float, high: float) -> set[int]:
-    """Indices of slanted end faces: straight pieces that reach the lowest or highest level, where no flat piece is,
-    square to both neighbours, which they join to each other, and shorter than RIM of the contour.
+    """Return the indices of slanted end faces.
+
+    These are straight pieces, shorter than MAX_RIM_SHARE of the contour, that reach the
+    lowest or highest level where no flat piece is, and join both neighbours at right angles.
     """
-    lengths = [float(arc_lengths(piece.points, piece.tangents).sum()) for piece in chain]
-    flat_levels = [piece.points[0, 1] for piece in chain if piece.flat]
-    found = set()
-    for index, piece in enumerate(chain):
+    lengths = [float(arc_lengths(segment.points, segment.tangents).sum()) for segment in chain]
+    flat_levels = [segment.points[0, 1] for segment in chain if segment.flat]
+    rims = set()
+    for index, segment in enumerate(chain):
         if not meets and index in (0, len(chain) - 1):
             continue
-        before, after = chain[index - 1].tangents[-1], chain[(index + 1) % len(chain)].tangents[0]
-        turns = turning(before, piece.tangents[0]), turning(piece.tangents[-1], after)
-        square = turns[0] * turns[1] > 0.0 and all(
-            SQUARE[0] < abs(turn) < SQUARE[1] for turn in turns
+        tangent_before, tangent_after = (
+            chain[index - 1].tangents[-1],
+            chain[(index + 1) % len(chain)].tangents[0],
         )
-        straight = float(np.abs(piece.tangents - piece.tangents[0]).max()) < 1e-6
-        levels = [z for z in (low, high) if np.abs(piece.points[[0, -1], 1] - z).min() < LEVEL]
-        ends_wall = any(all(abs(flat - z) > LEVEL for flat in flat_levels) for z in levels)
-        if straight and square and ends_wall and lengths[index] < RIM * sum(lengths):
-            found.add(index)
-    return found
+        turns = (
+            turning_angle(tangent_before, segment.tangents[0]),
+            turning_angle(segment.tangents[-1], tangent_after),
+        )
+        square = turns[0] * turns[1] > 0.0 and all(
+            SQUARE_RANGE_RAD[0] < abs(turn) < SQUARE_RANGE_RAD[1] for turn in turns
+        )
+        straight = float(np.abs(segment.tangents - segment.tangents[0]).max()) < 1e-6
+        levels = [z for z in (low, high) if np.abs(segment.points[[0, -1], 1] - z).min() < LEVEL_MM]
+        ends_wall = any(all(abs(flat - z) > LEVEL_MM for flat in flat_levels) for z in levels)
+        if straight and square and ends_wall and lengths[index] < MAX_RIM_SHARE * sum(lengths):
+            rims.add(index)
+    return rims
 
 
 def _at_extreme(point: Array, low: float, high: float) -> bool:
-    return bool(min(abs(point[1] - low), abs(point[1] - high)) < LEVEL)
+    return bool(min(abs(point[1] - low), abs(point[1] - high)) < LEVEL_MM)
 
 
-def _cut_at(piece: Piece, low: float, high: float) -> list[Piece]:
-    """The piece cut at inner samples where it touches the lowest or highest level."""
-    rise = piece.tangents[:, 1]
+def _cut_at(segment: Piece, low: float, high: float) -> list[Piece]:
+    """Cut a piece at inner samples where it touches the lowest or highest level."""
+    rise = segment.tangents[:, 1]
     turning = np.flatnonzero(rise[1:] * rise[:-1] <= 0.0)
-    if piece.flat or len(turning) == 0:
-        return [piece]
+    if segment.flat or len(turning) == 0:
+        return [segment]
     curve = Meridian(
-        np.r_[0.0, np.cumsum(arc_lengths(piece.points, piece.tangents))],
-        piece.points,
-        piece.tangents,
+        np.r_[0.0, np.cumsum(arc_lengths(segment.points, segment.tangents))],
+        segment.points,
+        segment.tangents,
     )
     cuts = [0.0, curve.length]
     for i in turning:
@@ -196,28 +223,32 @@ def _cut_at(piece: Piece, low: float, high: float) -> list[Piece]:
             a, b = (
                 (middle, b) if float(curve.at([middle])[2][0, 1]) * rise[i] > 0.0 else (a, middle)
             )
-        inside = 10.0 * JOIN < b < curve.length - 10.0 * JOIN
+        inside = 10.0 * JOIN_MM < b < curve.length - 10.0 * JOIN_MM
         if inside and _at_extreme(np.array([0.0, curve.at([b])[1][0]]), low, high):
             cuts.append(b)
     cuts = sorted(cuts)
-    return [_stretch(piece, curve, a, b) for a, b in pairwise(cuts)] if len(cuts) > 2 else [piece]
+    return (
+        [_stretch(segment, curve, a, b) for a, b in pairwise(cuts)] if len(cuts) > 2 else [segment]
+    )
 
 
-def _stretch(piece: Piece, curve: Meridian, a: float, b: float) -> Piece:
-    """The piece from arc length a to b of its own curve."""
+def _stretch(segment: Piece, curve: Meridian, a: float, b: float) -> Piece:
+    """Return the piece from arc length a to b of its own curve."""
     inner = (curve.s > a + 1e-6) & (curve.s < b - 1e-6)
     r, h, t = curve.at([a, b])
     points = np.vstack([[r[0], h[0]], curve.points[inner], [r[1], h[1]]])
-    return replace(piece, points=points, tangents=np.vstack([t[:1], curve.tangents[inner], t[1:]]))
+    return replace(
+        segment, points=points, tangents=np.vstack([t[:1], curve.tangents[inner], t[1:]])
+    )
 
 
-def _without_flat_ends(chain: Chain) -> Chain:
-    first, last = 0, len(chain)
-    while first < last and chain[first].flat:
-        first += 1
-    while last > first and chain[last - 1].flat:
-        last -= 1
-    return chain[first:last]
+def _strip_flat_ends(chain: Chain) -> Chain:
+    start, end = 0, len(chain)
+    while start < end and chain[start].flat:
+        start += 1
+    while end > start and chain[end - 1].flat:
+        end -= 1
+    return chain[start:end]
 
 
 def _mean_radius(chain: Chain) -> float:
@@ -226,15 +257,17 @@ def _mean_radius(chain: Chain) -> float:
 
 
 def meridian_of(chain: Chain) -> Meridian:
-    """The chain as one curve."""
-    return Meridian.chained([(piece.points, piece.tangents) for piece in chain])
+    """Return the chain as one curve."""
+    return Meridian.chained([(segment.points, segment.tangents) for segment in chain])
 
 
 def halfway(outer: Chain, inner: Chain) -> list[tuple[Array, Array]]:
-    """The wall in the middle: halfway between the points of the two that lie at the same share of their lengths.
+    """Return the wall in the middle, between points at the same share of the lengths of both
+    walls.
 
-    Where both have as many pieces, shares count from piece to piece, else from kink to kink, else over the whole.
-    Between parallel walls this is the parallel curve in the middle. Returns pieces (points, tangents).
+    If both have the same number of pieces, shares count from piece to piece, else from kink
+    to kink, else over the whole length. Between parallel walls this is the parallel curve in
+    the middle. Returns pieces (points, tangents).
     """
     curves = meridian_of(outer), meridian_of(inner)
     if len(outer) == len(inner):
@@ -244,7 +277,7 @@ def halfway(outer: Chain, inner: Chain) -> list[tuple[Array, Array]]:
     else:
         bounds = [np.r_[0.0, curve.kinks, curve.length] for curve in curves]
     if len(bounds[0]) != len(bounds[1]):
-        ends = [at / at[-1] for at in bounds]
+        ends = [breaks / breaks[-1] for breaks in bounds]
         shares = np.union1d(*ends)
         shares = shares[np.r_[True, np.diff(shares) > 1e-9]]
         bounds = [shares * curve.length for curve in curves]
@@ -255,7 +288,7 @@ def halfway(outer: Chain, inner: Chain) -> list[tuple[Array, Array]]:
 
 
 def _piece_ends(chain: Chain, curve: Meridian) -> Array:
-    lengths = [float(arc_lengths(piece.points, piece.tangents).sum()) for piece in chain]
+    lengths = [float(arc_lengths(segment.points, segment.tangents).sum()) for segment in chain]
     ends = np.r_[0.0, np.cumsum(lengths)]
     return np.asarray(ends * (curve.length / ends[-1]))
 
@@ -278,7 +311,7 @@ def _between(
         points += 0.5 * np.stack([r, h], axis=1)
         tangents += 0.5 * (b - a) * t
     size = np.linalg.norm(tangents, axis=1)
-    # where the two walls run against each other, as at the crest of a torus, the points alone tell the way
+    # where the two walls run against each other, as at the crest of a torus, only the points give the sense
     along = np.gradient(points, axis=0)
     tangents = np.where((size > 1e-4 * size.max())[:, None], tangents, along)
     return points, tangents / np.linalg.norm(tangents, axis=1, keepdims=True)

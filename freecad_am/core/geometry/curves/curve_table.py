@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves of a table of points as text: x, y, z in mm, and where there are such the direction i, j, k and the bead."""
+"""Curves from a text table of points: x, y, z in mm, optionally with the direction i, j, k
+and the bead number.
+"""
 
 from __future__ import annotations
 
@@ -15,40 +17,48 @@ from .bead_curves import BeadCurve
 COLUMNS = ("x", "y", "z", "i", "j", "k", "bead")
 BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMNS}
 CODE = "BAD_TABLE"
-APART = 1e-6  # mm; points no farther apart are one
+MIN_STEP_MM = 1e-6  # mm; points no farther apart are one
 MAX_MM = 1e7  # mm; farther away is a slip of the pen
 FORM = "give a table of the columns x,y,z, then i,j,k where directions are given, then bead where there are several"
 
 
 def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
-    """The curves of a table, one for each number of a bead in the order of the lines, separated by commas or semicolons, the
-    first line names of columns or numbers. InputError BAD_TABLE with the line."""
+    """Read the curves of a table, one for each bead number, in the order of the lines.
+
+    Cells are separated by commas or semicolons; the first line holds column names or numbers.
+    Raises InputError BAD_TABLE with the line.
+    """
     lines = text.lstrip("\ufeff").splitlines()
     while lines and not lines[-1].strip():
         lines.pop()
     if not lines:
         raise InputError(CODE, where, "it has no points; {}", FORM)
     separator = ";" if ";" in lines[0] else ","
-    columns, first = _columns(_cells(lines[0], separator), where)
+    columns, header_lines = _columns(_cells(lines[0], separator), where)
     numbers = [
         _numbers(_cells(line, separator), columns, f"{where} line {k}")
-        for k, line in enumerate(lines[first:], first + 1)
+        for k, line in enumerate(lines[header_lines:], header_lines + 1)
     ]
     if not numbers:
         raise InputError(CODE, where, "it has no points; {}", FORM)
     rows = np.array(numbers)
     bead = rows[:, columns.index("bead")] if "bead" in columns else np.zeros(len(rows))
     starts = np.flatnonzero(np.r_[True, np.diff(bead) != 0.0])
-    found, known = [], set()
+    curves, beads_read = [], set()
     for start, end in zip(starts, [*starts[1:], len(rows)]):
-        at = f"{where} line {first + 1 + int(start)}"
-        if bead[start] in known:
+        location = f"{where} line {header_lines + 1 + int(start)}"
+        if bead[start] in beads_read:
             raise InputError(
-                CODE, at, "bead {:g} begins again; keep the lines of a bead together", bead[start]
+                CODE,
+                location,
+                "bead {:g} begins again; keep the lines of a bead together",
+                bead[start],
             )
-        known.add(float(bead[start]))
-        found.append(_curve(rows[start:end], columns, at, first + 1 + int(start), where))
-    return tuple(found)
+        beads_read.add(float(bead[start]))
+        curves.append(
+            _curve(rows[start:end], columns, location, header_lines + 1 + int(start), where)
+        )
+    return tuple(curves)
 
 
 def _cells(line: str, separator: str) -> list[str]:
@@ -56,11 +66,11 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _columns(cells: Sequence[str], where: str) -> tuple[tuple[str, ...], int]:
-    """The columns, and the number of lines before the points."""
+    """Return the columns, and the number of lines before the points."""
     names = tuple(cell.lower().removesuffix("_mm") for cell in cells)
     if any(name in COLUMNS for name in names):
-        wanted = BY_COUNT.get(len(names))
-        if set(names) != set(wanted or ()):
+        expected = BY_COUNT.get(len(names))
+        if set(names) != set(expected or ()):
             raise InputError(
                 CODE, f"{where} line 1", "its columns are {}; {}", ", ".join(cells), FORM
             )
@@ -78,7 +88,7 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
             else Text("it has {} numbers in place of {}", sum(map(bool, cells)), len(columns))
         )
         raise InputError(CODE, where, "{}; fill the gap, or leave the line out", Word(lacking))
-    found = []
+    values = []
     for cell, name in zip(cells, columns):
         try:
             if "_" in cell:
@@ -96,20 +106,20 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
             raise InputError(
                 CODE, where, "{} is {:g}; give a number of at most {:g}", name, number, MAX_MM
             )
-        found.append(number)
-    return found
+        values.append(number)
+    return values
 
 
-def _curve(rows: Array, columns: Sequence[str], at: str, line: int, where: str) -> BeadCurve:
+def _curve(rows: Array, columns: Sequence[str], location: str, line: int, where: str) -> BeadCurve:
     points = rows[:, [columns.index(name) for name in COLUMNS[:3]]]
     if len(points) < 2:
         raise InputError(
-            CODE, at, "a bead of one point has no way to go; give it two points or more"
+            CODE, location, "a bead of one point has no way to go; give it two points or more"
         )
-    near = np.flatnonzero(np.linalg.norm(np.diff(points, axis=0), axis=1) < APART)
-    if len(near):
-        at = f"{where} line {line + int(near[0]) + 1}"
-        raise InputError(CODE, at, "the point is that of the line before; leave it out")
+    repeated = np.flatnonzero(np.linalg.norm(np.diff(points, axis=0), axis=1) < MIN_STEP_MM)
+    if len(repeated):
+        location = f"{where} line {line + int(repeated[0]) + 1}"
+        raise InputError(CODE, location, "the point is that of the line before; leave it out")
     if "i" not in columns:
         return BeadCurve(points)
     directions = rows[:, [columns.index(name) for name in COLUMNS[3:6]]]

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""G-code of a slicer as curves: each run of moves that extrude is a bead; layers are those of its comments, else of its Z.
+"""Slicer G-code as curves: each run of extruding moves is a bead; layers follow the
+comments, otherwise Z.
 
-Modes are those of Marlin 2 and Klipper: G90 keeps M83, and G91 makes the extruder relative unless M82 or M83 was given. Where the
-two disagree whether a move extrudes (M82, then G91), the move is rejected. Sources: https://marlinfw.org/meta/gcode,
-https://www.klipper3d.org/G-Codes.html, https://docs.duet3d.com/User_manual/Reference/Gcodes.
+Modes follow Marlin 2 and Klipper: G90 keeps M83, and G91 makes the extruder relative
+unless M82 or M83 was given. A move on which the two firmwares disagree (M82, then G91) is
+rejected. Sources: https://marlinfw.org/meta/gcode,
+https://www.klipper3d.org/G-Codes.html,
+https://docs.duet3d.com/User_manual/Reference/Gcodes.
 """
 
 from __future__ import annotations
@@ -28,15 +31,15 @@ LAYER = re.compile(
     r"\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|CHANGE_LAYER|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)",
     re.IGNORECASE,
 )
-APART = 1e-6  # mm; points no farther apart are one
+MIN_STEP_MM = 1e-6  # mm; points no farther apart are one
 MAX_MM = 1e7  # mm; farther away is a slip of the pen
 ARC_END = (
     0.1  # mm by which the ends of an arc may be on different circles: slicers round to hundredths
 )
-ROUNDED = 1e-9
+EXTRUSION_TOLERANCE_MM = 1e-9
 SAME_HEIGHT = 1e-3  # mm; slicers write Z to hundredths or thousandths
 MAX_TURN_DEG = 1.0  # by which the direction turns from one point to the next
-NO_ROTARY, ANY_ROTARY = "none", "any"  # any: of a drawing, which shows no directions
+NO_ROTARY, ANY_ROTARY = "none", "any"  # any: for a drawing, which shows no directions
 ROTARY = (NO_ROTARY, "head-ac", "head-bc", "table-ac", "table-bc")
 FORM = "give absolute or relative moves, G0 to G3 with E, as a slicer for filament or pellets writes them"
 MOTIONS = frozenset({"G0", "G1", "G2", "G3"})
@@ -65,7 +68,7 @@ NO_MOTION = frozenset(
         "G97",
     }
 )
-# the machine moves by itself: homing, levelling, cleaning, parking. Afterwards positions are to be given anew
+# automatic moves: homing, levelling, cleaning, parking. The program must give positions again afterwards
 OWN_MOTION = frozenset(
     {"G12", "G27", "G28", "G29", "G29.1", "G29.2", "G30", "G32", "G33", "G34", "G35", "G392"}
 )
@@ -316,9 +319,12 @@ class _Run:
 
 @dataclass
 class _State:
-    """Modes and positions of a program. at: as the program counts; extruders: what Klipper and Marlin count."""
+    """Modes and positions of a program.
 
-    at: dict[str, float] = field(default_factory=lambda: dict.fromkeys("XYZABC", 0.0))
+    coordinates: as the program counts. extruders: as Klipper and Marlin count.
+    """
+
+    coordinates: dict[str, float] = field(default_factory=lambda: dict.fromkeys("XYZABC", 0.0))
     extruders: list[float] = field(default_factory=lambda: [0.0, 0.0])
     shift: Array = field(default_factory=lambda: np.zeros(3))
     absolute: bool = True
@@ -327,7 +333,7 @@ class _State:
     def copied(self) -> _State:
         """A copy that does not change with this one."""
         return _State(
-            dict(self.at),
+            dict(self.coordinates),
             list(self.extruders),
             self.shift.copy(),
             self.absolute,
@@ -349,7 +355,7 @@ class _State:
 
     @property
     def place(self) -> Array:
-        return np.array([self.at[axis] for axis in "XYZ"]) + self.shift
+        return np.array([self.coordinates[axis] for axis in "XYZ"]) + self.shift
 
 
 def curves_of(
@@ -362,7 +368,7 @@ def curves_of(
 def read(
     text: str, where: str, chord_error: float, roles: str = roles_of.PART, rotary: str = NO_ROTARY
 ) -> ReadCurves:
-    """Read the beads of a program, and say what of it is not read.
+    """Read the beads of a program, and report its content that is not read.
 
     Parameters
     ----------
@@ -373,7 +379,8 @@ def read(
     chord_error
         Largest distance between an arc and its chords, mm.
     roles
-        ``part``, ``all``, or groups and types of the slicer separated by commas; other moves are left out, with a note.
+        ``part``, ``all``, or groups and types of the slicer separated by commas; other moves
+        are left out, with a note.
     rotary
         How the words A, B and C turn the tool, one of `ROTARY`; ``none`` rejects them.
 
@@ -387,17 +394,17 @@ def read(
     reader = _Reader(where, chord_error, rotary)
     for number, line in enumerate(text.lstrip("\ufeff").splitlines(), 1):
         reader.take(line, number)
-    return reader.done(roles)
+    return reader.finish(roles)
 
 
 class _Reader:
-    """Where the head is, what is understood of words so far, and the beads."""
+    """Position of the head, interpreted words, and beads up to the current line."""
 
     def __init__(self, where: str, chord_error: float, rotary: str) -> None:
         self.where, self.chord_error, self.rotary = where, chord_error, rotary
         self.state, self.stored = _State(), dict[str, _State]()
         self.pushed: list[tuple[bool, str]] = []  # modes at each M120 without its M121
-        self.known: set[str] = set()  # axes told so far
+        self.known: set[str] = set()  # axes given so far
         self.motion = ""
         self.plane, self.unit = "G17", 1.0
         self.points: list[Array] = []
@@ -447,7 +454,7 @@ class _Reader:
         if LAYER.match(comment):
             self._end()
             self.comments += 1
-        role = roles_of.role_in(comment)
+        role = roles_of.read_role(comment)
         if role is not None and role != self.role:
             self._end()
             self.role = role
@@ -463,7 +470,7 @@ class _Reader:
             self._move(name, self._numbers(command), machine_frame)
         elif name == "T":
             self._end()
-            self.tool = f"T{command.rest or '0'}"
+            self.tool = f"T{command.arguments or '0'}"
         elif self._is_refused(command):
             return
         elif name in ("G90", "G91", "M82", "M83", *PLANES, *UNITS):
@@ -489,7 +496,9 @@ class _Reader:
         return self.motion
 
     def _is_refused(self, command: Command) -> bool:
-        """Raise for what would be understood wrongly; True of codes that are harmless with these words."""
+        """Raise for a code that would be misinterpreted; return True for codes that are harmless
+        with these words.
+        """
         name = command.name
         reason = REFUSED.get(name) or (
             REFUSED.get(name.split(".")[0])
@@ -498,12 +507,12 @@ class _Reader:
         )
         values = dict(command.words)
         if name == "SET_GCODE_OFFSET" and not re.search(
-            r"\b[XYZ]\w*\s*=\s*[-+]?0*\.?0*[1-9]", command.rest, re.IGNORECASE
+            r"\b[XYZ]\w*\s*=\s*[-+]?0*\.?0*[1-9]", command.arguments, re.IGNORECASE
         ):
             return True
         if name == "M206" and not any(values.get(axis) for axis in "XYZ"):
             return True
-        if name == "M98" and re.match(r"[Pp]\s*\d", command.rest):
+        if name == "M98" and re.match(r"[Pp]\s*\d", command.arguments):
             reason = REFUSED["M97"]
         if name == "M605" and values.get("S", 0.0) not in (0.0, 1.0):
             reason = "it prints copies side by side; print one"
@@ -534,7 +543,7 @@ class _Reader:
             self.state.extruder_mode = command.name
 
     def _home(self, command: Command) -> None:
-        """The machine moves by itself; axes that are homed count from the machine's own origin."""
+        """Handle an automatic move; homed axes count from the machine's own origin."""
         self._end()
         axes = {letter for letter, _ in command.words if letter in "XYZ"} or set("XYZ")
         self.known -= axes
@@ -543,7 +552,7 @@ class _Reader:
         if command.name == "G28":
             for k, axis in enumerate("XYZ"):
                 if axis in axes:
-                    self.state.at[axis], self.state.shift[k] = 0.0, 0.0
+                    self.state.coordinates[axis], self.state.shift[k] = 0.0, 0.0
 
     def _retract(self, command: Command) -> None:
         """Retract and recover, or set temperatures of a tool; offsets are rejected."""
@@ -555,9 +564,11 @@ class _Reader:
             )
 
     def _other(self, command: Command) -> None:
-        """Codes and macros of the machine: the path is as if they did nothing, and those that are not known are noted."""
+        """Handle codes and macros of the machine: they leave the path unchanged, and unknown ones
+        are noted.
+        """
         name = command.name
-        if name in ("M2", "M30") and not command.rest:
+        if name in ("M2", "M30") and not command.arguments:
             self._end()
             self.ended = name
         elif name == "SAVE_GCODE_STATE":
@@ -570,7 +581,7 @@ class _Reader:
             raise self._error(Text("{} is not known; {}", name, Text(FORM)))
         elif name in ("M98", "M32"):  # another file of the machine
             self._end()
-            self.not_read.setdefault(f"{name} {command.rest}".strip(), []).append(self.line)
+            self.not_read.setdefault(f"{name} {command.arguments}".strip(), []).append(self.line)
         elif (
             name not in HARMLESS_M
             and name not in HARMLESS_MACROS
@@ -580,21 +591,23 @@ class _Reader:
             self.not_read.setdefault(name, []).append(self.line)
 
     def _state_name(self, command: Command) -> str:
-        found = re.search(r"NAME\s*=\s*(\S+)", command.rest, re.IGNORECASE)
-        return found[1] if found else "default"
+        match = re.search(r"NAME\s*=\s*(\S+)", command.arguments, re.IGNORECASE)
+        return match[1] if match else "default"
 
     def _restore(self, command: Command) -> None:
-        """RESTORE_GCODE_STATE of Klipper: modes and origins as stored; the head stays unless MOVE is 1."""
+        """Handle RESTORE_GCODE_STATE of Klipper: restore modes and origins; the head stays unless
+        MOVE is 1.
+        """
         stored = self.stored.get(self._state_name(command))
         if stored is None:
             raise self._error(
                 Text("{} names a state that was not stored; store it first", command.name)
             )
         self._end()
-        here, state = self.state.place, stored.copied()
-        if not re.search(r"MOVE\s*=\s*1", command.rest, re.IGNORECASE):
+        position, state = self.state.place, stored.copied()
+        if not re.search(r"MOVE\s*=\s*1", command.arguments, re.IGNORECASE):
             for k, axis in enumerate("XYZ"):
-                state.at[axis] = float(here[k] - state.shift[k])
+                state.coordinates[axis] = float(position[k] - state.shift[k])
         self.state = state
 
     def _push_or_pop(self, name: str) -> None:
@@ -652,11 +665,11 @@ class _Reader:
             )
 
     def _reset_origin(self, command: Command) -> None:
-        """G92: what the program counts from now on, with the head where it is."""
-        state, here = self.state, self.state.place
+        """Handle G92: set the coordinates of the program without moving the head."""
+        state, position = self.state, self.state.place
         if command.name == "G92.1":
             state.shift = np.zeros(3)
-            state.at.update(zip("XYZ", here.tolist()))
+            state.coordinates.update(zip("XYZ", position.tolist()))
             return
         for letter, value in command.words:
             if letter not in "XYZEABC" or value is None:
@@ -664,27 +677,27 @@ class _Reader:
                     Text("G92 has no word {}; give X, Y, Z or E with a number", letter)
                 )
             if letter in "ABC":
-                self._check_rotary(letter, value - self.state.at[letter])
+                self._check_rotary(letter, value - self.state.coordinates[letter])
         words = {
             letter: float(value or 0.0) * (self.unit if letter in LENGTH_WORDS else 1.0)
             for letter, value in command.words
         }
         for axis in "XYZ":
             if axis in words or not words:
-                state.at[axis] = words.get(axis, 0.0)
+                state.coordinates[axis] = words.get(axis, 0.0)
         if "E" in words or not words:
             state.extruders = [words.get("E", 0.0)] * 2
-        state.shift = here - np.array([state.at[axis] for axis in "XYZ"])
+        state.shift = position - np.array([state.coordinates[axis] for axis in "XYZ"])
 
     def _extrude(self, words: dict[str, float]) -> bool:
-        """Whether a move extrudes. InputError where Klipper and Marlin differ."""
+        """Return whether a move extrudes. Raises InputError where Klipper and Marlin differ."""
         if "E" not in words:
             return False
         value, extrudes = words["E"], []
         for k, relative in enumerate(self.state.extruder_is_relative()):
-            before = self.state.extruders[k]
-            self.state.extruders[k] = before + value if relative else value
-            extrudes.append(self.state.extruders[k] - before > ROUNDED)
+            previous = self.state.extruders[k]
+            self.state.extruders[k] = previous + value if relative else value
+            extrudes.append(self.state.extruders[k] - previous > EXTRUSION_TOLERANCE_MM)
         if extrudes[0] != extrudes[1]:
             raise self._error(
                 "M82 and G91 are both on: Klipper counts E from the position before, Marlin from zero; write M83, or G90"
@@ -699,38 +712,42 @@ class _Reader:
             if axis in words:
                 self.known.add(axis)
                 value = words[axis] - (state.shift[k] if machine_frame else 0.0)
-                state.at[axis] = float(value if state.absolute else state.at[axis] + value)
+                state.coordinates[axis] = float(
+                    value if state.absolute else state.coordinates[axis] + value
+                )
         for axis in "ABC":
             if axis in words:
                 value = words[axis]
-                state.at[axis] = value if state.absolute else state.at[axis] + value
+                state.coordinates[axis] = (
+                    value if state.absolute else state.coordinates[axis] + value
+                )
 
     def _move(self, name: str, words: dict[str, float], machine_frame: bool) -> None:
-        start, before = self.state.place, [self.state.at[axis] for axis in "ABC"]
+        start, angles_before = self.state.place, [self.state.coordinates[axis] for axis in "ABC"]
         extrudes = self._extrude(words)
         self._target(words, machine_frame)
         end = self.state.place
         if name in ("G2", "G3"):
-            way = self._arc(name, start, end, words, extrudes)
+            points = self._arc(name, start, end, words, extrudes)
         else:
-            way = [end]
-        still = len(way) == 1 and math.dist(start.tolist(), end.tolist()) < APART
+            points = [end]
+        still = len(points) == 1 and math.dist(start.tolist(), end.tolist()) < MIN_STEP_MM
         if not extrudes or still:
             self._end()
             return
         self._check_extruding()
         if self.rotary in (NO_ROTARY, ANY_ROTARY):
-            self.points += way if self.points else [start, *way]
+            self.points += points if self.points else [start, *points]
             return
-        after = [self.state.at[axis] for axis in "ABC"]
-        angles = np.array([before, after])
-        if len(way) == 1:
+        angles_after = [self.state.coordinates[axis] for axis in "ABC"]
+        angles = np.array([angles_before, angles_after])
+        if len(points) == 1:
             count = max(1, math.ceil(float(np.abs(angles[1] - angles[0]).max()) / MAX_TURN_DEG))
-            way = [start + k / count * (end - start) for k in range(1, count)] + [end]
+            points = [start + k / count * (end - start) for k in range(1, count)] + [end]
         if not self.points:
             self.points, self.directions = [start], [self._direction(angles[0])]
-        share = np.arange(1, len(way) + 1) / len(way)
-        self.points += way
+        share = np.arange(1, len(points) + 1) / len(points)
+        self.points += points
         self.directions += [self._direction(angles[0] + s * (angles[1] - angles[0])) for s in share]
 
     def _check_extruding(self) -> None:
@@ -765,7 +782,7 @@ class _Reader:
     def _arc(
         self, name: str, start: Array, end: Array, words: dict[str, float], extrudes: bool
     ) -> list[Array]:
-        """Points (3,) of an arc but its first."""
+        """Return the points (3,) of an arc without its first."""
         if extrudes and words.get("P", 0.0) > 1.0:
             raise self._error("P asks for several turns, which are not known; write each turn out")
         if self.plane == "G18":
@@ -787,28 +804,32 @@ class _Reader:
                     )
                 )
         middle = self._middle(name, start, end, words, letters)
-        one, other = start[:2] - middle, end[:2] - middle
-        radius = float(np.hypot(*one))
-        if radius < APART or abs(radius - float(np.hypot(*other))) > max(ARC_END, 1e-3 * radius):
+        start_radius, end_radius = start[:2] - middle, end[:2] - middle
+        radius = float(np.hypot(*start_radius))
+        if radius < MIN_STEP_MM or abs(radius - float(np.hypot(*end_radius))) > max(
+            ARC_END, 1e-3 * radius
+        ):
             raise self._error(
                 Text(
                     "the ends of the arc are {:.4g} and {:.4g} mm from its middle; give {} and {} from its start to its "
                     "middle",
                     radius,
-                    np.hypot(*other),
+                    np.hypot(*end_radius),
                     letters[0],
                     letters[1],
                 )
             )
-        turn = math.atan2(other[1], other[0]) - math.atan2(one[1], one[0])
+        turn = math.atan2(end_radius[1], end_radius[0]) - math.atan2(
+            start_radius[1], start_radius[0]
+        )
         turn = -(-turn % (2.0 * math.pi)) if name == "G2" else turn % (2.0 * math.pi)
         if abs(turn) < 1e-9:
             turn = -2.0 * math.pi if name == "G2" else 2.0 * math.pi
         step = 2.0 * math.acos(max(1.0 - self.chord_error / radius, 0.0))
         count = step_count(abs(turn), max(step, 1e-3))
         share = np.arange(1, count + 1) / count
-        angle = math.atan2(one[1], one[0]) + share * turn
-        reach = radius + share * (float(np.hypot(*other)) - radius)
+        angle = math.atan2(start_radius[1], start_radius[0]) + share * turn
+        reach = radius + share * (float(np.hypot(*end_radius)) - radius)
         rows = np.column_stack(
             [
                 middle[0] + reach * np.cos(angle),
@@ -822,7 +843,9 @@ class _Reader:
     def _middle(
         self, name: str, start: Array, end: Array, words: dict[str, float], letters: str
     ) -> Array:
-        """(2,) the middle of an arc in its plane, from words with these two letters or from its radius."""
+        """Return the middle (2,) of an arc in its plane, from words with these two letters or from
+        its radius.
+        """
         if words.keys() & {*letters}:
             if "R" in words:
                 raise self._error(
@@ -840,7 +863,7 @@ class _Reader:
             )
         radius, chord = words["R"], end[:2] - start[:2]
         length = float(np.hypot(*chord))
-        if length < APART or abs(2.0 * radius) < length * (1.0 - 1e-6):
+        if length < MIN_STEP_MM or abs(2.0 * radius) < length * (1.0 - 1e-6):
             raise self._error(
                 Text(
                     "a radius of {:g} mm makes no arc between points {:.4g} mm apart; give {} and {}",
@@ -850,28 +873,30 @@ class _Reader:
                     letters[1],
                 )
             )
-        away = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0))
-        left = np.array([-chord[1], chord[0]]) / length
+        middle_distance = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0))
+        left_normal = np.array([-chord[1], chord[0]]) / length
         side = (1.0 if name == "G3" else -1.0) * (1.0 if radius > 0.0 else -1.0)
-        middle: Array = start[:2] + 0.5 * chord + side * away * left
+        middle: Array = start[:2] + 0.5 * chord + side * middle_distance * left_normal
         return middle
 
     def _end(self) -> None:
-        """The bead ends here."""
+        """End the current bead."""
         if self.points:
             points = np.array(self.points)
             directions = np.array(self.directions) if self.directions else None
-            kept = np.r_[True, np.linalg.norm(np.diff(points, axis=0), axis=1) > APART]
-            if kept.sum() > 1:
-                ways = None if directions is None else directions[kept]
-                self.runs.append(_Run(points[kept], ways, self.comments, self.role))
+            distinct = np.r_[True, np.linalg.norm(np.diff(points, axis=0), axis=1) > MIN_STEP_MM]
+            if distinct.sum() > 1:
+                kept_directions = None if directions is None else directions[distinct]
+                self.runs.append(_Run(points[distinct], kept_directions, self.comments, self.role))
         self.points, self.directions = [], []
 
     def _error(self, message: str) -> InputError:
         return InputError(CODE, f"{self.where} line {self.line}", message)
 
-    def done(self, roles: str) -> ReadCurves:
-        """The beads of these roles, each with its layer, and what was left out."""
+    def finish(self, roles: str) -> ReadCurves:
+        """Return the beads of these roles, each with its layer, and the issues about omitted
+        content.
+        """
         self._end()
         if not self.runs:
             raise InputError(
@@ -882,7 +907,7 @@ class _Reader:
                 _Run(run.points, run.directions, run.comments, run.role or roles_of.BEFORE)
                 for run in self.runs
             ]
-        runs, issues = roles_of.chosen(self.runs, roles, self.where, CODE)
+        runs, issues = roles_of.choose_runs(self.runs, roles, self.where, CODE)
         curves = tuple(
             BeadCurve(run.points, run.directions, layer)
             for run, layer in zip(runs, _layers(runs, self.comments > 0))
@@ -918,19 +943,19 @@ class _Reader:
 
 
 def _layers(runs: Sequence[_Run], has_comments: bool) -> list[int]:
-    """The layer of each run, from 0: by comments where there are such, else by Z.
+    """Return the layer of each run, from 0: by comments if the file has them, otherwise by Z.
 
-    Runs before the first comment that lie at one height, such as a purge line, belong to the first layer, and so do neighbours
-    at the same height.
+    Runs before the first comment at one height, such as a purge line, belong to the first
+    layer; neighbours at the same height share a layer.
     """
     keys: list[float] = [
         float(run.comments) if has_comments else round(float(run.points[0, 2]), 3) for run in runs
     ]
     if has_comments:
-        first = next((key for key in keys if key > 0.0), 0.0)
-        before = [run for run, key in zip(runs, keys) if key == 0.0]
-        if before and _span(before) <= SAME_HEIGHT:
-            keys = [key or first for key in keys]
+        first_key = next((key for key in keys if key > 0.0), 0.0)
+        preliminary = [run for run, key in zip(runs, keys) if key == 0.0]
+        if preliminary and _span(preliminary) <= SAME_HEIGHT:
+            keys = [key or first_key for key in keys]
     groups: list[list[int]] = []
     for k, key in enumerate(keys):
         if groups and keys[groups[-1][0]] == key:

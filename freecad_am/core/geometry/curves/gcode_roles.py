@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a slicer's comments say that moves belong to: the part, or its skirt, brim, support, tower and the like.
+"""The roles that a slicer's comments give to moves: the part, or its skirt, brim, support,
+tower and the like.
 
-PrusaSlicer, SuperSlicer, Orca, Cura and ideaMaker write `;TYPE:name`, Bambu Studio `; FEATURE: name`, Simplify3D
-`; feature name` (before 4.0 the name alone), FlashPrint `;structure:name`, CraftWare `;segType:name`, KISSlicer `; 'name Path'`.
+PrusaSlicer, SuperSlicer, Orca, Cura and ideaMaker write `;TYPE:name`, Bambu Studio `;
+FEATURE: name`, Simplify3D `; feature name` (before 4.0 only the name), FlashPrint
+`;structure:name`, CraftWare `;segType:name`, KISSlicer `; 'name Path'`.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ _MARK = re.compile(
     r"|'(?P<path>[^']+?)(?:\s+Path)?'.*)\s*$",
     re.IGNORECASE,
 )
-# comments that are a name alone: Simplify3D before 4.0, Slic3r with its comments on
+# comments that are only a name: Simplify3D before 4.0, Slic3r with comments enabled
 _NAMES = frozenset(
     {
         "outer perimeter",
@@ -69,7 +71,9 @@ NOT_PART = ("support", "tower", "purge", "skirt", "brim", "raft", "ironing", "mi
 
 
 class Run(Protocol):
-    """A run of moves that deposit, with the slicer's type of it, None in a file without types, and its length in mm."""
+    """A run of moves that deposit: the slicer's type, None in a file without types, and the
+    length in mm.
+    """
 
     @property
     def role(self) -> str | None: ...
@@ -81,13 +85,13 @@ class Run(Protocol):
 AnyRun = TypeVar("AnyRun", bound=Run)
 
 
-def role_in(comment: str) -> str | None:
-    """The name of the type that a comment gives; None of other comments."""
-    found = _MARK.match(comment)
-    if found is None:
+def read_role(comment: str) -> str | None:
+    """Return the type name that a comment gives; None for other comments."""
+    match = _MARK.match(comment)
+    if match is None:
         name = comment.strip().lower()
         return name if name in _NAMES else None
-    return (found["name"] or found["feature"] or found["path"] or "").strip() or None
+    return (match["name"] or match["feature"] or match["path"] or "").strip() or None
 
 
 def group_of(role: str) -> str:
@@ -96,34 +100,37 @@ def group_of(role: str) -> str:
     return next((group for group, words in GROUPS if any(word in name for word in words)), "")
 
 
-def wanted(text: str) -> tuple[str, ...]:
-    """The entries of strategy.roles."""
+def split_entries(text: str) -> tuple[str, ...]:
+    """Return the entries of strategy.roles."""
     return tuple(word.strip() for word in re.split(r"[,;]", text) if word.strip())
 
 
-def is_laid(role: str | None, entries: Sequence[str]) -> bool:
-    """Whether moves of a type are deposited; role None: of a file without types."""
+def is_deposited(role: str | None, entries: Sequence[str]) -> bool:
+    """Return whether moves of a type are deposited.
+
+    role: None in a file without types.
+    """
     if role is None or entries == (ALL,):
         return True
     group = group_of(role)
-    known = {_plain(entry) for entry in entries}
-    return (PART in known and group not in NOT_PART) or bool(known & {group, _plain(role)})
+    names = {_plain(entry) for entry in entries}
+    return (PART in names and group not in NOT_PART) or bool(names & {group, _plain(role)})
 
 
 def unknown_entries(entries: Sequence[str], roles: Sequence[str]) -> list[str]:
-    """Entries that are neither a group nor a type of the file."""
-    known = {PART, ALL, *(group for group, _ in GROUPS), *map(_plain, roles)}
-    return [entry for entry in entries if _plain(entry) not in known]
+    """Return the entries that are neither a group nor a type of the file."""
+    names = {PART, ALL, *(group for group, _ in GROUPS), *map(_plain, roles)}
+    return [entry for entry in entries if _plain(entry) not in names]
 
 
 def _plain(name: str) -> str:
     return re.sub(r"[\s_-]+", " ", name.strip().lower())
 
 
-def chosen(
+def choose_runs(
     runs: Sequence[AnyRun], roles: str, where: str, code: str
 ) -> tuple[list[AnyRun], list[Issue]]:
-    """Choose the runs of roles, and say what is left out or not known.
+    """Choose the runs of roles, and report omitted and unknown roles.
 
     Parameters
     ----------
@@ -134,14 +141,15 @@ def chosen(
     where
         The name of the file, for messages.
     code
-        Of the error where no run is left.
+        Code of the error if no run remains.
 
     Raises
     ------
     InputError
-        BAD_VALUE for roles that are neither groups nor types of the file; `code` where nothing is left.
+        BAD_VALUE for roles that are neither groups nor types of the file; `code` if nothing
+        remains.
     """
-    entries = wanted(roles)
+    entries = split_entries(roles)
     names = list(dict.fromkeys(run.role for run in runs if run.role is not None))
     unknown = unknown_entries(entries, names)
     if unknown:
@@ -154,10 +162,10 @@ def chosen(
             where,
             ", ".join(names) or "it has no types",
         )
-    laid = [run for run in runs if is_laid(run.role, entries)]
-    others = [run for run in runs if not is_laid(run.role, entries)]
-    lengths = _lengths(others)
-    if not laid:
+    deposited = [run for run in runs if is_deposited(run.role, entries)]
+    omitted = [run for run in runs if not is_deposited(run.role, entries)]
+    lengths = _lengths(omitted)
+    if not deposited:
         raise InputError(
             code,
             where,
@@ -166,7 +174,7 @@ def chosen(
             roles,
         )
     issues = []
-    if others:
+    if omitted:
         message = Text(
             "{}: {} left out, as strategy.roles is {}; name other roles to deposit more",
             where,
@@ -183,7 +191,7 @@ def chosen(
             ", ".join(strange),
         )
         issues.append(Issue(NOTE, NOT_READ, message))
-    return laid, issues
+    return deposited, issues
 
 
 def _lengths(runs: Sequence[Run]) -> str:

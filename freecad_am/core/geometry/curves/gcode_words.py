@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lines of G-code as commands: words by a grammar of numbers, comments, line numbers and checksums.
+"""Lines of G-code as commands: words by a grammar of numbers, comments, line numbers and
+checksums.
 
-A line may hold several commands, as RepRapFirmware takes them; every character of a command belongs to a word, or the line
-is rejected. Words after M codes are arguments of the machine (temperatures, texts), which nobody reads here.
+A line may hold several commands, as RepRapFirmware accepts them. Every character of a
+command belongs to a word; otherwise the line is rejected. Words after M codes are
+arguments of the machine (temperatures, texts), which are not interpreted here.
 """
 
 from __future__ import annotations
@@ -79,12 +81,16 @@ class BadWords(ValueError):
 
 @dataclass(frozen=True)
 class Command:
-    """A command with its words. name: `G1`, `M104`, `T0`; the name of a macro; '' of words without a command. words: letters
-    with their numbers, None of a letter alone. rest: what follows a macro or an M code, as it stands."""
+    """A command with its words.
+
+    name: `G1`, `M104`, `T0`, the name of a macro, or '' for words without a command. words:
+    letters with their numbers, None for a letter without a number. arguments: the unparsed
+    text after a macro or an M code.
+    """
 
     name: str
     words: tuple[tuple[str, float | None], ...] = ()
-    rest: str = ""
+    arguments: str = ""
 
     @property
     def is_macro(self) -> bool:
@@ -93,41 +99,48 @@ class Command:
 
 
 def split_comments(line: str) -> tuple[str, list[str]]:
-    """The code of a line without its comments, and these. BadWords for a bracket that does not close."""
+    """Split a line into its code and its comments. Raises BadWords for a bracket that does not
+    close.
+    """
     if "(" not in line and '"' not in line:  # most lines
         plain, mark, comment = line.partition(";")
         return plain.strip(), [comment] if mark else []
-    code, comments, quoted, at = "", [], False, 0
-    is_text = _TEXT_CODE.match(line) is not None  # brackets of a message are no comments
+    code, comments, quoted, position = "", [], False, 0
+    is_text = _TEXT_CODE.match(line) is not None  # brackets in a message are not comments
     closed = line.count('"') % 2 == 0  # an inch sign in a message does not begin a text
-    while at < len(line):
-        sign = line[at]
+    while position < len(line):
+        sign = line[position]
         if sign == '"' and closed:
             quoted = not quoted
         if quoted or sign not in ";(" or (sign == "(" and is_text):
-            code, at = code + sign, at + 1
+            code, position = code + sign, position + 1
         elif sign == ";":
-            comments.append(line[at + 1 :])
+            comments.append(line[position + 1 :])
             break
         else:
-            end = line.find(")", at)
+            end = line.find(")", position)
             if end < 0:
                 raise BadWords(
-                    Text("{!r} is a comment that does not end; close it with )", line[at:][:40])
+                    Text(
+                        "{!r} is a comment that does not end; close it with )", line[position:][:40]
+                    )
                 )
-            comments.append(line[at + 1 : end])
-            code, at = code + " ", end + 1
+            comments.append(line[position + 1 : end])
+            code, position = code + " ", end + 1
     return code.strip(), comments
 
 
 def commands_of(code: str) -> list[Command]:
-    """The commands of a line without comments, in their order. BadWords names what of it is not understood."""
-    if _PLAIN_MOVE.fullmatch(code):  # most lines; the rest of this function gives the same
+    """Return the commands of a line without comments, in order.
+
+    Raises BadWords that names the text that is not understood.
+    """
+    if _PLAIN_MOVE.fullmatch(code):  # most lines; a shortcut for the code below
         words = code.split()
         values = tuple((word[0], float(word[1:])) for word in words[1:])
         if len({letter for letter, _ in values}) == len(values):
             return [Command(words[0], values)]
-    code = _without_checksum(code)
+    code = _strip_checksum(code)
     number = _LINE_NUMBER.match(code)
     if number is not None:
         code = code[number.end() :]
@@ -140,8 +153,8 @@ def commands_of(code: str) -> list[Command]:
             raise BadWords(
                 Text("{!r} is a condition, a loop or a variable; write the moves out", code[:60])
             )
-        return [Command(name[1].upper(), rest=code[name.end() :].strip())]
-    return _split(code)
+        return [Command(name[1].upper(), arguments=code[name.end() :].strip())]
+    return _split_commands(code)
 
 
 def _is_words(code: str) -> bool:
@@ -149,46 +162,49 @@ def _is_words(code: str) -> bool:
     return re.match(rf"[A-Za-z]\s*{NUMBER}", code) is not None
 
 
-def _without_checksum(code: str) -> str:
-    """The line without its checksum, the exclusive or of the bytes before the star. BadWords where it does not fit."""
-    found = _CHECKSUM.search(code)
-    if found is None:
+def _strip_checksum(code: str) -> str:
+    """Return the line without its checksum, the exclusive or of the bytes before the star.
+
+    Raises BadWords for a wrong checksum.
+    """
+    match = _CHECKSUM.search(code)
+    if match is None:
         return code
-    before = code[: found.start()]
+    content = code[: match.start()]
     value = 0
-    for byte in before.encode("utf-8", "replace"):
+    for byte in content.encode("utf-8", "replace"):
         value ^= byte
-    if value != int(found[1]):
-        raise BadWords(Text("its checksum is {}, not {}; the line is damaged", value, found[1]))
-    return before
+    if value != int(match[1]):
+        raise BadWords(Text("its checksum is {}, not {}; the line is damaged", value, match[1]))
+    return content
 
 
-def _split(code: str) -> list[Command]:
+def _split_commands(code: str) -> list[Command]:
     commands: list[Command] = []
-    at = 0
-    while at < len(code):
-        head = _WORD.match(code, at)
+    position = 0
+    while position < len(code):
+        head = _WORD.match(code, position)
         if head is None:
-            raise _left(code, at)
+            raise _bad_words(code, position)
         letter = head[1].upper()
         if letter == "T":
-            return [*commands, _tool(code[at:])]
+            return [*commands, _tool(code[position:])]
         if letter == "M":
-            command, at = _machine_code(code, head)
+            command, position = _machine_code(code, head)
         elif letter == "G":
             if head[2] is None:
-                raise _left(code, at)
-            words, at_next = _words(code, head.end())
-            command, at = Command(_code_name(head), words), at_next
+                raise _bad_words(code, position)
+            words, at_next = _read_words(code, head.end())
+            command, position = Command(_code_name(head), words), at_next
         else:
-            words, at = _words(code, at)
+            words, position = _read_words(code, position)
             command = Command("", words)
         commands.append(command)
     return commands
 
 
 def _tool(code: str) -> Command:
-    return Command("T", rest=code.strip()[1:].strip())
+    return Command("T", arguments=code.strip()[1:].strip())
 
 
 def _code_name(head: re.Match[str]) -> str:
@@ -196,71 +212,81 @@ def _code_name(head: re.Match[str]) -> str:
 
 
 def _machine_code(code: str, head: re.Match[str]) -> tuple[Command, int]:
-    """An M code with what follows it up to the next G or M code, and where that begins."""
+    """Return an M code with its arguments up to the next G or M code, and the position of that
+    code.
+    """
     if head[2] is None:
-        raise _left(code, head.start())
+        raise _bad_words(code, head.start())
     name, end = _code_name(head), head.end()
     if name in TEXT_CODES:
-        return Command(name, rest=code[end:].strip()), len(code)
+        return Command(name, arguments=code[end:].strip()), len(code)
     quoted = False
-    for at in range(end, len(code)):
-        quoted ^= code[at] == '"'
-        starts = code[at] in "GMgm" and not (code[at - 1].isalnum() or code[at - 1] in "_.\"'")
-        if not quoted and starts and re.match(r"[GMgm]\s*\d", code[at:]):
-            return Command(name, _flags(code[end:at]), code[end:at].strip()), at
-    return Command(name, _flags(code[end:]), code[end:].strip()), len(code)
+    for position in range(end, len(code)):
+        quoted ^= code[position] == '"'
+        starts = code[position] in "GMgm" and not (
+            code[position - 1].isalnum() or code[position - 1] in "_.\"'"
+        )
+        if not quoted and starts and re.match(r"[GMgm]\s*\d", code[position:]):
+            return Command(
+                name, _find_flags(code[end:position]), code[end:position].strip()
+            ), position
+    return Command(name, _find_flags(code[end:]), code[end:].strip()), len(code)
 
 
-def _flags(text: str) -> tuple[tuple[str, float | None], ...]:
-    """Letters with numbers of the arguments of an M code, whatever stands between them."""
-    found = re.findall(rf"(?<![A-Za-z])([A-Za-z])\s*({NUMBER})", re.sub(r'"[^"]*"', " ", text))
-    return tuple((letter.upper(), float(value)) for letter, value in found)
+def _find_flags(text: str) -> tuple[tuple[str, float | None], ...]:
+    """Return letters with numbers among the arguments of an M code."""
+    matches = re.findall(rf"(?<![A-Za-z])([A-Za-z])\s*({NUMBER})", re.sub(r'"[^"]*"', " ", text))
+    return tuple((letter.upper(), float(value)) for letter, value in matches)
 
 
-def _words(code: str, at: int) -> tuple[tuple[tuple[str, float | None], ...], int]:
-    """Words up to the next G or M code, and where that begins."""
+def _read_words(code: str, position: int) -> tuple[tuple[tuple[str, float | None], ...], int]:
+    """Return the words up to the next G or M code, and the position of that code."""
     words: list[tuple[str, float | None]] = []
-    while at < len(code):
-        found = _WORD.match(code, at)
-        if found is None:
-            if not code[at:].strip():
+    while position < len(code):
+        match = _WORD.match(code, position)
+        if match is None:
+            if not code[position:].strip():
                 return tuple(words), len(code)
-            raise _left(code, at)
-        letter = found[1].upper()
-        if letter in "GM" and found[2] is not None:
+            raise _bad_words(code, position)
+        letter = match[1].upper()
+        if letter in "GM" and match[2] is not None:
             break
-        value, at = _value(code, found, letter)
+        value, position = _read_value(code, match, letter)
         if letter in (name for name, _ in words):
             raise BadWords(Text("{} stands twice in {!r}; leave one out", letter, code[:60]))
         words.append((letter, value))
-    return tuple(words), at
+    return tuple(words), position
 
 
-def _value(code: str, found: re.Match[str], letter: str) -> tuple[float | None, int]:
-    """The number of a word, with its exponent, and where the next word begins."""
-    if found[2] is None:
-        return None, found.end()
-    end = found.end()
+def _read_value(code: str, match: re.Match[str], letter: str) -> tuple[float | None, int]:
+    """Return the number of a word, with its exponent, and the position of the next word."""
+    if match[2] is None:
+        return None, match.end()
+    end = match.end()
     exponent = _EXPONENT.match(code, end)
-    if exponent is not None and _is_exponent(code, found, exponent, letter):
+    if exponent is not None and _is_exponent(code, match, exponent, letter):
         end = exponent.end()
-        value = float(f"{found[2]}e{exponent[2]}")
+        value = float(f"{match[2]}e{exponent[2]}")
     else:
-        value = float(found[2])
+        value = float(match[2])
     following = code[end : end + 1]
     if following and not (following.isspace() or following.isalpha()):
-        raise _left(code, found.start(1), found.start(1) + 24)
+        raise _bad_words(code, match.start(1), match.start(1) + 24)
     if not math.isfinite(value):
-        raise _left(code, found.start(1))
+        raise _bad_words(code, match.start(1))
     return value, end
 
 
-def _is_exponent(code: str, found: re.Match[str], exponent: re.Match[str], letter: str) -> bool:
-    """Whether an E after a number is its exponent, not the extruder of a line without spaces. BadWords where it may be both."""
-    rest = code[: found.start(1)] + " " + code[exponent.end() :]
-    if letter == "E" or re.search(rf"[Ee]\s*{NUMBER}", rest) is not None:
+def _is_exponent(code: str, match: re.Match[str], exponent: re.Match[str], letter: str) -> bool:
+    """Return whether an E after a number is its exponent, not the extruder in a line without
+    spaces.
+
+    Raises BadWords if it may be both.
+    """
+    other_code = code[: match.start(1)] + " " + code[exponent.end() :]
+    if letter == "E" or re.search(rf"[Ee]\s*{NUMBER}", other_code) is not None:
         return True
-    if exponent[1] == "e" and found[1].isupper():
+    if exponent[1] == "e" and match[1].isupper():
         return True
     spaced = re.search(r"[\d.]\s+[A-Za-z]", code) is not None
     if spaced and re.fullmatch(r"[-+]\d\d+", exponent[2]):
@@ -270,13 +296,13 @@ def _is_exponent(code: str, found: re.Match[str], exponent: re.Match[str], lette
     raise BadWords(
         Text(
             "{!r} may be a number with an exponent, or two words; write the number without exponent, or a space before E",
-            code[found.start(1) : exponent.end()],
+            code[match.start(1) : exponent.end()],
         )
     )
 
 
-def _left(code: str, at: int, end: int | None = None) -> BadWords:
-    text = code[at:end].strip()[:40]
+def _bad_words(code: str, position: int, end: int | None = None) -> BadWords:
+    text = code[position:end].strip()[:40]
     if re.match(r"[A-Za-z]\s*[-+]?\d+,\d", text):
         return BadWords(Text("{!r} has a decimal comma; write numbers with a point", text))
     return BadWords(Text("{!r} is not understood; give letters with numbers such as X-1.5", text))

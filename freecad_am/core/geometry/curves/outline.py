@@ -16,7 +16,7 @@ from ..columns import lengths
 
 # a row of points that turns by more than this has a corner there, where nothing else is known, rad
 CORNER = np.radians(35.0)
-# a segment so many times as long as one beside it is not a piece of the same arc: a circle through both would bow it most
+# a segment longer than its neighbour by this ratio is not part of the same arc: a circle through both would bend it most
 LENGTH_RATIO = 3.0
 
 
@@ -29,15 +29,21 @@ class Outline:
     arriving: Array
 
     def at(self, segment: Index, share: Array | float) -> tuple[Array, Array]:
-        """Points (k, 3) a share (k,) of the way along segments (k,), and the unit tangents (k, 3) there."""
+        """Return points (k, 3) at a share (k,) of the length of segments (k,), and the unit tangents
+        (k, 3) there.
+        """
         s = np.broadcast_to(np.asarray(share, dtype=np.float64), segment.shape)[:, None]
         start, chord = self.points[segment], self.points[segment + 1] - self.points[segment]
         leaving, arriving = self.leaving[segment], self.arriving[segment]
-        rest = 1.0 - s
-        # the chord and what bows away from it, so that segments without a bow stay straight to the bit
-        away, toward = leaving - chord, arriving - chord
-        point = start + s * chord + s * rest * (rest * away - s * toward)
-        slope = chord + rest * (rest - 2.0 * s) * away + s * (s - 2.0 * rest) * toward
+        remaining = 1.0 - s
+        # the chord plus its bow, so that segments without a bow stay exactly straight
+        start_bow, toward = leaving - chord, arriving - chord
+        point = start + s * chord + s * remaining * (remaining * start_bow - s * toward)
+        slope = (
+            chord
+            + remaining * (remaining - 2.0 * s) * start_bow
+            + s * (s - 2.0 * remaining) * toward
+        )
         return point, unit(slope)
 
 
@@ -47,8 +53,11 @@ def outline(points: Array, tangents: Array) -> Outline:
 
 
 def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, Array]:
-    """Derivatives (n - 1, 3) at the two ends of the cubics through points (n, 3) that have unit tangents (n - 1, 3) there:
-    of the size at which the middle of a circle's arc is met."""
+    """Return derivatives (n - 1, 3) at the ends of the cubics through points (n, 3) with unit
+    tangents (n - 1, 3).
+
+    Their size makes the cubic meet the middle of a circular arc.
+    """
     chord = np.diff(points, axis=0)
     length = lengths(chord)
     cosine = 0.5 * ((leaving + arriving) * unit(chord)).sum(axis=1)
@@ -56,26 +65,28 @@ def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, 
     return size * leaving, size * arriving
 
 
-def estimated(points: Array, closed: bool) -> Outline:
-    """The outline of points (n, 3) alone: the tangent at a point is that of the circle through it and its neighbours.
+def estimate_outline(points: Array, closed: bool) -> Outline:
+    """Estimate the outline from points (n, 3): the tangent at a point is that of the circle
+    through it and its neighbours.
 
-    A segment next to a corner is straight, and one much longer than its neighbour, as where an arc runs into a line: points
-    of a curve lie about evenly. closed: the last point is the first.
+    A segment next to a corner is straight, and so is one much longer than its neighbour, as
+    where an arc meets a line: points of a curve are roughly evenly spaced. closed: the last
+    point is the first.
     """
     along = np.diff(points, axis=0)
     length = lengths(along)[:, None]
     along = along / np.maximum(length, 1e-12)
     rounded = closed and len(along) > 2
-    before = np.concatenate([along[-1:] if rounded else along[:1], along])
-    after = np.concatenate([along, along[:1] if rounded else along[-1:]])
-    far = np.concatenate([length[-1:] if rounded else length[:1], length])
-    near = np.concatenate([length, length[:1] if rounded else length[-1:]])
-    tangent = unit(before * near + after * far)
+    previous_direction = np.concatenate([along[-1:] if rounded else along[:1], along])
+    next_direction = np.concatenate([along, along[:1] if rounded else along[-1:]])
+    previous_length = np.concatenate([length[-1:] if rounded else length[:1], length])
+    next_length = np.concatenate([length, length[:1] if rounded else length[-1:]])
+    tangent = unit(previous_direction * next_length + next_direction * previous_length)
     if not rounded and len(along) > 1:  # at an end, the circle of the point next to it
         tangent[0] = 2.0 * (along[0] @ tangent[1]) * along[0] - tangent[1]
         tangent[-1] = 2.0 * (along[-1] @ tangent[-2]) * along[-1] - tangent[-2]
-    corner = (before * after).sum(axis=1) < np.cos(CORNER)
-    long = (length > LENGTH_RATIO * np.minimum(far[:-1], near[1:]))[:, 0]
+    corner = (previous_direction * next_direction).sum(axis=1) < np.cos(CORNER)
+    long = (length > LENGTH_RATIO * np.minimum(previous_length[:-1], next_length[1:]))[:, 0]
     straight = (corner[:-1] | corner[1:] | long)[:, None]
     leaving, arriving = (
         np.where(straight, along, tangent[:-1]),

@@ -11,7 +11,7 @@ import numpy as np
 from ...types import Array, Index, Mask
 from ..step_count import step_counts
 
-AT_ONCE = 4_000_000  # pairs of points and edges
+BLOCK_SIZE = 4_000_000  # pairs of points and edges
 
 
 class Nearest(NamedTuple):
@@ -46,34 +46,38 @@ def arcs(points: Array, closed: bool = False) -> Array:
     return np.asarray(np.r_[0.0, np.cumsum(np.hypot(*steps(points, closed).T))])
 
 
-def sines(vectors: Array, others: Array) -> Array:
-    """Sines (n,) of the angles from vectors (n, 2) to others (n, 2): positive for those to the left."""
-    cross = vectors[:, 0] * others[:, 1] - vectors[:, 1] * others[:, 0]
-    return np.asarray(cross / np.maximum(np.hypot(*vectors.T) * np.hypot(*others.T), 1e-300))
+def sines(vectors: Array, references: Array) -> Array:
+    """Return the sines (n,) of the angles from vectors (n, 2) to references (n, 2): positive to
+    the left.
+    """
+    cross = vectors[:, 0] * references[:, 1] - vectors[:, 1] * references[:, 0]
+    return np.asarray(cross / np.maximum(np.hypot(*vectors.T) * np.hypot(*references.T), 1e-300))
 
 
 def winding(rings: Sequence[Array], points: Array) -> Index:
-    """How often rings (n, 2) go round each of points (k, 2), counted with their sense."""
+    """Return the winding number of rings (n, 2) about each of points (k, 2)."""
     count = np.zeros(len(points), dtype=np.intp)
     for ring in rings:
         low, high = ring.min(axis=0), ring.max(axis=0)
-        near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
-        if not len(near):  # most holes of a region, of a few places
+        candidates = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+        if not len(candidates):  # for most holes of a region and few points
             continue
-        near = near[np.argsort(points[near, 1], kind="stable")]
+        candidates = candidates[np.argsort(points[candidates, 1], kind="stable")]
         following = np.roll(ring, -1, axis=0)
-        # the points that an edge is beside are neighbours in the order of y
+        # the points adjacent to an edge are neighbours in the order of y
         span = np.searchsorted(
-            points[near, 1], np.sort(np.stack([ring[:, 1], following[:, 1]]), axis=0)
+            points[candidates, 1], np.sort(np.stack([ring[:, 1], following[:, 1]]), axis=0)
         )
-        many = span[1] - span[0]
-        ends = np.cumsum(many)
-        for some in np.split(np.arange(len(ring)), np.flatnonzero(np.diff(ends // AT_ONCE)) + 1):
-            edge = np.repeat(some, many[some])
-            row = near[
+        point_counts = span[1] - span[0]
+        ends = np.cumsum(point_counts)
+        for block in np.split(
+            np.arange(len(ring)), np.flatnonzero(np.diff(ends // BLOCK_SIZE)) + 1
+        ):
+            edge = np.repeat(block, point_counts[block])
+            row = candidates[
                 np.arange(len(edge))
-                - np.repeat(ends[some] - many[some] - span[0][some], many[some])
-                + (ends[some[0]] - many[some[0]])
+                - np.repeat(ends[block] - point_counts[block] - span[0][block], point_counts[block])
+                + (ends[block[0]] - point_counts[block[0]])
             ]
             a, b = ring[edge], following[edge]
             side = (b[:, 0] - a[:, 0]) * (points[row, 1] - a[:, 1]) - (points[row, 0] - a[:, 0]) * (
@@ -86,70 +90,84 @@ def winding(rings: Sequence[Array], points: Array) -> Index:
 
 
 def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
-    """The places of a polyline (m, 2) nearest to points (k, 2)."""
-    way = steps(curve, closed)
-    start = curve[: len(way)]
-    square = np.maximum((way**2).sum(axis=1), 1e-300)
-    size = max(AT_ONCE // max(len(way), 1), 1)
+    """Return the points of a polyline (m, 2) nearest to points (k, 2)."""
+    step = steps(curve, closed)
+    start = curve[: len(step)]
+    square = np.maximum((step**2).sum(axis=1), 1e-300)
+    size = max(BLOCK_SIZE // max(len(step), 1), 1)
     edges, shares = [], []
-    for some in (points[k : k + size] for k in range(0, len(points), size)):
-        x, y = some[:, :1] - start[:, 0], some[:, 1:] - start[:, 1]
-        share = np.clip((x * way[:, 0] + y * way[:, 1]) / square, 0.0, 1.0)
-        away = (x - share * way[:, 0]) ** 2 + (y - share * way[:, 1]) ** 2
-        best = np.argmin(away, axis=1)
+    for block in (points[k : k + size] for k in range(0, len(points), size)):
+        x, y = block[:, :1] - start[:, 0], block[:, 1:] - start[:, 1]
+        share = np.clip((x * step[:, 0] + y * step[:, 1]) / square, 0.0, 1.0)
+        square_distance = (x - share * step[:, 0]) ** 2 + (y - share * step[:, 1]) ** 2
+        best = np.argmin(square_distance, axis=1)
         edges.append(best)
-        shares.append(share[np.arange(len(some)), best])
+        shares.append(share[np.arange(len(block)), best])
     edge = np.concatenate(edges) if edges else np.zeros(0, dtype=np.intp)
-    part = np.concatenate(shares) if shares else np.zeros(0)
-    place = start[edge] + part[:, None] * way[edge]
-    return Nearest(place, edge, part, np.hypot(*(points - place).T))
+    fraction = np.concatenate(shares) if shares else np.zeros(0)
+    feet = start[edge] + fraction[:, None] * step[edge]
+    return Nearest(feet, edge, fraction, np.hypot(*(points - feet).T))
 
 
 def nearest_among(lines: Sequence[tuple[Array, bool]], points: Array) -> tuple[Array, Array]:
-    """The places (n, 2) on polylines (points (m, 2), whether closed) nearest to points (n, 2), and how far (n,) mm they are;
-    the points themselves, infinitely far, where there are no lines."""
-    places, distance = points, np.full(len(points), np.inf)
+    """Return the nearest points (n, 2) on polylines to points (n, 2), and their distances (n,)
+    mm.
+
+    lines: points (m, 2) and whether closed. Without lines, returns the points themselves at
+    infinite distance.
+    """
+    feet, distance = points, np.full(len(points), np.inf)
     for line, closed in lines:
-        found = nearest(line, points, closed)
-        nearer = found.distance < distance
-        places, distance = (
-            np.where(nearer[:, None], found.points, places),
-            np.where(nearer, found.distance, distance),
+        candidate = nearest(line, points, closed)
+        nearer = candidate.distance < distance
+        feet, distance = (
+            np.where(nearer[:, None], candidate.points, feet),
+            np.where(nearer, candidate.distance, distance),
         )
-    return places, distance
+    return feet, distance
 
 
-def nearest_of(
+def nearest_on_rings(
     rings: Sequence[Array], boxes: tuple[Array, Array], points: Array
 ) -> tuple[Array, Array]:
-    """The places (n, 2) on rings nearest to points (n, 2), and how far they are (n,), mm. boxes: lowest and highest
-    coordinates (r, 2) of each ring."""
+    """Return the points (n, 2) on rings nearest to points (n, 2), and their distances (n,), mm.
+
+    boxes: lowest and highest coordinates (r, 2) of each ring.
+    """
     low, high = boxes
     beyond = np.maximum(np.maximum(low - points[:, None], points[:, None] - high), 0.0)
-    least = np.hypot(beyond[..., 0], beyond[..., 1])
-    one = int(least.sum(axis=0).argmin())
-    first = nearest(rings[one], points, closed=True).distance
-    near = (least <= first[:, None] * (1.0 + 1e-9)).any(
+    box_distance = np.hypot(beyond[..., 0], beyond[..., 1])
+    ring_number = int(box_distance.sum(axis=0).argmin())
+    first_distance = nearest(rings[ring_number], points, closed=True).distance
+    is_candidate = (box_distance <= first_distance[:, None] * (1.0 + 1e-9)).any(
         axis=0
-    )  # no place of others is nearer than their box
-    near[one] = True
-    found = [
-        nearest(ring, points, closed=True) for ring, is_near in zip(rings, near.tolist()) if is_near
+    )  # no point of another ring is nearer than its box
+    is_candidate[ring_number] = True
+    candidates = [
+        nearest(ring, points, closed=True)
+        for ring, is_near in zip(rings, is_candidate.tolist())
+        if is_near
     ]
-    away = np.stack([one.distance for one in found])
-    best, row = np.argmin(away, axis=0), np.arange(len(points))
-    return np.stack([one.points for one in found])[best, row], away[best, row]
+    distances = np.stack([ring_number.distance for ring_number in candidates])
+    best, row = np.argmin(distances, axis=0), np.arange(len(points))
+    return np.stack([ring_number.points for ring_number in candidates])[best, row], distances[
+        best, row
+    ]
 
 
 def fractions(points: Array) -> Array:
-    """How far (n,) along an open polyline (n, 2) its points are, of its length."""
-    way = arcs(points)
-    return np.asarray(way / way[-1])
+    """Return the arc lengths (n,) of the points of an open polyline (n, 2) as shares of its
+    length.
+    """
+    s = arcs(points)
+    return np.asarray(s / s[-1])
 
 
-def divided(points: Array, count: Index) -> tuple[Array, Mask]:
-    """An open polyline (n, 2), or (n, 3) in space, with its edges in so many (n - 1,) equal parts each, and which points (m,)
-    it had before."""
+def divide_edges(points: Array, count: Index) -> tuple[Array, Mask]:
+    """Divide each edge of an open polyline (n, 2) or (n, 3) into `count` (n - 1,) equal parts.
+
+    Also returns which points (m,) are original.
+    """
     edge = np.repeat(np.arange(len(count)), count)
     number = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
     inner = points[edge] + (number / count[edge])[:, None] * np.diff(points, axis=0)[edge]
@@ -159,7 +177,7 @@ def divided(points: Array, count: Index) -> tuple[Array, Mask]:
 def divided_by_step(points: Array, step: float) -> tuple[Array, Mask]:
     """An open polyline (n, 2) with points at most `step` mm apart, and which points (m,) it had before."""
     lengths = np.hypot(*np.diff(points, axis=0).T)
-    return divided(points, step_counts(lengths, step))
+    return divide_edges(points, step_counts(lengths, step))
 
 
 def dense(ring: Array, step: float) -> Array:
@@ -167,32 +185,34 @@ def dense(ring: Array, step: float) -> Array:
     return divided_by_step(np.vstack([ring, ring[:1]]), step)[0][:-1]
 
 
-def begun_at(ring: Array, point: Array) -> Array:
-    """A ring (n, 2) that begins where it is nearest to a point (2,); that place becomes one of its points."""
-    found = nearest(ring, point[None], closed=True)
-    edge, place = int(found.edge[0]), found.points[0]
-    rest = np.roll(ring, -(edge + 1), axis=0)
+def start_at(ring: Array, point: Array) -> Array:
+    """Return a ring (n, 2) that begins where it is nearest to a point (2,); that position
+    becomes one of its points.
+    """
+    foot = nearest(ring, point[None], closed=True)
+    edge, start = int(foot.edge[0]), foot.points[0]
+    rotated = np.roll(ring, -(edge + 1), axis=0)
     close = 1e-9 * float(np.abs(steps(ring, True)[edge]).max())
-    if np.abs(rest[0] - place).max() <= close:
-        return rest
-    if np.abs(rest[-1] - place).max() <= close:
-        return np.roll(rest, 1, axis=0)
-    return np.vstack([place[None], rest])
+    if np.abs(rotated[0] - start).max() <= close:
+        return rotated
+    if np.abs(rotated[-1] - start).max() <= close:
+        return np.roll(rotated, 1, axis=0)
+    return np.vstack([start[None], rotated])
 
 
-def up_to(points: Array, way: float) -> Array:
-    """The first `way` mm of an open polyline (n, 2)."""
-    at = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
-    if way >= at[-1]:
+def cut_at_length(points: Array, length: float) -> Array:
+    """Return the first `length` mm of an open polyline (n, 2)."""
+    s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    if length >= s[-1]:
         return points
-    k = int(np.searchsorted(at, way, side="right"))
-    share = (way - at[k - 1]) / max(at[k] - at[k - 1], 1e-300)
+    k = int(np.searchsorted(s, length, side="right"))
+    share = (length - s[k - 1]) / max(s[k] - s[k - 1], 1e-300)
     end = points[k - 1] + share * (points[k] - points[k - 1])
     return np.vstack([points[:k], end[None]]) if share > 1e-9 else points[:k]
 
 
-def turned(points: Array, angle: float) -> Array:
-    """Points (..., 2) turned about the origin by an angle, rad."""
+def rotate_points(points: Array, angle: float) -> Array:
+    """Rotate points (..., 2) about the origin by an angle, rad."""
     cos, sin = np.cos(angle), np.sin(angle)
     return np.stack(
         [points[..., 0] * cos - points[..., 1] * sin, points[..., 0] * sin + points[..., 1] * cos],

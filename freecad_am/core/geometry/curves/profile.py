@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls of revolution: the generating curve (meridian) and the turn it makes about the axis.
+"""Walls of revolution: the generating curve (meridian) and its turn about the axis.
 
-The meridian lives in the half plane (radius, height) of the feature frame, whose Z is the axis. It is a chain
-of exact samples with exact unit tangents, joined by cubic Hermite arcs in arc length: with neighbouring
-tangents less than 0.006 rad apart (see `sampling`) positions are good to 1e-7 mm and tangents to 1e-8.
+The meridian is in the half plane (radius, height) of the feature frame, whose Z is the
+axis. It is a chain of exact samples with exact unit tangents, joined by cubic Hermite
+arcs in arc length. With neighbouring tangents less than 0.006 rad apart (see `sampling`),
+positions are accurate to 1e-7 mm and tangents to 1e-8.
 """
 
 from __future__ import annotations
@@ -34,16 +35,16 @@ def arc_lengths(points: Array, tangents: Array) -> Array:
     """
     steps = np.diff(points, axis=0)
     chords = np.hypot(steps[:, 0], steps[:, 1])
-    a = turning(steps, tangents[:-1])
-    b = turning(steps, tangents[1:])
+    a = turning_angle(steps, tangents[:-1])
+    b = turning_angle(steps, tangents[1:])
     length: Array = chords * (1.0 + (2.0 * a * a - a * b + 2.0 * b * b) / 30.0)
     return length
 
 
-def turning(one: Array, other: Array) -> Array:
-    """Angle (...,) rad from vectors to others, (..., 2), counter-clockwise positive."""
-    cross = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
-    angle: Array = np.arctan2(cross, (one * other).sum(axis=-1))
+def turning_angle(a: Array, b: Array) -> Array:
+    """Return the angle (...,) rad from vectors a to b, (..., 2), counter-clockwise positive."""
+    cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    angle: Array = np.arctan2(cross, (a * b).sum(axis=-1))
     return angle
 
 
@@ -71,16 +72,16 @@ class Meridian:
             raise ValueError("the radius of a meridian is never negative")
 
     @classmethod
-    def chained(cls, pieces: Sequence[tuple[Array, Array]]) -> Meridian:
-        """The pieces (points (n, 2), unit tangents (n, 2)) one after the other.
+    def chained(cls, segments: Sequence[tuple[Array, Array]]) -> Meridian:
+        """Return the chain of the segments (points (n, 2), unit tangents (n, 2)).
 
-        A gap between the end of a piece and the start of the next is bridged by a straight step, which counts in the
-        arc length; one of no more than STEP is jumped.
+        A straight step bridges a gap between two segments and counts in the arc length; a gap of
+        at most STEP is skipped.
         """
         points: list[Array] = []
         tangents: list[Array] = []
         lengths = [0.0]
-        for piece_points, piece_tangents in pieces:
+        for piece_points, piece_tangents in segments:
             if points:
                 _bridge(points, tangents, lengths, piece_points[0], piece_tangents[0])
                 piece_points, piece_tangents = piece_points[1:], piece_tangents[1:]
@@ -105,8 +106,10 @@ class Meridian:
     @property
     def kinks(self) -> Array:
         """Arc lengths (k,) at which the tangent jumps, mm."""
-        at = np.flatnonzero(np.diff(self.s) == 0.0)
-        kinks: Array = self.s[at[np.abs(turning(self.tangents[at], self.tangents[at + 1])) > KINK]]
+        node = np.flatnonzero(np.diff(self.s) == 0.0)
+        kinks: Array = self.s[
+            node[np.abs(turning_angle(self.tangents[node], self.tangents[node + 1])) > KINK]
+        ]
         return kinks
 
     @property
@@ -115,9 +118,10 @@ class Meridian:
         return bool(self.points[-1, 0] == 0.0)
 
     def at(self, s: ArrayLike) -> tuple[Array, Array, Array]:
-        """Radius (n,) mm, height (n,) mm and unit tangent (n, 2) at the arc lengths s (n,), kept inside the curve.
+        """Return radius (n,) mm, height (n,) mm and unit tangent (n, 2) at arc lengths s (n,),
+        clipped to the curve.
 
-        At a kink the tangent is that of the piece below, which carries the deposit.
+        At a kink the tangent is the one below, which carries the deposit.
         """
         i, u, h = self._locate(np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length))
         u, h = u[:, None], h[:, None]
@@ -137,23 +141,30 @@ class Meridian:
         return i, (s - self.s[i]) / h, h
 
     def s_at_height(self, heights: ArrayLike) -> list[Array]:
-        """For each height (n,) mm all arc lengths at which the curve crosses or reaches it, rising, mm."""
-        wanted = np.atleast_1d(np.asarray(heights, dtype=np.float64))
-        z = self.points[None, :, 1] - wanted[:, None]
+        """Return, for each height (n,) mm, all arc lengths at which the curve crosses or reaches it,
+        rising, mm.
+        """
+        levels = np.atleast_1d(np.asarray(heights, dtype=np.float64))
+        z = self.points[None, :, 1] - levels[:, None]
         z = np.where(np.abs(z) < 1e-9, 0.0, z)
-        which, at = np.nonzero(z[:, 1:] * z[:, :-1] < 0.0)
-        low, high = self.s[at].copy(), self.s[at + 1].copy()
-        rising = z[which, at + 1] > 0.0
+        level_number, segment = np.nonzero(z[:, 1:] * z[:, :-1] < 0.0)
+        low, high = self.s[segment].copy(), self.s[segment + 1].copy()
+        rising = z[level_number, segment + 1] > 0.0
         for _ in range(50):
             middle = 0.5 * (low + high)
-            over = (self.at(middle)[1] >= wanted[which]) == rising
+            over = (self.at(middle)[1] >= levels[level_number]) == rising
             low, high = np.where(over, low, middle), np.where(over, middle, high)
         on, node = np.nonzero(z == 0.0)
-        which, found = np.r_[which, on], np.r_[0.5 * (low + high), self.s[node]]
-        order = np.lexsort((found, which))
-        which, found = which[order], found[order]
-        kept = np.r_[True, (np.diff(found) > 1e-6) | (np.diff(which) > 0)][: len(found)]
-        return np.split(found[kept], np.searchsorted(which[kept], np.arange(1, len(wanted))))
+        level_number, arc_lengths = np.r_[level_number, on], np.r_[0.5 * (low + high), self.s[node]]
+        order = np.lexsort((arc_lengths, level_number))
+        level_number, arc_lengths = level_number[order], arc_lengths[order]
+        distinct = np.r_[True, (np.diff(arc_lengths) > 1e-6) | (np.diff(level_number) > 0)][
+            : len(arc_lengths)
+        ]
+        return np.split(
+            arc_lengths[distinct],
+            np.searchsorted(level_number[distinct], np.arange(1, len(levels))),
+        )
 
 
 def _bridge(
@@ -168,7 +179,7 @@ def _bridge(
         points.append(np.array([end, to]))
         tangents.append(np.array([along, along]))
         lengths.extend([0.0, distance])
-    if SAME_PLACE < distance <= STEP or abs(turning(tangents[-1][-1], tangent)) > KINK:
+    if SAME_PLACE < distance <= STEP or abs(turning_angle(tangents[-1][-1], tangent)) > KINK:
         points.append(np.array([to]))
         tangents.append(np.array([tangent]))
         lengths.append(0.0)
@@ -178,10 +189,11 @@ def _bridge(
 class RevolvedWall:
     """A meridian turned about the Z of the feature frame.
 
-    frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). start, end: azimuths in
-    rad about the axis, end > start; `full` when the wall closes on itself. issues: what was found out on the way.
-    label: what the user calls the part. faces: names of the wall's faces, from the platform up. surroundings: fixtures.
-    depths: how the part lies about the wall, where it has faces.
+    frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`).
+    start, end: azimuths in rad about the axis, end > start; `full` when the wall closes on
+    itself. issues: issues raised while building the wall. label: the user's name of the part.
+    faces: names of the wall's faces, from the platform up. surroundings: fixtures. depths:
+    how the part is distributed about the wall, if it has faces.
     """
 
     meridian: Meridian

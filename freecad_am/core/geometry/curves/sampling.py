@@ -20,13 +20,14 @@ ROUNDS = (
 )
 
 
-def sampled(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
-    """Points (n, 2) and unit tangents (n, 2) along the curve from the first break to the last.
+def sample_curve(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
+    """Sample points (n, 2) and unit tangents (n, 2) along the curve from the first break to the
+    last.
 
-    curve: parameters (n,) -> points (n, 2), tangents (n, 2) of any length. breaks: rising parameters between
-    which the curve is smooth. Intervals are halved until the middle of the Hermite arc over the whole interval
-    meets the curve, so that the halves kept are better still (by 8 in the tangent, 16 in the point). Raises
-    ValueError where the curve stands still.
+    curve: parameters (n,) -> points (n, 2), tangents (n, 2) of any length. breaks: rising
+    parameters between which the curve is smooth. Intervals are halved until the middle of the
+    Hermite arc over the whole interval meets the curve, so the halves are better still (by 8
+    in the tangent, 16 in the point). Raises ValueError if the curve has no speed.
     """
     t = _initial(np.asarray(breaks, dtype=np.float64))
     points, tangents = _evaluate(curve, t)
@@ -64,9 +65,9 @@ def _evaluate(curve: Curve, t: Array) -> tuple[Array, Array]:
 
 
 def _agrees(p: Array, a: Array, q: Array, b: Array, middle: Array, tangent: Array) -> Mask:
-    first = _lengths(p, a, middle, tangent)
-    length = first + _lengths(middle, tangent, q, b)
-    u = (first / length)[:, None]
+    start_length = _lengths(p, a, middle, tangent)
+    length = start_length + _lengths(middle, tangent, q, b)
+    u = (start_length / length)[:, None]
     a, b, d = a * length[:, None], b * length[:, None], q - p
     point = p + u * (a + u * (3.0 * d - 2.0 * a - b + u * (a + b - 2.0 * d)))
     off = np.linalg.norm(point - middle, axis=1)
@@ -97,5 +98,5 @@ def arc(centre: ArrayLike, radius: float, start: float, end: float) -> tuple[Arr
         return middle + radius * around, sign * np.stack([-around[:, 1], around[:, 0]], axis=1)
 
     low, high = sorted((start, end))
-    points, tangents = sampled(circle, [low, high])
+    points, tangents = sample_curve(circle, [low, high])
     return (points, tangents) if sign > 0.0 else (points[::-1], tangents[::-1])

@@ -21,9 +21,9 @@ STEPS = 30  # Newton steps; few are taken but near a centre of curvature
 class SpaceCurve:
     """A chain of cubic arcs between nodes. Closed curves repeat the first node as the last.
 
-    w: (m,) rising parameters. points: (m, 3) mm. into, out: (m, 3) derivatives dC/dw where the curve arrives at and
-    leaves a node; they differ at corners alone. Arcs with turns of a few degrees and exact tangents are good to 1e-7 of
-    their length.
+    w: (m,) rising parameters. points: (m, 3) mm. into, out: (m, 3) derivatives dC/dw where
+    the curve arrives at and leaves a node; they differ only at corners. Arcs with turns of a
+    few degrees and exact tangents are accurate to 1e-7 of their length.
     """
 
     def __init__(self, w: Array, points: Array, into: Array, out: Array, closed: bool) -> None:
@@ -59,9 +59,11 @@ class SpaceCurve:
 
     @cached_property
     def corners(self) -> Index:
-        """Nodes at which the tangent jumps; the last node of a closed curve is not listed beside the first."""
-        at: Index = np.flatnonzero(self.turns > CORNER)
-        return at
+        """Nodes at which the tangent jumps; the last node of a closed curve, equal to the first, is
+        not listed.
+        """
+        nodes: Index = np.flatnonzero(self.turns > CORNER)
+        return nodes
 
     @cached_property
     def turns(self) -> Array:
@@ -83,9 +85,9 @@ class SpaceCurve:
         )
         return SpaceCurve(w, self.points[order], self.into[order], self.out[order], True)
 
-    def stretch(self, first: int, last: int) -> SpaceCurve:
-        """The open curve from one node to another."""
-        nodes = slice(first, last + 1)
+    def stretch(self, start: int, end: int) -> SpaceCurve:
+        """Return the open curve from one node to another."""
+        nodes = slice(start, end + 1)
         return SpaceCurve(
             self.w[nodes], self.points[nodes], self.into[nodes], self.out[nodes], False
         )
@@ -96,12 +98,12 @@ class SpaceCurve:
         return SpaceCurve(w, self.points[::-1], -self.out[::-1], -self.into[::-1], self.closed)
 
     def arcs(self, w: Array) -> Index:
-        """The arc (n,) that holds each parameter; at a node the one that leaves it."""
-        found = np.searchsorted(self.w, self.wrapped(w), side="right") - 1
-        arcs: Index = np.clip(found, 0, len(self.span) - 1)
+        """Return the arc (n,) that holds each parameter; at a node the arc that leaves it."""
+        index = np.searchsorted(self.w, self.wrap(w), side="right") - 1
+        arcs: Index = np.clip(index, 0, len(self.span) - 1)
         return arcs
 
-    def wrapped(self, w: Array) -> Array:
+    def wrap(self, w: Array) -> Array:
         """Parameters brought into the range of the nodes, where the curve is closed."""
         if not self.closed:
             return w
@@ -109,8 +111,10 @@ class SpaceCurve:
         # a hair below the first node the remainder rounds to the whole period, which is the first node again
         return np.asarray(self.w[0] + np.where(past < self.period, past, 0.0))
 
-    def on_arcs(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
-        """Points, first and second derivatives along w, each (..., 3), on arcs at t in [0, 1]."""
+    def evaluate_arcs(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
+        """Return points, first and second derivatives along w, each (..., 3), on arcs at t in [0,
+        1].
+        """
         c, t = self.cubics[arc], t[..., None]
         span = self.span[arc][..., None]
         a, b, d = c[..., 1, :], c[..., 2, :], c[..., 3, :]
@@ -122,15 +126,16 @@ class SpaceCurve:
         )
 
     def at(self, w: Array) -> tuple[Array, Array, Array]:
-        """Points, first and second derivatives along w at the parameters (n,), each (n, 3)."""
+        """Return points, first and second derivatives along w at the parameters (n,), each (n, 3)."""
         arc = self.arcs(w)
-        return self.on_arcs(arc, (self.wrapped(w) - self.w[arc]) / self.span[arc])
+        return self.evaluate_arcs(arc, (self.wrap(w) - self.w[arc]) / self.span[arc])
 
     def interpolation_error(self) -> Array:
-        """Estimate (m - 1,) mm of what each arc departs from the curve that the nodes were taken from.
+        """Estimate the error (m - 1,) mm of each arc against the curve from which the nodes were
+        taken.
 
-        A cubic with exact ends is off by span^4 / 384 times the fourth derivative; that is how much the third
-        derivative changes from arc to arc. Changes across corners are none.
+        A cubic with exact ends has an error of span^4 / 384 times the fourth derivative, which is
+        the change of the third derivative from arc to arc. Changes across corners do not count.
         """
         third = 6.0 * self.cubics[:, 3] / self.span[:, None] ** 3
         following = np.roll(third, -1, axis=0)
@@ -143,17 +148,19 @@ class SpaceCurve:
         return error
 
     def refined(self, times: int) -> Array:
-        """Parameters of the nodes and of `times` - 1 places equally spread on each arc, rising."""
+        """Return the parameters of the nodes and of `times` - 1 equal subdivisions of each arc,
+        rising.
+        """
         t = np.arange(times) / times
-        places: Array = np.r_[(self.w[:-1, None] + self.span[:, None] * t).ravel(), self.w[-1]]
-        return places
+        parameters: Array = np.r_[(self.w[:-1, None] + self.span[:, None] * t).ravel(), self.w[-1]]
+        return parameters
 
     @cached_property
     def length(self) -> float:
         """Length, mm."""
         x, weight = np.polynomial.legendre.leggauss(4)
         arc = np.arange(len(self.span))[:, None]
-        _, slope, _ = self.on_arcs(arc, np.broadcast_to(0.5 * (x + 1.0), (len(self.span), 4)))
+        _, slope, _ = self.evaluate_arcs(arc, np.broadcast_to(0.5 * (x + 1.0), (len(self.span), 4)))
         return float((np.linalg.norm(slope, axis=-1) * 0.5 * weight * self.span[:, None]).sum())
 
     def beyond_box(self, points: Array) -> Array:
@@ -165,12 +172,14 @@ class SpaceCurve:
 
     @cached_property
     def _box(self) -> tuple[Array, Array]:
-        """The lowest and highest coordinates (3,), mm, of what holds it: its nodes and the handles of its arcs."""
+        """The lowest and highest coordinates (3,), mm, of the nodes and the handles of the arcs,
+        which enclose the curve.
+        """
         nodes, third = self.points, self.span[:, None] / 3.0
-        every = np.vstack(
+        control_points = np.vstack(
             [nodes, nodes[:-1] + third * self.out[:-1], nodes[1:] - third * self.into[1:]]
         )
-        return every.min(axis=0), every.max(axis=0)
+        return control_points.min(axis=0), control_points.max(axis=0)
 
     @cached_property
     def _samples(self) -> tuple[cKDTree, Index, Array]:
@@ -179,32 +188,35 @@ class SpaceCurve:
         cells = step_counts(chord, chord.sum() / len(chord))
         arc: Index = np.repeat(np.arange(len(cells)), cells)
         t = (np.arange(len(arc)) - np.repeat(np.cumsum(cells) - cells, cells) + 0.5) / cells[arc]
-        return cKDTree(self.on_arcs(arc, t)[0]), arc, t
+        return cKDTree(self.evaluate_arcs(arc, t)[0]), arc, t
 
     def nearest(self, points: Array) -> tuple[Array, Array, Array]:
-        """Distance (n,) mm from points (n, 3) to the curve, nearest point (n, 3) and its parameter (n,).
+        """Return the distance (n,) mm of points (n, 3) from the curve, the nearest point (n, 3) and
+        its parameter (n,).
 
-        Newton from the nearest samples along the smooth piece that each lies on; the nearest of the places found.
+        Newton's method starts at the nearest samples and stays on their smooth pieces; the
+        nearest result is chosen.
         """
-        tree, arcs, places = self._samples
+        tree, arcs, sample_t = self._samples
         count = min(CANDIDATES, len(arcs))
-        found = tree.query(points, k=count)[1].reshape(len(points), count)
-        start = self.w[arcs[found]] + places[found] * self.span[arcs[found]]
-        w = self.walked(np.broadcast_to(points[:, None], start.shape + (3,)), start)
+        candidates = tree.query(points, k=count)[1].reshape(len(points), count)
+        start = self.w[arcs[candidates]] + sample_t[candidates] * self.span[arcs[candidates]]
+        w = self.descend(np.broadcast_to(points[:, None], start.shape + (3,)), start)
         foot = self.at(w)[0]
         distance = lengths((points[:, None] - foot).reshape(-1, 3)).reshape(w.shape)
         best = np.argmin(distance, axis=1)
         row = np.arange(len(points))
-        return distance[row, best], foot[row, best], self.wrapped(w[row, best])
+        return distance[row, best], foot[row, best], self.wrap(w[row, best])
 
-    def walked(self, points: Array, w: Array) -> Array:
-        """The parameters (...,) at which the walk downhill from w (...,) along its smooth piece comes nearest to points
-        (..., 3)."""
+    def descend(self, points: Array, w: Array) -> Array:
+        """Descend from the parameters w (...,) along their smooth pieces to the points nearest to
+        `points` (..., 3).
+        """
         shape = w.shape
-        done, goal = self.wrapped(w).ravel(), points.reshape(-1, 3)
-        low, high = (bound[self.arcs(done)] for bound in self._pieces)
+        result, goal = self.wrap(w).ravel(), points.reshape(-1, 3)
+        low, high = (bound[self.arcs(result)] for bound in self._pieces)
         farthest = self.period / 50.0
-        w, on = done, np.arange(len(done))  # those still on their way
+        w, on = result, np.arange(len(result))  # parameters that have not converged
         for _ in range(STEPS):
             foot, slope, bend = self.at(w)
             gap = goal - foot
@@ -214,7 +226,7 @@ class SpaceCurve:
             step = np.minimum(np.maximum(step, -farthest), farthest)
             new = np.minimum(np.maximum(w + step, low), high)
             moving = np.abs(new - w) >= 1e-13 * self.period
-            done[on] = w = new
+            result[on] = w = new
             if not moving.any():
                 break
             if not moving.all():
@@ -225,11 +237,11 @@ class SpaceCurve:
                     low[moving],
                     high[moving],
                 )
-        return done.reshape(shape)
+        return result.reshape(shape)
 
     @cached_property
     def _pieces(self) -> tuple[Array, Array]:
-        """Bounds of w (m - 1,) of the smooth piece that each arc belongs to; none on a closed smooth curve."""
+        """Bounds of w (m - 1,) of the smooth piece of each arc; infinite on a closed smooth curve."""
         breaks = self.w[self.corners]
         if self.closed and len(breaks):
             breaks = np.r_[breaks[-1] - self.period, breaks, breaks[0] + self.period]
@@ -237,6 +249,6 @@ class SpaceCurve:
             breaks = np.array([-np.inf, np.inf])
         else:
             breaks = np.r_[self.w[0], breaks, self.w[-1]]
-        piece = np.searchsorted(breaks, self.w[:-1] + 0.5 * self.span, side="right") - 1
+        interval = np.searchsorted(breaks, self.w[:-1] + 0.5 * self.span, side="right") - 1
         # an end is just short of the corner, or it would count as the start of the next arc
-        return breaks[piece], breaks[piece + 1] - 1e-12 * self.period
+        return breaks[interval], breaks[interval + 1] - 1e-12 * self.period

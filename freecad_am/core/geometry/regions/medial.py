@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The middle of thin regions: paths along the medial axis, from the Voronoi diagram of places on the border.
+"""The middle of thin regions: paths along the medial axis, from the Voronoi diagram of
+points on the border.
 
-A Voronoi vertex is equally far from three places of the border, so that those inside follow the medial axis. An edge between
-two of them belongs to two places of the border; how far these are apart, compared with the circle that touches both, is 1
-where the edge runs between two walls and small where it runs into a corner.
+A Voronoi vertex is equally far from three border points, so the vertices inside follow
+the medial axis. An edge between two of them belongs to two border points. Their distance,
+relative to the circle that touches both, is 1 where the edge runs between two walls and
+small where it runs into a corner.
 """
 
 from __future__ import annotations
@@ -22,10 +24,10 @@ from ..curves.plane_curve import winding
 from .region import Region, simplified
 from .strip import Strip
 
-BETWEEN_WALLS, ANYWHERE = 0.75, 0.3  # least spread of an edge of the axis
-# places, beyond which they are moved by so much of the region's size: the diagram of many on parallel lines or a circle,
+MIN_WALL_SPREAD, MIN_SPREAD = 0.75, 0.3  # least spread of an edge of the axis
+# number of points beyond which they are moved by a share of the region's size: the diagram of many on parallel lines or a circle,
 # exactly, takes a time that grows with more than their square
-MANY, MOVED = 12_000, 1e-9
+MAX_UNMOVED_POINTS, MOVE_SHARE = 12_000, 1e-9
 
 
 class _Axis(NamedTuple):
@@ -37,38 +39,46 @@ class _Axis(NamedTuple):
     spread: Array
 
 
-def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
-    """The longest path (n, 2) in the middle of a region where it is wider than 2 `least` mm, and whether it is closed.
+def spine(region: Region, min_clearance: float, step: float) -> tuple[Array, bool]:
+    """Return the longest path (n, 2) in the middle of a region where it is wider than 2
+    `min_clearance` mm.
 
-    step: mm between places on the border. A region with a single hole that the axis goes round has a closed path. Empty,
-    (0, 2), where the region is nowhere that wide.
+    Also returns whether the path is closed: a region with one hole that the axis surrounds
+    has a closed path. The path is empty, (0, 2), if the region is nowhere that wide. step: mm
+    between points on the border.
     """
-    axis = _axis(region, least, step)
-    for spread in (BETWEEN_WALLS, ANYWHERE):
+    axis = _axis(region, min_clearance, step)
+    for spread in (MIN_WALL_SPREAD, MIN_SPREAD):
         links = axis.links[
-            (axis.spread >= spread) & (axis.clearance[axis.links] >= least).all(axis=1)
+            (axis.spread >= spread) & (axis.clearance[axis.links] >= min_clearance).all(axis=1)
         ]
         if not len(links):
             continue
-        ring = _cycle(axis.points, links) if len(region.borders()) > 1 else None
+        ring = _find_cycle(axis.points, links) if len(region.borders()) > 1 else None
         if ring is not None:
             return axis.points[ring], True
-        path = _longest(axis.points, links)
-        way = float(np.hypot(*np.diff(axis.points[path], axis=0).T).sum())
-        if spread == ANYWHERE or way > 2.0 * float(axis.clearance[path].max()):
+        path = _find_longest_path(axis.points, links)
+        length = float(np.hypot(*np.diff(axis.points[path], axis=0).T).sum())
+        if spread == MIN_SPREAD or length > 2.0 * float(axis.clearance[path].max()):
             return axis.points[path], False
     return np.zeros((0, 2)), False
 
 
 def spine_round(
-    strip: Strip, least: float, step: float, chord_error: float, aside: float
+    strip: Strip, min_clearance: float, step: float, chord_error: float, aside: float
 ) -> Array | None:
-    """The path (n, 2) once round in the middle of a strip, laid flat, from half a turn before 0 on; None where the strip is
-    somewhere thinner than 2 `least` mm. step: as of `spine`. chord_error: mm, of what is straight in (u, v) and an arc when
-    laid flat. aside: mm that are looked at beyond a turn, beside the breadth of the strip."""
-    half = 0.5 * strip.period.around
+    """Return the path (n, 2) once around in the middle of an unrolled strip, from half a turn
+    before 0 on.
+
+    Returns None if the strip is anywhere thinner than 2 `min_clearance` mm. step: as for
+    `spine`. chord_error: mm, for lines straight in (u, v) that become arcs when unrolled.
+    aside: mm considered beyond a turn, in addition to the width of the strip.
+    """
+    half = 0.5 * strip.period.u_period
     end = half + min(2.0 * (strip.levels[1] - strip.levels[0]) + aside, half)
-    points, _ = spine(max(strip.between(-end, end), key=lambda part: part.area), least, step)
+    points, _ = spine(
+        max(strip.between(-end, end), key=lambda region: region.area), min_clearance, step
+    )
     points = points[::-1] if len(points) and points[0, 0] > points[-1, 0] else points
     if not len(points) or points[0, 0] > -half or points[-1, 0] < half:
         return None
@@ -77,20 +87,22 @@ def spine_round(
     within = points[(points[:, 0] > -half) & (points[:, 0] < half)]
     if not math.isinf(strip.period.apex):
         count = strip.period.points_round(0.5 * sum(strip.levels), chord_error, aside)
-        u = np.union1d(within[:, 0], -half + strip.period.around / count * np.arange(1, count))
+        u = np.union1d(within[:, 0], -half + strip.period.u_period / count * np.arange(1, count))
         within = np.stack([u, np.interp(u, points[:, 0], points[:, 1])], axis=1)
-    return strip.period.unroll(np.vstack([[[-half, v]], within]))
+    return strip.period.from_uv(np.vstack([[[-half, v]], within]))
 
 
-def _axis(region: Region, least: float, step: float) -> _Axis:
-    """The axis inside of a region where it is wider than 2 `least` mm, without what runs into corners."""
-    places, follows = _places(region.borders(), step)
-    middle, size = places.mean(axis=0), max(region.extent, 1e-300)
-    scaled = (places - middle) / size
-    moved = scaled + MOVED * np.random.default_rng(0).uniform(-1.0, 1.0, scaled.shape)
+def _axis(region: Region, min_clearance: float, step: float) -> _Axis:
+    """Return the axis inside a region where it is wider than 2 `min_clearance` mm, without
+    branches into corners.
+    """
+    border_points, follows = _sample_border(region.borders(), step)
+    middle, size = border_points.mean(axis=0), max(region.extent, 1e-300)
+    scaled = (border_points - middle) / size
+    moved = scaled + MOVE_SHARE * np.random.default_rng(0).uniform(-1.0, 1.0, scaled.shape)
     try:
-        diagram = Voronoi(moved if len(scaled) > MANY else scaled)
-    except QhullError:  # places exactly on lines and circles may be more than it can tell apart
+        diagram = Voronoi(moved if len(scaled) > MAX_UNMOVED_POINTS else scaled)
+    except QhullError:  # points exactly on lines and circles may be degenerate for Qhull
         diagram = Voronoi(moved)
     corners = diagram.vertices * size + middle
     pairs = diagram.ridge_points
@@ -100,39 +112,43 @@ def _axis(region: Region, least: float, step: float) -> _Axis:
     adjacent = (follows[pairs[:, 0]] == pairs[:, 1]) | (follows[pairs[:, 1]] == pairs[:, 0])
     use = (ends >= 0).all(axis=1) & ~adjacent
     pairs, ends = pairs[use], ends[use]
-    away = np.hypot(*(corners[ends] - places[pairs[:, :1]]).transpose(2, 0, 1))
-    apart = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
-    spread = apart / np.maximum(2.0 * away.mean(axis=1), 1e-300)
-    use = (spread >= ANYWHERE) & (away >= least).all(
+    radius = np.hypot(*(corners[ends] - border_points[pairs[:, :1]]).transpose(2, 0, 1))
+    pair_distance = np.hypot(*(border_points[pairs[:, 0]] - border_points[pairs[:, 1]]).T)
+    spread = pair_distance / np.maximum(2.0 * radius.mean(axis=1), 1e-300)
+    use = (spread >= MIN_SPREAD) & (radius >= min_clearance).all(
         axis=1
-    )  # before it is asked what is inside, which takes longest
-    ends, away, spread = ends[use], away[use], spread[use]
+    )  # before the test for inside points, which takes longest
+    ends, radius, spread = ends[use], radius[use], spread[use]
     members = np.unique(ends)
     inside = np.zeros(len(corners), dtype=bool)
     inside[members] = winding(region.borders(), corners[members]) > 0
     use = inside[ends].all(axis=1)
     ends = ends[use]
     clearance = np.zeros(len(corners))
-    clearance[ends] = away[use]
+    clearance[ends] = radius[use]
     return _Axis(corners, clearance, ends, spread[use])
 
 
-def _places(rings: tuple[Array, ...], step: float) -> tuple[Array, Index]:
-    """Places on the rings at most `step` mm apart, corners among them, and the number of the one that follows each."""
-    places, follows, first = [], [], 0
+def _sample_border(rings: tuple[Array, ...], step: float) -> tuple[Array, Index]:
+    """Return points on the rings at most `step` mm apart, including corners, and the number of
+    each successor.
+    """
+    points, follows, start = [], [], 0
     for ring in rings:
-        way = np.roll(ring, -1, axis=0) - ring
-        count = np.maximum(np.ceil(np.hypot(*way.T) / step - 1e-9), 1.0).astype(np.intp)
+        chord = np.roll(ring, -1, axis=0) - ring
+        count = np.maximum(np.ceil(np.hypot(*chord.T) / step - 1e-9), 1.0).astype(np.intp)
         edge = np.repeat(np.arange(len(ring)), count)
         share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
-        places.append(ring[edge] + share[:, None] * way[edge])
-        follows.append(first + np.roll(np.arange(len(edge)), -1))
-        first += len(edge)
-    return np.vstack(places), np.concatenate(follows)
+        points.append(ring[edge] + share[:, None] * chord[edge])
+        follows.append(start + np.roll(np.arange(len(edge)), -1))
+        start += len(edge)
+    return np.vstack(points), np.concatenate(follows)
 
 
-def _cycle(points: Array, links: Index) -> Index | None:
-    """The members in order of the only closed path in the graph; None where there is none, or more."""
+def _find_cycle(points: Array, links: Index) -> Index | None:
+    """Return the ordered members of the only closed path in the graph; None if it has none or
+    several.
+    """
     for _ in range(len(links)):
         degree = np.bincount(links.ravel(), minlength=len(points))
         keep = (degree[links] > 1).all(axis=1)
@@ -148,14 +164,16 @@ def _cycle(points: Array, links: Index) -> Index | None:
     path = [min(neighbours)]
     ahead = min(neighbours[path[0]])
     while ahead != path[0]:
-        before, here = path[-1], ahead
-        path.append(here)
-        ahead = next((other for other in neighbours[here] if other != before), path[0])
+        previous, current = path[-1], ahead
+        path.append(current)
+        ahead = next(
+            (neighbour for neighbour in neighbours[current] if neighbour != previous), path[0]
+        )
     return np.array(path) if len(path) == len(neighbours) else None
 
 
-def _longest(points: Array, links: Index) -> Index:
-    """The members of the longest of the shortest paths, as two sweeps find it."""
+def _find_longest_path(points: Array, links: Index) -> Index:
+    """Return the members of the longest of the shortest paths, by two sweeps."""
     members, number = np.unique(links, return_inverse=True)
     number = number.reshape(-1, 2)
     size = np.hypot(*(points[links[:, 0]] - points[links[:, 1]]).T)
@@ -166,17 +184,17 @@ def _longest(points: Array, links: Index) -> Index:
     total = np.bincount(label[number[:, 0]], weights=size, minlength=count)
     start = int(np.flatnonzero(label == int(np.argmax(total)))[0])
     for _ in range(2):
-        away = dijkstra(graph, directed=False, indices=np.array([start]))[0]
-        away[~np.isfinite(away)] = -1.0
-        start = int(np.argmax(away))
-    away, before = (
+        path_length = dijkstra(graph, directed=False, indices=np.array([start]))[0]
+        path_length[~np.isfinite(path_length)] = -1.0
+        start = int(np.argmax(path_length))
+    path_length, predecessor = (
         rows[0]
         for rows in dijkstra(
             graph, directed=False, indices=np.array([start]), return_predecessors=True
         )
     )
-    away[~np.isfinite(away)] = -1.0
-    path = [int(np.argmax(away))]
+    path_length[~np.isfinite(path_length)] = -1.0
+    path = [int(np.argmax(path_length))]
     while path[-1] != start:
-        path.append(int(before[path[-1]]))
+        path.append(int(predecessor[path[-1]]))
     return np.asarray(members[path[::-1]], dtype=np.intp)

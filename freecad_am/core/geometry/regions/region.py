@@ -17,7 +17,7 @@ import numpy as np
 
 from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array, Mask
-from ..curves.plane_curve import doubled_area, nearest_of, winding
+from ..curves.plane_curve import doubled_area, nearest_on_rings, winding
 from ..curves.polyline import turn_segments
 
 MERGED = 1e-12  # of the extent; points nearer together are one
@@ -131,7 +131,7 @@ class Region:
 
     def nearest(self, points: Array) -> tuple[Array, Array]:
         """The places (n, 2) on the border nearest to points (n, 2), and how far they are (n,), mm."""
-        return nearest_of(self._borders, self._boxes, points)
+        return nearest_on_rings(self._borders, self._boxes, points)
 
     @cached_property
     def width(self) -> float:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is done to each of several regions: grown, without others, left out where it is too narrow."""
+"""Operations on several regions: grow, subtract, intersect, drop those that are too narrow."""
 
 from __future__ import annotations
 
@@ -10,73 +10,78 @@ from ..curves.plane_curve import length
 from .region import Region
 from .strip import Strip, Window
 
-HAIR = 0.01  # of the chord error
+HAIR_SHARE = 0.01  # of the chord error
 
 
 @overload
-def grown(regions: Sequence[Region], distance: float, chord_error: float) -> tuple[Region, ...]: ...
+def grow_regions(
+    regions: Sequence[Region], distance: float, chord_error: float
+) -> tuple[Region, ...]: ...
 
 
 @overload
-def grown(
+def grow_regions(
     regions: Sequence[Strip | Region], distance: float, chord_error: float
 ) -> tuple[Strip | Region, ...]: ...
 
 
-def grown(
+def grow_regions(
     regions: Sequence[Strip | Region], distance: float, chord_error: float
 ) -> tuple[Strip | Region, ...]:
     """As `Region.grown` and `Strip.grown`."""
     return tuple(part for region in regions for part in region.grown(distance, chord_error))
 
 
-def without(
-    regions: Sequence[Region], others: Sequence[Region], wide: float = 0.0
+def subtract_regions(
+    regions: Sequence[Region], subtracted: Sequence[Region], wide: float = 0.0
 ) -> tuple[Region, ...]:
-    """As `Region.without`; the same regions where there are no others."""
+    """Subtract regions, as `Region.without`; the same regions if there is nothing to subtract."""
     return (
-        tuple(part for region in regions for part in region.without(others, wide))
-        if others
+        tuple(result for region in regions for result in region.without(subtracted, wide))
+        if subtracted
         else tuple(regions)
     )
 
 
-def common(regions: Sequence[Region], others: Sequence[Region]) -> tuple[Region, ...]:
-    """As `Region.common`."""
-    return tuple(part for region in regions for part in region.common(others))
+def intersect_regions(
+    regions: Sequence[Region], counterparts: Sequence[Region]
+) -> tuple[Region, ...]:
+    """Intersect regions, as `Region.common`."""
+    return tuple(result for region in regions for result in region.common(counterparts))
 
 
 def halves(strip: Strip) -> list[Region]:
-    """A strip cut in two, half a turn each way from where it is laid flat about."""
-    half = 0.5 * strip.period.around
+    """Cut a strip in two, half a turn each way from the generatrix about which it is unrolled."""
+    half = 0.5 * strip.period.u_period
     return [
-        part
+        half_region
         for low, high in ((-half, 0.0), (0.0, half))
-        for part in strip.flat(Window(0.0, low, high, 0.0))
+        for half_region in strip.flat(Window(0.0, low, high, 0.0))
     ]
 
 
-def wider(regions: Sequence[Region], width: float, chord_error: float) -> list[Region]:
-    """Those of regions that a circle of a diameter (mm) has room in."""
+def select_wider(regions: Sequence[Region], width: float, chord_error: float) -> list[Region]:
+    """Return the regions that hold a circle of a diameter (mm)."""
     return [region for region in regions if region.grown(-0.5 * width, chord_error)]
 
 
-def longer(regions: Sequence[Region], least: float) -> tuple[Region, ...]:
-    """Those of regions whose outer border is at least so long, mm."""
-    return tuple(region for region in regions if length(region.borders()[0], True) >= least)
+def select_longer(regions: Sequence[Region], min_length: float) -> tuple[Region, ...]:
+    """Return the regions whose outer border is at least `min_length` mm long."""
+    return tuple(region for region in regions if length(region.borders()[0], True) >= min_length)
 
 
-def shrunk(region: Region, distance: float, chord_error: float) -> tuple[Region, ...]:
-    """`region.grown(-distance)` without necks that only rounding leaves.
+def shrink_region(region: Region, distance: float, chord_error: float) -> tuple[Region, ...]:
+    """Return `region.grown(-distance)` without necks that exist only by rounding.
 
-    Where a region is exactly twice `distance` wide, rounding decides whether what stays hangs together by a neck of no
-    width, and decides otherwise once the region is turned. Necks narrower than two HAIRS of the chord error are taken away.
+    Where a region is exactly twice `distance` wide, rounding decides whether a neck of no
+    width connects the result, and decides differently once the region is turned. Necks
+    narrower than two HAIR_SHARE of the chord error are removed.
     """
-    parts, hair = region.grown(-distance, chord_error), HAIR * chord_error
+    shrunk_parts, hair = region.grown(-distance, chord_error), HAIR_SHARE * chord_error
     within = region.grown(-distance - hair, chord_error)
-    if _loops(parts) == _loops(within):
-        return parts
-    return grown(within, hair, chord_error)
+    if _loops(shrunk_parts) == _loops(within):
+        return shrunk_parts
+    return grow_regions(within, hair, chord_error)
 
 
 def _loops(regions: Sequence[Region]) -> list[int]:

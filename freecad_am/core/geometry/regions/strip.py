@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Regions that run all the way round a hub: laid flat they have no ends, they repeat under an isometry of the plane.
+"""Regions that go all the way around a hub: unrolled they have no ends and repeat under an
+isometry of the plane.
 
-For a cylinder that is a way along x, for a cone a turn about its apex. A strip is kept unrolled: u runs round the hub (mm at
-a reference distance from the apex), v up along it, both of any turn. Parallel curves are made on the plane, window by window
-narrower than half a turn, with so much room beside each window that its ends do not matter; the results are cut at the
-windows' ends, where neighbours agree, and chained again.
+For a cylinder the isometry is a shift along x, for a cone a turn about its apex. A strip
+is stored in (u, v): u runs around the hub (mm at a reference distance from the apex), v
+up along it, both over any number of turns. Parallel curves are computed on the plane, in
+windows narrower than half a turn, each with enough margin that its ends do not matter.
+The results are cut at the windows' ends, where neighbours agree, and chained again.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from ...types import Array
 from ..columns import columns
 from ..curves.plane_curve import doubled_area, winding
 from ..step_count import step_count
-from .chained import MEETING, chained
+from .chained import TOLERANCE_SHARE, chain_windows
 from .region import Region, regions
 
 HALF_TURN = 2.6  # rad; a window is no wider, room included
@@ -29,66 +31,83 @@ HALF_TURN = 2.6  # rad; a window is no wider, room included
 
 @dataclass(frozen=True)
 class Period:
-    """turn: what a turn round the hub is when laid flat, mm along x or, with an apex, rad about the point (0, apex)."""
+    """The repetition of an unrolled hub.
+
+    turn: one turn around the hub when unrolled, mm along x or, with an apex, rad about the
+    point (0, apex).
+    """
 
     turn: float
     apex: float = math.inf
 
     @property
-    def around(self) -> float:
+    def u_period(self) -> float:
         """The period of u, mm."""
         return self.turn if math.isinf(self.apex) else self.turn * abs(self.apex)
 
-    def unrolled(self, flat: Array) -> Array:
-        """(u, v) (n, 2) of points (n, 2) of the plane, u within half a turn of the plane about 0."""
+    def to_uv(self, flat: Array) -> Array:
+        """Return (u, v) (n, 2) of points (n, 2) of the plane, u within half a turn of the plane
+        about 0.
+        """
         if math.isinf(self.apex):
             return flat.copy()
         x, y = columns(flat)
-        rest = self.apex - y
+        to_apex = self.apex - y
         return np.stack(
-            [np.arctan2(x, rest) * abs(self.apex), self.apex - np.hypot(x, rest)], axis=1
+            [np.arctan2(x, to_apex) * abs(self.apex), self.apex - np.hypot(x, to_apex)], axis=1
         )
 
     @property
-    def whole(self) -> float:
-        """What u takes to come round to the same place of the plane, mm; more than a turn round the hub."""
+    def full_turn(self) -> float:
+        """The period of u on the plane, mm; more than a turn around the hub."""
         return math.inf if math.isinf(self.apex) else 2.0 * math.pi * abs(self.apex)
 
-    def followed(self, flat: Array, sheet: float = 0.0, turns: int = 0) -> Array:
-        """(u, v) (n, 2) along a curve (n, 2) on the plane, u counted on where it comes round behind the apex, in the mean
-        within half a turn of the plane about `sheet`, mm; one that goes round the hub to where it begins again."""
-        uv = self.unrolled(flat)
-        if not math.isinf(self.apex):
-            uv[:, 0] = np.unwrap(uv[:, 0], period=self.whole)
-            uv[:, 0] -= self.whole * np.round((uv[:, 0].mean() - sheet) / self.whole)
-        return np.vstack([uv, uv[:1] + np.array([turns * self.around, 0.0])]) if turns else uv
+    def unwrap_curve(self, flat: Array, sheet: float = 0.0, turns: int = 0) -> Array:
+        """Return (u, v) (n, 2) along a curve (n, 2) on the plane, with u unwrapped where the curve
+        passes behind the apex.
 
-    def unroll(self, uv: Array, about: float = 0.0) -> Array:
-        """Points (n, 2) of the plane of (u, v), turned back by `about` mm of u."""
+        The mean of u is within half a turn of the plane about `sheet`, mm. A curve that goes
+        around the hub ends where it begins again.
+        """
+        uv = self.to_uv(flat)
+        if not math.isinf(self.apex):
+            uv[:, 0] = np.unwrap(uv[:, 0], period=self.full_turn)
+            uv[:, 0] -= self.full_turn * np.round((uv[:, 0].mean() - sheet) / self.full_turn)
+        return np.vstack([uv, uv[:1] + np.array([turns * self.u_period, 0.0])]) if turns else uv
+
+    def from_uv(self, uv: Array, about: float = 0.0) -> Array:
+        """Return points (n, 2) of the plane for (u, v), turned back by `about` mm of u."""
         if math.isinf(self.apex):
             return np.asarray(uv - np.array([about, 0.0]))
-        phi, way = (uv[:, 0] - about) / abs(self.apex), self.apex - uv[:, 1]
-        return np.stack([way * np.sin(phi), self.apex - way * np.cos(phi)], axis=1)
+        phi, apex_distance = (uv[:, 0] - about) / abs(self.apex), self.apex - uv[:, 1]
+        return np.stack(
+            [apex_distance * np.sin(phi), self.apex - apex_distance * np.cos(phi)], axis=1
+        )
 
-    def moved(self, flat: Array, turns: int) -> Array:
-        """Points (n, 2) of the plane moved on by whole turns round the hub."""
+    def move_turns(self, flat: Array, turns: int) -> Array:
+        """Move points (n, 2) of the plane by whole turns around the hub."""
         if math.isinf(self.apex):
             return np.asarray(flat + np.array([turns * self.turn, 0.0]))
         angle, apex = turns * self.turn, np.array([0.0, self.apex])
         cos, sin = math.cos(angle), math.sin(angle)
-        away = flat - apex
+        offset = flat - apex
         turned = np.stack(
-            [away[:, 0] * cos - away[:, 1] * sin, away[:, 0] * sin + away[:, 1] * cos], axis=1
+            [offset[:, 0] * cos - offset[:, 1] * sin, offset[:, 0] * sin + offset[:, 1] * cos],
+            axis=1,
         )
         return np.asarray(turned + apex)
 
     def points_round(self, v: float, chord_error: float, least_radius: float) -> int:
-        """So many points of a line once round the hub at a v keep within the chord error (mm) on the plane."""
+        """Return the number of points of a line once around the hub at v that keeps within the chord
+        error (mm) on the plane.
+        """
         radius = 1e6 if math.isinf(self.apex) else max(abs(self.apex - v), least_radius)
-        return step_count(self.around, math.sqrt(8.0 * chord_error * radius), 24)
+        return step_count(self.u_period, math.sqrt(8.0 * chord_error * radius), 24)
 
     def distance_past(self, flat: Array, u: float) -> Array:
-        """How far (n,) mm points of the plane lie past the generatrix at u, |u| below a quarter turn."""
+        """Return how far (n,) mm points of the plane are past the generatrix at u, |u| below a
+        quarter turn.
+        """
         if math.isinf(self.apex):
             return np.asarray(flat[:, 0] - u)
         phi = u / abs(self.apex)
@@ -96,7 +115,9 @@ class Period:
 
 
 class Window(NamedTuple):
-    """Part of a turn: u from low to high and what else is looked at on both sides, mm. about: its middle."""
+    """Part of a turn, mm of u: the range from low to high and the margin considered on both
+    sides. about: its middle.
+    """
 
     about: float
     low: float
@@ -118,9 +139,9 @@ class Strip:
     holes: tuple[Array, ...] = ()
 
     def borders(self) -> tuple[tuple[Array, int], ...]:
-        """The borders (n, 2) laid flat and how often each goes round: 1, -1 and 0 for holes."""
-        found = [(self.lower, 1), (self.upper, -1), *((hole, 0) for hole in self.holes)]
-        return tuple((self.period.unroll(points), turns) for points, turns in found)
+        """Return the unrolled borders (n, 2) and how often each goes around: 1, -1, and 0 for holes."""
+        loops = [(self.lower, 1), (self.upper, -1), *((hole, 0) for hole in self.holes)]
+        return tuple((self.period.from_uv(points), turns) for points, turns in loops)
 
     @cached_property
     def levels(self) -> tuple[float, float]:
@@ -128,104 +149,126 @@ class Strip:
         return float(self.lower[:, 1].min()), float(self.upper[:, 1].max())
 
     def grown(self, distance: float, chord_error: float) -> tuple[Strip | Region, ...]:
-        """As `Region.grown`, on the plane without ends; what does not go round any more is a region."""
-        return self.made(lambda part: part.grown(distance, chord_error), abs(distance))
+        """Grow the strip, as `Region.grown`, on the plane without ends; a result that does not go
+        around is a region.
+        """
+        return self.apply(lambda region: region.grown(distance, chord_error), abs(distance))
 
-    def made(
+    def apply(
         self, operation: Callable[[Region], Sequence[Region]], reach: float
     ) -> tuple[Strip | Region, ...]:
-        """What an operation makes of the strip that looks no farther than `reach` mm around."""
+        """Apply an operation that considers no more than `reach` mm around; returns the resulting
+        strips and regions.
+        """
         windows = self.windows(reach)
-        pieces: list[list[Array]] = []
+        window_rings: list[list[Array]] = []
         for window in windows:
-            found: list[Array] = []
-            for part in (
-                part for region in self.flat(window, with_margin=True) for part in operation(region)
+            rings_found: list[Array] = []
+            for result in (
+                result
+                for region in self.flat(window, with_margin=True)
+                for result in operation(region)
             ):
-                uv = [self._cut(ring, window) for ring in part.borders()]
-                found += [
+                uv = [self._cut(ring, window) for ring in result.borders()]
+                rings_found += [
                     ring
                     for inner in regions(uv, every_point=True)
-                    for ring in _boxed(inner, window.low, window.high)
+                    for ring in _cut_rings(inner, window.low, window.high)
                 ]
-            pieces.append(found)
-        return parts(
-            *chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])),
+            window_rings.append(rings_found)
+        return assemble_regions(
+            *chain_windows(
+                window_rings, np.array([windows[0].low, *(window.high for window in windows)])
+            ),
             self.period,
         )
 
     def between(self, low: float, high: float) -> tuple[Region, ...]:
-        """The strip from u = low to u = high as regions in (u, v)."""
-        turn = self.period.around
+        """Return the strip from u = low to u = high as regions in (u, v)."""
+        turn = self.period.u_period
         lower, upper = self._repeated(self.lower, low, high), self._repeated(self.upper, low, high)
         loops = [np.vstack([lower, upper])]
         for hole in self.holes:
-            first = math.floor((low - hole[:, 0].max()) / turn)
-            last = math.ceil((high - hole[:, 0].min()) / turn)
-            loops += [hole + np.array([k * turn, 0.0]) for k in range(first, last + 1)]
+            first_turn = math.floor((low - hole[:, 0].max()) / turn)
+            last_turn = math.ceil((high - hole[:, 0].min()) / turn)
+            loops += [hole + np.array([k * turn, 0.0]) for k in range(first_turn, last_turn + 1)]
         box = _box(low, high, *self.levels)
         return tuple(
-            part
+            piece_region
             for region in regions(loops, every_point=True)
-            for part in region.common(regions([box]), every_point=True)
+            for piece_region in region.common(regions([box]), every_point=True)
         )
 
     def flat(self, window: Window, with_margin: bool = False) -> list[Region]:
-        """The strip in a window, with its margin or without, as regions laid flat about its middle."""
+        """Return the strip in a window, with or without its margin, as regions unrolled about its
+        middle.
+        """
         margin = window.margin if with_margin else 0.0
         return [
-            part
+            unrolled_region
             for region in self.between(window.low - margin, window.high + margin)
-            for part in regions(
-                [self.period.unroll(ring, window.about) for ring in region.borders()]
+            for unrolled_region in regions(
+                [self.period.from_uv(ring, window.about) for ring in region.borders()]
             )
         ]
 
     def moved_back(self, window: Window, flat: Array) -> tuple[Array, float]:
-        """Points (n, 2) laid flat about the middle of a window laid flat about 0, and the u about which they lie, mm."""
-        uv = self.period.unrolled(flat) + np.array([window.about, 0.0])
-        return self.period.unroll(uv), float(uv[:, 0].mean())
+        """Return points (n, 2) unrolled about the middle of a window as unrolled about 0, and their
+        mean u, mm.
+        """
+        uv = self.period.to_uv(flat) + np.array([window.about, 0.0])
+        return self.period.from_uv(uv), float(uv[:, 0].mean())
 
     def _repeated(self, border: Array, low: float, high: float) -> Array:
-        turn = self.period.around
+        turn = self.period.u_period
         sense = 1 if border is self.lower else -1
-        first = math.floor((low - border[:, 0].max()) / turn) - 2
-        last = math.ceil((high - border[:, 0].min()) / turn) + 2
-        copies = [border + np.array([k * turn, 0.0]) for k in range(first, last + 1)][::sense]
+        first_turn = math.floor((low - border[:, 0].max()) / turn) - 2
+        last_turn = math.ceil((high - border[:, 0].min()) / turn) + 2
+        copies = [border + np.array([k * turn, 0.0]) for k in range(first_turn, last_turn + 1)][
+            ::sense
+        ]
         exact = np.vstack(copies)
-        return self._with_cuts(exact, (low, high), closed=False)
+        return self._insert_cuts(exact, (low, high), closed=False)
 
-    def _with_cuts(self, uv: Array, at: Sequence[float], closed: bool) -> Array:
-        """A line in (u, v) with points where the edges, straight when laid flat, cross generatrices."""
-        for u in at:
+    def _insert_cuts(self, uv: Array, cuts: Sequence[float], closed: bool) -> Array:
+        """Insert points into a line in (u, v) where its edges, straight when unrolled, cross
+        generatrices.
+        """
+        for u in cuts:
             following = np.roll(uv, -1, axis=0)
             k = np.flatnonzero((uv[:, 0] < u) != (following[:, 0] < u))
             k = k if closed else k[k < len(uv) - 1]
-            a, b = self.period.unroll(uv[k], u), self.period.unroll(following[k], u)
+            a, b = self.period.from_uv(uv[k], u), self.period.from_uv(following[k], u)
             fa, fb = self.period.distance_past(a, 0.0), self.period.distance_past(b, 0.0)
-            place = self.period.unrolled(a + (fa / (fa - fb))[:, None] * (b - a))
-            place[:, 0] = u
-            uv = np.insert(uv, k + 1, place, axis=0)
+            crossing = self.period.to_uv(a + (fa / (fa - fb))[:, None] * (b - a))
+            crossing[:, 0] = u
+            uv = np.insert(uv, k + 1, crossing, axis=0)
         return uv
 
     def _cut(self, flat: Array, window: Window) -> Array:
-        """A ring laid flat about the middle of a window in (u, v), with points where the ends of the window cross it."""
+        """Return a ring, unrolled about the middle of a window, in (u, v), with points where the
+        ends of the window cross it.
+        """
         ends = window.low - window.about, window.high - window.about
         return np.asarray(
-            self._with_cuts(self.period.unrolled(flat), ends, closed=True)
+            self._insert_cuts(self.period.to_uv(flat), ends, closed=True)
             + np.array([window.about, 0.0])
         )
 
     def windows(self, reach: float) -> tuple[Window, ...]:
         """The strip once round, for what looks `reach` mm around."""
         margin, count = self._windows(reach)
-        cuts = np.linspace(-0.5 * self.period.around, 0.5 * self.period.around, count + 1).tolist()
+        cuts = np.linspace(
+            -0.5 * self.period.u_period, 0.5 * self.period.u_period, count + 1
+        ).tolist()
         return tuple(
             Window(0.5 * (low + high), low, high, margin) for low, high in zip(cuts, cuts[1:])
         )
 
     def pane(self, window: Window) -> tuple[Region, ...]:
-        """What is about all of the strip in a window, without the room beside it, laid flat about its middle."""
+        """Return the window without its margin, over somewhat more than the height of the strip,
+        unrolled about its middle.
+        """
         u = np.linspace(window.low, window.high, 17)
         bottom, top = self.levels
         margin = 0.05 * (window.high - window.low) + 1.0
@@ -233,22 +276,26 @@ class Strip:
             np.stack([u, np.full(17, bottom - margin)], axis=1),
             np.stack([u, np.full(17, top + margin)], axis=1),
         )
-        return regions([self.period.unroll(np.vstack([below, above[::-1]]), window.about)])
+        return regions([self.period.from_uv(np.vstack([below, above[::-1]]), window.about)])
 
     def near(self, window: Window, uv: Array, closed: bool) -> list[tuple[Array, bool]]:
-        """What of a curve in (u, v), in all turns, lies in a window or beside it, laid flat about its middle: points (n, 2)
-        and whether they close. closed: the curve is, on the plane."""
-        turn = self.period.around
+        """Return the stretches of a curve in (u, v), in all turns, in a window or its margin,
+        unrolled about its middle.
+
+        Each has points (n, 2) and whether it is closed. closed: whether the curve is closed on
+        the plane.
+        """
+        turn = self.period.u_period
         low, high = window.low - window.margin, window.high + window.margin
-        found: list[tuple[Array, bool]] = []
-        first, last = (
+        lines: list[tuple[Array, bool]] = []
+        first_turn, last_turn = (
             np.ceil((low - uv[:, 0].max()) / turn),
             np.floor((high - uv[:, 0].min()) / turn),
         )
-        for k in range(int(first), int(last) + 1):
+        for k in range(int(first_turn), int(last_turn) + 1):
             line = uv + np.array([k * turn, 0.0])
             if closed:
-                found.append((line, True))
+                lines.append((line, True))
                 continue
             within = (line[:, 0] >= low) & (line[:, 0] <= high)
             edge = (
@@ -259,73 +306,82 @@ class Strip:
             )
             change = np.diff(np.r_[False, edge, False].astype(int))
             runs = zip(np.flatnonzero(change > 0), np.flatnonzero(change < 0))
-            found += [(line[a : b + 1], False) for a, b in runs]
-        return [(self.period.unroll(line, window.about), whole) for line, whole in found]
+            lines += [(line[a : b + 1], False) for a, b in runs]
+        return [(self.period.from_uv(line, window.about), is_closed) for line, is_closed in lines]
 
     def _windows(self, reach: float) -> tuple[float, int]:
-        """Room (mm of u) beside a window, and the number of windows."""
+        """Return the margin (mm of u) of a window, and the number of windows."""
         if math.isinf(self.period.apex):
             return 1.1 * reach, 1
-        way = abs(self.period.apex - self.levels[1])
-        # a place that is `reach` inside is as far above the border next to the apex, and that border hides what is beyond
-        margin = 1.1 * math.asin(reach / (way + reach))
+        apex_distance = abs(self.period.apex - self.levels[1])
+        # a point `reach` inside is as far above the border next to the apex, and that border hides everything beyond
+        margin = 1.1 * math.asin(reach / (apex_distance + reach))
         count = max(1, math.ceil(self.period.turn / max(HALF_TURN - 2.0 * margin, 0.2)))
         return margin * abs(self.period.apex), count
 
 
-def parts(
+def assemble_regions(
     rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: Period
 ) -> tuple[Strip | Region, ...]:
-    """Strips and plane regions that borders bound: (u, v) of those that go round with their sense, and of closed ones."""
-    begun = [_begun(ring, sense, period.around) for ring, sense in rounds]
-    order = sorted(begun, key=lambda item: float(item[0][:, 1].mean()))
+    """Assemble strips and plane regions from borders in (u, v): those that go around with their
+    sense, and closed ones.
+    """
+    borders = [_start_at_cut(ring, sense, period.u_period) for ring, sense in rounds]
+    order = sorted(borders, key=lambda item: float(item[0][:, 1].mean()))
     holes = [ring for ring in closed if doubled_area(ring) < 0.0]
     outers = [ring for ring in closed if doubled_area(ring) > 0.0]
-    found: list[Strip | Region] = []
+    results: list[Strip | Region] = []
     free = list(holes)
-    for (lower, sense), (upper, other) in zip(order, order[1:]):
-        if sense != 1 or other != -1:
+    for (lower, sense), (upper, upper_sense) in zip(order, order[1:]):
+        if sense != 1 or upper_sense != -1:
             continue
         strip = Strip(period, lower, upper)
-        middle = [hole for hole in free if _within(strip, hole)]
-        free = [hole for hole in free if not any(hole is one for one in middle)]
-        found.append(Strip(period, lower, upper, tuple(middle)))
+        middle = [hole for hole in free if _is_inside(strip, hole)]
+        free = [hole for hole in free if not any(hole is hole_inside for hole_inside in middle)]
+        results.append(Strip(period, lower, upper, tuple(middle)))
     for outer in outers:
-        shifted = [hole + np.array([k * period.around, 0.0]) for hole in free for k in (-1, 0, 1)]
+        shifted = [hole + np.array([k * period.u_period, 0.0]) for hole in free for k in (-1, 0, 1)]
         inside = [hole for hole in shifted if winding((outer,), hole[:1])[0] > 0]
-        about = np.array([np.round(outer[:, 0].mean() / period.around) * period.around, 0.0])
+        about = np.array([np.round(outer[:, 0].mean() / period.u_period) * period.u_period, 0.0])
         sheet = 0.5 * float(outer[:, 0].min() + outer[:, 0].max()) - float(about[0])
-        unrolled = regions([period.unroll(ring - about) for ring in (outer, *inside)])
-        found += [replace(region, sheet=sheet) for region in unrolled]
-    return tuple(found)
+        unrolled = regions([period.from_uv(ring - about) for ring in (outer, *inside)])
+        results += [replace(region, sheet=sheet) for region in unrolled]
+    return tuple(results)
 
 
 def strips(loops: Sequence[tuple[Array, int]], period: Period) -> tuple[Strip | Region, ...]:
-    """Strips and regions of the loops of a layer: points (n, 2) laid flat within one turn, and how often each goes round."""
-    rounds, closed, turn = [], [], period.around
+    """Return strips and regions of the loops of a layer.
+
+    loops: points (n, 2) unrolled within one turn, and how often each goes around.
+    """
+    rounds, closed, turn = [], [], period.u_period
     for flat, turns in loops:
-        uv = period.unrolled(flat)
+        uv = period.to_uv(flat)
         step = np.diff(uv[:, 0], prepend=uv[:1, 0])
         uv[:, 0] -= turn * np.cumsum(np.round(step / turn))
         if turns:
             rounds.append((uv, turns))
         else:
             closed.append(uv)
-    return parts(rounds, closed, period)
+    return assemble_regions(rounds, closed, period)
 
 
-def _begun(ring: Array, sense: int, turn: float) -> tuple[Array, int]:
-    """A border that goes round, begun where it leaves the generatrix half a turn from 0."""
-    past = np.remainder(sense * ring[:, 0] + 0.5 * turn + MEETING * turn, turn)
-    first = int(np.argmin(past))
-    ring = np.vstack([ring[first:], ring[:first] + np.array([sense * turn, 0.0])])
+def _start_at_cut(ring: Array, sense: int, turn: float) -> tuple[Array, int]:
+    """Return a border that goes around, started where it leaves the generatrix half a turn from
+    0.
+    """
+    past = np.remainder(sense * ring[:, 0] + 0.5 * turn + TOLERANCE_SHARE * turn, turn)
+    start = int(np.argmin(past))
+    ring = np.vstack([ring[start:], ring[:start] + np.array([sense * turn, 0.0])])
     ring[:, 0] -= turn * np.round((ring[0, 0] + sense * 0.5 * turn) / turn)
     return ring, sense
 
 
-def _within(strip: Strip, hole: Array) -> bool:
-    u, near = float(hole[0, 0]), 0.25 * strip.period.around
-    return any(part.contains(hole[:1])[0] for part in strip.between(u - near, u + near))
+def _is_inside(strip: Strip, hole: Array) -> bool:
+    u, half_width = float(hole[0, 0]), 0.25 * strip.period.u_period
+    return any(
+        region.contains(hole[:1])[0] for region in strip.between(u - half_width, u + half_width)
+    )
 
 
 def _box(low: float, high: float, bottom: float, top: float) -> Array:
@@ -335,8 +391,12 @@ def _box(low: float, high: float, bottom: float, top: float) -> Array:
     )
 
 
-def _boxed(region: Region, low: float, high: float) -> list[Array]:
-    """The rings of what of a region lies between two generatrices."""
+def _cut_rings(region: Region, low: float, high: float) -> list[Array]:
+    """Return the rings of the part of a region between two generatrices."""
     v = region.borders()[0][:, 1]
     box = regions([_box(low, high, float(v.min()), float(v.max()))])
-    return [ring for part in region.common(box, every_point=True) for ring in part.borders()]
+    return [
+        ring
+        for region_between in region.common(box, every_point=True)
+        for ring in region_between.borders()
+    ]

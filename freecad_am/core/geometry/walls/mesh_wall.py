@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array, Index, Mask
-from ..formatting import deviation, place
+from ..formatting import format_deviation, place
 from ..mesh.collapsed import collapse_edges
 from ..mesh.crossing import find_crossings
 from ..mesh.facets import doubled_areas
@@ -123,7 +123,7 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
                 Text(
                     "{}: where facets meet at an angle the wall runs smoothly, up to {} mm off them, at {}",
                     label,
-                    deviation(max_offset),
+                    format_deviation(max_offset),
                     place(farthest),
                 ),
             ),

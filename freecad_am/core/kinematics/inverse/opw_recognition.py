@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.formatting import differing
+from ...geometry.formatting import format_differing
 from ...issues import InputError, Text, Word
 from ...types import Array
 from ..chain import Chain, JointFrames
@@ -139,7 +139,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
                     "axes {} and {} are {} deg apart, not 90 deg",
                     first_axis + 1,
                     second_axis + 1,
-                    differing(90.0 - math.degrees(off), 90.0),
+                    format_differing(90.0 - math.degrees(off), 90.0),
                 )
             )
     off = math.asin(min(1.0, float(np.linalg.norm(np.cross(z[1], z[2])))))

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.formatting import differing
+from ...geometry.formatting import format_differing
 from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
@@ -205,7 +205,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
                     "axes {} and {} are {} deg apart, not 90 deg",
                     first_axis + 1,
                     second_axis + 1,
-                    differing(off, 90.0),
+                    format_differing(off, 90.0),
                 )
             )
     if not _parallel(z[1], z[2]):

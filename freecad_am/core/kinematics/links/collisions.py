@@ -105,7 +105,10 @@ def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
     plate = plate_of(cell)
     if plate is None:
         return []
-    tip, axis = frames.at(cell.mount[None], plate.tip), frames.turned(cell.mount[None], plate.axis)
+    tip, axis = (
+        frames.transform_point(cell.mount[None], plate.tip),
+        frames.rotate_vector(cell.mount[None], plate.axis),
+    )
     return [
         Collision(PLATFORM, body.name, np.zeros(0, dtype=np.intp), True, True)
         for body in bodies

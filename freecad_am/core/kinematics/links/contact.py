@@ -37,7 +37,7 @@ from ...collision.scene import Scene
 from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
 from ...geometry.columns import dots
-from ...geometry.cylinders import Cylinder, about, row
+from ...geometry.cylinders import Cylinder, enclosing_cylinder, enclosing_row
 from ...geometry.obstacles import Body, disc
 from ...parameters.external import ROBOT
 from ...types import Array, ArrayLike, Index, Mask
@@ -241,7 +241,9 @@ class ArmContact:
         """Cylinders that hold the part with what it stands on, where it may meet obstacles."""
         if not (self.cell.obstacles or self.cell.external_links) or not self.cell.part_moves:
             return []
-        found = [cylinder for body in around for cylinder in row(body.vertices, body.triangles)]
+        found = [
+            cylinder for body in around for cylinder in enclosing_row(body.vertices, body.triangles)
+        ]
         if self.deposit is not None:
             wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
             found += [
@@ -289,10 +291,10 @@ class ArmContact:
             np.full(len(joints), NONE, dtype=np.int64),
         )
         looked_at = sorted({number for group in self.groups for number in group.links})
-        middles = {k: frames.at(links[:, k], self.balls[k][0]) for k in looked_at}
+        middles = {k: frames.transform_point(links[:, k], self.balls[k][0]) for k in looked_at}
         for place, group in enumerate(self.groups):
             frame = seen_from[group.seen_from]
-            centre = frames.at(frame, group.centre)
+            centre = frames.transform_point(frame, group.centre)
             back = frames.inverse(frame)
             for number in group.links:
                 away = middles[number] - centre
@@ -318,7 +320,7 @@ def _meets(group: Group, solids: Sequence[Solid], seen: Array, moment: Index) ->
     """(k,) whether solids of a link, whose frame is seen as (k, 4, 4), meet a group."""
     met = np.zeros(len(seen), dtype=bool)
     for one in solids:
-        tip, axis = frames.at(seen, one.tip), frames.turned(seen, one.axis)
+        tip, axis = frames.transform_point(seen, one.tip), frames.rotate_vector(seen, one.axis)
         # only those that come near the ball are looked at closely
         low, high = float(np.min(one.solid.low)), one.solid.high
         off = tip - group.centre
@@ -344,7 +346,7 @@ def _slices(corners: Array) -> list[Cylinder]:
     middle = corners.mean(axis=1)
     order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
     return [
-        about(corners[some].reshape(-1, 3))
+        enclosing_cylinder(corners[some].reshape(-1, 3))
         for some in np.array_split(order, min(SLICES, len(order)))
     ]
 

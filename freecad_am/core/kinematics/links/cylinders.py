@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...geometry.cylinders import Cylinder, about, needed, row
+from ...geometry.cylinders import Cylinder, drop_redundant, enclosing_cylinder, enclosing_row
 from ...types import Array, Integers
 from ..chain import Chain
 from . import robot as robot_links
@@ -21,7 +21,7 @@ def of_robot(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Cyli
     """
     plain = [of_solids(link) for link in robot_links.solids(chain)]
     return [
-        row(*shape) if shape is not None else link
+        enclosing_row(*shape) if shape is not None else link
         for shape, link in zip(shapes or [None] * len(plain), plain)
     ]
 
@@ -29,4 +29,4 @@ def of_robot(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Cyli
 def of_solids(link: Sequence[Solid]) -> list[Cylinder]:
     """The cylinders that hold the solids of a link, in the same frame."""
     points = [solid.points for solid in link]
-    return needed([about(each) for each in points], points)
+    return drop_redundant([enclosing_cylinder(each) for each in points], points)

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ...collision.bodies import Bodies, build_bodies
-from ...geometry.cylinders import Cylinder, row
+from ...geometry.cylinders import Cylinder, enclosing_row
 from ...geometry.obstacles import Body
 from ..external import ExternalAxes
 from .bodies import Pieces
@@ -118,7 +118,7 @@ def _made(pieces: Pieces, read: Read | None) -> tuple[Body, tuple[Cylinder, ...]
     first = np.cumsum([0, *(len(points) for points, _ in meshes)])
     triangles = [triangles + start for (_, triangles), start in zip(meshes, first, strict=False)]
     body = Body("", np.concatenate([points for points, _ in meshes]), np.concatenate(triangles))
-    return body, tuple(cylinder for mesh in meshes for cylinder in row(*mesh))
+    return body, tuple(cylinder for mesh in meshes for cylinder in enclosing_row(*mesh))
 
 
 def _mesh(piece: LinkShape | Solid, read: Read | None) -> Mesh | None:

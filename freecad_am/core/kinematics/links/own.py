@@ -20,7 +20,7 @@ from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
 from ...geometry.columns import lengths
 from ...geometry.cylinders import Cylinder
-from ...geometry.spread import spread
+from ...geometry.spread import spread_points
 from ...types import Array, Index, Mask
 from ..chain import Chain
 from ..limits import Limits
@@ -79,7 +79,9 @@ class OwnLinks:
 
     def _middles(self, links: Array) -> list[Array]:
         """(k, 3) where the middles of the balls are, of each link."""
-        return [frames.at(links[:, k], middle) for k, (middle, _) in enumerate(self.balls)]
+        return [
+            frames.transform_point(links[:, k], middle) for k, (middle, _) in enumerate(self.balls)
+        ]
 
     def _near(self, outer: int, inner: int, middles: Sequence[Array]) -> Index:
         """With which frames the balls of two links are nearer than the links may be."""
@@ -155,7 +157,7 @@ def positions(limits: Limits, axes: int) -> Array:
     continuous = limits.continuous[:axes]
     low = np.where(continuous, -np.pi, limits.lower[:axes])
     high = np.where(continuous, np.pi, limits.upper[:axes])
-    found = low + spread(POSITIONS, axes) * (high - low)
+    found = low + spread_points(POSITIONS, axes) * (high - low)
     coupled = found @ limits.coefficients[:, :axes].T
     return np.asarray(
         found[((coupled >= limits.coupled_lower) & (coupled <= limits.coupled_upper)).all(axis=1)]

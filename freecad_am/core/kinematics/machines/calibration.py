@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.file_content import content
+from ...geometry.file_content import read_content
 from ...geometry.located import is_there
 from ...issues import InputError
 from ...types import Array
@@ -62,7 +62,7 @@ def read(path: Path) -> tuple[Array, str]:
             path,
         )
     try:
-        text = content(path, LARGEST, "BAD_CALIBRATION", str(path)).decode("utf-8")
+        text = read_content(path, LARGEST, "BAD_CALIBRATION", str(path)).decode("utf-8")
     except (OSError, ValueError) as error:
         raise InputError(
             "BAD_CALIBRATION",

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.file_content import content
+from ...geometry.file_content import read_content
 from ...issues import InputError, Text, Word
 from ...types import Array
 
@@ -154,7 +154,7 @@ def read(path: Path) -> Node:
     try:
         return Node(
             json.loads(
-                content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8-sig"),
+                read_content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8-sig"),
                 object_pairs_hook=lambda pairs: _once(pairs, path),
             ),
             path,

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...geometry.located import is_there, located
+from ...geometry.located import is_there, locate
 from ...issues import InputError, Text
 from ...types import Array, ArrayLike, Mask
 from ..arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
@@ -224,7 +224,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
         return of_description(f"{meant}", *urdf_machine.described(meant))
     path = file_of(text, folders)
     machine = (
-        _built_in(path, located(path).stat().st_mtime_ns)
+        _built_in(path, locate(path).stat().st_mtime_ns)
         if path.parent == BUILT_IN
         else _parse(read(path))
     )

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.file_content import content
+from ...geometry.file_content import read_content
 from ...issues import InputError, Text, Word
 from ...types import Array
 
@@ -138,7 +138,7 @@ def read(path: Path) -> Element:
     parser.EndElementHandler = lambda _: stack.pop()
     parser.EntityDeclHandler = refuse
     try:
-        parser.Parse(content(path, LARGEST, CODE, str(path)), True)
+        parser.Parse(read_content(path, LARGEST, CODE, str(path)), True)
     except OSError as error:
         raise InputError(
             CODE, str(path), "cannot be read: {}; choose a file that can", error.strerror or error

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.located import is_there, located
+from ...geometry.located import is_there, locate
 from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
@@ -314,10 +314,10 @@ class Urdf:
         """The file of a mesh. A package is a folder of its name above the URDF, or beside one that is."""
         if name.startswith("package://"):
             package, _, rest = name[len("package://") :].partition("/")
-            folders = [folder / package for folder in located(self.path).resolve().parents]
+            folders = [folder / package for folder in locate(self.path).resolve().parents]
             return next((folder / rest for folder in folders if is_there(folder / rest)), None)
         file = Path(name.removeprefix("file://"))
-        file = file if file.is_absolute() else located(self.path).resolve().parent / file
+        file = file if file.is_absolute() else locate(self.path).resolve().parent / file
         return file if is_there(file) else None
 
     def _colour(self, visual: Element) -> tuple[float, float, float] | None:

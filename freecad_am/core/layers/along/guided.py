@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...geometry.curves.guide import guide
+from ...geometry.curves.guide import fit_guide
 from ...geometry.formatting import place
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
@@ -44,11 +44,11 @@ def guided(
         nodes.points[-1] - nodes.points[0]
     ):
         nodes = nodes.reversed()
-    whole = guide(*nodes)
+    whole = fit_guide(*nodes)
     start = float(min(whole.distance(body.vertices).min() for body in bodies))
     origin, z = (rows[0] for rows in whole.at(np.array([start])))
     frame = upright(origin, z)
-    local = guide(
+    local = fit_guide(
         (nodes.points - origin) @ frame[:3, :3],
         nodes.tangents @ frame[:3, :3],
         np.array([1.0, 0.0, 0.0]),

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.curves.outline import estimated
+from ...geometry.curves.outline import estimate_outline
 from ...geometry.formatting import place
 from ...geometry.mesh.triangle_mesh import Mesh
 from ...geometry.on_hub import Base
@@ -132,7 +132,7 @@ def _regions(chart: Chart, chord_error: float) -> tuple[Region, ...]:
 def _smooth(loop: Array, chord_error: float) -> Array:
     """A loop (n, 2) with points between those of edges that bow."""
     points = np.column_stack([np.vstack([loop, loop[:1]]), np.zeros(len(loop) + 1)])
-    curve = estimated(points, True)
+    curve = estimate_outline(points, True)
     segment = np.arange(len(loop))
     bow = np.linalg.norm(curve.at(segment, 0.5)[0] - 0.5 * (points[:-1] + points[1:]), axis=1)
     parts = np.clip(np.ceil(np.sqrt(bow / (BORDER * chord_error))), 1, 4 * HALVES).astype(np.intp)

@@ -12,7 +12,7 @@ from ...geometry.developable import Developable
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, middle_azimuth
 from ...geometry.regions.region import Region, regions
-from ...geometry.regions.several import grown
+from ...geometry.regions.several import grow_regions
 from ...geometry.regions.strip import Strip, strips
 from ...issues import InputError
 from ...parameters.filled import DevelopableParameters
@@ -85,7 +85,7 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
                 layer = layer._replace(
                     buried=under_and_over(
                         [
-                            grown(regions(borders), strategy.margin, ARCS * error)
+                            grow_regions(regions(borders), strategy.margin, ARCS * error)
                             for borders in flat.borders[len(lots) :]
                         ]
                     )
@@ -121,6 +121,6 @@ def _all_round(
     """The strips and regions of a layer that runs all the way round the hub; above what ends below there is no margin."""
     margin, loops = next((lot for lot in lots if lot[1]), lots[0])
     found = strips(
-        [(surface.flat(loop.points), loop.turns) for loop in loops], RoundLayer(surface).period
+        [(surface.unroll(loop.points), loop.turns) for loop in loops], RoundLayer(surface).period
     )
-    return found if margin == 0.0 else grown(found, margin, ARCS * strategy.chord_error)
+    return found if margin == 0.0 else grow_regions(found, margin, ARCS * strategy.chord_error)

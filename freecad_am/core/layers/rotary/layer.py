@@ -37,7 +37,7 @@ class RoundLayer:
 
     def unroll(self, points: Array) -> Array:
         """(n, 2) mm."""
-        return self.surface.flat(points, self.middle)
+        return self.surface.unroll(points, self.middle)
 
     def wrap(self, flat: Array) -> Wrapped:
         """Azimuths are counted on where the curve goes far round."""
@@ -98,7 +98,7 @@ class RoundLayer:
 
 def _unwrapped(flat: Array, surface: Developable) -> tuple[Array, Array]:
     """Azimuth and height (n,) along a curve (n, 2) on the plane, the azimuth counted on where the curve goes far round."""
-    theta, z = surface.unrolled(flat)
+    theta, z = surface.from_unrolled(flat)
     if surface.is_cylinder:
         return theta, z
     sine = math.sin(surface.taper)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.columns import lengths
-from ...geometry.ramps import below
+from ...geometry.ramps import limit_growth
 from ...issues import ERROR, WARNING, Issue, Text, Word
 from ...kinematics.cell import Cell
 from ...toolpath import Bead, SpeedLaw
@@ -159,7 +159,8 @@ def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None)
         return np.asarray(speed * share)
     square = np.where(share < 1.0, speed * share, np.inf) ** 2
     return np.minimum(
-        np.sqrt(below(np.asarray(square, float), 2.0 * law.acceleration * middle)), speed * share
+        np.sqrt(limit_growth(np.asarray(square, float), 2.0 * law.acceleration * middle)),
+        speed * share,
     )
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.obstacles import enclosed
+from ...geometry.obstacles import enclosed_volume
 from ...issues import Text
 from ...kinematics import external, offered
 from ...kinematics.arrangement import arrangement_of
@@ -109,7 +109,10 @@ def added(
 
 def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
     """kg of the beads and of what they grow on, as far as that is closed."""
-    volume, usual = enclosed(toolpath.surroundings)[0], toolpath.bead_width or process.bead_width
+    volume, usual = (
+        enclosed_volume(toolpath.surroundings)[0],
+        toolpath.bead_width or process.bead_width,
+    )
     for _, _, bead in toolpath:
         width = usual if bead.width is None else float(np.mean(bead.width))
         volume += (

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...geometry.angles import TURN
-from ...geometry.ties import first_least, first_most
+from ...geometry.ties import first_most, index_of_minimum
 from ...issues import Issue
 from ...toolpath import Bead
 from ...types import Array, Index
@@ -130,6 +130,6 @@ def _searched(
     if previous is not None:
         moved = joints - previous
         motion = np.where(margin >= 0.0, (moved * moved) @ task.weights, np.inf)
-        best = np.where((margin >= 0.0).any(axis=0), first_least(motion, axis=0), best)
+        best = np.where((margin >= 0.0).any(axis=0), index_of_minimum(motion, axis=0), best)
     point_rows = np.arange(len(points))
     return phi[best, point_rows], joints[best, point_rows]

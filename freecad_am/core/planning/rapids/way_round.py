@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.spread import spread
+from ...geometry.spread import spread_points
 from ...program import SHORTEST_RAPID
 from ...types import Array, Index, Mask
 
@@ -88,7 +88,7 @@ def _connect(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -
     if free(start[None], end[None])[0]:
         return np.stack([start, end])
     trees = _Tree(start), _Tree(end)
-    all_samples = spread(BATCH * ROUNDS, len(start))
+    all_samples = spread_points(BATCH * ROUNDS, len(start))
     for round_ in range(ROUNDS):
         margin = min(1.0, (round_ + 1) / FULL_RANGE_ROUND) * (ranges.high - ranges.low)
         low = np.maximum(np.minimum(start, end) - margin, ranges.low)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...geometry.ties import alike
+from ...geometry.ties import is_tied
 from ...kinematics import jacobian as jac
 from ...types import Array, Integers, Mask
 from ..points import Points
@@ -153,9 +153,9 @@ class _Bead:
 
 def _better(result: tuple[Any, ...], reference: tuple[Any, ...]) -> bool:
     """Whether (violation, objective, ...) is less than another by more than rounding."""
-    if not alike(result[0], reference[0]) or not alike(reference[0], result[0]):
+    if not is_tied(result[0], reference[0]) or not is_tied(reference[0], result[0]):
         return bool(result[0] < reference[0])
-    return not bool(alike(reference[1], result[1]))
+    return not bool(is_tied(reference[1], result[1]))
 
 
 def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float, Array, str, int]:

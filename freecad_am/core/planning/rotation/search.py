@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...geometry.ties import first_least, first_most
+from ...geometry.ties import first_most, index_of_minimum
 from ...kinematics import jacobian as jac
 from ...types import Array, Index, Integers, Mask
 from .. import criteria
@@ -72,7 +72,7 @@ class Found:
 
     def _best(self, margin: Array) -> Integers:
         feasible = margin >= 0.0
-        ranked = first_least(np.where(feasible, self.objective, np.inf), axis=0)
+        ranked = index_of_minimum(np.where(feasible, self.objective, np.inf), axis=0)
         return np.asarray(
             np.where(feasible.any(axis=0), ranked, first_most(margin, axis=0)), dtype=np.int64
         )

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry.angles import TURN, shortest
-from ...geometry.ties import alike, first_least, first_most
+from ...geometry.ties import first_most, index_of_minimum, is_tied
 from ...types import Array, ArrayLike, Integers, Mask
 from ..points import Points
 from ..task import Task
@@ -52,7 +52,7 @@ def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) 
     flat = as_good(task, near.objective, here.objective)
     margin = np.where(flat, near.margin, -np.inf)
     chosen = _least_motion(task, points, near.coefficients, margin)
-    improved = ~alike(-here.margin[0], -margin[chosen, np.arange(points.beads)])
+    improved = ~is_tied(-here.margin[0], -margin[chosen, np.arange(points.beads)])
     return np.where(
         improved[:, None], near.coefficients[chosen, np.arange(points.beads)], coefficients
     )
@@ -96,7 +96,7 @@ def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) 
             continue
         step = start[:, bead] - end[chosen[bead - 1], bead - 1]
         step = shortest(step)
-        chosen[bead] = first_least(np.where(close, (step * step) @ task.weights, np.inf))
+        chosen[bead] = index_of_minimum(np.where(close, (step * step) @ task.weights, np.inf))
     return chosen
 
 

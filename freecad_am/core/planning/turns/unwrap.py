@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry.angles import TURN, shortest
-from ...geometry.ties import first_least
+from ...geometry.ties import index_of_minimum
 from ...issues import NOTE, WARNING, Issue, Text
 from ...toolpath import Bead
 from ...types import Array
@@ -97,7 +97,7 @@ def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
     turn = joints[-1, axis] - joints[0, axis]
     off = joints[:-1, axis] + 0.5 * turn - centre
     off = shortest(off)
-    index = int(first_least(np.abs(off)))
+    index = int(index_of_minimum(np.abs(off)))
     return bead.started_at(index), index
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...geometry.columns import columns, dots, lengths
-from ...geometry.ramps import below
+from ...geometry.ramps import limit_growth
 from ...types import Array
 
 STRAIGHT = 1e-9  # rad of turn over the window; less is none
@@ -76,7 +76,7 @@ def followed(points: Array, speed: Array, closed: bool, acceleration: float) -> 
     if closed:
         s = np.r_[s[:-1] - s[-1], s, s[1:] + s[-1]]
         square = np.r_[square[:-1], square, square[1:]]
-    limited = np.sqrt(below(square, 2.0 * acceleration * s))
+    limited = np.sqrt(limit_growth(square, 2.0 * acceleration * s))
     n = len(points)
     kept: Array = limited[n - 1 : 2 * n - 1] if closed else limited
     return np.minimum(kept, speed)

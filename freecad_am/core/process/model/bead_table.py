@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.file_content import content
+from ...geometry.file_content import read_content
 from ...issues import InputError, Text, Word
 from ...parameters.process import ProcessParameters
 from ...types import Array
@@ -62,7 +62,7 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     """
     path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
     try:
-        text = content(path, LARGEST, "BAD_TABLE", name).decode("utf-8-sig")
+        text = read_content(path, LARGEST, "BAD_TABLE", name).decode("utf-8-sig")
     except (OSError, ValueError) as error:
         if isinstance(error, UnicodeError):
             raise InputError(

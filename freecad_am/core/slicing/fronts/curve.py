@@ -268,7 +268,7 @@ class _Offset(NamedTuple):
         w, nearest = foot.w.copy(), np.empty_like(points)
         for k in np.unique(foot.front):
             own = foot.front == k
-            w[own] = self.below[k].walked(points[own], w[own])
+            w[own] = self.below[k].descend(points[own], w[own])
             nearest[own] = self.below[k].at(w[own])[0]
         return Feet.between(points, nearest, foot.front, w)
 

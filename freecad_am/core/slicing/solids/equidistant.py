@@ -192,7 +192,7 @@ class Facets:
         t = np.zeros(len(outer))
         start, along = columns(outer), columns(way)
         for _ in range(NEWTON):
-            away, slope = self.surface.along(start + t * along, along)
+            away, slope = self.surface.distance_rate(start + t * along, along)
             step = (away - distance) / np.minimum(slope, -1e-300)
             new = np.minimum(np.maximum(np.where(slope < 0.0, t - step, t), t), 1.0)
             if (new - t).max(initial=0.0) < 1e-15:
@@ -237,7 +237,7 @@ class Facets:
         t = np.zeros(len(points))
         start, along = columns(points), columns(way)
         for _ in range(NEWTON):
-            away, slope = self.surface.along(start + t * along, along)
+            away, slope = self.surface.distance_rate(start + t * along, along)
             step = (distance - away) / np.maximum(slope, 1e-6)
             t += step
             if np.abs(step).max(initial=0.0) < 1e-14 * max(1.0, abs(distance)):
@@ -268,7 +268,7 @@ class Facets:
         return unit
 
     def _turns(self, points: Array) -> int:
-        step = np.diff(self.surface.around(points), append=self.surface.around(points[:1]))
+        step = np.diff(self.surface.azimuth(points), append=self.surface.azimuth(points[:1]))
         return int(np.round((np.remainder(step + np.pi, TURN) - np.pi).sum() / TURN))
 
 

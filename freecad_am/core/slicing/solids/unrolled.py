@@ -78,7 +78,8 @@ def opened(
             np.floor((spans[:, 0] - cutting) / TURN) == np.floor((spans[:, 1] - cutting) / TURN)
         ).all():
             return Flat(
-                [[surface.flat(loop.points, middle) for loop in layer] for layer in layers], middle
+                [[surface.unroll(loop.points, middle) for loop in layer] for layer in layers],
+                middle,
             )
     flat = iter(_in_one_piece(surface, loops, azimuths, centre, where))
     return Flat([list(islice(flat, len(layer))) for layer in layers], centre)
@@ -86,7 +87,7 @@ def opened(
 
 def _followed(points: Array, surface: Developable) -> Array:
     """Azimuths (n,) along a loop, counted on past half a turn."""
-    found: Array = np.unwrap(surface.around(points))
+    found: Array = np.unwrap(surface.azimuth(points))
     return found
 
 
@@ -111,7 +112,7 @@ def _in_one_piece(
             widest / TURN,
         )
     flat = [
-        surface.flat_at(azimuth, loop.points[:, 2])
+        surface.unroll_at(azimuth, loop.points[:, 2])
         for azimuth, loop in zip(shifted, loops, strict=True)
     ]
     outer = [points for points in flat if doubled_area(points) > 0.0]
@@ -120,7 +121,7 @@ def _in_one_piece(
         if doubled_area(points) > 0.0:
             continue
         for turn in sorted(range(-turns, turns + 1), key=abs):
-            there = surface.flat_at(shifted[k] + TURN * turn, loops[k].points[:, 2])
+            there = surface.unroll_at(shifted[k] + TURN * turn, loops[k].points[:, 2])
             if winding(outer, there[:1])[0] > 0:
                 flat[k] = there
                 break

@@ -155,9 +155,9 @@ class Offset:
             found = np.searchsorted(self.curve.w, base, side="right") - 1
             arc = np.clip(found, np.array([r.first for r in runs])[run], last)
         else:
-            base = self.curve.wrapped(base)
+            base = self.curve.wrap(base)
             arc = self.curve.arcs(base)
-        return self.curve.on_arcs(arc, (base - self.curve.w[arc]) / self.curve.span[arc])
+        return self.curve.evaluate_arcs(arc, (base - self.curve.w[arc]) / self.curve.span[arc])
 
     def _candidates(self, v: Array) -> tuple[Index, Index, Array, Array]:
         """Which branches may carry each v: targets, runs and starting values of u and w, all (k,)."""
@@ -210,7 +210,7 @@ class Offset:
     def _forward(self, u: Array, arc: Index, t: Array) -> tuple[Array, Array, Array]:
         """u, v and the focusing number (k,) of the points in the normal planes at t on arcs; NaN where there is none."""
         curve, h = self.curve, self.height
-        base, slope, bend = curve.on_arcs(arc, t)
+        base, slope, bend = curve.evaluate_arcs(arc, t)
         v = curve.w[arc] + t * curve.span[arc]
         u = u[arc] + t * (u[arc + 1] - u[arc])
         _, along, around = self.surface.derivatives(u, v)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...geometry.ties import alike, first_least
+from ...geometry.ties import index_of_minimum, is_tied
 from ...types import Array, Index, Mask
 
 BARRED = 1e9  # cost of a state that is not allowed; finite, so that a chain without a way through has a least bad one
@@ -43,12 +43,12 @@ def least(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
         between = fixed if fixed is not None else _between(states[:, k - 1], states[:, k])
         ways = total[:, :, None] + change[:, k - 1, None, None] * between
         best = ways.min(axis=1)
-        came[:, k] = alike(ways, best[:, None]).argmax(
+        came[:, k] = is_tied(ways, best[:, None]).argmax(
             axis=1
         )  # what first_least finds, of numbers that are all finite
         total = best + own[:, k]
     chosen = np.zeros((b, n), dtype=np.intp)
-    chosen[:, -1] = first_least(total, axis=1)
+    chosen[:, -1] = index_of_minimum(total, axis=1)
     for k in range(n - 1, 0, -1):
         chosen[:, k - 1] = came[np.arange(b), k, chosen[:, k]]
     return chosen

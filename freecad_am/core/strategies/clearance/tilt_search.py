@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.ties import first_least
+from ...geometry.ties import index_of_minimum
 from ...types import Array, Index, Mask
 from ..progress import Watch
 from .least_turn import least
@@ -126,7 +126,7 @@ class TiltSearch:
         # a closed bead starts where least tilt is needed, and with it
         size = np.where(allowed, np.linalg.norm(states, axis=1), np.inf)
         anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
-        return states[self._least(states[None], allowed, anchor, first_least(size))], stuck
+        return states[self._least(states[None], allowed, anchor, index_of_minimum(size))], stuck
 
     def _hopeless(self, allowed: Mask, pending: Mask, numbers: range) -> Index:
         """The beads among those pending of which one of the points looked at is not free on any cone, of points (m, s) and

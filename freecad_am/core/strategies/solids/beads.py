@@ -10,9 +10,9 @@ import numpy as np
 
 from ...filling.curve import PlaneCurve
 from ...geometry.angles import TURN
-from ...geometry.curves.plane_curve import arcs, divided, fractions
+from ...geometry.curves.plane_curve import arcs, divide_edges, fractions
 from ...geometry.regions.region import simplified
-from ...geometry.regions.telling import telling
+from ...geometry.regions.telling import select_significant
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
@@ -61,20 +61,22 @@ def bead_of(
     build, process = classes.leaning(build, process, name), process.for_class(name)
     line, share = curve.whole(surface.period)
     error = WRAP_SHARE * strategy.chord_error
-    flat = needed(line, error, None if share is None else telling(arcs(line), share, SHARES))
-    flat = divided(flat, surface.pieces(flat, error))[0]
+    flat = needed(
+        line, error, None if share is None else select_significant(arcs(line), share, SHARES)
+    )
+    flat = divide_edges(flat, surface.pieces(flat, error))[0]
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
     flat, points, normals, tool, turned = held(
         course, leaning(curve, layer, strategy, build), build, strategy.chord_error
     )
-    points = base.placed(points)
+    points = base.to_part(points)
     if curve.closed:
         points[-1] = points[0]
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     bead = Bead(
         points,
-        base.turned(normals),
-        base.turned(tool),
+        base.rotate_to_part(normals),
+        base.rotate_to_part(tool),
         TURN * way / way[-1],
         np.full(len(way), process.travel_speed),
         curve.closed,

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from ...collision.inside import inside_of
 from ...geometry.curves.guide import Guide
-from ...geometry.curves.plane_curve import divided
+from ...geometry.curves.plane_curve import divide_edges
 from ...geometry.developable import Developable
 from ...geometry.formatting import place
 from ...geometry.mesh.orientation import connected_pieces
@@ -178,5 +178,5 @@ def _along(beads: Sequence[Bead], step: float) -> Array:
     points = []
     for bead in beads:
         lengths = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
-        points.append(divided(bead.points, step_counts(lengths, step))[0])
+        points.append(divide_edges(bead.points, step_counts(lengths, step))[0])
     return np.concatenate(points)

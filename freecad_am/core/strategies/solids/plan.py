@@ -45,7 +45,7 @@ def plan(
     model: sets the speeds, None for the travel speed everywhere. progress(fraction, text) may raise to cancel. Raises
     InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
     THIN_REGION."""
-    _refuse_mode(solids.on_planes(), strategy, build)
+    _refuse_mode(solids.has_plane_layers(), strategy, build)
     strategy = spaced(strategy, process)
     size.refuse_absurd(
         size.of_solids(solids, strategy, strategy.bead_spacing),
@@ -85,7 +85,7 @@ def plan(
             for curve in picture.curves:
                 made.append(bead_of(curve, layer, strategy, build, process, model))
                 beads.append(made[-1].bead)
-            if solids.on_planes():
+            if solids.has_plane_layers():
                 ranked += [
                     RankedBead(stack.group, stack.solid, layer.number, -len(ranked) - rank, bead)
                     for rank, bead in enumerate(order.of(beads, picture.islands))
@@ -121,7 +121,7 @@ def plan(
         strategy.chord_error,
         tuple(told),
         process.overlap,
-        "solid" if solids.on_planes() else "developable",
+        "solid" if solids.has_plane_layers() else "developable",
         solids.surroundings,
         None if model is None else model.law(process.acceleration),
         width,

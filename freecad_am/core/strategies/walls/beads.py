@@ -46,9 +46,9 @@ def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
     corners = curve.corners
     if len(corners):
         nearest = np.clip(
-            np.searchsorted(curve.w[corners], curve.wrapped(w) - 1e-12), 0, len(corners) - 1
+            np.searchsorted(curve.w[corners], curve.wrap(w) - 1e-12), 0, len(corners) - 1
         )
-        at = np.abs(curve.w[corners][nearest] - curve.wrapped(w)) < 1e-9 * curve.period
+        at = np.abs(curve.w[corners][nearest] - curve.wrap(w)) < 1e-9 * curve.period
         into[at], out[at] = curve.into[corners[nearest[at]]], curve.out[corners[nearest[at]]]
     points, into, out = _apart(points, into, out)
     if not closed:

@@ -61,7 +61,7 @@ def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> Mask:
     u, v = surface.inverse(front.curve.at(w)[0])
     rate = np.linalg.norm(surface.derivatives(u, v)[1], axis=1)
     if surface.rise_period is not None:
-        about = front.heights(surface, front.curve.wrapped(w))[0]
+        about = front.heights(surface, front.curve.wrap(w))[0]
         u = u + surface.rise_period * np.round((about - u) / surface.rise_period)
     below: Mask = (u - end) * rate <= SAME_END
     return below

@@ -174,7 +174,7 @@ def _parameters(stretch: Stretch, start: float, chord_error: float) -> Array:
     curve = stretch.front.curve
     if not stretch.closed:
         return within_chord(curve, stretch.low, stretch.high, chord_error)
-    low = float(curve.wrapped(np.array([start]))[0])
+    low = float(curve.wrap(np.array([start]))[0])
     return within_chord(curve, low, low + curve.period, chord_error)
 
 
