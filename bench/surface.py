@@ -15,7 +15,7 @@ import numpy as np
 
 from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Torus
-from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
 from freecad_am.core.slicing.tubes import constant_distance
 from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid
@@ -37,7 +37,7 @@ REFINED = 4
 def run() -> list[Row]:
     """All comparisons of this file."""
     torus = Torus(60.0, 15.0)
-    first = on_implicit(
+    first = intersect_implicit(
         torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, POINTS)
     )
     times, peers = [], []
@@ -61,7 +61,7 @@ def _doublings(torus: Torus) -> list[Row]:
     """Time per point of layers 5 mm apart with twice as many points each time; the peer is the row before."""
     grids = (POINTS, *DOUBLED)
     firsts = [
-        on_implicit(
+        intersect_implicit(
             torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, points)
         )
         for points in grids
@@ -93,7 +93,7 @@ def _fronts() -> Row:
     for _ in range(ROUNDS):
         for some, wall, height in zip(times, walls, FRONTS):
             start = process_time()
-            layers = fronts.layers(wall, height).fronts
+            layers = fronts.slice_layers(wall, height).fronts
             some.append(
                 (process_time() - start) / sum(len(front.w) for layer in layers for front in layer)
             )

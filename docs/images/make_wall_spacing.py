@@ -24,7 +24,7 @@ from freecad_am.core.geometry.implicit import Round  # noqa: E402
 from freecad_am.core.geometry.walls.surface import Torus  # noqa: E402
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall  # noqa: E402
 from freecad_am.core.parameters.strategy import SurfaceParameters  # noqa: E402
-from freecad_am.core.slicing.first_layer import on_implicit  # noqa: E402
+from freecad_am.core.slicing.first_layer import intersect_implicit  # noqa: E402
 from freecad_am.core.slicing.tubes import normal_layers  # noqa: E402
 from freecad_am.core.slicing.tubes.wall_layer import even_grid, local_distances  # noqa: E402
 from freecad_am.core.strategies.walls.plan import sliced  # noqa: E402
@@ -87,7 +87,7 @@ def screen() -> np.ndarray:
 def draw() -> Figure:
     """The picture."""
     torus = Torus(BEND, TUBE)
-    first = on_implicit(
+    first = intersect_implicit(
         torus, Round.cylinder(PIPE, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360)
     )
     wall = SurfaceWall("torus", (BEND, TUBE), np.eye(4), END, first.curve.points[:-1])

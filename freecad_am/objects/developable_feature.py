@@ -17,7 +17,7 @@ from ..core.geometry.on_hub import OwnHub, Seat, SolidsOnHub
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import DevelopableParameters
-from ..core.slicing.solids.standing import hub_among, on_hub
+from ..core.slicing.solids.standing import group_by_base, hub_among
 from ..core.strategies import size
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, Taken, bodies, fixtures_of, taken
@@ -156,7 +156,7 @@ def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
         if one.shape is None
         for body in own.bodies
     ]
-    solids = on_hub(
+    solids = group_by_base(
         rest, bases, SHARE * strategy.chord_error, of.objects[0].label, issues, named, meshes
     )
     if hub is not None:

@@ -42,7 +42,7 @@ def test_first_curve_and_fronts_lie_on_flats_and_roundings_between_their_nodes_t
     assert off_rounded_box(points).max() < 2e-5 and np.abs(points[:, 2]).max() < 1e-9
     note = next(issue for issue in wall.issues if issue.code == "FIRST_LAYER")
     assert off_rounded_box(points).max() < 2e-5 and note.message.endswith(" within 0.001 mm")
-    layers = fronts.layers(wall, HEIGHT).fronts
+    layers = fronts.slice_layers(wall, HEIGHT).fronts
     assert len(layers) == 4
     for index, layer in enumerate(layers):
         for front in layer:
@@ -83,7 +83,7 @@ def test_a_wall_moved_and_turned_gives_the_same_beads():
     for move in (Placement(), Placement(Vector(50, -30, 20), Rotation(Vector(1, 2, 3), 137))):
         wall, ground = both.copy(), block.copy()
         wall.Placement, ground.Placement = move, move
-        sliced = fronts.layers(wall_on(wall, [], ground, 4.0), 4.0)
+        sliced = fronts.slice_layers(wall_on(wall, [], ground, 4.0), 4.0)
         found.append(sliced)
     assert any(found[0].closing)
     for kind in ("fronts", "closing"):

@@ -11,10 +11,12 @@ from ..types import Array
 
 
 def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
-    """Arc lengths of the beads of each layer, the first at the base, and what is left at the top. mm.
+    """Return the arc lengths of the beads of each layer, the first at the base, and the length
+    left over at the top, mm.
 
-    A wall that is a whole number of layer heights has its last layer on its end. The closing of a top on the axis
-    adds none. Raises InputError 'LAYER_HEIGHT' when the layer height is larger than the wall is long.
+    A wall that is a whole number of layer heights long has its last layer on its end. The
+    closing of a top on the axis adds none. Raises InputError 'LAYER_HEIGHT' if the layer
+    height is larger than the wall is long.
     """
     if layer_height > meridian.length:
         raise InputError(

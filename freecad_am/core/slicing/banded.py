@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The smoothest layer within a band: heights over a line of places that bend as little as asked, and the search for what is
-enough."""
+"""The smoothest layer within a band: heights over a line of points with the least bending
+that meets a limit.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +17,9 @@ from ..types import Array
 WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance
 HEAVY = 7  # from this weight on the turn is much less, or the band stops it: GAIN by IDLE more is what a search goes on for
 GAIN, IDLE = 0.02, 2
-AIM = 0.8  # of the limit; layers above sharpen what is round, so some of it is kept for them
+AIM = 0.8  # of the limit; layers above sharpen round corners, so a reserve is kept for them
 MARGIN = 0.02  # of the band, kept free for what the curve does between its points
-ROUNDS, LOOK, RELAXED, CLOSE = (
+ROUNDS, CHECK_INTERVAL, RELAXED, TOLERANCE_SHARE = (
     2000,
     5,
     1.6,
@@ -39,21 +40,22 @@ class Weighed(Protocol):
 Layer = TypeVar("Layer", bound=Weighed)
 
 
-def between(
-    wanted: Array,
+def smooth_between(
+    target: Array,
     low: Array,
     high: Array,
     weight: float,
     bend: Array | None = None,
     closed: bool = True,
 ) -> Array:
-    """x (n,) that minimises |x - wanted|^2 + weight |second differences + bend|^2 with low <= x <= high.
+    """Return x (n,) that minimises |x - target|^2 + weight |second differences + bend|^2 with
+    low <= x <= high.
 
-    bend: second differences of what x is measured from, none unless given; (n,), or (n - 2,) of the places between the ends.
-    closed: x is periodic. By alternating directions: a smooth x and one within the bounds approach each other. The
-    smooth one is returned.
+    bend: second differences of the datum from which x is measured, none by default; (n,), or
+    (n - 2,) at the points between the ends. closed: x is periodic. Alternating directions: a
+    smooth x and one within the bounds approach each other. The smooth one is returned.
     """
-    n = len(wanted)
+    n = len(target)
     if closed:
         second = diags([1.0, 1.0, -2.0, 1.0, 1.0], [-(n - 1), -1, 0, 1, n - 1], shape=(n, n))
     else:
@@ -61,15 +63,18 @@ def between(
     matrix = csc_matrix(identity(n) + weight * (second.T @ second))
     pull = 1.0 + np.sqrt(weight)
     solve = splu(csc_matrix(matrix + pull * identity(n))).solve
-    goal = wanted if bend is None else wanted - weight * (second.T @ bend)
-    bounded, debt = np.minimum(np.maximum(wanted, low), high), np.zeros(n)
-    x = wanted
+    goal = target if bend is None else target - weight * (second.T @ bend)
+    bounded, debt = np.minimum(np.maximum(target, low), high), np.zeros(n)
+    x = target
     for count in range(ROUNDS):
         x = solve(goal + pull * (bounded - debt))
         leaning = RELAXED * x + (1.0 - RELAXED) * bounded
         bounded = np.minimum(np.maximum(leaning + debt, low), high)
         debt = debt + leaning - bounded
-        if count % LOOK == 0 and np.abs(x - bounded).max() < CLOSE * (high - low).max():
+        if (
+            count % CHECK_INTERVAL == 0
+            and np.abs(x - bounded).max() < TOLERANCE_SHARE * (high - low).max()
+        ):
             break
     return x
 

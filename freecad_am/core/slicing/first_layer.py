@@ -13,25 +13,27 @@ from ..types import Array
 from .refinement import ROUNDS, finer_grid
 from .tubes.wall_layer import WallLayer
 
-SCAN = 200  # places along each line v = const at which inside and outside are told apart
+SCAN = 200  # samples along each line v = const that are tested for inside and outside
 HALVINGS = 60
 SAME_POINT = 1e-6  # mm
 
 
-def on_implicit(
+def intersect_implicit(
     surface: Surface,
     substrate: Implicit,
     u_range: tuple[float, float],
     v: Array,
     label: str = "wall",
 ) -> WallLayer:
-    """The curve in which the wall comes out of the substrate for good as u rises through `u_range`.
+    """Return the curve in which the wall finally leaves the substrate as u rises through
+    `u_range`.
 
-    v: (m,) from one seam to the next; nodes are added where cubic arcs between them would not follow the curve.
-    Exact to rounding at the nodes. InputError NO_INTERSECTION where the wall does not touch the substrate.
+    v: (m,) from one seam to the next; nodes are added where cubic arcs between them would not
+    follow the curve. Exact to rounding at the nodes. Raises InputError NO_INTERSECTION if the
+    wall does not touch the substrate.
     """
     for _ in range(ROUNDS):
-        u, slope = _crossing(surface, substrate, u_range, v, label)
+        u, slope = _find_exit(surface, substrate, u_range, v, label)
         layer = WallLayer.of(surface, v, u, slope, slope)
         added = finer_grid(layer.curve)
         if not len(added):
@@ -40,7 +42,7 @@ def on_implicit(
     return layer
 
 
-def _crossing(
+def _find_exit(
     surface: Surface, substrate: Implicit, u_range: tuple[float, float], v: Array, label: str
 ) -> tuple[Array, Array]:
     u = np.linspace(*u_range, SCAN)
@@ -55,32 +57,34 @@ def _crossing(
             "instance): let it reach into the substrate all around, or choose the edges it starts from",
             missing,
         )
-    last = len(u) - 2 - np.argmax(leaves[::-1], axis=0)
-    low, high = u[last], u[last + 1]
-    at = 0.5 * (low + high)
-    for _ in range(HALVINGS):  # Newton, kept between the last places known inside and outside
-        points, along, _ = surface.derivatives(at, v)
+    last_exit = len(u) - 2 - np.argmax(leaves[::-1], axis=0)
+    low, high = u[last_exit], u[last_exit + 1]
+    u_exit = 0.5 * (low + high)
+    for _ in range(HALVINGS):  # Newton, kept between the last samples inside and outside
+        points, along, _ = surface.derivatives(u_exit, v)
         value, gradient = substrate.value(points)
-        low, high = np.where(value > 0.0, low, at), np.where(value > 0.0, at, high)
+        low, high = np.where(value > 0.0, low, u_exit), np.where(value > 0.0, u_exit, high)
         rate = dot(gradient, along)
-        new = at - value / np.where(np.abs(rate) > 1e-12, rate, np.inf)
+        new = u_exit - value / np.where(np.abs(rate) > 1e-12, rate, np.inf)
         new = np.where((new < low) | (new > high), 0.5 * (low + high), new)
-        still = np.abs(new - at).max() < 1e-15 * max(1.0, np.abs(new).max())
-        at = new
+        still = np.abs(new - u_exit).max() < 1e-15 * max(1.0, np.abs(new).max())
+        u_exit = new
         if still:
             break
-    points, along, around = surface.derivatives(at, v)
+    points, along, around = surface.derivatives(u_exit, v)
     gradient = substrate.value(points)[1]
-    return at, -dot(gradient, around) / dot(gradient, along)
+    return u_exit, -dot(gradient, around) / dot(gradient, along)
 
 
-def on_polyline(
+def interpolate_polyline(
     surface: Surface, points: Array, corner: float = np.radians(20.0), label: str = "wall"
 ) -> WallLayer:
-    """The layer through a closed chain of points (m, 3) on the wall, the first not repeated, in either direction.
+    """Return the layer through a closed chain of points (m, 3) on the wall, in either direction,
+    the first not repeated.
 
-    Between the points smooth curves run through the corners, the places where the chain turns by more than `corner` (rad).
-    InputError NOT_AROUND where the chain does not run once around the wall without turning back in v.
+    Between the points, smooth curves run from corner to corner, where the chain turns by more
+    than `corner` (rad). Raises InputError NOT_AROUND if the chain does not run once around
+    the wall without reversing in v.
     """
     if surface.period is None:
         raise ValueError("a wall that is open in v has no closed layers")
@@ -102,9 +106,11 @@ def on_polyline(
             "the first layer does not run once around the wall: choose one closed loop of edges that "
             "crosses each line up the wall once",
         )
-    before = points - np.roll(points, 1, axis=0)
-    after = np.roll(before, -1, axis=0)
-    turn = np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), dot(before, after))
+    chord_before = points - np.roll(points, 1, axis=0)
+    chord_after = np.roll(chord_before, -1, axis=0)
+    turn = np.arctan2(
+        np.linalg.norm(np.cross(chord_before, chord_after), axis=1), dot(chord_before, chord_after)
+    )
     breaks = np.flatnonzero(turn > corner)
     start = int(breaks[0]) if len(breaks) else 0
     v = v[start] + np.r_[0.0, np.cumsum(np.roll(steps, -start))]
@@ -116,8 +122,8 @@ def on_polyline(
     into, out = np.empty(len(v)), np.empty(len(v))
     ends = np.r_[breaks - start, len(v) - 1]
     for low, high in zip(ends[:-1], ends[1:]):
-        piece = slice(low, high + 1)
-        slope = CubicSpline(v[piece], u[piece])(v[piece], 1)
+        rows = slice(low, high + 1)
+        slope = CubicSpline(v[rows], u[rows])(v[rows], 1)
         into[low + 1 : high + 1], out[low:high] = slope[1:], slope[:-1]
     into[0], out[-1] = into[-1], out[0]
     return WallLayer.of(surface, v, u, into, out)

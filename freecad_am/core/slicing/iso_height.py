@@ -32,8 +32,10 @@ def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]
 
 
 def spacing(meridian: Meridian, below: Array, layer: Array) -> Array:
-    """Distance (k,) mm in the meridian's plane from each bead of a layer to the nearest bead of the one below."""
+    """Return the distance (k,) mm in the meridian's plane of each bead of a layer from the
+    nearest bead below.
+    """
     r, h, _ = meridian.at(np.r_[below, layer])
     n = len(below)
-    apart: Array = np.hypot(r[n:, None] - r[None, :n], h[n:, None] - h[None, :n]).min(axis=1)
-    return apart
+    distances: Array = np.hypot(r[n:, None] - r[None, :n], h[n:, None] - h[None, :n]).min(axis=1)
+    return distances

@@ -15,7 +15,7 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import CurvesParameters
 from ..process import classes
-from ..slicing.directions.wall import held
+from ..slicing.directions.wall import lean_tool
 from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array
 from .progress import Progress, silent
@@ -144,7 +144,7 @@ def _bead(
         )
     across = np.cross(forward, away)
     across /= np.linalg.norm(across, axis=1, keepdims=True)
-    tool = held(away, np.cross(away, across), across, build.lead, build.tilt)
+    tool = lean_tool(away, np.cross(away, across), across, build.lead, build.tilt)
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     if curve.closed:
         points, away, tool = (np.vstack([rows[:-1], rows[:1]]) for rows in (points, away, tool))

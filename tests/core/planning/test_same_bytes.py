@@ -131,7 +131,7 @@ def test_functions_worked_out_in_two_ways_are_given_arrays_in_one_piece(monkeypa
     for parameter in ("rotation", "rz"):
         toolpath = wall(0.3)
         plan_joints(toolpath, cell_of(toolpath), JointParameters(parameter=parameter))
-    wall_direction.capped(wall().layers[0].beads[0].tool, 0.5)
+    wall_direction.cap_lean(wall().layers[0].beads[0].tool, 0.5)
     assert not strided
 
 

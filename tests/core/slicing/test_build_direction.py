@@ -18,10 +18,10 @@ def test_lead_turns_forward_and_tilt_outward(rising):
     forward = np.array([[0.0, 1.0 if rising else -1.0, 0.0]])
     outward = np.array([[1.0, 0.0, 0.0]])
     lead, tilt = 0.3, 0.2
-    assert directions.held(build, lead, 0.0, rising) == pytest.approx(
+    assert directions.lean_tool(build, lead, 0.0, rising) == pytest.approx(
         np.cos(lead) * build + np.sin(lead) * forward
     )
-    assert directions.held(build, 0.0, tilt, rising) == pytest.approx(
+    assert directions.lean_tool(build, 0.0, tilt, rising) == pytest.approx(
         np.cos(tilt) * build + np.sin(tilt) * outward
     )
 
@@ -29,7 +29,7 @@ def test_lead_turns_forward_and_tilt_outward(rising):
 @pytest.mark.parametrize("rising", [True, False])
 def test_lead_and_tilt_keep_their_angles_on_any_wall(rising):
     build, _ = some_builds()
-    tool = directions.held(build, 0.3, 0.2, rising)
+    tool = directions.lean_tool(build, 0.3, 0.2, rising)
     assert np.linalg.norm(tool, axis=1) == pytest.approx(np.ones(len(build)), abs=1e-14)
     assert (tool * build).sum(axis=1) == pytest.approx(
         np.full(len(build), np.cos(0.3) * np.cos(0.2))
@@ -42,7 +42,7 @@ def test_lead_and_tilt_keep_their_angles_on_any_wall(rising):
 def test_tilt_back_turns_towards_the_axis_and_stops_there():
     build, angle = some_builds()
     back = np.random.default_rng(4).uniform(0.0, np.pi, len(build))
-    turned = directions.tilted_back(build, back)
+    turned = directions.tilt_back(build, back)
     assert directions.from_vertical(turned) == pytest.approx(
         np.maximum(angle - back, 0.0), abs=1e-12
     )
@@ -52,7 +52,7 @@ def test_tilt_back_turns_towards_the_axis_and_stops_there():
 
 def test_no_tilt_back_changes_nothing_to_the_bit():
     build, _ = some_builds()
-    assert (directions.tilted_back(build, np.zeros(len(build))) == build).all()
+    assert (directions.tilt_back(build, np.zeros(len(build))) == build).all()
 
 
 def test_the_least_tilt_back_is_the_first_good_one():

@@ -80,7 +80,7 @@ CASES = {
 def test_gaps_are_closed(case):
     make, height, away = CASES[case]
     wall = make()
-    found = fronts.layers(wall, height)
+    found = fronts.slice_layers(wall, height)
     closing = flat(found.closing)
     assert closing
     assert farthest(wall, flat(found.fronts), away) > 0.6 * height
@@ -96,7 +96,7 @@ def test_gaps_are_closed(case):
 
 def test_fronts_from_two_ends_of_a_tube_leave_one_ring_to_close():
     wall = tube(Both([0, 0, 0.0], [0, 0, 1], [0, 0, 14.8], [0, 0, -1]), 20.0, 1.0, 10.0)
-    found = fronts.layers(wall, 2.0)
+    found = fronts.slice_layers(wall, 2.0)
     assert [len(layer) for layer in found.fronts] == [2, 2, 2, 2]
     (ring,) = flat(found.closing)
     assert ring.closed and len(found.closing) == 5
@@ -106,7 +106,7 @@ def test_fronts_from_two_ends_of_a_tube_leave_one_ring_to_close():
 
 def test_where_beads_lie_close_enough_nothing_is_closed():
     slanted = HalfSpace(np.zeros(3), np.array([0.2, 0.1, 1.0]))
-    assert not flat(fronts.layers(tube(slanted, 20.0, 2.0, low=-10.0), 3.0).closing)
+    assert not flat(fronts.slice_layers(tube(slanted, 20.0, 2.0, low=-10.0), 3.0).closing)
     assert not flat(
-        fronts.layers(ball(FLOOR, 4000), 1.15).closing
+        fronts.slice_layers(ball(FLOOR, 4000), 1.15).closing
     )  # the last circle is 0.5 heights wide

@@ -9,7 +9,7 @@ from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
 from freecad_am.core.geometry.walls.tabulated import Tabulated
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing.first_layer import on_implicit, on_polyline
+from freecad_am.core.slicing.first_layer import interpolate_polyline, intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance, iso_parameter
 from freecad_am.core.slicing.tubes.wall_layer import even_grid, local_distances
 
@@ -19,7 +19,7 @@ END = 0.5 * np.pi
 
 def paper(tube=15.0, start=0.0, pipe=PIPE):
     torus = Torus(60.0, tube)
-    return torus, on_implicit(torus, pipe, (0.0, 1.5), even_grid(torus, 360, start))
+    return torus, intersect_implicit(torus, pipe, (0.0, 1.5), even_grid(torus, 360, start))
 
 
 def fine_line(layer):
@@ -161,7 +161,7 @@ GROUND = HalfSpace(np.zeros(3), np.array([0.0, 0.0, 1.0]))
     "wall7-substrate7-reach7-30.0-2.0-0",
 )
 def test_walls_on_substrates(wall, substrate, reach, end, height, corners):
-    first = on_implicit(wall, substrate, reach, even_grid(wall, 360))
+    first = intersect_implicit(wall, substrate, reach, even_grid(wall, 360))
     layers = constant_distance.layers(wall, first, height, end)
     assert_spacing(layers, height)
     assert len(layers[-1].curve.corners) == corners
@@ -172,7 +172,7 @@ def test_a_plane_has_a_closed_form():
     keeps its corner."""
     wall, n = cylinder(1000.0), 720
     v = np.linspace(-np.pi, np.pi, n, endpoint=False)
-    first = on_polyline(wall, wall.point(500.0 - 200.0 * np.abs(v), v), corner=0.1)
+    first = interpolate_polyline(wall, wall.point(500.0 - 200.0 * np.abs(v), v), corner=0.1)
     above = constant_distance.next_layer(wall, first, 20.0, even_grid(wall, n, -np.pi))
     lean = np.hypot(1.0, 0.2)
     top = wall.inverse(above.curve.at(np.array([0.0]))[0])[0]
@@ -190,7 +190,7 @@ def test_a_table_serves_as_the_wall():
     table = Tabulated(u, v, torus.point(*np.meshgrid(u, v, indexing="ij")), 2.0 * np.pi)
     exact = constant_distance.layers(torus, first, 5.0, END)
     found = constant_distance.layers(
-        table, on_implicit(table, PIPE, (0.0, 1.5), even_grid(table, 360)), 5.0, END
+        table, intersect_implicit(table, PIPE, (0.0, 1.5), even_grid(table, 360)), 5.0, END
     )
     assert_spacing(found, 5.0)
     assert exact[-1].curve.nearest(found[-1].curve.points)[0] == pytest.approx(0.0, abs=1e-4)

@@ -8,8 +8,8 @@ from freecad_am.core.geometry.curves.outline import outline
 from freecad_am.core.geometry.curves.space_curve import SpaceCurve
 from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Torus
-from freecad_am.core.slicing.curve_points import within_chord
-from freecad_am.core.slicing.first_layer import on_implicit, on_polyline
+from freecad_am.core.slicing.curve_points import sample_within_chord
+from freecad_am.core.slicing.first_layer import interpolate_polyline, intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance
 from freecad_am.core.slicing.tubes.wall_layer import even_grid
 
@@ -19,7 +19,7 @@ PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
 @pytest.fixture(scope="module")
 def fronts():
     torus = Torus(60.0, 15.0)
-    first = on_implicit(torus, PIPE, (0.0, 1.5), even_grid(torus, 360))
+    first = intersect_implicit(torus, PIPE, (0.0, 1.5), even_grid(torus, 360))
     return constant_distance.layers(torus, first, 5.0, 0.5 * np.pi)
 
 
@@ -39,7 +39,7 @@ def worst(curve, w):
 def test_chords_keep_the_error_and_corners_are_points(fronts, index, error):
     curve = fronts[index].curve
     low = curve.w[0] + 0.3
-    w = within_chord(curve, low, low + curve.period, error)
+    w = sample_within_chord(curve, low, low + curve.period, error)
     assert (np.diff(w) > 0.0).all()
     assert w[0] == low and w[-1] == low + curve.period
     assert worst(curve, w) <= error * (1.0 + 1e-3)
@@ -50,7 +50,7 @@ def test_chords_keep_the_error_and_corners_are_points(fronts, index, error):
 
 def test_no_more_points_than_a_circle_needs():
     circle = ring().curve
-    w = within_chord(circle, circle.w[0], circle.w[-1], 0.01)
+    w = sample_within_chord(circle, circle.w[0], circle.w[-1], 0.01)
     needed = np.pi / np.arccos(1.0 - 0.01 / 15.0)
     assert needed <= len(w) - 1 <= needed + 2
 
@@ -59,7 +59,7 @@ def ring():
     """The circle of the torus's own radius."""
     torus = Torus(60.0, 15.0)
     v = 2.0 * np.pi * np.arange(360) / 360
-    return on_polyline(torus, torus.point(np.full(360, 0.1), v))
+    return interpolate_polyline(torus, torus.point(np.full(360, 0.1), v))
 
 
 def test_what_the_points_outline_is_the_curve_where_its_curvature_jumps():
@@ -87,7 +87,7 @@ def test_what_the_points_outline_is_the_curve_where_its_curvature_jumps():
 
     assert off(curve.at(curve.refined(7))[0]).max() < 1e-5
     for start in (0.0, 1.7, 9.3):
-        places = within_chord(curve, start, start + curve.period, 0.01)
+        places = sample_within_chord(curve, start, start + curve.period, 0.01)
         points, slope, _ = curve.at(places)
         slope /= np.linalg.norm(slope, axis=1, keepdims=True)
         drawn = outline(points, np.stack([slope, slope], axis=1))

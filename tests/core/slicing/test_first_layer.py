@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Torus, cylinder
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing.first_layer import on_implicit, on_polyline
+from freecad_am.core.slicing.first_layer import interpolate_polyline, intersect_implicit
 from freecad_am.core.slicing.tubes.wall_layer import even_grid
 
 TORUS = Torus(60.0, 15.0)
@@ -15,7 +15,7 @@ PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
 
 
 def test_torus_on_a_pipe_is_equation_3():
-    layer = on_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360))
+    layer = intersect_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360))
     reach = 60.0 + 15.0 * np.cos(layer.v)
     u = np.arccos((60.0**2 - 32.0**2 + reach**2) / (2.0 * 60.0 * reach))
     assert layer.u == pytest.approx(u, abs=1e-13)
@@ -37,7 +37,7 @@ def test_torus_on_a_pipe_is_equation_3():
     ],
 )
 def test_between_the_nodes_too_the_curve_lies_on_wall_and_substrate(substrate, wall, range_):
-    curve = on_implicit(wall, substrate, range_, even_grid(wall, 90)).curve
+    curve = intersect_implicit(wall, substrate, range_, even_grid(wall, 90)).curve
     between = curve.at(curve.refined(10))[0]
     assert np.abs(substrate.value(curve.points)[0]).max() < 1e-11
     assert np.abs(substrate.value(between)[0]).max() < 5e-5
@@ -46,14 +46,14 @@ def test_between_the_nodes_too_the_curve_lies_on_wall_and_substrate(substrate, w
 
 def test_a_wall_that_misses_the_substrate_is_refused():
     with pytest.raises(InputError, match="come out of the substrate") as refused:
-        on_implicit(cylinder(40.0), PIPE, (-50.0, 50.0), even_grid(TORUS, 90))
+        intersect_implicit(cylinder(40.0), PIPE, (-50.0, 50.0), even_grid(TORUS, 90))
     assert refused.value.code == "NO_INTERSECTION"
 
 
 @pytest.mark.parametrize("order", [1, -1])
 def test_a_chain_of_points_gives_the_same_layer(order):
-    exact = on_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360, 0.2))
-    layer = on_polyline(TORUS, exact.curve.points[:-1][::order])
+    exact = intersect_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360, 0.2))
+    layer = interpolate_polyline(TORUS, exact.curve.points[:-1][::order])
     assert np.abs(exact.curve.nearest(layer.curve.at(layer.curve.refined(7))[0])[0]).max() < 1e-7
     assert not len(layer.curve.corners)
 
@@ -61,7 +61,7 @@ def test_a_chain_of_points_gives_the_same_layer(order):
 def test_corners_of_a_chain_stay_corners():
     v = np.linspace(0.0, 2.0 * np.pi, 120, endpoint=False)
     wall = cylinder(10.0)
-    layer = on_polyline(wall, wall.point(6.0 * np.abs(np.sin(v)), v))
+    layer = interpolate_polyline(wall, wall.point(6.0 * np.abs(np.sin(v)), v))
     assert len(layer.curve.corners) == 2
     assert np.degrees(layer.curve.turns[layer.curve.corners]) == pytest.approx(
         2 * np.degrees([np.arctan(0.6)] * 2), abs=0.2
@@ -72,4 +72,4 @@ def test_a_chain_that_does_not_go_around_is_refused():
     v = np.linspace(0.0, 1.0, 20)
     there_and_back = np.r_[v, v[::-1] - 0.01]
     with pytest.raises(InputError, match="once around"):
-        on_polyline(TORUS, TORUS.point(0.1 + 0.0 * there_and_back, there_and_back))
+        interpolate_polyline(TORUS, TORUS.point(0.1 + 0.0 * there_and_back, there_and_back))

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Torus
-from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
 from freecad_am.core.slicing.fronts.feet import local_distances
 from freecad_am.core.slicing.fronts.rims import Rims
@@ -53,13 +53,13 @@ def assert_faces_up(wall, layers):
 @pytest.fixture(scope="module")
 def torus():
     wall = bend(PIPE, 0.3, np.pi / 2, 1.25)
-    return wall, fronts.layers(wall, 5.0).fronts
+    return wall, fronts.slice_layers(wall, 5.0).fronts
 
 
 def test_the_same_fronts_as_on_the_parametric_wall(torus):
     wall, layers = torus
     surface = Torus(60.0, 15.0)
-    first = on_implicit(surface, PIPE, (0.0, 1.5), even_grid(surface, 360))
+    first = intersect_implicit(surface, PIPE, (0.0, 1.5), even_grid(surface, 360))
     graph = constant_distance.layers(surface, first, 5.0, np.pi / 2)
     assert_spacing(layers, 5.0)
     assert_faces_up(wall, layers)
@@ -86,7 +86,7 @@ def test_at_the_end_of_the_wall_the_beads_are_open_and_finish_it(torus):
 @pytest.mark.always("1.0")
 def test_a_front_splits_at_a_hole_and_merges_behind_it(step):
     wall, height = sheet(SILL, [(2.0, 20.0, 9.0)], step=step), 1.7
-    layers = fronts.layers(wall, height).fronts
+    layers = fronts.slice_layers(wall, height).fronts
     count = [len(layer) for layer in layers]
     # the hole begins at 11 mm; behind it, fronts that end 3.61 mm apart on its rim do not meet yet
     assert count == [1] * 7 + [2] * 14 + [1] * 10
@@ -110,7 +110,7 @@ def test_a_front_splits_at_a_hole_and_merges_behind_it(step):
 def test_a_front_closes_on_itself():
     height = 1.3
     wall = ball(HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0])))
-    layers = fronts.layers(wall, height).fronts
+    layers = fronts.slice_layers(wall, height).fronts
     assert all(front.closed and not len(front.corners) for layer in layers for front in layer)
     assert_spacing(layers, height)
     # parallel circles: chords of equal length between them
@@ -140,7 +140,7 @@ class BothEnds:
 @pytest.mark.long
 def test_two_fronts_merge_with_corners():
     wall, height = ball(BothEnds()), 1.3
-    layers = fronts.layers(wall, height).fronts
+    layers = fronts.slice_layers(wall, height).fronts
     assert [len(layer) for layer in layers][:12] == [2] * 6 + [1] * 6
     assert [len(layer[0].corners) for layer in layers][:12] == [0] * 6 + [2] * 6
     assert_spacing(layers, height)
@@ -149,7 +149,7 @@ def test_two_fronts_merge_with_corners():
 
 def test_a_half_shell_has_open_beads_from_rim_to_rim():
     wall = bend(PIPE, 0.3, 1.3, 1.0, 0.5, np.pi)
-    layers = fronts.layers(wall, 2.0).fronts
+    layers = fronts.slice_layers(wall, 2.0).fronts
     assert not any(front.closed for layer in layers for front in layer)
     assert_spacing(layers, 2.0)
     assert_faces_up(wall, layers)
@@ -164,7 +164,7 @@ def test_a_half_shell_has_open_beads_from_rim_to_rim():
 @pytest.mark.parametrize("width", [2.0 * np.pi, 3.0], ids=["around", "part of a turn"])
 def test_a_last_layer_may_lie_on_the_end(width):
     wall = tube(FLOOR, 20.0, 1.5, width=width)
-    layers = fronts.layers(wall, 5.0).fronts
+    layers = fronts.slice_layers(wall, 5.0).fronts
     assert len(layers) == 5
     for i, (front,) in enumerate(layers):
         assert front.points[:, 2] == pytest.approx(5.0 * i, abs=1e-9)
@@ -176,7 +176,7 @@ def test_a_wall_may_begin_at_its_own_edge():
     """Nothing is behind then but the edge itself."""
     wall = tube(FLOOR, 12.0, 1.5, low=0.0)
     assert not wall.behind.any()
-    layers = fronts.layers(wall, 3.0).fronts
+    layers = fronts.slice_layers(wall, 3.0).fronts
     assert [layer[0].points[0, 2] for layer in layers] == pytest.approx(
         [0.0, 3.0, 6.0, 9.0, 12.0], abs=1e-9
     )
@@ -186,7 +186,7 @@ def test_the_mesh_decides_no_place():
     """A finer mesh gives the same fronts."""
     floor = HalfSpace(np.zeros(3), np.array([0.2, 0.3, 1.0]))
     coarse, fine = (
-        fronts.layers(tube(floor, 20.0, step, low=-10.0), 2.0).fronts for step in (2.0, 0.9)
+        fronts.slice_layers(tube(floor, 20.0, step, low=-10.0), 2.0).fronts for step in (2.0, 0.9)
     )
     assert [len(layer) for layer in coarse] == [len(layer) for layer in fine]
     for one, other in zip(coarse, fine):

@@ -9,9 +9,9 @@ from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.process.deposit import layer_curve
-from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
-from freecad_am.core.slicing.fronts.feet import feet
+from freecad_am.core.slicing.fronts.feet import nearest_feet
 from freecad_am.core.slicing.tubes import constant_distance, iso_parameter, smooth_spacing
 from freecad_am.core.slicing.tubes.wall_layer import even_grid
 from tests.core.patch_walls import tube
@@ -55,7 +55,7 @@ def test_evaluations_grow_with_the_points_and_no_faster(evaluated, rule):
     pipe = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
     work = []
     for points in COUNTS:
-        first = on_implicit(TORUS, pipe, (0.0, 1.5), even_grid(TORUS, points))
+        first = intersect_implicit(TORUS, pipe, (0.0, 1.5), even_grid(TORUS, points))
         evaluated[0] = 0
         made = cut(rule, first, points)
         assert sum(map(len, made)) >= points * len(made)
@@ -79,7 +79,9 @@ def test_fronts_on_half_the_height_are_four_times_the_work(evaluated, monkeypatc
     for height in (4.0, 2.0):
         wall = tube(HalfSpace(np.zeros(3), np.array([0.2, 0.1, 1.0])), 20.0, 0.5 * height, low=-6.0)
         evaluated[0] = looked[0] = 0
-        nodes = sum(len(front.w) for layer in fronts.layers(wall, height).fronts for front in layer)
+        nodes = sum(
+            len(front.w) for layer in fronts.slice_layers(wall, height).fronts for front in layer
+        )
         assert evaluated[0] > nodes
         work.append((evaluated[0], looked[0], len(wall.triangles)))
     (curves, faces, mesh), (more_curves, more_faces, finer) = work
@@ -152,7 +154,7 @@ def test_of_a_layer_in_many_pieces_each_point_looks_at_those_near_it_alone(evalu
         rings = small_rings(count)
         near = points[points[:, 0] < 10.0 * count - 10.0]
         evaluated[0] = 0
-        found = feet(rings, near)
+        found = nearest_feet(rings, near)
         work.append(evaluated[0] / len(near))
         # the same, to the bit, as from each of them
         every = [ring.nearest(near) for ring in rings]

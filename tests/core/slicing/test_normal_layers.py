@@ -8,7 +8,7 @@ from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
 from freecad_am.core.geometry.walls.tabulated import Tabulated
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes import normal_layers
 from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid, local_distances
 
@@ -19,7 +19,7 @@ from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid, local
 )
 def test_the_distance_on_a_torus_is_the_closed_form(bend, tube, height):
     torus = Torus(bend, tube)
-    first = on_implicit(
+    first = intersect_implicit(
         torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 90)
     )
     layers = normal_layers.layers(torus, first, height, 0.5 * np.pi, 180)

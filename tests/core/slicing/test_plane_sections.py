@@ -134,7 +134,7 @@ def test_planes_in_blocks_are_the_same(monkeypatch):
     solid = hull(np.random.default_rng(9).normal(size=(80, 3)) * 20.0)
     heights = np.linspace(-20.0, 20.0, 50)
     whole = [area(loops) for loops in PlaneCuts(*solid).loops(heights)]
-    monkeypatch.setattr(plane_sections, "AT_ONCE", 17)
+    monkeypatch.setattr(plane_sections, "BLOCK_SIZE", 17)
     np.testing.assert_array_equal(
         [area(loops) for loops in PlaneCuts(*solid).loops(heights)], whole
     )

@@ -30,7 +30,9 @@ WALLS = {
 def cut(request):
     make, height = WALLS[request.param]
     wall = make()
-    exact, smooth = (fronts.layers(wall, height, how) for how in (None, Smoothing(BAND, LIMIT)))
+    exact, smooth = (
+        fronts.slice_layers(wall, height, how) for how in (None, Smoothing(BAND, LIMIT))
+    )
     return request.param, wall, height, exact, smooth
 
 
@@ -97,7 +99,9 @@ def test_uneven_layers_are_taken_for_no_gaps(cut):
 
 def test_where_fronts_turn_little_nothing_is_changed():
     wall = ball(HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0])), 2500)
-    exact, smooth = (fronts.layers(wall, 2.0, how).fronts for how in (None, Smoothing(BAND, LIMIT)))
+    exact, smooth = (
+        fronts.slice_layers(wall, 2.0, how).fronts for how in (None, Smoothing(BAND, LIMIT))
+    )
     assert len(exact) == len(smooth)
     for one, other in zip(
         exact, smooth

@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance, smooth_spacing
 from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid, local_distances
 
@@ -17,7 +17,7 @@ HEIGHT, BAND = 5.0, 0.2
 
 @pytest.fixture(scope="module")
 def first():
-    return on_implicit(
+    return intersect_implicit(
         TORUS, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(TORUS, 360)
     )
 
@@ -30,7 +30,7 @@ def test_the_bend_is_built_without_a_corner_within_the_band(first, degrees, reac
         distance = local_distances(smoothed.layer, below, 10)[1]
         assert distance.min() >= (1.0 - BAND) * HEIGHT
         assert distance.max() <= (1.0 + BAND) * HEIGHT
-        assert (smoothed.least, smoothed.most) == pytest.approx(
+        assert (smoothed.min_distance, smoothed.max_distance) == pytest.approx(
             (distance.min(), distance.max()), abs=1e-3
         )
         assert not len(smoothed.layer.curve.corners)
@@ -56,7 +56,8 @@ def test_wherever_the_search_begins_it_finds_a_layer_that_keeps_the_limit(first)
         for k in range(0, 12, 4)
     ]
     assert all(
-        layer.least >= 0.99 * HEIGHT and layer.most <= 1.01 * HEIGHT for layer in narrow
+        layer.min_distance >= 0.99 * HEIGHT and layer.max_distance <= 1.01 * HEIGHT
+        for layer in narrow
     )  # the band holds
     assert min(layer.turn for layer in narrow) > 1e-3  # and it is told what that costs
 
@@ -65,7 +66,7 @@ def test_where_the_front_is_smooth_anyway_its_distance_stays(first):
     (layer,) = smooth_spacing.layers(
         TORUS, first, HEIGHT, first.u.min() + 1e-6, BAND, np.radians(6.0)
     )
-    assert (layer.least, layer.most) == pytest.approx((HEIGHT, HEIGHT), abs=0.02)
+    assert (layer.min_distance, layer.max_distance) == pytest.approx((HEIGHT, HEIGHT), abs=0.02)
     exact = constant_distance.next_layer(TORUS, first, HEIGHT, even_grid(TORUS, 360))
     assert exact.curve.nearest(layer.layer.curve.points)[0] == pytest.approx(0.0, abs=0.02)
 

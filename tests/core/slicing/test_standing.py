@@ -11,8 +11,8 @@ from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base, Seat, Stretch, middle_azimuth, upright
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.solids.equidistant import Facets
-from freecad_am.core.slicing.solids.standing import hub_among, on_hub
-from freecad_am.core.slicing.solids.unrolled import count, cut, opened
+from freecad_am.core.slicing.solids.standing import group_by_base, hub_among
+from freecad_am.core.slicing.solids.unrolled import count, cut, unroll_layers
 
 LOWER = Base("Face1", Developable(50.0), np.eye(4))
 UPPER = Base(
@@ -50,7 +50,7 @@ def test_a_solid_stands_where_its_contour_is_longest():
     through = sector(
         20.0, 70.0, 90.0, 160.0, 1.0, 1.6, name="both"
     )  # 10 mm of the lower, 60 of the upper, reaching in
-    found = on_hub([high, low, through], SEATS, 0.01, "part")
+    found = group_by_base([high, low, through], SEATS, 0.01, "part")
     assert [[body.name for body in group.bodies] for group in found.groups] == [
         ["low"],
         ["high", "both"],
@@ -66,7 +66,7 @@ def test_a_foot_that_lies_on_the_hub_is_cut_whole():
         loops = cut(facets, 0.0, 0.01)
         assert len(loops) == 1
         assert np.abs(LOWER.surface.distance(loops[0].points)).max() < 1e-9
-        flat = opened(LOWER.surface, [loops], 0.0, "here").borders[0][0]
+        flat = unroll_layers(LOWER.surface, [loops], 0.0, "here").borders[0][0]
         area = (
             0.5
             * (flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1]).sum()
@@ -92,11 +92,11 @@ def test_solids_beside_the_hub_are_refused():
     ):
         seats = SEATS[:1] if "inside" in words else SEATS
         with pytest.raises(InputError) as caught:
-            on_hub([body], seats, 0.01, "part")
+            group_by_base([body], seats, 0.01, "part")
         assert caught.value.code == "NOT_ON_HUB" and caught.value.where == "blade"
         assert words in caught.value.message
     with pytest.raises(InputError) as caught:
-        on_hub([sector(50.0, 70.0, 20.0, 60.0)], [], 0.01, "part")
+        group_by_base([sector(50.0, 70.0, 20.0, 60.0)], [], 0.01, "part")
     assert caught.value.code == "NO_BASE"
 
 
@@ -105,13 +105,15 @@ def test_solids_in_another_unit_are_told_so(factor, unit):
     body = sector(49.0, 70.0, 20.0, 60.0)
     small = Body("small", body.vertices / factor, body.triangles)
     with pytest.raises(InputError) as caught:  # a STEP file tells its unit
-        on_hub([small], SEATS, 0.01, "part")
+        group_by_base([small], SEATS, 0.01, "part")
     assert "Times" not in caught.value.message and "file" not in caught.value.message
     with pytest.raises(InputError) as caught:
-        on_hub([small], SEATS, 0.01, "part", unitless=[small])
+        group_by_base([small], SEATS, 0.01, "part", unitless=[small])
     assert f"Times {factor:g} it would reach Face1: is its file in {unit}?" in caught.value.message
     with pytest.raises(InputError) as caught:
-        on_hub([body := sector(60.0, 70.0, 20.0, 60.0)], SEATS, 0.01, "part", unitless=[body])
+        group_by_base(
+            [body := sector(60.0, 70.0, 20.0, 60.0)], SEATS, 0.01, "part", unitless=[body]
+        )
     assert "Times" not in caught.value.message
 
 
@@ -149,7 +151,7 @@ def test_solids_that_fill_the_same_place_are_refused_with_it(one, other):
     ]
     for pair in (bodies, bodies[::-1]):
         with pytest.raises(InputError) as caught:
-            on_hub(pair, SEATS, 0.01, "part")
+            group_by_base(pair, SEATS, 0.01, "part")
         assert caught.value.code == "OVERLAP" and {"one", "other"} <= {
             caught.value.where,
             *caught.value.message.split(),
@@ -170,13 +172,13 @@ def test_solids_that_touch_or_meet_within_the_hub_are_not_refused():
         sector(50.0, 80.0, 60.0, 70.0, name="above"),
     )
     below = [sector(30.0, 49.9, 10.0, 90.0, -2.0, 2.0, 60, name="b")]
-    assert len(on_hub([one, beside, above], SEATS[:1], 0.01, "part").groups[0].bodies) == 3
+    assert len(group_by_base([one, beside, above], SEATS[:1], 0.01, "part").groups[0].bodies) == 3
     with pytest.raises(InputError, match="inside of the hub"):
-        on_hub([one, *below], SEATS[:1], 0.01, "part")
+        group_by_base([one, *below], SEATS[:1], 0.01, "part")
     deep = [
         sector(10.0, 70.0, 20.0, 60.0, *turn, name=str(turn)) for turn in ((-1.0, 0.0), (0.05, 1.0))
     ]
-    assert len(on_hub(deep, SEATS[:1], 0.01, "part").groups[0].bodies) == 2
+    assert len(group_by_base(deep, SEATS[:1], 0.01, "part").groups[0].bodies) == 2
 
 
 @pytest.mark.parametrize("turn", [0.0, 1.0, 3.0, -2.0])
@@ -194,7 +196,7 @@ def test_a_solid_beside_part_of_a_cylinder_does_not_stand_on_it(turn):
         for a in (0.6, 1.8, 3.0)
     ]
     for seats in ([half, rest], [rest, half]):
-        found = on_hub([*on_half, *on_rest], seats, 0.01, "part")
+        found = group_by_base([*on_half, *on_rest], seats, 0.01, "part")
         assert {
             group.base.name: {body.name for body in group.bodies} for group in found.groups
         } == {
@@ -202,12 +204,12 @@ def test_a_solid_beside_part_of_a_cylinder_does_not_stand_on_it(turn):
             "inner": {body.name for body in on_rest},
         }
     with pytest.raises(InputError, match="beside the face") as caught:
-        on_hub(on_rest[1:2], [half], 0.01, "part")
+        group_by_base(on_rest[1:2], [half], 0.01, "part")
     assert caught.value.code == "NOT_ON_HUB"
     # the face that the user chose stands for all of its turn where nothing else does
-    assert len(on_hub(on_rest[1:2], [half._replace(chosen=True)], 0.01, "part").groups) == 1
+    assert len(group_by_base(on_rest[1:2], [half._replace(chosen=True)], 0.01, "part").groups) == 1
     both = [half._replace(chosen=True), rest._replace(chosen=True)]
-    assert len(on_hub([*on_half, *on_rest], both, 0.01, "part").groups) == 2
+    assert len(group_by_base([*on_half, *on_rest], both, 0.01, "part").groups) == 2
 
 
 def test_faces_of_one_cylinder_keep_their_own_ranges():
@@ -220,10 +222,10 @@ def test_faces_of_one_cylinder_keep_their_own_ranges():
     ):
         body = sector(40.0, 70.0, low, high, start, start + 0.5)
         if stands:
-            assert on_hub([body], [seat], 0.01, "part").groups[0].base.name == "Face1"
+            assert group_by_base([body], [seat], 0.01, "part").groups[0].base.name == "Face1"
         else:
             with pytest.raises(InputError, match="beside the face"):
-                on_hub([body], [seat], 0.01, "part")
+                group_by_base([body], [seat], 0.01, "part")
 
 
 def test_overlapping_boxes_along_the_axes_are_refused():
@@ -238,7 +240,7 @@ def test_overlapping_boxes_along_the_axes_are_refused():
 
     seats = [Seat(Base("hub", Developable(60.0), np.eye(4)), (Stretch(-math.inf, math.inf),))]
     with pytest.raises(InputError, match="fill the same place") as caught:
-        on_hub(
+        group_by_base(
             [box("one", [50.0, -10.0, -10.0]), box("two", [55.0, -5.0, -5.0])], seats, 0.02, "part"
         )
     assert caught.value.code == "OVERLAP"
@@ -246,4 +248,4 @@ def test_overlapping_boxes_along_the_axes_are_refused():
         box("one", [50.0, -10.0, -10.0]),
         box("two", [55.0, 10.0, -5.0]),
     ]  # a common side is none
-    assert len(on_hub(apart, seats, 0.02, "part").groups[0].bodies) == 2
+    assert len(group_by_base(apart, seats, 0.02, "part").groups[0].bodies) == 2

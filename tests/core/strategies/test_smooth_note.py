@@ -11,7 +11,7 @@ from freecad_am.core.issues import NOTE, WARNING
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes.wall_layer import even_grid
 from freecad_am.core.strategies.walls import plan as surface
 
@@ -25,7 +25,7 @@ from freecad_am.core.strategies.walls import plan as surface
 )
 def test_a_band_too_narrow_is_told(band, level, words):
     torus = Torus(60.0, 15.0)
-    first = on_implicit(
+    first = intersect_implicit(
         torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360)
     )
     wall = SurfaceWall("torus", (60.0, 15.0), np.eye(4), 1.2, first.curve.points[:-1])

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.geometry.walls.surface_wall import Placed
-from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes import constant_distance
 from freecad_am.core.slicing.tubes.wall_layer import even_grid
 from freecad_am.core.strategies.walls.end import trimmed
@@ -20,7 +20,7 @@ PLACED = Placed(TORUS, np.eye(4))
 
 @pytest.fixture(scope="module", params=[0.0, 0.3, np.pi])
 def layers(request):
-    first = on_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360, request.param))
+    first = intersect_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360, request.param))
     return constant_distance.layers(TORUS, first, HEIGHT, END)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.walls.patch_wall import FirstCurve
-from freecad_am.core.slicing.curve_points import within_chord
+from freecad_am.core.slicing.curve_points import sample_within_chord
 from freecad_am.core.strategies.walls.beads import NEAREST, traced
 
 TINY = 3.1e-5
@@ -27,7 +27,7 @@ def test_corners_next_to_an_end_are_the_end(ends):
     low, high = ends
     corners = [(0, low or 5, 0), (0, 0, 0), (7, 0, 0), (7, high or 5, 0)]
     curve = polygon(corners, False)
-    line = traced(curve, within_chord(curve, curve.w[0], curve.w[-1], 0.01), False)
+    line = traced(curve, sample_within_chord(curve, curve.w[0], curve.w[-1], 0.01), False)
     assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= NEAREST
     assert line.points[[0, -1]] == pytest.approx(np.array(corners, dtype=float)[[0, -1]], abs=1e-12)
     right = np.array([1.0, 0.0, 0.0])
@@ -41,7 +41,7 @@ def test_corners_next_to_an_end_are_the_end(ends):
 def test_a_seam_next_to_a_corner_keeps_its_place_and_the_turn(shift):
     curve = polygon([(0, 0, 0), (7, 0, 0), (7, 7, 0), (0, 7, 0)], True)
     start = curve.w[1] + shift
-    w = within_chord(curve, start, start + curve.period, 0.01)
+    w = sample_within_chord(curve, start, start + curve.period, 0.01)
     line = traced(curve, w, True)
     assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= NEAREST
     assert (line.points[0] == line.points[-1]).all()
@@ -53,7 +53,7 @@ def test_a_seam_next_to_a_corner_keeps_its_place_and_the_turn(shift):
 
 def test_two_corners_side_by_side_are_one_that_turns_by_both():
     curve = polygon([(0, 0, 0), (6, 0, 0), (6 + TINY, TINY, 0), (6 + TINY, 6, 0)], False)
-    line = traced(curve, within_chord(curve, curve.w[0], curve.w[-1], 0.01), False)
+    line = traced(curve, sample_within_chord(curve, curve.w[0], curve.w[-1], 0.01), False)
     assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= NEAREST
     at = int(np.argmin(np.linalg.norm(line.points - [6, 0, 0], axis=1)))
     assert line.points[at] == pytest.approx([6, 0, 0], abs=NEAREST)
@@ -62,5 +62,5 @@ def test_two_corners_side_by_side_are_one_that_turns_by_both():
 
 def test_what_is_far_enough_apart_is_left_to_the_bit():
     curve = polygon([(0, 0, 0), (6, 0, 0), (6, 2e-3, 0), (6, 6, 0)], False)
-    w = within_chord(curve, curve.w[0], curve.w[-1], 0.01)
+    w = sample_within_chord(curve, curve.w[0], curve.w[-1], 0.01)
     assert (traced(curve, w, False).points == curve.at(w)[0]).all()

@@ -9,7 +9,7 @@ from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.first_layer import intersect_implicit
 from freecad_am.core.slicing.tubes.wall_layer import even_grid
 from freecad_am.core.strategies.walls import comparison as wall_comparison
 from freecad_am.core.strategies.walls.comparison import NORMAL, Refused
@@ -17,7 +17,7 @@ from freecad_am.core.strategies.walls.comparison import NORMAL, Refused
 
 def bend(tube=15.0):
     torus = Torus(60.0, tube)
-    first = on_implicit(
+    first = intersect_implicit(
         torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360)
     )
     return SurfaceWall("torus", (60.0, tube), np.eye(4), 0.5 * np.pi, first.curve.points[:-1])

@@ -27,7 +27,7 @@ SILL = HalfSpace(np.zeros(3), np.array([0.0, 1.0, 0.0]))
 def sliced_once():
     """The fronts of a wall depend on nothing but its layer height, and take most of the time of a plan: they are found once
     for all plans of it."""
-    found, layers = {}, fronts.layers
+    found, layers = {}, fronts.slice_layers
 
     def kept(wall, height, smoothing=None, progress=lambda fraction, text: None):
         key = id(wall), height, smoothing
@@ -39,7 +39,7 @@ def sliced_once():
         return found[key][1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(fronts, "layers", kept)
+        patch.setattr(fronts, "slice_layers", kept)
         yield
 
 
@@ -357,10 +357,10 @@ def test_a_bend_of_one_surface_has_by_fronts_the_layers_that_its_parameter_gives
 
 def test_other_directions_leave_the_layers_as_they_are(monkeypatch):
     """What would clear the nozzle is tried with another direction: a minute of it went into the same layers."""
-    wall, asked, layers = tube(FLOOR, 40.0, 5.0), [], fronts.layers
+    wall, asked, layers = tube(FLOOR, 40.0, 5.0), [], fronts.slice_layers
     monkeypatch.setattr(
         fronts,
-        "layers",
+        "slice_layers",
         lambda wall, height, *rest: asked.append(height) or layers(wall, height, *rest),
     )
     leaning, upright = planned(wall, 6.0), planned(wall, 6.0, mode="fixed")

@@ -17,7 +17,7 @@ from ...geometry.regions.strip import Strip, strips
 from ...issues import InputError
 from ...parameters.filled import DevelopableParameters
 from ...slicing.solids.equidistant import Facets, Loop
-from ...slicing.solids.unrolled import count, cut, opened
+from ...slicing.solids.unrolled import count, cut, unroll_layers
 from ...types import Array
 from ..margins import ARCS, regions_of, within_margin
 from ..over_and_under import under_and_over
@@ -52,7 +52,7 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
                 base.where(_apex(loops, surface)),
             )
         below.append(loops)
-        lots = within_margin(below, height, strategy.margin, facets.moved)
+        lots = within_margin(below, height, strategy.margin, facets.offset_loops)
         if any(loop.turns for _, loops in lots for loop in loops):
             buried = () if thick > min(number, layers - 1 - number) else None
             layer = Slice(
@@ -66,9 +66,12 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
             )
         else:
             neighbours = [
-                facets.moved(loops, -k * height) for k, loops in _neighbours(below, ahead, thick)
+                facets.offset_loops(loops, -k * height)
+                for k, loops in _neighbours(below, ahead, thick)
             ]
-            flat = opened(surface, [*(loops for _, loops in lots), *neighbours], azimuth, where)
+            flat = unroll_layers(
+                surface, [*(loops for _, loops in lots), *neighbours], azimuth, where
+            )
             layer = Slice(
                 number,
                 base,

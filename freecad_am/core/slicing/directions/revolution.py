@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Build directions and tool axes (Chalvin 2020, section 2.1), in components along radius, azimuth and axis.
+"""Build directions and tool axes (Chalvin 2020, section 2.1), in components along radius,
+azimuth and axis.
 
-A part of revolution looks the same from every azimuth, so directions are kept as (..., 3) components of the
-moving frame (radial, tangential with rising azimuth, axial): one row stands for a whole circle.
+A part of revolution is the same at every azimuth, so directions are (..., 3) components
+of the moving frame (radial, tangential with rising azimuth, axial): one row represents a
+whole circle.
 """
 
 from __future__ import annotations
@@ -15,10 +17,10 @@ from ...geometry.columns import columns
 from ...types import Array, Index, Mask
 
 SCAN = 48  # tilts tried before the first good one is refined
-AT_ONCE, PARTS = (
+BLOCK_SIZE, PARTS = (
     8,
     4,
-)  # of these tried together, and parts that the place of the first good one is narrowed to at once
+)  # number of angles tested together, and number of parts into which the interval of the first good one is divided at once
 
 
 def local(tangents: Array) -> Array:
@@ -49,9 +51,11 @@ def layer_mean(tangent: Array, azimuth: Array, start: float, end: float) -> Arra
     )
 
 
-def held(build: Array, lead: float, tilt: float, rising: bool) -> Array:
-    """Tool axes (n, 3) from build directions (n, 3): turned by `lead` forward along the bead, then by `tilt`
-    towards the outside of the wall, rad. rising: the bead runs with rising azimuth.
+def lean_tool(build: Array, lead: float, tilt: float, rising: bool) -> Array:
+    """Return tool axes (n, 3): build directions (n, 3) turned by `lead` forward along the bead,
+    then by `tilt` outwards.
+
+    Angles in rad. rising: the bead runs with rising azimuth.
     """
     if lead == 0.0 and tilt == 0.0:
         return build
@@ -69,13 +73,15 @@ def from_vertical(directions: Array) -> Array:
     return angle
 
 
-def tilted_back(build: Array, angle: Array) -> Array:
-    """Build directions (n, 3) turned by the angle (n,) rad towards the axis, at most onto it."""
+def tilt_back(build: Array, angle: Array) -> Array:
+    """Return build directions (n, 3) turned by the angle (n,) rad towards the axis, at most onto
+    it.
+    """
     x, y, z = columns(build)
     level = np.hypot(x, y)
-    left = np.maximum(np.arctan2(level, z) - angle, 0.0)
+    remaining = np.maximum(np.arctan2(level, z) - angle, 0.0)
     along = build[:, :2] / np.where(level > 0.0, level, 1.0)[:, None]
-    turned = np.column_stack([np.sin(left)[:, None] * along, np.cos(left)])
+    turned = np.column_stack([np.sin(remaining)[:, None] * along, np.cos(remaining)])
     return np.where((angle > 0.0)[:, None] & (level > 0.0)[:, None], turned, build)
 
 
@@ -87,29 +93,30 @@ def least_tilt_back(
     about: Array | None = None,
     free: Mask | None = None,
 ) -> Array:
-    """Smallest tilt-back (n,) rad, `low` (n,) or more, at which each row is good, to `within` rad; NaN where none is up to
-    the axis.
+    """Return the smallest tilt-back (n,) rad, `low` (n,) or more, at which each row is good; NaN
+    if no angle up to the axis is.
 
-    good(rows (k,), angles (k,)) -> (k,) bool tells whether the rows are good when tilted back by the angles. about: (n, 2)
-    angles between which it is looked for first, NaN where nowhere. free: (n,) rows that are known to be good at `low`.
+    The result is accurate to `within` rad. good(rows (k,), angles (k,)) -> (k,) bool: whether
+    the rows are good when tilted back by the angles. about: (n, 2) angles between which the
+    search starts, NaN for none. free: (n,) rows known to be good at `low`.
     """
     angle = low.copy()
     rows = np.arange(len(build)) if free is None else np.flatnonzero(~free)
     top = np.maximum(from_vertical(build[rows]), low[rows])
     bad, fine = low[rows].copy(), np.full(len(rows), np.nan)
-    tried = low[rows, None]
+    angles = low[rows, None]
     if about is not None:
         likely = np.where(
-            np.isfinite(about[rows]), np.clip(about[rows], tried, top[:, None]), tried
+            np.isfinite(about[rows]), np.clip(about[rows], angles, top[:, None]), angles
         )
-        tried = np.concatenate([tried, likely], axis=1)
-    _narrow(rows, np.arange(len(rows)), tried, good, bad, fine)
+        angles = np.concatenate([angles, likely], axis=1)
+    _narrow(rows, np.arange(len(rows)), angles, good, bad, fine)
     bad[np.isnan(fine)] = low[rows[np.isnan(fine)]]
-    for first in range(0, SCAN, AT_ONCE):
+    for block_start in range(0, SCAN, BLOCK_SIZE):
         open_ = np.flatnonzero(np.isnan(fine))
         if len(open_) == 0:
             break
-        step = np.arange(first + 1, first + AT_ONCE + 1) / SCAN
+        step = np.arange(block_start + 1, block_start + BLOCK_SIZE + 1) / SCAN
         start = low[rows[open_], None]
         _narrow(rows, open_, start + (top[open_, None] - start) * step, good, bad, fine)
     share = np.arange(1, PARTS) / PARTS
@@ -126,17 +133,20 @@ def least_tilt_back(
 
 def _narrow(
     rows: Index,
-    some: Index,
-    tried: Array,
+    selected: Index,
+    angles: Array,
     good: Callable[[Index, Array], Mask],
     bad: Array,
     fine: Array,
 ) -> None:
-    """Bring the bounds of some rows, in place, to the first of the rising angles tried (k, s) that is good and to the last
-    one before it."""
-    ok = good(np.repeat(rows[some], tried.shape[1]), tried.ravel()).reshape(tried.shape)
-    found = ok.any(axis=1)
-    first = np.where(found, ok.argmax(axis=1), tried.shape[1])
-    fine[some[found]] = tried[found, first[found]]
-    later = np.flatnonzero(first > 0)
-    bad[some[later]] = tried[later, first[later] - 1]
+    """Update the bounds of selected rows in place.
+
+    Of the rising angles (k, s), `fine` becomes the first good one and `bad` the one before
+    it.
+    """
+    ok = good(np.repeat(rows[selected], angles.shape[1]), angles.ravel()).reshape(angles.shape)
+    has_good = ok.any(axis=1)
+    first_good = np.where(has_good, ok.argmax(axis=1), angles.shape[1])
+    fine[selected[has_good]] = angles[has_good, first_good[has_good]]
+    later = np.flatnonzero(first_good > 0)
+    bad[selected[later]] = angles[later, first_good[later] - 1]

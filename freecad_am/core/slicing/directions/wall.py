@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Build directions and tool axes of beads on a wall (Chalvin 2019, section II.D).
 
-Rows (n, 3) are unit vectors in part coordinates, one per point of a bead. At corners the local direction jumps: there it is
-the bisector of both sides, and `limited` spreads the jump over as much of the bead as a turn per mm asks for.
+Rows (n, 3) are unit vectors in part coordinates, one per point of a bead. At corners the
+local direction jumps: there it is the bisector of both sides, and `limit_turns` spreads
+the jump over the length of bead that the limit of turn per mm requires.
 """
 
 from __future__ import annotations
@@ -17,23 +18,24 @@ from ...geometry.walls.surface import dot
 from ...issues import InputError
 from ...types import Array, Mask
 
-LEAST = 1e-6  # a direction shorter than this after projection points nowhere
+MIN_IN_PLANE = 1e-6  # a direction shorter than this after projection points nowhere
 HALVINGS = 30  # of the width over which directions are spread
 ROUNDING = 1e-9  # rad
 
 
 class Limited(NamedTuple):
-    """directions (n, 3), and by how much each departs from what was asked, departure (n,) rad."""
+    """directions (n, 3), and departure (n,) rad of each from the requested direction."""
 
     directions: Array
     departure: Array
 
 
-def local(normal: Array, into: Array, out: Array, up: Array) -> Array:
-    """Tangent to the wall and normal to the bead, (n, 3).
+def local_directions(normal: Array, into: Array, out: Array, up: Array) -> Array:
+    """Return the vectors (n, 3) tangent to the wall and normal to the bead.
 
-    normal: of the wall, either side. into, out: direction of the bead before and after each point, of any length, the
-    same but at corners. up: vectors that point away from the layer below, not along the bead.
+    normal: of the wall, either side. into, out: directions of the bead before and after each
+    point, of any length, equal except at corners. up: vectors away from the layer below, not
+    along the bead.
     """
     sides = [
         np.cross(normal, side / np.linalg.norm(side, axis=1, keepdims=True)) for side in (into, out)
@@ -42,14 +44,14 @@ def local(normal: Array, into: Array, out: Array, up: Array) -> Array:
     return unit(unit(upright[0]) + unit(upright[1]))
 
 
-def in_plane(directions: Array, plane: Array, label: str = "build_direction") -> Array:
-    """Directions projected onto the plane of symmetry with the unit normal `plane` (3,): one rotation about that normal is
-    left.
+def project_onto_plane(directions: Array, plane: Array, label: str = "build_direction") -> Array:
+    """Project directions onto the plane of symmetry with the unit normal `plane` (3,): one
+    rotation about that normal remains.
 
-    InputError NO_DIRECTION where a direction stands across the plane.
+    Raises InputError NO_DIRECTION if a direction is normal to the plane.
     """
     flat = directions - (directions @ plane)[:, None] * plane
-    if np.linalg.norm(flat, axis=1).min() < LEAST:
+    if np.linalg.norm(flat, axis=1).min() < MIN_IN_PLANE:
         raise InputError(
             "NO_DIRECTION",
             "build_direction.mode",
@@ -59,8 +61,9 @@ def in_plane(directions: Array, plane: Array, label: str = "build_direction") ->
     return unit(flat)
 
 
-def held(build: Array, forward: Array, normal: Array, lead: float, tilt: float) -> Array:
-    """Tool axes (n, 3): build directions turned by `lead` forward along the bead, then by `tilt` to the outside, rad.
+def lean_tool(build: Array, forward: Array, normal: Array, lead: float, tilt: float) -> Array:
+    """Return tool axes (n, 3): build directions turned by `lead` forward along the bead, then by
+    `tilt` to the outside, rad.
 
     forward: (n, 3) unit vectors along the bead. normal: (n, 3) of the wall, to its outside.
     """
@@ -73,18 +76,20 @@ def held(build: Array, forward: Array, normal: Array, lead: float, tilt: float) 
     return unit(np.cos(tilt) * leaning + np.sin(tilt) * outward)
 
 
-def capped(directions: Array, most: float) -> tuple[Array, float]:
-    """Directions turned back to `most` rad from the vertical where they lean over more, and by how much the farthest is."""
+def cap_lean(directions: Array, max_lean: float) -> tuple[Array, float]:
+    """Directions turned back to `max_lean` rad from the vertical where they lean over more, and by how much the farthest is."""
     x, y, z = columns(directions)
     level = np.hypot(x, y)
     angle = np.arctan2(level, z)
-    over = angle > most + 1e-12
+    over = angle > max_lean + 1e-12
     if not over.any():
         return directions, 0.0
     level, east = level[:, None], np.tile([1.0, 0.0], (len(directions), 1))
-    away = np.divide(directions[:, :2], level, out=east, where=level > 0.0)
-    turned = np.column_stack([np.sin(most) * away, np.full(len(directions), np.cos(most))])
-    return np.where(over[:, None], turned, directions), float((angle - most).max())
+    horizontal = np.divide(directions[:, :2], level, out=east, where=level > 0.0)
+    turned = np.column_stack(
+        [np.sin(max_lean) * horizontal, np.full(len(directions), np.cos(max_lean))]
+    )
+    return np.where(over[:, None], turned, directions), float((angle - max_lean).max())
 
 
 def turn_rates(points: Array, directions: Array) -> Array:
@@ -96,19 +101,21 @@ def turn_rates(points: Array, directions: Array) -> Array:
     return rate
 
 
-def limited(
+def limit_turns(
     points: Array,
     directions: Array,
     closed: bool,
     rate: float,
     label: str = "build_direction",
-    most: float = np.pi,
+    max_lean: float = np.pi,
 ) -> Limited:
-    """Directions that turn by no more than `rate` rad/mm from point to point (n, 3), and lean by no more than `most` rad.
+    """Return directions that turn by at most `rate` rad/mm from point to point (n, 3), and lean
+    by at most `max_lean` rad.
 
-    Where they turn faster, and near there, each is the mean over a stretch of the bead; stretches shrink to nothing away
-    from such places, and are as short as the limit allows. Closed beads repeat their first point. InputError
-    TURN_LIMIT when even the mean over the whole bead turns faster, or has no direction.
+    Near faster turns each direction is the mean over a stretch of the bead. The stretches
+    shrink to nothing away from such turns, and are as short as the limit allows. Closed beads
+    repeat their first point. Raises InputError TURN_LIMIT if even the mean over the whole
+    bead turns faster, or has no direction.
     """
     fast = turn_rates(points, directions) > rate
     if not fast.any():
@@ -116,19 +123,19 @@ def limited(
     s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     distance = _distance_along(s, fast, closed)
 
-    def spread(half: float) -> Array | None:
-        found = _spread(s, directions, closed, np.maximum(half - distance, 0.0))
-        if found is None:
+    def average_over(half: float) -> Array | None:
+        averaged = _average(s, directions, closed, np.maximum(half - distance, 0.0))
+        if averaged is None:
             return None
-        found = capped(found, most)[
+        averaged = cap_lean(averaged, max_lean)[
             0
-        ]  # a mean of directions beyond the level leans over more than they do
-        return None if (turn_rates(points, found) > rate).any() else found
+        ]  # the mean of directions below the horizontal leans more than they do
+        return None if (turn_rates(points, averaged) > rate).any() else averaged
 
-    low, high = 0.0, 1e-3 * s[-1]  # narrow ones first
-    while (best := spread(high)) is None:
+    low, high = 0.0, 1e-3 * s[-1]  # narrow stretches first
+    while (best := average_over(high)) is None:
         low, high = high, 1.5 * high
-        if low > 2.0 * s[-1]:  # beyond which each is the mean over the whole bead
+        if low > 2.0 * s[-1]:  # beyond this each is the mean over the whole bead
             raise InputError(
                 "TURN_LIMIT",
                 label,
@@ -141,33 +148,35 @@ def limited(
         if high - low < 1e-4 * high:
             break
         middle = 0.5 * (low + high)
-        if (found := spread(middle)) is None:
+        if (averaged := average_over(middle)) is None:
             low = middle
         else:
-            high, best = middle, found
+            high, best = middle, averaged
     cross = np.linalg.norm(np.cross(directions, best), axis=1)
     return Limited(best, np.arctan2(cross, dot(directions, best)))
 
 
-def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | None:
-    """Means of the directions over s - half .. s + half (n,), the directions themselves where half is 0."""
-    if closed:  # as many rounds on either side as the longest stretch reaches
+def _average(s: Array, directions: Array, closed: bool, half: Array) -> Array | None:
+    """Return the means of the directions over s - half .. s + half (n,); the directions
+    themselves where half is 0.
+    """
+    if closed:  # as many turns on either side as the longest stretch reaches
         rounds = int(np.ceil(half.max() / s[-1])) + 1
         turns = np.arange(-rounds, rounds + 1)
-        places = np.r_[(s[:-1] + s[-1] * turns[:, None]).ravel(), s[-1] * (rounds + 1)]
+        positions = np.r_[(s[:-1] + s[-1] * turns[:, None]).ravel(), s[-1] * (rounds + 1)]
         rows = np.vstack([np.tile(directions[:-1], (len(turns), 1)), directions[:1]])
         low, high = s - half, s + half
     else:
-        places, rows = s, directions
+        positions, rows = s, directions
         low, high = np.maximum(s - half, 0.0), np.minimum(s + half, s[-1])
-    steps = np.diff(places)
+    steps = np.diff(positions)
     total = np.vstack(
         [np.zeros(3), np.cumsum(0.5 * (rows[1:] + rows[:-1]) * steps[:, None], axis=0)]
     )
 
-    def integral(at: Array) -> Array:
-        i = np.clip(np.searchsorted(places, at, side="right") - 1, 0, len(steps) - 1)
-        t = (at - places[i])[:, None]
+    def integral(position: Array) -> Array:
+        i = np.clip(np.searchsorted(positions, position, side="right") - 1, 0, len(steps) - 1)
+        t = (position - positions[i])[:, None]
         slope = (rows[i + 1] - rows[i]) / np.maximum(steps[i], 1e-300)[:, None]
         value: Array = total[i] + t * (rows[i] + 0.5 * t * slope)
         return value

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads that close what fronts leave between them.
+"""Beads that close gaps between fronts.
 
-Where fronts meet, come together at a corner, or run along the edge of an opening or a side of the wall, points are left that
-no front passes: up to a layer height deep in a front that closes on itself, and between two that run into each other. What
-lies deeper than COVERED in there gets a bead of its own along the middle of the gap. Within a layer height of an edge at
-which layers finish nothing is asked: there the wall ends.
+Where fronts meet, come together at a corner, or run along the edge of an opening or a
+side of the wall, no front passes some points: up to a layer height deep in a front that
+closes on itself, and between two that run into each other. Points deeper than COVERED in
+a gap get a separate bead along its middle. Within a layer height of an edge at which
+layers finish nothing needs closing: there the wall ends.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from ...geometry.mesh.triangles import cut_evenly
 from ...geometry.step_count import step_count
 from ...geometry.walls.surface import dot
 from ...types import Array, Index, Mask
-from .feet import Feet, feet
-from .gap_middle import middle
+from .feet import Feet, nearest_feet
+from .gap_middle import gap_middle
 from .slicing import Slicing
 
 COVERED = 0.594  # of the height; no point is to be farther from a bead, and is found to less than the rest to 0.6
@@ -31,50 +32,53 @@ LEVELS = (
     0.5,
     0.42,
     0.34,
-)  # of the height; how deep the border of what is closed lies, for a bead that is long enough
-SHORTEST = 0.5  # of the height
+)  # of the height; depth of the border of a closed gap whose bead is long enough
+MIN_LENGTH = 0.5  # of the height
 COARSE, FINE = 0.2, 0.1  # of the height; edges of the mesh on which gaps are sought, and are seen
-LONGEST = 2.0  # of the height; of a bead in a gap whose border is not as deep as layers leave the wall anyway
+MAX_LENGTH = 2.0  # of the height; length of a bead in a gap with a border shallower than the normal gap between layers
 SAMPLED = 0.05  # of the height; between points along the beads
 ROUNDS = 4
-SEEN = 0.02  # of the height; gaps deeper by this than half the spacing of layers are looked at
-LEFT = 0.005  # of the height, likewise; what is left open
-ON_EDGE_MM = 1e-5  # mm; what is nearer to an edge of the mesh lies on it
-UNSURE = 0.07  # of the height; how far off the depth of a gap may be that is told by the vertices of the fine mesh
-AROUND, CLIMB, SHORTER = (
+MIN_PEAK = 0.02  # of the height; gaps deeper by this than half the layer spacing are examined
+MAX_OPEN_DEPTH = 0.005  # of the height, likewise; gaps that stay open
+ON_EDGE_MM = 1e-5  # mm; points nearer to an edge of the mesh are on it
+DEPTH_UNCERTAINTY = (
+    0.07  # of the height; error of a gap depth sampled at the vertices of the fine mesh
+)
+SEARCH_DIRECTIONS, SEARCH_STEPS, STEP_REDUCTION = (
     8,
     14,
     0.7,
 )  # directions in which deeper points are sought, how often, how much shorter each time
 
 
-def closing(
+def close_gaps(
     slicing: Slicing, below: list[SpaceCurve], above: list[SpaceCurve], passed: Index
 ) -> list[SpaceCurve]:
-    """The beads, along the middle of gaps, that cover the wall between fronts; what was deposited below is on their right.
+    """Return the beads, along the middle of gaps, that cover the wall between fronts; the
+    deposit below is on their right.
 
-    below, above: the fronts of two layers that follow each other, those above none where the wall ends. passed: (n,) the
-    vertices of the wall's mesh between them.
+    below, above: the fronts of two consecutive layers, `above` empty where the wall ends.
+    passed: (n,) the vertices of the wall's mesh between them.
     """
     if not len(passed):
         return []
     fronts, height, mesh = [*below, *above], slicing.height, slicing.wall.mesh
     faces = mesh.faces[mesh.faces_at(passed)]
-    near = _near_gaps(slicing, below, above, mesh.vertices[faces])
-    if not near.any():
+    has_gap = _near_gaps(slicing, below, above, mesh.vertices[faces])
+    if not has_gap.any():
         return []
-    fine = Mesh(mesh.vertices, faces[near]).finer(FINE * height)
-    cut = np.setdiff1d(fine.border_edges, _on_rims(mesh, np.unique(faces), fine))
+    fine = Mesh(mesh.vertices, faces[has_gap]).finer(FINE * height)
+    cut = np.setdiff1d(fine.border_edges, _find_rim_vertices(mesh, np.unique(faces), fine))
     gaps = _Gaps(slicing, fine, slicing.rims.from_upper(fine.vertices) > height, cut)
     depth = _depth(fine.vertices, fronts, height)
     beads: list[SpaceCurve] = []
     for _ in range(ROUNDS):
-        more = gaps.closed(depth, [*fronts, *beads])
-        if not more:
+        new_beads = gaps.close(depth, [*fronts, *beads])
+        if not new_beads:
             break
-        beads += more
-        depth = np.minimum(depth, _depth(fine.vertices, more, height))
-    return [_on_left(slicing, bead, below) for bead in beads]
+        beads += new_beads
+        depth = np.minimum(depth, _depth(fine.vertices, new_beads, height))
+    return [_orient_bead(slicing, bead, below) for bead in beads]
 
 
 def _near_gaps(
@@ -84,9 +88,12 @@ def _near_gaps(
     height = slicing.height
     points = cut_evenly(corners, COARSE * height)[0]
     deep: Mask = (
-        _depth(points, [*below, *above], height, height) > (0.5 * slicing.widest + SEEN) * height
+        _depth(points, [*below, *above], height, height)
+        > (0.5 * slicing.widest + MIN_PEAK) * height
     )
-    if not deep.any() or (len(above) and not _between(below, above, points, corners, deep)):
+    if not deep.any() or (
+        len(above) and not _is_between_fronts(below, above, points, corners, deep)
+    ):
         return np.zeros(len(corners), dtype=bool)
     # the gap ends within a layer height of where it is deep
     gap = corners[deep.any(axis=1)]
@@ -109,53 +116,68 @@ def _depth(
     return np.asarray(cKDTree(np.vstack(samples)).query(points, distance_upper_bound=farthest)[0])
 
 
-def _between(
+def _is_between_fronts(
     below: list[SpaceCurve], above: list[SpaceCurve], points: Array, corners: Array, deep: Mask
 ) -> bool:
-    """Whether any of the deep ones (m, s) of points (m, s, 3) on triangles (m, 3, 3) lies between the fronts: not all of
-    them above those above, which have the wall still to come on their left, or below those below."""
+    """Return whether any of the deep points is between the fronts.
+
+    deep: (m, s) of points (m, s, 3) on triangles (m, 3, 3). False if all are beyond the
+    fronts above, which have the rest of the wall on their left, or before the fronts below.
+    """
     face, row = np.nonzero(deep)
     points = points[face, row]
     normal = np.cross(corners[face, 1] - corners[face, 0], corners[face, 2] - corners[face, 0])
 
-    def on_left(foot: Feet, fronts: list[SpaceCurve]) -> Mask:
+    def is_on_left(foot: Feet, fronts: list[SpaceCurve]) -> Mask:
         slope = np.empty_like(points)
         for k, front in enumerate(fronts):
             slope[foot.front == k] = front.at(foot.w[foot.front == k])[1]
         return dot(np.cross(normal, slope), foot.away) > 0.0
 
-    at_below, at_above = feet(below, points), feet(above, points)
+    at_below, at_above = nearest_feet(below, points), nearest_feet(above, points)
     beyond = np.where(
-        at_above.distance < at_below.distance, on_left(at_above, above), ~on_left(at_below, below)
+        at_above.distance < at_below.distance,
+        is_on_left(at_above, above),
+        ~is_on_left(at_below, below),
     )
     return not beyond.all()
 
 
-def _on_left(slicing: Slicing, bead: SpaceCurve, below: list[SpaceCurve]) -> SpaceCurve:
-    """The bead run so that what was deposited below is on its right."""
-    points, left = slicing.left_of(bead)
-    return bead if dot(feet(below, points).away, left).sum() >= 0.0 else bead.reversed()
+def _orient_bead(slicing: Slicing, bead: SpaceCurve, below: list[SpaceCurve]) -> SpaceCurve:
+    """Return the bead oriented so that the deposit below is on its right."""
+    points, left_vectors = slicing.left_of(bead)
+    return (
+        bead
+        if dot(nearest_feet(below, points).away, left_vectors).sum() >= 0.0
+        else bead.reversed()
+    )
 
 
 class _Gaps(NamedTuple):
-    """Where gaps may be: a fine mesh, and those of its vertices (n,) that must not be far from a bead.
+    """Regions that may have gaps: a fine mesh, and its vertices (n,) that must not be far from a
+    bead.
 
-    cut: those of its vertices (k,) that lie on its border, but on none of the wall: what reaches them is not a gap between
-    fronts."""
+    cut: its vertices (k,) on its border but not on a border of the wall: a gap that reaches
+    them is not a gap between fronts.
+    """
 
     slicing: Slicing
     fine: Mesh
-    asked: Mask
+    must_cover: Mask
     cut: Index
 
     @property
     def covered(self) -> float:
         """Heights that no vertex asked for is to be farther from a bead."""
-        return max(COVERED, 0.5 * self.slicing.widest + LEFT)
+        return max(COVERED, 0.5 * self.slicing.widest + MAX_OPEN_DEPTH)
 
     def _peaks(self, depth: Array, beads: list[SpaceCurve]) -> Array:
-        """The depths (n,), at the vertices nearest to the deepest points on the exact wall those of the points, where they
-        are about `covered`: whether a gap is closed must not depend on where the mesh has its vertices."""
+        """Return the depths (n,), refined at vertices nearest to the deepest points on the exact
+        wall.
+
+        Only depths of about `covered` are refined: whether a gap is closed must not depend on
+        where the mesh has its vertices.
+        """
         wall, height = self.slicing.wall, self.slicing.height
         low, high = self.fine.edges.T
         deepest = np.zeros(len(depth))  # of their neighbours
@@ -163,124 +185,145 @@ class _Gaps(NamedTuple):
         np.maximum.at(deepest, high, depth[low])
         border = np.zeros(len(depth), dtype=bool)
         border[self.fine.border_edges] = True
-        near = (
-            self.asked
+        uncertain = (
+            self.must_cover
             & (depth >= deepest)
-            & (np.abs(depth / height - self.covered) < UNSURE)
+            & (np.abs(depth / height - self.covered) < DEPTH_UNCERTAINTY)
             & ~border
         )
         peaks = depth.copy()
-        if not near.any():
+        if not uncertain.any():
             return peaks
-        points, normal = wall.project(self.fine.vertices[near])
-        best = feet(beads, points).distance
-        angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+        points, normal = wall.project(self.fine.vertices[uncertain])
+        best = nearest_feet(beads, points).distance
+        angle = 2.0 * np.pi * np.arange(SEARCH_DIRECTIONS) / SEARCH_DIRECTIONS
         tree, step, row = cKDTree(self.fine.vertices), FINE * height, np.arange(len(points))
-        for _ in range(CLIMB):
-            one = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)])
-            one /= np.linalg.norm(one, axis=1, keepdims=True)
-            around = np.cos(angle)[:, None, None] * one + np.sin(angle)[:, None, None] * np.cross(
-                normal, one
+        for _ in range(SEARCH_STEPS):
+            tangent = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)])
+            tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+            around = np.cos(angle)[:, None, None] * tangent + np.sin(angle)[
+                :, None, None
+            ] * np.cross(normal, tangent)
+            candidates, normals = wall.project((points + step * around).reshape(-1, 3))
+            distances = nearest_feet(beads, candidates).distance
+            distances[border[np.asarray(tree.query(candidates)[1])]] = 0.0
+            distances[self.slicing.rims.from_upper(candidates) <= height] = 0.0
+            distances = distances.reshape(SEARCH_DIRECTIONS, -1)
+            candidates, normals = (
+                column.reshape(SEARCH_DIRECTIONS, -1, 3) for column in (candidates, normals)
             )
-            tried, normals = wall.project((points + step * around).reshape(-1, 3))
-            found = feet(beads, tried).distance
-            found[border[np.asarray(tree.query(tried)[1])]] = 0.0
-            found[self.slicing.rims.from_upper(tried) <= height] = 0.0
-            found = found.reshape(AROUND, -1)
-            tried, normals = (column.reshape(AROUND, -1, 3) for column in (tried, normals))
-            pick = np.argmax(found, axis=0)
-            deeper = found[pick, row] > best
-            best = np.where(deeper, found[pick, row], best)
-            points = np.where(deeper[:, None], tried[pick, row], points)
+            pick = np.argmax(distances, axis=0)
+            deeper = distances[pick, row] > best
+            best = np.where(deeper, distances[pick, row], best)
+            points = np.where(deeper[:, None], candidates[pick, row], points)
             normal = np.where(deeper[:, None], normals[pick, row], normal)
-            step *= SHORTER
+            step *= STEP_REDUCTION
         np.maximum.at(peaks, np.asarray(tree.query(points)[1]), best)
         return peaks
 
-    def closed(self, depth: Array, beads: list[SpaceCurve]) -> list[SpaceCurve]:
-        """One bead for each gap that is too deep somewhere; depth: (n,) of the vertices below the beads."""
+    def close(self, depth: Array, beads: list[SpaceCurve]) -> list[SpaceCurve]:
+        """Return one bead for each gap that is too deep somewhere; depth: (n,) of the vertices below
+        the beads.
+        """
         height, fine, covered = self.slicing.height, self.fine, self.covered * self.slicing.height
         peaks = self._peaks(depth, beads)
-        found: list[SpaceCurve] = []
+        new_beads: list[SpaceCurve] = []
         short: list[tuple[SpaceCurve, Mask]] = []
-        done = np.zeros(len(depth), dtype=bool)
-        # lower ones would take in all that lies between uneven layers
+        is_closed = np.zeros(len(depth), dtype=bool)
+        # lower levels would include everything between uneven layers
         levels = LEVELS if self.slicing.widest == 1.0 else (0.5 * self.slicing.widest,)
         for level in levels:
             inside = depth > level * height
-            if not (self.asked & (peaks > covered) & ~done).any():
+            if not (self.must_cover & (peaks > covered) & ~is_closed).any():
                 break
             number = _numbers(fine, inside)
             deepest = np.zeros(number.max() + 1)
-            np.maximum.at(deepest, number[inside & self.asked], peaks[inside & self.asked])
+            np.maximum.at(
+                deepest, number[inside & self.must_cover], peaks[inside & self.must_cover]
+            )
             deepest[number[self.cut[inside[self.cut]]]] = 0.0
             lines = fine.level_lines(
                 level * height - depth, np.arange(len(fine.faces))
-            )  # gaps on their left
-            own, tree = number[inside], cKDTree(fine.vertices[inside])
-            # a single point of a line may lie nearer to the gap next door: most of them tell
+            )  # gaps on the left
+            gap_number, tree = number[inside], cKDTree(fine.vertices[inside])
+            # a single point of a line may be nearer to the adjacent gap: the majority decides
             owner = np.array(
-                [np.bincount(own[tree.query(line.points)[1]]).argmax() for line in lines]
+                [np.bincount(gap_number[tree.query(line.points)[1]]).argmax() for line in lines]
             )
             for gap in np.flatnonzero(deepest > covered):
                 members = number == gap
-                loops = _loops(fine, members, [line for line, of in zip(lines, owner) if of == gap])
-                bead = middle(self.slicing, loops) if loops and not done[members].any() else None
-                if bead is None or (level != levels[0] and bead.length > LONGEST * height):
+                loops = _loops(
+                    fine,
+                    members,
+                    [line for line, line_owner in zip(lines, owner) if line_owner == gap],
+                )
+                bead = (
+                    gap_middle(self.slicing, loops)
+                    if loops and not is_closed[members].any()
+                    else None
+                )
+                if bead is None or (level != levels[0] and bead.length > MAX_LENGTH * height):
                     continue
-                if bead.length < SHORTEST * height:
+                if bead.length < MIN_LENGTH * height:
                     short.append((bead, members))
                 else:
-                    found.append(bead)
-                    done |= members
-        for bead, members in short:  # with lower borders they are no longer, or take in too much
-            if not done[members].any():
-                found.append(bead)
-                done |= members
-        return found
+                    new_beads.append(bead)
+                    is_closed |= members
+        for bead, members in short:  # with lower borders they are no longer, or include too much
+            if not is_closed[members].any():
+                new_beads.append(bead)
+                is_closed |= members
+        return new_beads
 
 
-def _on_rims(mesh: Mesh, vertices: Index, fine: Mesh) -> Index:
-    """The vertices of the fine mesh that lie on the border of the mesh, near some vertices of that."""
+def _find_rim_vertices(mesh: Mesh, vertices: Index, fine: Mesh) -> Index:
+    """Return the vertices of the fine mesh on the border of the mesh, near the given vertices of
+    the mesh.
+    """
     edges = mesh.border_edges[np.isin(mesh.border_edges, vertices).all(axis=1)]
     if not len(edges):
         return np.empty(0, dtype=np.intp)
     border = np.unique(fine.border_edges)
     start, end = mesh.vertices[edges].transpose(1, 0, 2)
-    near = (
+    nearest_edges = (
         cKDTree(0.5 * (start + end))
         .query(fine.vertices[border], k=min(4, len(edges)))[1]
         .reshape(len(border), -1)
     )
-    chord, away = (end - start)[near], fine.vertices[border][:, None] - start[near]
-    share = np.clip((chord * away).sum(-1) / (chord * chord).sum(-1), 0.0, 1.0)
-    off = np.linalg.norm(away - share[..., None] * chord, axis=-1).min(axis=1)
-    found: Index = border[off < ON_EDGE_MM]
-    return found
+    chord, offset = (
+        (end - start)[nearest_edges],
+        fine.vertices[border][:, None] - start[nearest_edges],
+    )
+    share = np.clip((chord * offset).sum(-1) / (chord * chord).sum(-1), 0.0, 1.0)
+    off = np.linalg.norm(offset - share[..., None] * chord, axis=-1).min(axis=1)
+    on_edge: Index = border[off < ON_EDGE_MM]
+    return on_edge
 
 
 def _loops(fine: Mesh, members: Mask, lines: list[LevelLine]) -> list[Array]:
-    """The borders (k, 3) of a gap, all the way around: its level lines, and where they end the mesh's own border."""
+    """Return the borders (k, 3) of a gap, all the way around: level lines, continued along the
+    mesh's border.
+    """
     loops = [line.points for line in lines if line.closed]
-    parts = [line.points for line in lines if not line.closed]
+    open_chains = [line.points for line in lines if not line.closed]
     start, end = fine.border_edges[members[fine.border_edges].all(axis=1)].T
-    own, row = np.unique(
+    border_vertices, row = np.unique(
         np.r_[start, end, fine.border_edges[:, 0][members[fine.border_edges[:, 0]]]],
         return_inverse=True,
     )
-    following = np.full(len(own), -1, dtype=np.intp)
+    following = np.full(len(border_vertices), -1, dtype=np.intp)
     following[row[: len(start)]] = row[len(start) : 2 * len(start)]
-    for chain, closed in chains(following) if len(own) else ():
-        (loops if closed else parts).append(fine.vertices[own[chain]])
-    while parts:
-        loop = [parts.pop(0)]
-        while parts:
-            last = loop[-1][-1]
-            distances = [np.linalg.norm(part[0] - last) for part in parts]
+    for chain, closed in chains(following) if len(border_vertices) else ():
+        (loops if closed else open_chains).append(fine.vertices[border_vertices[chain]])
+    while open_chains:
+        loop = [open_chains.pop(0)]
+        while open_chains:
+            tip = loop[-1][-1]
+            distances = [np.linalg.norm(chain_points[0] - tip) for chain_points in open_chains]
             nearest = int(np.argmin(distances))
-            if distances[nearest] > np.linalg.norm(loop[0][0] - last):
+            if distances[nearest] > np.linalg.norm(loop[0][0] - tip):
                 break
-            loop.append(parts.pop(nearest))
+            loop.append(open_chains.pop(nearest))
         loops.append(np.vstack(loop))
     return [loop for loop in loops if len(loop) > 2]
 

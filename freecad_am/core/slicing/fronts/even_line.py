@@ -9,27 +9,31 @@ from scipy.interpolate import CubicSpline
 from ...types import Array
 
 
-def even(points: Array, closed: bool, count: int) -> Array:
-    """Equally spread points of a polyline, (count, 3) of a closed one, (count + 1, 3) with both ends of an open one."""
+def resample(points: Array, closed: bool, count: int) -> Array:
+    """Resample a polyline evenly: (count, 3) points of a closed one, (count + 1, 3) with both
+    ends of an open one.
+    """
     if closed and (points[0] != points[-1]).any():
         points = np.vstack([points, points[:1]])
     s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    at = np.linspace(0.0, s[-1], count + 1)
-    found = np.column_stack([np.interp(at, s, column) for column in points.T])
-    return found[:-1] if closed else found
+    positions = np.linspace(0.0, s[-1], count + 1)
+    resampled = np.column_stack([np.interp(positions, s, column) for column in points.T])
+    return resampled[:-1] if closed else resampled
 
 
-def rounded(points: Array, closed: bool, wide: float) -> Array:
-    """Means over neighbours, normally weighted with a standard deviation of `wide` places; the ends of an open line stay."""
+def smooth_points(points: Array, closed: bool, wide: float) -> Array:
+    """Return means over neighbours with normal weights, standard deviation `wide` points; the
+    ends of an open line stay.
+    """
     reach = min(int(np.ceil(3.0 * wide)), len(points) - 1)
     share = np.exp(-0.5 * (np.arange(-reach, reach + 1) / max(wide, 1e-9)) ** 2)
     share /= share.sum()
     if closed:
         padded = np.vstack([points[-reach:], points, points[:reach]]) if reach else points
     else:
-        first, last = points[:1], points[-1:]
+        start, end = points[:1], points[-1:]
         padded = np.vstack(
-            [2.0 * first - points[reach:0:-1], points, 2.0 * last - points[-2 : -reach - 2 : -1]]
+            [2.0 * start - points[reach:0:-1], points, 2.0 * end - points[-2 : -reach - 2 : -1]]
         )
     return np.column_stack([np.convolve(column, share, mode="valid") for column in padded.T])
 

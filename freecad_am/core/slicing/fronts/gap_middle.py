@@ -11,21 +11,22 @@ from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.step_count import step_count
 from ...geometry.walls.surface import dot
 from ...types import Array
-from .curve import on_wall
-from .even_line import even, rounded
+from .curve import fit_to_wall
+from .even_line import resample, smooth_points
 from .slicing import Slicing
 
-STRAIGHT = 1.2  # of the height; shorter beads are
+MIN_STRAIGHTNESS = 1.2  # of the height; shorter beads are
 ROUND = 0.8  # of the height; standard deviation of the mean that rounds a bead
 
 
-def middle(slicing: Slicing, borders: list[Array]) -> SpaceCurve | None:
-    """The curve halfway between the sides of a gap with the borders (k, 3): open along one that has a single border, closed
-    within a ring."""
+def gap_middle(slicing: Slicing, borders: list[Array]) -> SpaceCurve | None:
+    """Return the curve midway between the sides of a gap with the borders (k, 3): open for one
+    border, closed within a ring.
+    """
     longest = max(borders, key=len)
     if len(borders) == 2:
-        other = next(border for border in borders if border is not longest)
-        return _through(slicing, 0.5 * (longest + _opposite(longest, other)), True)
+        inner_border = next(border for border in borders if border is not longest)
+        return _through(slicing, 0.5 * (longest + _opposite(longest, inner_border)), True)
     farthest = int(np.argmax(np.linalg.norm(longest - longest.mean(axis=0), axis=1)))
     border = np.roll(longest, -farthest, axis=0)
     end = int(np.argmax(np.linalg.norm(border - border[0], axis=1)))
@@ -57,13 +58,13 @@ def _through(slicing: Slicing, points: Array, closed: bool) -> SpaceCurve | None
     count = step_count(length, 0.5 * height, 6 if closed else 2)
     if len(points) < 2:
         return None
-    # the sides of a gap are known to the fine mesh alone, and its middle has hooks at the ends
-    line = even(points, closed, 16 * count)
+    # only the fine mesh knows the sides of a gap, and its middle has hooks at the ends
+    line = resample(points, closed, 16 * count)
     wide = min(ROUND * height / (length / (16 * count)), 4.0 * count)
-    nodes = rounded(line, closed, wide)[::16]
+    nodes = smooth_points(line, closed, wide)[::16]
     if closed:
         nodes = np.vstack([nodes, nodes[:1]])
-    elif length < STRAIGHT * height:
+    elif length < MIN_STRAIGHTNESS * height:
         nodes = line[0] + np.linspace(0.0, 1.0, count + 1)[:, None] * (line[-1] - line[0])
     w = np.linspace(0.0, length, count + 1)
     nodes, normal = wall.project(nodes)
@@ -71,4 +72,4 @@ def _through(slicing: Slicing, points: Array, closed: bool) -> SpaceCurve | None
         nodes[-1], normal[-1] = nodes[0], normal[0]
     slope = CubicSpline(w, nodes, bc_type="periodic" if closed else "natural")(w, 1)
     slope -= dot(slope, normal)[:, None] * normal
-    return on_wall(wall, SpaceCurve(w, nodes, slope, slope, closed))
+    return fit_to_wall(wall, SpaceCurve(w, nodes, slope, slope, closed))

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers of constant local distance on any wall: fronts run over a mesh and made exact on the wall.
+"""Layers of constant local distance on any wall: fronts run over a mesh and are made exact
+on the wall.
 
-From the fronts of a layer the distance in space is measured to the mesh's vertices near them, with a sign: vertices
-that are behind are below. The level line at the layer height is traced through the triangles, which lets fronts
-split, merge, close and end at the wall's edges by themselves; each piece is then brought onto the exact wall and to the
-exact distance from the curve below, and its corners are found (see `curve`). The mesh decides which pieces
-there are, not where they lie: its edges should be no longer than the layer height and a quarter of the smallest radius
-of curvature. What is thinner than an edge is seen or not: slivers left between fronts that meet, gaps at a rim.
-A geodesic distance field over the whole wall would be simpler, but it measures distances along the wall, and adds the
-layers' errors up; here each layer starts from the one before, as the deposit does.
+From the fronts of a layer the distance in space to nearby mesh vertices is measured, with
+a sign: vertices behind are below. The level line at the layer height is traced through
+the triangles, which lets fronts split, merge, close and end at the wall's edges. Each
+piece is then moved onto the exact wall and to the exact distance from the curve below,
+and its corners are found (see `curve`). The mesh decides which pieces exist, not their
+position: its edges should be no longer than the layer height and a quarter of the
+smallest radius of curvature. Features thinner than an edge may be missed: slivers between
+fronts that meet, gaps at a rim. A geodesic distance field over the whole wall would be
+simpler, but it measures distances along the wall and accumulates the errors of the
+layers; here each layer starts from the one before, as the deposit does.
 """
 
 from __future__ import annotations
@@ -27,52 +30,60 @@ from ...issues import Text
 from ...types import Array, Index, Mask
 from ..backstop import refuse_too_many
 from ..banded import HEAVY
-from .closing import closing
-from .curve import exact
-from .feet import feet, local_distances, within
+from .closing import close_gaps
+from .curve import fit_front
+from .feet import local_distances, nearest_feet, points_near_fronts
 from .rims import Rims, cut_at_rims
 from .slicing import Slicing, Smoothing
-from .smooth import SmoothFront, smoothed
+from .smooth import SmoothFront, smooth_front
 
-SHORTEST = 0.2  # of the layer height; shorter fronts are no bead
-SLIVER, OFF = (
+MIN_LENGTH = 0.2  # of the layer height; shorter fronts are no bead
+SLIVER, MAX_OFFSET = (
     10.0,
     5e-4,
 )  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes
 THIN = 0.3  # of the typical edge; nearer points of a level line are one
-BEHIND = 1e-3  # mm; vertices nearer to a first curve lie on it
-ON_FRONT_MM = 1e-4  # mm; vertices nearer to a front lie on it, so that the last layer may lie on the wall's edge
-NEIGHBOURS = 12  # vertices near a place of a first curve that tell on which side the wall is
+BEHIND_MM = 1e-3  # mm; vertices nearer to a first curve are on it
+ON_FRONT_MM = (
+    1e-4  # mm; vertices nearer to a front are on it, so the last layer may be on the wall's edge
+)
+NEIGHBOURS = 12  # vertices near a point of a first curve that decide on which side the wall is
 
 
 class Sliced(NamedTuple):
-    """fronts: of each layer. closing: the beads that close gaps between the fronts of a layer and those of the layer below;
-    behind the last layer there may be closing beads alone. rims: the edges at which fronts end."""
+    """Layers of a wall.
+
+    fronts: of each layer. closing: the beads that close gaps between the fronts of a layer
+    and the layer below; after the last layer there may be a layer of only closing beads.
+    rims: the edges at which fronts end.
+    """
 
     fronts: list[list[SpaceCurve]]
     closing: list[list[SpaceCurve]]
     rims: Rims
 
 
-def layers(
+def slice_layers(
     wall: PatchWall,
     height: float,
     smoothing: Smoothing | None = None,
     progress: Callable[[float, str], None] = lambda fraction, text: None,
 ) -> Sliced:
-    """All layers, from the first until the wall is covered or its edges are reached. progress(fraction, text) is told the
-    share of the wall that is covered."""
+    """Return all layers, from the first until the wall is covered or its edges are reached.
+
+    progress(fraction, text) receives the share of the wall that is covered.
+    """
     slicing = Slicing(wall, Rims.of(wall.rims), height, smoothing)
-    state = start(slicing)
+    state = start_state(slicing)
     fronts, beads = [state.fronts], [list[SpaceCurve]()]
     remaining = len(state.behind) - len(state.passed)
     while remaining:
         progress(1.0 - remaining / len(state.behind), Text("finding layer {}", len(fronts)))
-        state = step(slicing, state)
+        state = next_state(slicing, state)
         remaining -= len(state.passed)
-        found = closing(slicing, fronts[-1], state.fronts, state.passed)
-        if state.fronts or found:
-            beads.append(found)
+        gap_beads = close_gaps(slicing, fronts[-1], state.fronts, state.passed)
+        if state.fronts or gap_beads:
+            beads.append(gap_beads)
         if not state.fronts:
             break
         refuse_too_many(len(fronts), height, wall.label)
@@ -91,65 +102,76 @@ class State:
     weight: int = HEAVY
 
 
-def start(slicing: Slicing) -> State:
-    """The first layer. All fronts have the wall still to come on their left, seen from where the normals point to."""
+def start_state(slicing: Slicing) -> State:
+    """Return the first layer.
+
+    All fronts have the rest of the wall on their left, seen from the side to which the
+    normals point.
+    """
     wall, mesh, fronts = slicing.wall, slicing.wall.mesh, []
-    for first in wall.first:
-        curve = first.curve()
-        points, left = slicing.left_of(curve)
-        near = np.asarray(mesh.tree.query(points, k=min(NEIGHBOURS, len(mesh.vertices)))[1])
+    for first_curve in wall.first:
+        curve = first_curve.curve()
+        points, left_vectors = slicing.left_of(curve)
+        neighbours = np.asarray(mesh.tree.query(points, k=min(NEIGHBOURS, len(mesh.vertices)))[1])
         ahead = np.where(
-            wall.behind[near], 0.0, dot(mesh.vertices[near] - points[:, None], left[:, None])
+            wall.behind[neighbours],
+            0.0,
+            dot(mesh.vertices[neighbours] - points[:, None], left_vectors[:, None]),
         )
         fronts.append(curve if ahead.sum() >= 0.0 else curve.reversed())
-    behind, near = wall.behind.copy(), within(mesh.tree, fronts, mesh.longest_edge)
-    behind[near] |= feet(fronts, mesh.vertices[near]).distance < BEHIND
+    behind, neighbours = (
+        wall.behind.copy(),
+        points_near_fronts(mesh.tree, fronts, mesh.longest_edge),
+    )
+    behind[neighbours] |= nearest_feet(fronts, mesh.vertices[neighbours]).distance < BEHIND_MM
     return State(fronts, behind, np.flatnonzero(behind))
 
 
-def step(slicing: Slicing, state: State) -> State:
-    """The next layer: all fronts at the layer height from those of the state, which may be none; smooth ones as near to that
-    as their smoothing allows. The state's `behind` is carried on: the new state has the same array, with more behind.
+def next_state(slicing: Slicing, state: State) -> State:
+    """Return the next layer: all fronts at the layer height from the fronts of the state,
+    possibly none.
 
-    Only the part of the mesh near the fronts is looked at, so that all layers together look at each vertex a few times.
+    With smoothing, fronts are as near to the height as the smoothing allows. The new state
+    shares the array `behind`, with more vertices behind. Only the mesh near the fronts is
+    examined, so all layers together examine each vertex a few times.
     """
     height, below, mesh = slicing.height, state.fronts, slicing.wall.mesh
     reach = height + mesh.longest_edge
-    near = within(mesh.tree, below, reach)
-    part, near = mesh.part(mesh.faces_at(near[~state.behind[near]]))
-    if not len(near):
-        return State([], state.behind, near, state.weight)
-    behind, distance = state.behind[near], feet(below, part.vertices).distance
+    nearby = points_near_fronts(mesh.tree, below, reach)
+    submesh, nearby = mesh.part(mesh.faces_at(nearby[~state.behind[nearby]]))
+    if not len(nearby):
+        return State([], state.behind, nearby, state.weight)
+    behind, distance = state.behind[nearby], nearest_feet(below, submesh.vertices).distance
     value = np.where(behind, -distance, distance) - height
-    low = part.connected_members(
+    low = submesh.connected_members(
         value < -ON_FRONT_MM, behind
-    )  # near in space is not enough: the wall must lead there
+    )  # proximity in space is not enough: the wall must lead there
     value = np.where(low, np.minimum(value, -1e-9 * height), np.maximum(value, 1e-9 * height))
-    ends = slicing.rims.reached(below, height, reach, ON_FRONT_MM)
+    ends = slicing.rims.points_at_height(below, height, reach, ON_FRONT_MM)
     fronts: list[SpaceCurve] = []
     for line in cut_at_rims(
-        part.level_lines(value, np.arange(len(part.faces))), ends, mesh.longest_edge
+        submesh.level_lines(value, np.arange(len(submesh.faces))), ends, mesh.longest_edge
     ):
         points = thin_points(line.points, line.closed, THIN * mesh.typical_edge)
         if len(points) >= (4 if line.closed else 2):
-            found = exact(slicing, below, line._replace(points=points))
-            fronts += [front for front in found if _is_bead(front, below, height)]
+            pieces = fit_front(slicing, below, line._replace(points=points))
+            fronts += [front for front in pieces if _is_bead(front, below, height)]
     weight = state.weight
     if slicing.smoothing is not None:
         band = slicing.smoothing.band * height
         smooth = [
-            smoothed(slicing, below, front, fronts[:k] + fronts[k + 1 :], weight)
+            smooth_front(slicing, below, front, fronts[:k] + fronts[k + 1 :], weight)
             for k, front in enumerate(fronts)
         ]
         doubtful = np.flatnonzero(~behind & (np.abs(distance - height) < 1.1 * band))
-        low[doubtful] = _passed(
-            slicing.wall, fronts, smooth, part.vertices[doubtful], low[doubtful], band
+        low[doubtful] = _is_passed(
+            slicing.wall, fronts, smooth, submesh.vertices[doubtful], low[doubtful], band
         )
         fronts, weight = (
-            [one.curve for one in smooth],
-            max((one.weight for one in smooth), default=weight),
+            [smooth_front.curve for smooth_front in smooth],
+            max((smooth_front.weight for smooth_front in smooth), default=weight),
         )
-    passed = near[low & ~behind]
+    passed = nearby[low & ~behind]
     state.behind[passed] = True
     return State(fronts, state.behind, passed, weight)
 
@@ -157,14 +179,14 @@ def step(slicing: Slicing, state: State) -> State:
 def _is_bead(front: SpaceCurve, below: list[SpaceCurve], height: float) -> bool:
     """Whether a front is long enough, and keeps its distance between the nodes too: slivers between fronts that meet head on
     may not; a bead that closes the gap takes their place."""
-    if front.length <= SHORTEST * height:
+    if front.length <= MIN_LENGTH * height:
         return False
     return front.length > SLIVER * height or bool(
-        np.abs(local_distances(front, below, 10) - height).max() < OFF
+        np.abs(local_distances(front, below, 10) - height).max() < MAX_OFFSET
     )
 
 
-def _passed(
+def _is_passed(
     wall: PatchWall,
     unsmoothed: list[SpaceCurve],
     smooth: list[SmoothFront],
@@ -172,17 +194,23 @@ def _passed(
     low: Mask,
     band: float,
 ) -> Mask:
-    """Whether points (n, 3) lie behind smooth fronts, where these are not the exact ones; low: of the latter. band: mm."""
-    fronts = [one.curve for one in smooth]
+    """Return whether points (n, 3) are behind smooth fronts, where these differ from the exact
+    ones.
+
+    low: whether they are behind the exact fronts. band: mm.
+    """
+    fronts = [smooth_front.curve for smooth_front in smooth]
     if not fronts or not len(points):
         return low
-    foot = feet(fronts, points)
-    moved = np.array([front is not before for front, before in zip(fronts, unsmoothed)])
+    foot = nearest_feet(fronts, points)
+    moved = np.array([front is not exact_front for front, exact_front in zip(fronts, unsmoothed)])
     slope = np.empty_like(points)
     for k, front in enumerate(fronts):
-        own = foot.front == k
-        slope[own] = front.at(foot.w[own])[1]
-    left = np.cross(wall.project(points)[1], slope)
-    side = dot(points - foot.point, left / np.linalg.norm(left, axis=1, keepdims=True))
-    near = moved[foot.front] & (foot.distance < 2.0 * band)
-    return np.where(near, side < -ON_FRONT_MM, low)
+        on_front = foot.front == k
+        slope[on_front] = front.at(foot.w[on_front])[1]
+    left_vectors = np.cross(wall.project(points)[1], slope)
+    side = dot(
+        points - foot.point, left_vectors / np.linalg.norm(left_vectors, axis=1, keepdims=True)
+    )
+    is_near = moved[foot.front] & (foot.distance < 2.0 * band)
+    return np.where(is_near, side < -ON_FRONT_MM, low)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where fronts end: the edges of a wall as exact curves, and the points on them at a distance from the fronts below."""
+"""Ends of fronts: the edges of a wall as exact curves, and the points on them at a distance
+from the fronts below.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +18,11 @@ from ...geometry.walls.patch_wall import Rim
 from ...geometry.walls.surface import dot
 from ...types import Array, Index, Mask
 from .even_line import spline
-from .feet import feet, within
+from .feet import nearest_feet, points_near_fronts
 
 FINER = 2  # places per arc of a rim at which the distance from the fronts is taken
 HALVINGS = 8  # of the stretches between them in which a rim may come and go
-SLACK = 1.1
+MAX_CHANGE_RATIO = 1.1
 STEPS = 40
 CONVERGED = 1e-11  # of the height
 ON_RIM = 1e-4  # mm
@@ -36,7 +38,9 @@ class _Samples(NamedTuple):
 
 
 class _Stretches(NamedTuple):
-    """Stretches (n,) of rims: from low to high, how far their ends lie above the distance asked for."""
+    """Stretches (n,) of rims: from low to high, and how far their ends are above the required
+    distance.
+    """
 
     rim: Index
     low: Array
@@ -87,39 +91,45 @@ class Rims:
         rim = np.repeat(np.arange(len(refined)), [len(w) for w in refined])
         return _Samples(points, rim, np.concatenate(refined), cKDTree(points))
 
-    def reached(
+    def points_at_height(
         self, below: list[SpaceCurve], height: float, reach: float, tolerance: float
     ) -> Array:
-        """Points (k, 3) on the rims at `height` mm from the fronts below.
+        """Return points (k, 3) on the rims at `height` mm from the fronts below.
 
-        reach: mm from these fronts in which they are sought. Differences of the distance below `tolerance` mm count as
-        above, so that a front may lie on a rim.
+        reach: mm from these fronts in which they are searched. Differences of the distance below
+        `tolerance` mm count as above, so a front may run along a rim.
         """
         if not self.curves:
             return np.empty((0, 3))
         points, rim, w, tree = self._samples
-        near = np.zeros(len(points), dtype=bool)
-        near[within(tree, below, reach)] = True
-        near[1:] |= near[:-1]
-        at = np.flatnonzero(near)
-        if not len(at):
+        is_near = np.zeros(len(points), dtype=bool)
+        is_near[points_near_fronts(tree, below, reach)] = True
+        is_near[1:] |= is_near[:-1]
+        sample = np.flatnonzero(is_near)
+        if not len(sample):
             return np.empty((0, 3))
-        off = feet(below, points[at]).distance - height + tolerance
-        pair = np.flatnonzero((np.diff(at) == 1) & (np.diff(rim[at]) == 0))
-        stretch = _Stretches(rim[at[pair]], w[at[pair]], w[at[pair + 1]], off[pair], off[pair + 1])
-        found = []
+        off = nearest_feet(below, points[sample]).distance - height + tolerance
+        pair = np.flatnonzero((np.diff(sample) == 1) & (np.diff(rim[sample]) == 0))
+        stretch = _Stretches(
+            rim[sample[pair]], w[sample[pair]], w[sample[pair + 1]], off[pair], off[pair + 1]
+        )
+        blocks = []
         for _ in range(HALVINGS):
             crossed = (stretch.off_low > 0.0) != (stretch.off_high > 0.0)
-            found.append(_Stretches(*(column[crossed] for column in stretch)))
-            # a distance changes by no more than the way along the rim, whose parameter is about its length
-            reserve = np.minimum(np.abs(stretch.off_low), np.abs(stretch.off_high)) < SLACK * (
-                stretch.high - stretch.low
-            )
+            blocks.append(_Stretches(*(column[crossed] for column in stretch)))
+            # a distance changes by no more than the length along the rim, which its parameter approximates
+            reserve = np.minimum(
+                np.abs(stretch.off_low), np.abs(stretch.off_high)
+            ) < MAX_CHANGE_RATIO * (stretch.high - stretch.low)
             stretch = _Stretches(*(column[~crossed & reserve] for column in stretch))
             if not len(stretch.rim):
                 break
             middle = 0.5 * (stretch.low + stretch.high)
-            off = feet(below, self._at(stretch.rim, middle)[0]).distance - height + tolerance
+            off = (
+                nearest_feet(below, self._evaluate(stretch.rim, middle)[0]).distance
+                - height
+                + tolerance
+            )
             stretch = _Stretches(
                 np.tile(stretch.rim, 2),
                 np.r_[stretch.low, middle],
@@ -127,15 +137,17 @@ class Rims:
                 np.r_[stretch.off_low, off],
                 np.r_[off, stretch.off_high],
             )
-        every = _Stretches(*(np.concatenate(columns) for columns in zip(*found)))
-        return self._crossings(below, height, every.rim, every.low, every.high, every.off_low > 0.0)
+        crossings = _Stretches(*(np.concatenate(columns) for columns in zip(*blocks)))
+        return self._crossings(
+            below, height, crossings.rim, crossings.low, crossings.high, crossings.off_low > 0.0
+        )
 
-    def _at(self, rim: Index, w: Array) -> tuple[Array, Array]:
-        """Points and derivatives (n, 3) at the places (rim, w)."""
+    def _evaluate(self, rim: Index, w: Array) -> tuple[Array, Array]:
+        """Return points and derivatives (n, 3) at the positions (rim, w)."""
         points, slope = np.empty((len(w), 3)), np.empty((len(w), 3))
         for k in np.unique(rim):
-            own = rim == k
-            points[own], slope[own], _ = self.curves[k].at(w[own])
+            on_rim = rim == k
+            points[on_rim], slope[on_rim], _ = self.curves[k].at(w[on_rim])
         return points, slope
 
     def _crossings(
@@ -152,8 +164,8 @@ class Rims:
         if not len(w):
             return np.empty((0, 3))
         for _ in range(STEPS):
-            points, slope = self._at(rim, w)
-            foot = feet(below, points)
+            points, slope = self._evaluate(rim, w)
+            foot = nearest_feet(below, points)
             off = foot.distance - height
             past = (off > 0.0) != falls
             low, high = np.where(past, low, w), np.where(past, w, high)
@@ -169,12 +181,14 @@ class Rims:
         """Distance (n,) mm of points (n, 3) from the rims, nearest points (n, 3), unit vectors (n, 3) along the rim."""
         if not self.curves:
             return np.full(len(points), np.inf), points, np.zeros_like(points)
-        foot = feet(list(self.curves), points)
-        slope = self._at(foot.front, foot.w)[1]
+        foot = nearest_feet(list(self.curves), points)
+        slope = self._evaluate(foot.front, foot.w)[1]
         return foot.distance, foot.point, slope / np.linalg.norm(slope, axis=1, keepdims=True)
 
     def ends_of(self, front: SpaceCurve) -> bool:
-        """Whether an open front is cut off: one of its ends lies where layers finish, and on no other rim."""
+        """Return whether an open front is cut off: one of its ends is where layers finish, and on no
+        other rim.
+        """
         if front.closed or not any(self.end):
             return False
         ends = front.points[[0, -1]]
@@ -197,61 +211,69 @@ class Line(NamedTuple):
 
 
 def cut_at_rims(lines: list[LevelLine], ends: Array, longest_edge: float) -> list[Line]:
-    """The lines with their ends among the points (k, 3) where fronts meet rims.
+    """Return the lines with their ends among the points (k, 3) where fronts meet rims.
 
-    Between two further points that lie near a line the wall has a gap that the mesh is too coarse to show: the line is
-    cut there. longest_edge: of the mesh, mm.
+    Between two further points near a line the wall has a gap that the mesh is too coarse to
+    show: the line is cut there. longest_edge: of the mesh, mm.
     """
-    found, free = [], np.ones(len(ends), dtype=bool)
+    ended_lines, free = [], np.ones(len(ends), dtype=bool)
     for line in lines:
-        own = np.full((2, 3), np.nan)
+        line_ends = np.full((2, 3), np.nan)
         if not line.closed and len(ends):
             distance = np.linalg.norm(line.points[[0, -1]][:, None] - ends[None], axis=-1)
             best = np.argmin(distance, axis=1)
-            near = distance[[0, 1], best] < 2.0 * longest_edge
-            if near.all() and best[0] == best[1]:  # one point is the end of one end
-                near[np.argmax(distance[[0, 1], best])] = False
-            own[near] = ends[best[near]]
-            free[best[near]] = False
-        found.append(Line(line.points, line.closed, line.rims, own))
-    return [part for line in found for part in _parts(line, ends[free], longest_edge)]
+            is_near = distance[[0, 1], best] < 2.0 * longest_edge
+            if is_near.all() and best[0] == best[1]:  # one point belongs to one end only
+                is_near[np.argmax(distance[[0, 1], best])] = False
+            line_ends[is_near] = ends[best[is_near]]
+            free[best[is_near]] = False
+        ended_lines.append(Line(line.points, line.closed, line.rims, line_ends))
+    return [
+        piece_line
+        for line in ended_lines
+        for piece_line in _split_line(line, ends[free], longest_edge)
+    ]
 
 
-def _parts(line: Line, ends: Array, longest_edge: float) -> list[Line]:
+def _split_line(line: Line, ends: Array, longest_edge: float) -> list[Line]:
     if len(ends) < 2:
         return [line]
-    distance, at = (np.asarray(column) for column in cKDTree(line.points).query(ends))
-    order = np.argsort(at, kind="stable")
+    distance, position = (np.asarray(column) for column in cKDTree(line.points).query(ends))
+    order = np.argsort(position, kind="stable")
     order = order[distance[order] < longest_edge]
     if len(order) < 2:
         return [line]
     n, count = len(line.points), len(order) // 2
-    if line.closed and _gaps(at[order], n) > _gaps(at[np.roll(order, -1)], n):
+    if line.closed and _total_gap(position[order], n) > _total_gap(position[np.roll(order, -1)], n):
         order = np.roll(order, -1)
     leave, enter = order[0 : 2 * count : 2], order[1 : 2 * count : 2]
     if line.closed:
-        parts = []
-        for one, other in ((enter[i], leave[(i + 1) % count]) for i in range(count)):
-            steps = (at[other] - at[one]) % n or n
-            parts.append((line.points[(at[one] + np.arange(1, steps)) % n], ends[one], ends[other]))
+        stretches = []
+        for entry, exit_ in ((enter[i], leave[(i + 1) % count]) for i in range(count)):
+            steps = (position[exit_] - position[entry]) % n or n
+            stretches.append(
+                (line.points[(position[entry] + np.arange(1, steps)) % n], ends[entry], ends[exit_])
+            )
     else:
-        starts = [0, *(at[enter] + 1)]
-        stops = [*at[leave], n]
+        starts = [0, *(position[enter] + 1)]
+        stops = [*position[leave], n]
         first_points, last_points = [line.ends[0], *ends[enter]], [*ends[leave], line.ends[1]]
-        parts = [
-            (line.points[i:k], *both)
-            for i, k, *both in zip(starts, stops, first_points, last_points)
+        stretches = [
+            (line.points[i:k], *end_points)
+            for i, k, *end_points in zip(starts, stops, first_points, last_points)
         ]
-    found = []
-    for inside, first_point, last_point in parts:
-        both = np.stack([first_point, last_point])
-        known = np.isfinite(both).all(axis=1)
-        points = np.vstack([both[:1][known[:1]], inside, both[1:][known[1:]]])
-        found.append(Line(points, False, line.rims, both))
-    return found
+    lines = []
+    for inside, first_point, last_point in stretches:
+        end_points = np.stack([first_point, last_point])
+        is_known = np.isfinite(end_points).all(axis=1)
+        points = np.vstack([end_points[:1][is_known[:1]], inside, end_points[1:][is_known[1:]]])
+        lines.append(Line(points, False, line.rims, end_points))
+    return lines
 
 
-def _gaps(at: Index, n: int) -> int:
-    """Length of what a closed line loses between its first and second point, its third and fourth, and so on."""
-    pairs = at[: len(at) // 2 * 2].reshape(-1, 2)
+def _total_gap(positions: Index, n: int) -> int:
+    """Return the length that a closed line loses between its first and second point, its third
+    and fourth, and so on.
+    """
+    pairs = positions[: len(positions) // 2 * 2].reshape(-1, 2)
     return int(((pairs[:, 1] - pairs[:, 0]) % n).sum())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What all layers of a wall are found with."""
+"""Common inputs of all layers of a wall."""
 
 from __future__ import annotations
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fronts on any wall whose local distance varies within a band, so that they stay free of corners.
+"""Fronts on any wall whose local distance varies within a band, so that they stay free of
+corners.
 
-What smooth_spacing does over the parameter of a surface is done here over the front itself: a rounded copy of the exact
-front is the datum from which heights are measured, along the wall and across the front. From there the exact distance and
-the band's ends are sought for each point; the smooth front is what bends least between them. See `banded`.
+smooth_spacing works on the parameter of a surface; this module works on the front itself.
+A rounded copy of the exact front is the datum from which heights are measured, along the
+wall and across the front. From there the exact distance and the limits of the band are
+searched for each point; the smooth front bends least between them. See `banded`.
 """
 
 from __future__ import annotations
@@ -18,21 +20,21 @@ from ...geometry.step_count import step_count
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...types import Array, Mask
-from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
+from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, lightest, smooth_between
 from ..directions.wall_turn import turns_in_wall
-from .curve import on_wall
-from .even_line import even, rounded, spline
-from .feet import feet, local_distances
+from .curve import fit_to_wall
+from .even_line import resample, smooth_points, spline
+from .feet import local_distances, nearest_feet
 from .rims import ON_RIM
 from .slicing import Slicing
 
 PLACES = 8  # per layer height along a front
-FEWEST = 48  # of a front
+MIN_POINTS = 48  # of a front
 ROUND = 0.75  # layer heights; standard deviation of the mean that rounds the front
-WIDEST = 1.0 / 16.0  # of the front, the same
+MAX_ROUNDING_SHARE = 1.0 / 16.0  # of the front, the same
 REACH = 1.5  # layer heights; the exact front is not farther from the rounded one
 STEPS = 40
-FOUND = 1e-6  # of the height
+TOLERANCE_SHARE = 1e-6  # of the height
 MAX_AHEAD = 0.4  # of the way to the next front of the layer; no front runs farther ahead
 FINER = 4  # places per arc at which the result is measured
 ENDS = np.array([0, -1])
@@ -60,60 +62,67 @@ def turn(wall: PatchWall, curve: SpaceCurve) -> float:
     return float(turns_in_wall(fine, wall.project(points)[1]).max())
 
 
-def smoothed(
+def smooth_front(
     slicing: Slicing,
     below: list[SpaceCurve],
     front: SpaceCurve,
-    others: list[SpaceCurve],
+    other_fronts: list[SpaceCurve],
     weight: int = HEAVY,
 ) -> SmoothFront:
-    """The front near an exact one, as near to the layer height as a turn within the wall of smoothing.limit allows.
+    """Return the front near an exact one, as near to the layer height as a turn within the wall
+    of smoothing.limit allows.
 
-    Its ends move along the rims that they lie on. others: the further fronts of the layer, which it leaves room. weight:
-    where the search begins, best that of the layer below. Where the band is too narrow for the limit, the band holds;
-    where no smooth front is found within it, the exact one comes back.
+    Its ends move along their rims. other_fronts: the further fronts of the layer, which need
+    room. weight: start of the search, best the weight of the layer below. If the band is too
+    narrow for the limit, the band holds; if no smooth front fits within it, the exact one is
+    returned.
     """
     wall, height, smoothing = slicing.wall, slicing.height, slicing.smoothing
-    kept = SmoothFront(front, turn(wall, front), weight)
-    if smoothing is None or kept.turn <= AIM * smoothing.limit:
-        return kept
+    unsmoothed = SmoothFront(front, turn(wall, front), weight)
+    if smoothing is None or unsmoothed.turn <= AIM * smoothing.limit:
+        return unsmoothed
     datum = _Datum.of(slicing, front)
     shares = np.array(
         [1.0, 1.0 - smoothing.band * (1.0 - MARGIN), 1.0 + smoothing.band * (1.0 - MARGIN)]
     )
     heights = datum.heights(below, height * shares)
     if heights is None:
-        return kept
-    wanted, low, high = heights
-    if others:
+        return unsmoothed
+    target, low, high = heights
+    if other_fronts:
         high = np.minimum(
             high,
-            wanted
-            + MAX_AHEAD * feet(others, datum.points + wanted[:, None] * datum.across).distance,
+            target
+            + MAX_AHEAD
+            * nearest_feet(other_fronts, datum.points + target[:, None] * datum.across).distance,
         )
-    least, most = (1.0 - smoothing.band) * height, (1.0 + smoothing.band) * height
+    min_distance, max_distance = (1.0 - smoothing.band) * height, (1.0 + smoothing.band) * height
 
     def trial(index: int) -> SmoothFront | None:
-        curve = datum.curve(datum.smooth(wanted, low, high, float(WEIGHTS[index])))
+        curve = datum.curve(datum.smooth(target, low, high, float(WEIGHTS[index])))
         distance = local_distances(curve, below, FINER)
-        if distance.min() < least or distance.max() > most:
+        if distance.min() < min_distance or distance.max() > max_distance:
             return None
         return SmoothFront(
             curve, float(turns_in_wall(curve, wall.project(curve.points)[1]).max()), index
         )
 
     best = lightest(trial, min(weight, HEAVY), AIM * smoothing.limit)
-    if best is None or best.turn >= kept.turn:
-        return kept
-    return best._replace(curve=on_wall(wall, best.curve))
+    if best is None or best.turn >= unsmoothed.turn:
+        return unsmoothed
+    return best._replace(curve=fit_to_wall(wall, best.curve))
 
 
 @dataclass(frozen=True, eq=False)
 class _Datum:
-    """A smooth line on a wall with rims: points (n, 3), unit vectors (n, 3) in the wall to its left, `bend` (n,) its own
-    second differences along those. A closed one does not repeat its first point. sliding: (2,) whether the ends of an open
-    one lie on rims, along which their `across` is then, as long as leads as far to the left, and theirs near there lean
-    likewise; other ends stay."""
+    """A smooth line on a wall with rims.
+
+    points (n, 3), across: unit vectors (n, 3) in the wall to its left, bend: (n,) its second
+    differences along those. A closed line does not repeat its first point. sliding: (2,)
+    whether the ends of an open line are on rims. Their `across` is then along the rim, long
+    enough to lead as far to the left, and their neighbours' vectors lean likewise; other ends
+    stay.
+    """
 
     slicing: Slicing
     points: Array
@@ -124,21 +133,24 @@ class _Datum:
 
     @classmethod
     def of(cls, slicing: Slicing, front: SpaceCurve) -> _Datum:
-        """The front, rounded, with equally spread points."""
+        """Return the rounded front with evenly spaced points."""
         height = slicing.height
-        count = step_count(front.length * PLACES, height, FEWEST)
-        points = even(front.at(front.refined(FINER))[0], front.closed, count)
-        wide = min(ROUND * height / (front.length / count), WIDEST * count)
-        points = even(rounded(points, front.closed, wide), front.closed, count)
+        count = step_count(front.length * PLACES, height, MIN_POINTS)
+        points = resample(front.at(front.refined(FINER))[0], front.closed, count)
+        wide = min(ROUND * height / (front.length / count), MAX_ROUNDING_SHARE * count)
+        points = resample(smooth_points(points, front.closed, wide), front.closed, count)
         points, normal = slicing.wall.project(points)
         if front.closed:
-            before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+            previous_points, next_points = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
         else:
-            before = np.vstack([2.0 * points[:1] - points[1:2], points[:-1]])
-            after = np.vstack([points[1:], 2.0 * points[-1:] - points[-2:-1]])
-        across = np.cross(normal, after - before)
+            previous_points = np.vstack([2.0 * points[:1] - points[1:2], points[:-1]])
+            next_points = np.vstack([points[1:], 2.0 * points[-1:] - points[-2:-1]])
+        across = np.cross(normal, next_points - previous_points)
         across /= np.linalg.norm(across, axis=1, keepdims=True)
-        bend, sliding = dot(after - 2.0 * points + before, across), np.zeros(2, dtype=bool)
+        bend, sliding = (
+            dot(next_points - 2.0 * points + previous_points, across),
+            np.zeros(2, dtype=bool),
+        )
         if not front.closed:
             distance, _, along = slicing.rims.nearest(points[ENDS])
             rate = dot(along, across[ENDS])
@@ -148,33 +160,34 @@ class _Datum:
             for end, s in ((0, share), (1, share[::-1])):
                 if sliding[
                     end
-                ]:  # what the end slides along the front is spread over its neighbours
+                ]:  # the sliding of the end along the front is spread over its neighbours
                     slide = along[end] / rate[end] - across[ENDS[end]]
                     across = across + np.maximum(1.0 - s, 0.0)[:, None] * slide
         return cls(slicing, points, across, bend, front.closed, sliding)
 
     def heights(self, below: list[SpaceCurve], distances: Array) -> Array | None:
-        """Heights (k, n) mm over the datum of points at the distances (k,) from the fronts below; none where some point is
-        not found."""
-        wanted = np.repeat(distances, len(self.points))
+        """Return heights (k, n) mm over the datum of points at the distances (k,) from the fronts
+        below; None if any is not found.
+        """
+        targets = np.repeat(distances, len(self.points))
         start, across = (
             np.tile(column, (len(distances), 1)) for column in (self.points, self.across)
         )
-        x = np.zeros(len(wanted))
+        x = np.zeros(len(targets))
         farthest = REACH * distances.max()
         low, high = x - farthest, x + farthest
-        todo = np.arange(len(wanted))
+        todo = np.arange(len(targets))
         for _ in range(STEPS):
-            foot = feet(
+            foot = nearest_feet(
                 below, self.slicing.wall.project(start[todo] + x[todo, None] * across[todo])[0]
             )
-            off = foot.distance - wanted[todo]
+            off = foot.distance - targets[todo]
             above = off > 0.0
             high[todo[above]], low[todo[~above]] = x[todo[above]], x[todo[~above]]
             step = off / np.maximum(dot(foot.away, across[todo]), 0.2)
             new = x[todo] - step
             inside = (new > low[todo]) & (new < high[todo])
-            moving = np.abs(off) > FOUND * wanted[todo]
+            moving = np.abs(off) > TOLERANCE_SHARE * targets[todo]
             x[todo] = np.where(
                 moving, np.where(inside, new, 0.5 * (low[todo] + high[todo])), x[todo]
             )
@@ -183,14 +196,14 @@ class _Datum:
                 return np.asarray(x.reshape(len(distances), -1))
         return None
 
-    def smooth(self, wanted: Array, low: Array, high: Array, weight: float) -> Array:
-        """Heights (n,) over the datum that bend little between low and high."""
+    def smooth(self, target: Array, low: Array, high: Array, weight: float) -> Array:
+        """Return heights (n,) over the datum that bend little between low and high."""
         if self.closed:
-            return between(wanted, low, high, weight, self.bend)
-        wanted, low, high = wanted.copy(), low.copy(), high.copy()
-        for bound in (wanted, low, high):
+            return smooth_between(target, low, high, weight, self.bend)
+        target, low, high = target.copy(), low.copy(), high.copy()
+        for bound in (target, low, high):
             bound[ENDS[~self.sliding]] = 0.0
-        return between(wanted, low, high, weight, self.bend[1:-1], False)
+        return smooth_between(target, low, high, weight, self.bend[1:-1], False)
 
     def curve(self, x: Array) -> SpaceCurve:
         """The curve at heights (n,) over the datum."""

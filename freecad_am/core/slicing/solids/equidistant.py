@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Cuts of a closed mesh with equidistant cones or cylinders (Dai 2020, section 2.1).
 
-The distance from the base surface is a convex function along every straight line, so what of a facet lies below a cone is
-a convex piece of it: an edge is crossed once, twice or not at all, a facet at up to six places, and what leaves the cone
-along the facet's border comes back at the next place. That pairs the points of every case of the paper without telling
-the cases apart. A vertex on the cone counts as outside, everywhere alike, so that loops close whatever touches whatever
-(the paper's step 0 can leave an odd number of points). A facet that the hub's axis pierces may be cut in a curve that
-meets no edge. Within a facet the cut is a conic; it is followed to the chord error.
+The distance from the base surface is a convex function along every straight line, so the
+part of a facet below a cone is convex: an edge is crossed once, twice or not at all, a
+facet at up to six points, and a cut that leaves the cone along the facet's border returns
+at the next point. This pairs the points of every case of the paper without distinguishing
+the cases. A vertex on the cone always counts as outside, so loops close whatever touches
+whatever (the paper's step 0 can leave an odd number of points). A facet pierced by the
+hub's axis may be cut in a curve that meets no edge. Within a facet the cut is a conic; it
+is followed to the chord error.
 """
 
 from __future__ import annotations
@@ -27,8 +29,8 @@ Edges = NDArray[np.int32]
 
 NEWTON = 60
 HALVINGS = 14  # of the cut through one facet
-SHORTEST = 1e-9  # mm; points nearer together are one
-ROUNDING = 1e-12  # of what is added up; less is rounding
+MIN_EDGE_MM = 1e-9  # mm; points nearer together are one
+ROUNDING = 1e-12  # of the terms added; smaller values are rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +45,9 @@ class Loop:
 class Facets:
     """A closed mesh prepared for cuts with equidistant surfaces of one surface.
 
-    vertices (n, 3) mm in the hub's frame, at distances (n,) mm from the surface; triangles (m, 3) with outward normals,
-    every edge between two of them. InputError 'OPEN_MESH' naming the place where an edge has one of them, or more than two.
+    vertices (n, 3) mm in the hub's frame, at distances (n,) mm from the surface; triangles
+    (m, 3) with outward normals, every edge between two triangles. Raises InputError
+    'OPEN_MESH' with the position of an edge that has one triangle, or more than two.
     """
 
     def __init__(
@@ -62,8 +65,11 @@ class Facets:
         ]
 
     def _edges(self) -> Edges:
-        """Per edge (k, 4) the vertices at its ends, and the sides of triangles that it is: 3 triangle + side, doubled, and 1
-        where the triangle goes along it; all in one place, for a cut touches edges all over the memory."""
+        """Return, for each edge (k, 4), its two vertices and its two triangle sides.
+
+        A side is 3 triangle + side, doubled, plus 1 where the triangle follows the edge. All
+        values are in one array, because a cut touches edges all over the memory.
+        """
         following, count = self.triangles[:, [1, 2, 0]], len(self.vertices)
         low, high = np.minimum(self.triangles, following), np.maximum(self.triangles, following)
         sides = (low.astype(np.int64) * count + high).ravel()
@@ -74,17 +80,19 @@ class Facets:
             or (sides[::2] != sides[1::2]).any()
             or (sides[2::2] == sides[1:-1:2]).any()
         ):
-            each, counts = np.unique(sides, return_counts=True)
-            place = self.vertices[list(divmod(int(each[counts != 2][0]), count))].mean(axis=0)
+            edge_keys, counts = np.unique(sides, return_counts=True)
+            position = self.vertices[list(divmod(int(edge_keys[counts != 2][0]), count))].mean(
+                axis=0
+            )
             raise InputError(
                 "OPEN_MESH",
                 self.name,
                 "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's "
                 "base; close the mesh",
                 int((counts != 2).sum()),
-                place[0],
-                place[1],
-                place[2],
+                position[0],
+                position[1],
+                position[2],
             )
         edges = np.empty((len(order) // 2, 4), dtype=np.int32)
         edges[:, 0], edges[:, 1] = np.divmod(sides[::2], count)
@@ -97,38 +105,43 @@ class Facets:
         once = np.flatnonzero((self.lower < distance) & (self.upper >= distance))
         twice = self.dips[(self.least < distance) & (self.lower[self.dips] >= distance)]
         loops = [
-            self._round(face, spot, distance, chord_error) for face, spot in self._islands(distance)
+            self._cut_about_axis(face, spot, distance, chord_error)
+            for face, spot in self._islands(distance)
         ]
         if not len(once) and not len(twice):
             return loops
         single, double = self.edges.take(once, axis=0), self.edges.take(twice, axis=0)
         nodes = self._crossings(single, double, inside, distance)
-        following, face = _links(single, double, inside, len(nodes))
+        following, face = _link_nodes(single, double, inside, len(nodes))
         for chain, _ in chains(following):
-            points = self._followed(nodes, chain, following, face, distance, chord_error)
+            points = self._refine_loop(nodes, chain, following, face, distance, chord_error)
             if len(points) >= 3:
                 loops.append(Loop(points, self._turns(points)))
         return loops
 
-    def moved(self, loops: Sequence[Loop], distance: float) -> list[Loop]:
-        """Loops moved along the normals of the surface."""
+    def offset_loops(self, loops: Sequence[Loop], distance: float) -> list[Loop]:
+        """Move loops along the normals of the surface."""
         return [
             Loop(loop.points + distance * self.surface.normals(loop.points), loop.turns)
             for loop in loops
         ]
 
     def _least_on_edges(self) -> tuple[Index, Array]:
-        """The edges (k,) that come nearest to the base between their ends, and how near (k,), mm."""
+        """Return the edges (k,) that come nearest to the base between their ends, and their
+        distances (k,), mm.
+        """
         maybe = self._may_dip()
         p, q = (self.vertices.take(self.edges[maybe, k], axis=0) for k in range(2))
-        way = q - p
-        level = (way[:, :2] ** 2).sum(axis=1)
+        direction = q - p
+        level = (direction[:, :2] ** 2).sum(axis=1)
         cos, sin = np.cos(self.surface.taper), np.sin(self.surface.taper)
-        toward = (p[:, :2] * way[:, :2]).sum(axis=1)
-        closest = (p[:, 0] * way[:, 1] - p[:, 1] * way[:, 0]) ** 2 / np.maximum(level, 1e-300)
+        toward = (p[:, :2] * direction[:, :2]).sum(axis=1)
+        closest = (p[:, 0] * direction[:, 1] - p[:, 1] * direction[:, 0]) ** 2 / np.maximum(
+            level, 1e-300
+        )
         # rho = sqrt(closest + level (t - t0)^2), closest being the line's squared distance from the axis;
         # at the least d/dt (cos rho + sin z) = 0
-        slope = -sin * way[:, 2] / np.maximum(cos * np.sqrt(level), 1e-300)
+        slope = -sin * direction[:, 2] / np.maximum(cos * np.sqrt(level), 1e-300)
         turning = (np.abs(slope) < 1.0) & (level > 0.0)
         reach = (
             np.sqrt(closest)
@@ -136,34 +149,41 @@ class Facets:
             / np.sqrt(1.0 - np.where(turning, slope, 0.0) ** 2)
         )
         t = (-toward + reach * np.sqrt(level)) / np.maximum(level, 1e-300)
-        some = np.flatnonzero(turning & (t > 0.0) & (t < 1.0))
-        return maybe[some], self.surface.distance(p[some] + t[some, None] * way[some])
+        dipping = np.flatnonzero(turning & (t > 0.0) & (t < 1.0))
+        return maybe[dipping], self.surface.distance(
+            p[dipping] + t[dipping, None] * direction[dipping]
+        )
 
     def _may_dip(self) -> Index:
-        """The edges along which the distance falls at first and rises at last, or nearly so."""
+        """Return the edges along which the distance falls first and rises last, or nearly so."""
         x, y, z = columns(self.vertices)
         rho = np.hypot(x, y)
         start, end = (self.edges[:, k].astype(np.intp) for k in range(2))
         across = x.take(start) * x.take(end) + y.take(start) * y.take(end)
-        one, other = rho.take(start), rho.take(end)
+        start_rho, end_rho = rho.take(start), rho.take(end)
         rise = np.tan(self.surface.taper) * (z.take(end) - z.take(start))
-        # rho times the slope at either end, over cos(a); rounding is a hair of what goes into it
-        begins, ends = across - one * one + rise * one, other * other - across + rise * other
-        hair = ROUNDING * (one + other + np.abs(rise)) * (one + other)
+        # rho times the slope at either end, over cos(a); its rounding error is tiny relative to its terms
+        begins, ends = (
+            across - start_rho * start_rho + rise * start_rho,
+            end_rho * end_rho - across + rise * end_rho,
+        )
+        hair = ROUNDING * (start_rho + end_rho + np.abs(rise)) * (start_rho + end_rho)
         return np.flatnonzero((begins < hair) & (ends > -hair))
 
     def _pierced(self) -> tuple[Index, Array]:
-        """Faces that the axis goes through, and where (k, 3)."""
+        """Return the faces pierced by the axis, and the points (k, 3)."""
         x, y = (column.take(self.triangles.T) for column in columns(self.vertices[:, :2]))
         sides = [x[k] * y[(k + 1) % 3] - y[k] * x[(k + 1) % 3] for k in range(3)]
-        found = np.flatnonzero((np.minimum.reduce(sides) > 0.0) | (np.maximum.reduce(sides) < 0.0))
-        share = np.stack([sides[(k + 1) % 3][found] for k in range(3)], axis=1)
+        pierced = np.flatnonzero(
+            (np.minimum.reduce(sides) > 0.0) | (np.maximum.reduce(sides) < 0.0)
+        )
+        share = np.stack([sides[(k + 1) % 3][pierced] for k in range(3)], axis=1)
         share = share / share.sum(axis=1)[:, None]
-        z = (share * self.vertices[self.triangles[found]][..., 2]).sum(axis=1)
-        return found, np.stack([np.zeros(len(z)), np.zeros(len(z)), z], axis=1)
+        z = (share * self.vertices[self.triangles[pierced]][..., 2]).sum(axis=1)
+        return pierced, np.stack([np.zeros(len(z)), np.zeros(len(z)), z], axis=1)
 
     def _islands(self, distance: float) -> list[tuple[int, Array]]:
-        """Faces cut in a closed curve that meets no edge, with a place inside of it."""
+        """Return faces cut in a closed curve that meets no edge, with a point inside the curve."""
         if not len(self.pierced):
             return []
         low = self.surface.distance(self.piercing) < distance
@@ -173,34 +193,41 @@ class Facets:
         return [(int(self.pierced[k]), self.piercing[k]) for k in np.flatnonzero(low & clear)]
 
     def _crossings(self, single: Edges, double: Edges, inside: Mask, distance: float) -> Array:
-        """Points where edges are crossed: (k, 3), those crossed twice with both points in the edge's own direction."""
+        """Return the points (k, 3) where edges are crossed; for edges crossed twice, both points in
+        the edge's direction.
+        """
         start, end = single[:, 0], single[:, 1]
         starts_inside = inside.take(start)
         outer, inner = np.where(starts_inside, end, start), np.where(starts_inside, start, end)
-        once = self._met(
+        once = self._first_intersection(
             self.vertices.take(outer, axis=0), self.vertices.take(inner, axis=0), distance
         )
         if not len(double):
             return once
         p, q = self.vertices.take(double[:, 0], axis=0), self.vertices.take(double[:, 1], axis=0)
-        both = np.stack([self._met(p, q, distance), self._met(q, p, distance)], axis=1)
-        return np.vstack([once, both.reshape(-1, 3)])
+        pairs = np.stack(
+            [self._first_intersection(p, q, distance), self._first_intersection(q, p, distance)],
+            axis=1,
+        )
+        return np.vstack([once, pairs.reshape(-1, 3)])
 
-    def _met(self, outer: Array, other: Array, distance: float) -> Array:
-        """Where lines from points outside first meet the surface: Newton on a convex function never oversteps."""
-        way = other - outer
+    def _first_intersection(self, outer: Array, target: Array, distance: float) -> Array:
+        """Return where lines from points outside first meet the surface: Newton on a convex function
+        never oversteps.
+        """
+        direction = target - outer
         t = np.zeros(len(outer))
-        start, along = columns(outer), columns(way)
+        start, along = columns(outer), columns(direction)
         for _ in range(NEWTON):
-            away, slope = self.surface.distance_rate(start + t * along, along)
-            step = (away - distance) / np.minimum(slope, -1e-300)
+            height, slope = self.surface.distance_rate(start + t * along, along)
+            step = (height - distance) / np.minimum(slope, -1e-300)
             new = np.minimum(np.maximum(np.where(slope < 0.0, t - step, t), t), 1.0)
             if (new - t).max(initial=0.0) < 1e-15:
                 break
             t = new
-        return np.asarray(outer + t[:, None] * way)
+        return np.asarray(outer + t[:, None] * direction)
 
-    def _followed(
+    def _refine_loop(
         self,
         nodes: Array,
         chain: Index,
@@ -209,21 +236,21 @@ class Facets:
         distance: float,
         chord_error: float,
     ) -> Array:
-        """The nodes of a loop in order, with places between them where a chord would leave the cut."""
+        """Return the nodes of a loop in order, with points added where a chord would leave the cut."""
         points, normal = nodes[chain], self._normals(face[chain])
         gap = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
-        points, normal = points[gap > SHORTEST], normal[gap > SHORTEST]
+        points, normal = points[gap > MIN_EDGE_MM], normal[gap > MIN_EDGE_MM]
         arcs: Index = np.arange(len(points))
         for _ in range(HALVINGS):
             start, end = points[arcs], points[(arcs + 1) % len(points)]
-            # what lies below the cone is convex: it fills the room between chord and cut, left of the way
-            side = _cross(normal[arcs], end - start)
+            # the part below the cone is convex: it fills the space between chord and cut, left of the course
+            side = _cross_products(normal[arcs], end - start)
             width = np.linalg.norm(side, axis=1)
             side /= np.maximum(width, 1e-300)[:, None]
             middle = 0.5 * (start + end)
-            pushed = self._pushed(middle, side, distance)
-            far = (np.linalg.norm(pushed - middle, axis=1) > chord_error) & (width > SHORTEST)
-            arcs, pushed = arcs[far], pushed[far]
+            pushed = self._push_out(middle, side, distance)
+            is_off = (np.linalg.norm(pushed - middle, axis=1) > chord_error) & (width > MIN_EDGE_MM)
+            arcs, pushed = arcs[is_off], pushed[is_off]
             if not len(arcs):
                 break
             points = np.insert(points, arcs + 1, pushed, axis=0)
@@ -232,38 +259,41 @@ class Facets:
             arcs = np.sort(np.r_[arcs, arcs + 1])
         return points
 
-    def _pushed(self, points: Array, way: Array, distance: float) -> Array:
-        """Points inside moved along unit vectors (k, 3) out to the surface."""
+    def _push_out(self, points: Array, direction: Array, distance: float) -> Array:
+        """Move points inside along unit vectors (k, 3) out to the surface."""
         t = np.zeros(len(points))
-        start, along = columns(points), columns(way)
+        start, along = columns(points), columns(direction)
         for _ in range(NEWTON):
-            away, slope = self.surface.distance_rate(start + t * along, along)
-            step = (distance - away) / np.maximum(slope, 1e-6)
+            height, slope = self.surface.distance_rate(start + t * along, along)
+            step = (distance - height) / np.maximum(slope, 1e-6)
             t += step
             if np.abs(step).max(initial=0.0) < 1e-14 * max(1.0, abs(distance)):
                 break
-        return np.asarray(points + t[:, None] * way)
+        return np.asarray(points + t[:, None] * direction)
 
-    def _round(self, face: int, spot: Array, distance: float, chord_error: float) -> Loop:
-        """The closed cut about the axis in a facet that it pierces; the solid is on the side the facet turns away from."""
+    def _cut_about_axis(self, face: int, spot: Array, distance: float, chord_error: float) -> Loop:
+        """Return the closed cut about the axis in a facet that it pierces.
+
+        The solid is on the side from which the facet faces away.
+        """
         normal = self._normals(np.array([face]))[0]
         radius = self.surface.radius + distance
         count = int(
             np.clip(np.ceil(np.pi / np.arccos(max(1.0 - chord_error / radius, -1.0))), 12, 8192)
         )
         angle = TURN * np.arange(count) / count
-        way = np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)
-        way[:, 2] = -(way[:, :2] @ normal[:2]) / normal[2]
-        way /= np.linalg.norm(way, axis=1)[:, None]
-        # a hair off the axis, where the distance has its kink
-        points = self._pushed(spot + 1e-9 * radius * way, way, distance)
+        directions = np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)
+        directions[:, 2] = -(directions[:, :2] @ normal[:2]) / normal[2]
+        directions /= np.linalg.norm(directions, axis=1)[:, None]
+        # slightly off the axis, where the distance has its kink
+        points = self._push_out(spot + 1e-9 * radius * directions, directions, distance)
         return Loop(points if normal[2] < 0.0 else points[::-1], -1 if normal[2] > 0.0 else 1)
 
     def _normals(self, faces: Index) -> Array:
         a, b, c = (
             self.vertices.take(corner, axis=0) for corner in self.triangles.take(faces, axis=0).T
         )
-        normal = _cross(b - a, c - a)
+        normal = _cross_products(b - a, c - a)
         unit: Array = normal / np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
         return unit
 
@@ -272,36 +302,39 @@ class Facets:
         return int(np.round((np.remainder(step + np.pi, TURN) - np.pi).sum() / TURN))
 
 
-def _links(single: Edges, double: Edges, inside: Mask, count: int) -> tuple[Index, Index]:
-    """The node (count,) that follows each node with the solid to its left, and the face between them. single, double: edges
-    that are crossed once and twice, whose nodes come in this order."""
+def _link_nodes(single: Edges, double: Edges, inside: Mask, count: int) -> tuple[Index, Index]:
+    """Return the node (count,) after each node with the solid to its left, and the face between
+    them.
+
+    single, double: edges crossed once and twice, whose nodes come in this order.
+    """
     once = np.repeat(np.arange(len(single)), 2)
-    place = single[:, 2:].ravel()
-    forward = (place & 1).astype(bool)
-    # one crossed once tells by where it starts whether the cut goes in or out; along one crossed twice it goes in, then out
+    position = single[:, 2:].ravel()
+    forward = (position & 1).astype(bool)
+    # the start of an edge crossed once decides whether the cut goes in or out; along an edge crossed twice it goes in, then out
     out = np.repeat(inside.take(single[:, 0]), 2) == forward
-    place = place & ~1
+    position = position & ~1
     if len(double):
         low = np.repeat(len(single) + 2 * np.arange(len(double)), 2)
         again = double[:, 2:].ravel()
         back = (again & 1) == 0
         once = np.r_[once, low + back, low + ~back]
-        place = np.r_[place, again & ~1, again | 1]
+        position = np.r_[position, again & ~1, again | 1]
         out = np.r_[out, np.zeros(len(again), dtype=bool), np.ones(len(again), dtype=bool)]
-    order = np.argsort(place)
-    node, out, face = once[order], out[order], place[order] // 6
-    # the next place of the same face; after the last one its first
-    last = np.r_[face[1:] != face[:-1], True]
-    after = np.r_[node[1:], -1]
-    after[last] = node[np.r_[True, last[:-1]]]
-    out &= after != node
+    order = np.argsort(position)
+    node, out, face = once[order], out[order], position[order] // 6
+    # the next crossing of the same face; after the last one the first
+    is_last = np.r_[face[1:] != face[:-1], True]
+    next_node = np.r_[node[1:], -1]
+    next_node[is_last] = node[np.r_[True, is_last[:-1]]]
+    out &= next_node != node
     following, between = np.full(count, -1, dtype=np.intp), np.full(count, -1, dtype=np.intp)
-    following[after[out]] = node[out]
-    between[after[out]] = face[out]
+    following[next_node[out]] = node[out]
+    between[next_node[out]] = face[out]
     return following, between
 
 
-def _cross(one: Array, other: Array) -> Array:
-    """Vector products of rows (k, 3), at a third of the cost of numpy's own for a few thousand."""
-    (a, b, c), (u, v, w) = columns(one), columns(other)
+def _cross_products(u_rows: Array, v_rows: Array) -> Array:
+    """Return vector products of rows (k, 3), at a third of the cost of numpy for a few thousand."""
+    (a, b, c), (u, v, w) = columns(u_rows), columns(v_rows)
     return np.stack([b * w - c * v, c * u - a * w, a * v - b * u], axis=1)

@@ -15,14 +15,15 @@ from ...geometry.on_hub import Base, Group
 from ...issues import InputError
 from ...types import Array
 
-STEP = 2.0  # mm between the places looked at on the surface of a solid
+STEP = 2.0  # mm between test points on the surface of a solid
 DEEP = 5.0  # times the chord error of the meshes, that solids may reach into one another: touching ones do
 
 
 def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
-    """InputError OVERLAP where solids reach into one another outside of the surfaces they stand on.
+    """Raise InputError OVERLAP if solids overlap outside their base surfaces.
 
-    chord_error: mm within which the triangles stand for the solids. What overlaps on less than STEP may be missed.
+    chord_error: mm between the triangles and the solids. Overlaps smaller than STEP may be
+    missed.
     """
     standing = [(group.base, body) for group in groups for body in group.bodies]
     boxes = [(body.vertices.min(axis=0), body.vertices.max(axis=0)) for _, body in standing]
@@ -32,44 +33,47 @@ def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
             box = np.maximum(boxes[k][0], boxes[j][0]), np.minimum(boxes[k][1], boxes[j][1])
             if (box[1] - box[0] <= deep).any():
                 continue
-            other_base, other = standing[j]
-            for one, two in ((body, other), (other, body)):
-                found = _deepest(one, two, box, (base, other_base), deep)
-                if found is not None:
+            other_base, second_body = standing[j]
+            for probed, against in ((body, second_body), (second_body, body)):
+                overlap = _deepest_overlap(probed, against, box, (base, other_base), deep)
+                if overlap is not None:
                     raise InputError(
                         "OVERLAP",
                         body.name,
                         "it and {} fill the same place, as at {}, which would be deposited twice; "
                         "fuse them into one solid, or move one",
-                        other.name,
-                        place(found),
+                        second_body.name,
+                        place(overlap),
                     )
 
 
-def _deepest(
-    one: Body, other: Body, box: tuple[Array, Array], bases: Sequence[Base], deep: float
+def _deepest_overlap(
+    probed: Body, against: Body, box: tuple[Array, Array], bases: Sequence[Base], deep: float
 ) -> Array | None:
-    """The place (3,) deepest in another solid of the surface of one, and of what is a little below it; None where none is
-    in it farther than `deep`."""
-    corners = one.corners()
-    # faces in a side of the box count: below them may be inside of the other
+    """Return the point (3,), on or slightly below the surface of `probed`, deepest in `against`;
+    None if none is deeper than `deep`.
+    """
+    corners = probed.corners()
+    # faces in a side of the box count: points below them may be inside the other solid
     corners = corners[
         ((corners.min(axis=1) <= box[1]) & (corners.max(axis=1) >= box[0])).all(axis=1)
     ]
-    points, of = divide_triangles(corners, STEP)
+    points, triangle = divide_triangles(corners, STEP)
     normal = doubled_areas(corners)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    # surfaces that are the same tell nothing: what lies below them does
-    points = np.vstack([corners.reshape(-1, 3), points, points - 2.0 * deep * normal[of]])
+    # coincident surfaces are ambiguous: test points below them
+    points = np.vstack([corners.reshape(-1, 3), points, points - 2.0 * deep * normal[triangle]])
     points = points[((points > box[0]) & (points < box[1])).all(axis=1)]
     for base in bases:
         points = points[base.surface.distance(base.inside(points)) > deep]
     if not len(points):
         return None
-    distance = _searched(other).signed(points)[0]
+    distance = _searched(against).signed(points)[0]
     points, distance = points[distance < -deep], distance[distance < -deep]
-    own = _searched(one).signed(points)[0] < 0.5 * deep if len(points) else np.zeros(0, dtype=bool)
-    return points[own][np.argmin(distance[own])] if own.any() else None
+    on_surface = (
+        _searched(probed).signed(points)[0] < 0.5 * deep if len(points) else np.zeros(0, dtype=bool)
+    )
+    return points[on_surface][np.argmin(distance[on_surface])] if on_surface.any() else None
 
 
 def _searched(body: Body) -> Search:

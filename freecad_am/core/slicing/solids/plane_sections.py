@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Sections of a closed mesh with parallel planes, all at once.
 
-A vertex on a plane counts as above it, everywhere alike: an edge is crossed once or not at all, a triangle in two of its
-edges or in none, so that loops close whatever lies in the plane: vertices, edges, whole faces. What comes out is the limit
-of sections from just below. Places where edges are crossed are worked out once for the two triangles beside each edge; a
-loop goes from the edge where it comes into a triangle to the one where it leaves it, with the solid to its left.
+A vertex on a plane always counts as above it: an edge is crossed once or not at all, a
+triangle in two of its edges or in none, so loops close whatever is in the plane:
+vertices, edges, whole faces. The result is the limit of sections from just below.
+Crossings of edges are computed once for the two adjacent triangles. A loop goes from the
+edge where it enters a triangle to the one where it leaves it, with the solid to its left.
 """
 
 from __future__ import annotations
@@ -16,30 +17,33 @@ import numpy as np
 from ...geometry.mesh.triangle_mesh import chains
 from ...types import Array, Index, Mask
 
-MOST_SIDES = 16  # pairs of triangles that meet in an edge
-AT_ONCE = 1_000_000  # crossings of planes worked on together; bounds the memory
+MAX_SIDES = 16  # pairs of triangles that meet in an edge
+BLOCK_SIZE = 1_000_000  # crossings of planes worked on together; bounds the memory
 
 
-def _paired(key: Index, forward: Mask) -> Index:
-    """Numbers (n,) of edges by their keys and which way a triangle goes along them: where a solid touches itself along an
-    edge, so that four triangles or more meet there, each number is of two, one of either way. Which two they are is all the
-    same: loops that touch bound the same area however they go on."""
+def _pair_keys(key: Index, forward: Mask) -> Index:
+    """Return numbers (n,) of edges from their keys and the senses of the triangles along them.
+
+    Where a solid touches itself along an edge, so that four or more triangles meet there,
+    each number belongs to two of them, one of either sense. The choice does not matter: loops
+    that touch bound the same area in any case.
+    """
     order = np.lexsort((forward, key))
     alike = np.r_[
         False, (np.diff(key[order]) == 0) & (np.diff(forward[order].astype(np.int8)) == 0)
     ]
-    at = np.arange(len(key))
-    begin = np.maximum.accumulate(np.where(alike, 0, at)) if len(key) else at
+    position = np.arange(len(key))
+    begin = np.maximum.accumulate(np.where(alike, 0, position)) if len(key) else position
     rank = np.empty(len(key), dtype=np.int64)
-    rank[order] = np.minimum(at - begin, MOST_SIDES - 1)
-    return np.asarray(key * MOST_SIDES + rank)
+    rank[order] = np.minimum(position - begin, MAX_SIDES - 1)
+    return np.asarray(key * MAX_SIDES + rank)
 
 
 class PlaneCuts:
     """A mesh prepared for sections z = constant.
 
-    vertices (n, 3) mm; faces (m, 3), every edge between as many of one sense as of the other; triangles: those that planes
-    cross.
+    vertices (n, 3) mm; faces (m, 3), every edge between equally many of either sense;
+    triangles: the faces that planes can cross.
     """
 
     def __init__(self, vertices: Array, faces: Index) -> None:
@@ -48,13 +52,13 @@ class PlaneCuts:
         self.vertices, self.faces, self.triangles = vertices, faces, faces[~flat]
         following = self.triangles[:, [1, 2, 0]]
         low, high = np.minimum(self.triangles, following), np.maximum(self.triangles, following)
-        key = _paired(
+        key = _pair_keys(
             low.astype(np.int64).ravel() * len(vertices) + high.ravel(),
             (self.triangles < following).ravel(),
         )
-        known, number = np.unique(key, return_inverse=True)
+        keys, number = np.unique(key, return_inverse=True)
         self._edge_of: Index = np.ravel(number).reshape(-1, 3).astype(np.intp)
-        start, end = np.divmod(known // MOST_SIDES, len(vertices))
+        start, end = np.divmod(keys // MAX_SIDES, len(vertices))
         turned = vertices[start, 2] > vertices[end, 2]
         self._lower: Index = np.where(turned, end, start)
         self._upper: Index = np.where(turned, start, end)
@@ -65,44 +69,45 @@ class PlaneCuts:
         return float(self.vertices[:, 2].max())
 
     def loops(self, heights: Sequence[float] | Array) -> Iterator[list[Array]]:
-        """For each of the rising heights (k,) mm its loops (n, 2), the first point of each not repeated, the solid to their
-        left as seen from above."""
+        """Yield, for each of the rising heights (k,) mm, its loops (n, 2), first point not repeated,
+        the solid on their left from above.
+        """
         planes = np.asarray(heights, dtype=np.float64)
         z = self.vertices[:, 2]
-        # of each edge: the planes above its lower end and not above its upper one
+        # for each edge: the planes above its lower end and not above its upper end
         begin = np.searchsorted(planes, z[self._lower], side="right")
         end = np.searchsorted(planes, z[self._upper], side="right")
         per_plane = np.cumsum(
             np.bincount(begin, minlength=len(planes) + 1)
             - np.bincount(end, minlength=len(planes) + 1)
         )
-        at = 0
-        while at < len(planes):
-            total = np.cumsum(per_plane[at : len(planes)])
-            until = at + max(1, int(np.searchsorted(total, AT_ONCE, side="right")))
-            yield from self._block(planes, at, until, begin, end)
-            at = until
+        block_start = 0
+        while block_start < len(planes):
+            total = np.cumsum(per_plane[block_start : len(planes)])
+            until = block_start + max(1, int(np.searchsorted(total, BLOCK_SIZE, side="right")))
+            yield from self._block(planes, block_start, until, begin, end)
+            block_start = until
 
     def _block(
-        self, planes: Array, first: int, last: int, begin: Index, end: Index
+        self, planes: Array, start: int, stop: int, begin: Index, end: Index
     ) -> list[list[Array]]:
-        """Loops of the planes first to last (not with it)."""
-        low, high = np.clip(begin, first, last), np.clip(end, first, last)
+        """Return the loops of the planes from start to stop, exclusive."""
+        low, high = np.clip(begin, start, stop), np.clip(end, start, stop)
         count = high - low
         crossed = np.flatnonzero(count)
-        found: list[list[Array]] = [[] for _ in range(last - first)]
+        loops_of_plane: list[list[Array]] = [[] for _ in range(stop - start)]
         if not len(crossed):
-            return found
+            return loops_of_plane
         offset = np.cumsum(count) - count - low  # + plane: the node of an edge on it
         edge = np.repeat(crossed, count[crossed])
         plane = np.arange(len(edge)) - offset[edge]
         nodes = self._places(edge, planes[plane])
         following = np.full(len(edge), -1, dtype=np.intp)
-        self._link(planes, first, last, offset, following)
+        self._link(planes, start, stop, offset, following)
         for chain, closed in chains(following):
             if closed and len(chain) > 2:
-                found[plane[chain[0]] - first].append(nodes[chain])
-        return found
+                loops_of_plane[plane[chain[0]] - start].append(nodes[chain])
+        return loops_of_plane
 
     def _places(self, edge: Index, height: Array) -> Array:
         """Where edges are crossed at heights (n,): (n, 2) mm, worked out from the lower end."""
@@ -110,20 +115,22 @@ class PlaneCuts:
         share = (height - below[:, 2]) / (above[:, 2] - below[:, 2])
         return np.asarray(below[:, :2] + share[:, None] * (above[:, :2] - below[:, :2]))
 
-    def _link(self, planes: Array, first: int, last: int, offset: Index, following: Index) -> None:
-        """Fill in what node follows each: from the side on which a triangle goes down to that on which it goes up."""
+    def _link(self, planes: Array, start: int, stop: int, offset: Index, following: Index) -> None:
+        """Fill in the successor of each node: from the side on which a triangle descends to the side
+        on which it ascends.
+        """
         z = self.vertices[:, 2][self.triangles]
-        low = np.clip(np.searchsorted(planes, z.min(axis=1), side="right"), first, last)
-        count = np.clip(np.searchsorted(planes, z.max(axis=1), side="right"), first, last) - low
-        some = np.flatnonzero(count)
-        row = np.repeat(some, count[some])
+        low = np.clip(np.searchsorted(planes, z.min(axis=1), side="right"), start, stop)
+        count = np.clip(np.searchsorted(planes, z.max(axis=1), side="right"), start, stop) - low
+        crossing = np.flatnonzero(count)
+        row = np.repeat(crossing, count[crossing])
         plane = np.arange(len(row)) - np.repeat(
-            np.cumsum(count[some]) - count[some] - low[some], count[some]
+            np.cumsum(count[crossing]) - count[crossing] - low[crossing], count[crossing]
         )
         below = z[row] < planes[plane][:, None]
         rises = below & ~below[:, [1, 2, 0]]
         falls = ~below & below[:, [1, 2, 0]]
-        here = np.arange(len(row))
-        comes = self._edge_of[row, falls.argmax(axis=1)[here]]
-        leaves = self._edge_of[row, rises.argmax(axis=1)[here]]
+        row_number = np.arange(len(row))
+        comes = self._edge_of[row, falls.argmax(axis=1)[row_number]]
+        leaves = self._edge_of[row, rises.argmax(axis=1)[row_number]]
         following[offset[comes] + plane] = offset[leaves] + plane

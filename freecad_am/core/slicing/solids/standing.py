@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which cylinder or cone each solid stands on: the one that it is cut by in the longest contour."""
+"""The cylinder or cone under each solid: the one that cuts it in the longest contour."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from .overlap import refuse_overlaps
 from .unrolled import cut
 
 UNITS = ((25.4, "inches"), (10.0, "cm"), (1000.0, "m"))  # mm of one
-PAST_END_MM = 0.05  # mm past the ends of a face at which a solid still stands on it
+PAST_END_MM = 0.05  # mm past the ends of a face at which a solid is still based on it
 
 
-def on_hub(
+def group_by_base(
     bodies: Sequence[Body],
     seats: Sequence[Seat],
     chord_error: float,
@@ -29,10 +29,16 @@ def on_hub(
     hub: str = "",
     unitless: Sequence[Body] = (),
 ) -> SolidsOnHub:
-    """Bodies grouped by the base that each stands on with the longest contour; groups up the first base's axis.
+    """Group bodies by the base with the longest contour; groups are ordered up the axis of the
+    first base.
 
-    hub: the name of what has the seats, for errors, where it is not that of the bodies. unitless: bodies of files without a
-    unit of their own. InputError NOT_ON_HUB for a solid that stands on none, NO_BASE where there is no base, OVERLAP.
+    hub: name of the object that has the bases, for errors, if it is not the bodies' own.
+    unitless: bodies of files without a unit.
+
+    Raises
+    ------
+    InputError
+        NOT_ON_HUB for a solid that is on no base, NO_BASE if there is no base, OVERLAP.
     """
     if not seats:
         raise InputError(
@@ -44,16 +50,21 @@ def on_hub(
     standing: dict[int, list[Body]] = {}
     for body in bodies:
         standing.setdefault(
-            _seat_of(body, seats, chord_error, any(body is one for one in unitless)), []
+            _seat_of(
+                body, seats, chord_error, any(body is unitless_body for unitless_body in unitless)
+            ),
+            [],
         ).append(body)
     axis = seats[min(standing)].base.frame[:3, 2]
     axis = -axis if downwards(axis) else axis
     groups = [
         Group(
             seats[k].base,
-            tuple(sorted(some, key=lambda body: middle_azimuth(seats[k].base, body.vertices))),
+            tuple(
+                sorted(group_bodies, key=lambda body: middle_azimuth(seats[k].base, body.vertices))
+            ),
         )
-        for k, some in standing.items()
+        for k, group_bodies in standing.items()
     ]
     groups.sort(key=lambda group: min(float((body.vertices @ axis).min()) for body in group.bodies))
     refuse_overlaps(groups, chord_error)
@@ -62,7 +73,7 @@ def on_hub(
 
 def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bool = False) -> int:
     contact, adjacent = np.zeros(len(seats)), np.zeros(len(seats))
-    away = np.zeros((len(seats), 2))
+    ranges = np.zeros((len(seats), 2))
     for k, seat in enumerate(seats):
         # seats are on cylinders and cones
         vertices = seat.base.inside(body.vertices)
@@ -72,7 +83,7 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
             body.triangles,
             body.name,
         )
-        away[k] = facets.distances.min(), facets.distances.max()
+        ranges[k] = facets.distances.min(), facets.distances.max()
         for loop in cut(facets, 0.0, chord_error):
             step = np.linalg.norm(np.roll(loop.points, -1, axis=0) - loop.points, axis=1)
             middle = 0.5 * (loop.points + np.roll(loop.points, -1, axis=0))
@@ -82,7 +93,7 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
     best = int(np.argmax(contact))
     if contact[best] > 0.0:
         return best
-    nearest = int(np.argmin(np.where(away[:, 1] > 0.0, np.maximum(away[:, 0], 0.0), np.inf)))
+    nearest = int(np.argmin(np.where(ranges[:, 1] > 0.0, np.maximum(ranges[:, 0], 0.0), np.inf)))
     where = place(
         body.vertices[
             np.argmin(
@@ -90,18 +101,18 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
             )
         ]
     )
-    if (away[:, 1] <= 0.0).all():
+    if (ranges[:, 1] <= 0.0).all():
         text = "it lies inside of the hub"
-    elif away[nearest, 0] > 0.0:
+    elif ranges[nearest, 0] > 0.0:
         text = Text(
             "it begins {:.4g} mm outside of {}, at {}",
-            away[nearest, 0],
+            ranges[nearest, 0],
             seats[nearest].base.name,
             where,
         )
     else:
         text = Text("it passes {} beside the face, near {}", seats[nearest].base.name, where)
-    hint = _of_units(body, seats) if unitless else ""
+    hint = _unit_hint(body, seats) if unitless else ""
     raise InputError(
         "NOT_ON_HUB",
         body.name,
@@ -111,15 +122,17 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
     )
 
 
-def _of_units(body: Body, seats: Sequence[Seat]) -> str:
-    """A hint where the body would reach a base from both sides if its numbers were of another unit."""
+def _unit_hint(body: Body, seats: Sequence[Seat]) -> str:
+    """Return a hint if the body would reach a base from both sides with its numbers in another
+    unit.
+    """
     for factor, unit in UNITS:
         for seat in seats:
             vertices = seat.base.inside(factor * body.vertices)
-            away = seat.base.surface.distance(vertices)
+            heights = seat.base.surface.distance(vertices)
             z = vertices[:, 2]
             adjacent = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
-            if away.min() <= PAST_END_MM < away.max() and adjacent:
+            if heights.min() <= PAST_END_MM < heights.max() and adjacent:
                 return Text(
                     ". Times {:g} it would reach {}: is its file in {}? Then export it in mm, or give scale: {:g} "
                     "mm with it, as part.scale (in the window: Meshes, Scale)",
@@ -141,9 +154,10 @@ def _near(seat: Seat, points: Array, all_round: bool = False) -> Mask:
 def hub_among(
     bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_error: float, label: str
 ) -> int:
-    """Which of the solids of a part is the hub: the one that most of the others stand on.
+    """Return the index of the solid of a part that is the hub: the one on which most of the
+    others are based.
 
-    seats: of each solid. InputError NO_HUB.
+    seats: of each solid. Raises InputError NO_HUB.
     """
     votes = np.zeros(len(bodies), dtype=int)
     for k in range(len(bodies)):

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers of a solid on a hub: cut by equidistant surfaces, cut open where no contour is, laid flat (Dai 2020, 2.2).
+"""Layers of a solid on a hub: cut by equidistant surfaces, cut open where no contour is,
+unrolled (Dai 2020, 2.2).
 
-The cutting line is turned by the paper's steps of 11 deg, which come by every whole degree, until no contour crosses it.
-A contour that winds about the hub so far that none does, as a screw thread, is followed instead: its azimuth is counted on
-past a turn, so that it stays in one piece.
+The cutting line is turned by the paper's steps of 11 deg, which reach every whole degree,
+until no contour crosses it. A contour that winds around the hub so far that every line
+crosses it, such as a screw thread, is followed instead: its azimuth is unwrapped past a
+turn, so it stays in one piece.
 """
 
 from __future__ import annotations
@@ -25,13 +27,15 @@ from .equidistant import Facets, Loop
 
 STEP = math.radians(11.0)
 TRIES = 360
-ASIDE = 2.0  # chord errors; a cut keeps that far from facets that lie in its surface
+CLEARANCE_RATIO = 2.0  # chord errors; clearance of a cut from facets in its surface
 TOUCH = 0.004  # chord errors of cuts; a face that comes that near to a surface touches it
-REACH = 0.05  # mm; a solid that begins no further from a surface stands on it
+REACH = 0.05  # mm; a solid that begins no further from a surface is based on it
 
 
 class Flat(NamedTuple):
-    """Borders (n, 2) mm of layers laid flat, the solid to their left; middle: azimuth (rad) of x = 0."""
+    """Unrolled borders (n, 2) mm of layers, the solid to their left; middle: azimuth (rad) of x
+    = 0.
+    """
 
     borders: list[list[Array]]
     middle: float
@@ -40,36 +44,38 @@ class Flat(NamedTuple):
 def count(facets: Facets, height: float, margin: float, chord_error: float) -> int:
     """How many layers there are, at 0, `height`, twice that ... mm from the base."""
     top = float(facets.distances.max()) + margin
-    return step_count(top - ASIDE * chord_error, height, 0)
+    return step_count(top - CLEARANCE_RATIO * chord_error, height, 0)
 
 
 def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
-    """The loops (in the base's frame) of the solid just outside of the surface at `distance` mm, moved onto it.
+    """Return the loops (in the base's frame) of the solid just outside the surface at `distance`
+    mm, moved onto it.
 
-    Where facets lie in that surface, as the foot of a blade does in its hub, or the solid begins a hair outside of it, it
-    is cut further out: a cut through them would be what noise makes of it. A face that only touches the surface, as a
-    flat top does along a generatrix, touches it within TOUCH, wherever rounding has put it: it is not cut.
+    Where facets coincide with that surface, as the foot of a blade with its hub, or the solid
+    begins slightly outside it, the cut is further out: noise would decide a cut through them.
+    A face that only touches the surface, as a flat top along a generatrix, touches it within
+    TOUCH after rounding: it is not cut.
     """
     corners = facets.distances[facets.triangles]
     low, high = corners.min(axis=1), corners.max(axis=1)
     lying = (low > distance - chord_error) & (high < distance + chord_error)
     lowest = float(facets.distances.min())
     gap = lowest - distance if distance < lowest < distance + REACH else 0.0
-    aside = gap + ASIDE * chord_error if gap or lying.any() else -TOUCH * chord_error
-    found = facets.cut(distance + aside, chord_error)
-    return facets.moved(found, -aside)
+    aside = gap + CLEARANCE_RATIO * chord_error if gap or lying.any() else -TOUCH * chord_error
+    loops_aside = facets.cut(distance + aside, chord_error)
+    return facets.offset_loops(loops_aside, -aside)
 
 
-def opened(
+def unroll_layers(
     surface: Developable, layers: Sequence[Sequence[Loop]], centre: float, where: str
 ) -> Flat:
-    """Loops of layers moved onto one surface, none of which goes round it, laid flat together; cut open opposite to the
-    azimuth `centre`, or near that.
+    """Unroll loops of layers moved onto one surface, none of which goes around it, together.
 
-    InputError TOO_FAR_ROUND where a contour winds so far about a cone that it would lie on itself.
+    They are cut open opposite the azimuth `centre`, or near that. Raises InputError
+    TOO_FAR_ROUND if a contour winds so far around a cone that it would overlap itself.
     """
     loops = [loop for layer in layers for loop in layer]
-    azimuths = [_followed(loop.points, surface) for loop in loops]
+    azimuths = [_unwrap_azimuths(loop.points, surface) for loop in loops]
     spans = np.array([[azimuth.min(), azimuth.max()] for azimuth in azimuths]).reshape(-1, 2)
     for k in range(TRIES):
         middle = centre + k * STEP
@@ -85,10 +91,10 @@ def opened(
     return Flat([list(islice(flat, len(layer))) for layer in layers], centre)
 
 
-def _followed(points: Array, surface: Developable) -> Array:
-    """Azimuths (n,) along a loop, counted on past half a turn."""
-    found: Array = np.unwrap(surface.azimuth(points))
-    return found
+def _unwrap_azimuths(points: Array, surface: Developable) -> Array:
+    """Return azimuths (n,) along a loop, unwrapped."""
+    azimuths: Array = np.unwrap(surface.azimuth(points))
+    return azimuths
 
 
 def _in_one_piece(
@@ -98,7 +104,9 @@ def _in_one_piece(
     centre: float,
     where: str,
 ) -> tuple[Array, ...]:
-    """Loops laid flat by azimuths that go on past a turn; holes are moved by whole turns into what is about them."""
+    """Unroll loops by azimuths beyond a turn; holes are moved by whole turns into the contours
+    around them.
+    """
     shifted = [
         azimuth - centre - TURN * np.round((azimuth.mean() - centre) / TURN) for azimuth in azimuths
     ]
@@ -121,8 +129,8 @@ def _in_one_piece(
         if doubled_area(points) > 0.0:
             continue
         for turn in sorted(range(-turns, turns + 1), key=abs):
-            there = surface.unroll_at(shifted[k] + TURN * turn, loops[k].points[:, 2])
-            if winding(outer, there[:1])[0] > 0:
-                flat[k] = there
+            shifted_points = surface.unroll_at(shifted[k] + TURN * turn, loops[k].points[:, 2])
+            if winding(outer, shifted_points[:1])[0] > 0:
+                flat[k] = shifted_points
                 break
     return tuple(flat)

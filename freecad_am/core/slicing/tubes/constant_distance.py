@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers each point of which lies at the layer height from the nearest point of the curve below.
+"""Layers at the layer height, point by point, from the nearest point of the curve below.
 
-Chalvin 2019, equations 5 and 6, solved as one system: instead of a search over Delta_ij with a distance measured anew
-each time, Newton finds the height u on the line v = const and the nearest place w below together. Corners, where smooth
-stretches of the front meet, are found as points of their own and kept (errata).
+Chalvin 2019, equations 5 and 6, solved as one system: instead of a search over Delta_ij
+that recomputes a distance each time, Newton finds the height u on the line v = const
+together with the nearest position w below. Corners, where smooth stretches of the front
+meet, are found separately and kept (errata).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ AT_CORNER = 1e-9  # of the period; a grid point this near to a corner is the cor
 ABOVE = (
     1e-9  # of u: a third branch that overtops a crossing by more means that it is not the corner
 )
-NARROWEST = (
+MIN_INTERVAL = (
     1e-9  # of the period; a change of branch in a narrower stretch is a corner in its middle
 )
 
@@ -32,10 +33,11 @@ NARROWEST = (
 def next_layer(
     surface: Surface, below: WallLayer, height: float, grid: Array, label: str = "wall"
 ) -> WallLayer:
-    """The layer at the distance `height` (mm) from the curve of the layer below.
+    """Return the layer at the distance `height` (mm) from the curve of the layer below.
 
-    grid: (n,) values of v from one seam to the next, rising; nodes are added at corners and where cubic arcs would not
-    follow the front. InputError LAYER_HEIGHT where no point of a line v = const has that distance.
+    grid: (n,) values of v from one seam to the next, rising; nodes are added at corners and
+    where cubic arcs would not follow the front. Raises InputError LAYER_HEIGHT if no point of
+    a line v = const has that distance.
     """
     offset = Offset(surface, below.curve, below.u, height)
     period = grid[-1] - grid[0]
@@ -43,42 +45,46 @@ def next_layer(
     v = np.unique(np.r_[grid, ends])
     v = v[np.r_[True, np.diff(v) > AT_CORNER * period]]
     v[-1] = grid[-1]
-    places = _asked(offset, v, height, label)
+    positions = _evaluate_offset(offset, v, height, label)
     for _ in range(ROUNDS * 3):
-        corner, added = _corners(offset, v, places, period)
-        layer = _assembled(surface, offset, v, places, corner, period)
+        corner, added = _corners(offset, v, positions, period)
+        layer = _assemble_layer(surface, offset, v, positions, corner, period)
         if not len(added):
             added = finer_grid(layer.curve)
             if not len(added):
                 break
-        more = _asked(offset, added, height, label)
+        new_positions = _evaluate_offset(offset, added, height, label)
         order = np.argsort(np.r_[v, added], kind="stable")
         v = np.r_[v, added][order]
-        places = Places(*(np.concatenate(pair)[order] for pair in zip(places, more)))
+        positions = Places(*(np.concatenate(pair)[order] for pair in zip(positions, new_positions)))
     return layer
 
 
 def layers(
     surface: Surface,
-    first: WallLayer,
+    first_layer: WallLayer,
     height: float,
     u_end: float,
     points: int = 360,
     label: str = "wall",
 ) -> list[WallLayer]:
-    """All layers from the first to the first one wholly past u_end, each with at least `points` points."""
-    grid = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
-    done = [first]
-    while done[-1].u.min() < u_end:
-        refuse_too_many(len(done), height, label)
-        done.append(next_layer(surface, done[-1], height, grid, label))
-    return done
+    """Return all layers from the first to the first one wholly past u_end, each with at least
+    `points` points.
+    """
+    grid = first_layer.v[0] + (first_layer.v[-1] - first_layer.v[0]) * np.linspace(
+        0.0, 1.0, points + 1
+    )
+    wall_layers = [first_layer]
+    while wall_layers[-1].u.min() < u_end:
+        refuse_too_many(len(wall_layers), height, label)
+        wall_layers.append(next_layer(surface, wall_layers[-1], height, grid, label))
+    return wall_layers
 
 
-def _asked(offset: Offset, v: Array, height: float, label: str) -> Places:
-    places = offset.at(v)
-    if (places.run < 0).any():
-        where = v[np.flatnonzero(places.run < 0)[0]]
+def _evaluate_offset(offset: Offset, v: Array, height: float, label: str) -> Places:
+    positions = offset.evaluate(v)
+    if (positions.run < 0).any():
+        where = v[np.flatnonzero(positions.run < 0)[0]]
         raise InputError(
             "LAYER_HEIGHT",
             label,
@@ -87,7 +93,7 @@ def _asked(offset: Offset, v: Array, height: float, label: str) -> Places:
             where,
             height,
         )
-    return places
+    return positions
 
 
 class _Corners(NamedTuple):
@@ -99,58 +105,65 @@ class _Corners(NamedTuple):
     out: Array
 
 
-def _corners(offset: Offset, v: Array, places: Places, period: float) -> tuple[_Corners, Array]:
-    """The corners between neighbours on different branches, and values of v to ask for where it is not yet clear."""
-    at = np.flatnonzero(np.diff(places.run) != 0)
-    at = at[[not _smooth(offset, places, int(i)) for i in at]] if len(at) else at
-    if not len(at):
+def _corners(offset: Offset, v: Array, positions: Places, period: float) -> tuple[_Corners, Array]:
+    """Return the corners between neighbours on different branches, and values of v to evaluate
+    where this is not yet clear.
+    """
+    jumps = np.flatnonzero(np.diff(positions.run) != 0)
+    jumps = jumps[[not _smooth(offset, positions, int(i)) for i in jumps]] if len(jumps) else jumps
+    if not len(jumps):
         return _Corners(*(np.empty(0),) * 4), np.empty(0)
-    run = np.stack([places.run[at], places.run[at + 1]], axis=1)
-    w = np.stack([places.w[at], places.w[at + 1]], axis=1)
+    run = np.stack([positions.run[jumps], positions.run[jumps + 1]], axis=1)
+    w = np.stack([positions.w[jumps], positions.w[jumps + 1]], axis=1)
     where, u, w = offset.crossings(
-        v[at], v[at + 1], 0.5 * (places.u[at] + places.u[at + 1]), w, run
+        v[jumps], v[jumps + 1], 0.5 * (positions.u[jumps] + positions.u[jumps + 1]), w, run
     )
     clear = np.isfinite(where)
     if clear.any():
-        top = offset.at(where[clear]).u
+        top = offset.evaluate(where[clear]).u
         clear[clear] = top <= u[clear] + ABOVE * max(1.0, np.abs(u[clear]).max())
-    narrow = ~clear & (v[at + 1] - v[at] < NARROWEST * period)
-    where = np.where(narrow, 0.5 * (v[at] + v[at + 1]), where)
-    u = np.where(narrow, 0.5 * (places.u[at] + places.u[at + 1]), u)
-    w = np.where(narrow[:, None], np.stack([places.w[at], places.w[at + 1]], axis=1), w)
-    kept = clear | narrow
-    into = offset.slopes(where[kept], u[kept], w[kept, 0], run[kept, 0])
-    out = offset.slopes(where[kept], u[kept], w[kept, 1], run[kept, 1])
-    middle: Array = 0.5 * (v[at] + v[at + 1])[~kept]
-    return _Corners(where[kept], u[kept], into, out), middle
+    narrow = ~clear & (v[jumps + 1] - v[jumps] < MIN_INTERVAL * period)
+    where = np.where(narrow, 0.5 * (v[jumps] + v[jumps + 1]), where)
+    u = np.where(narrow, 0.5 * (positions.u[jumps] + positions.u[jumps + 1]), u)
+    w = np.where(narrow[:, None], np.stack([positions.w[jumps], positions.w[jumps + 1]], axis=1), w)
+    is_corner = clear | narrow
+    into = offset.slopes(where[is_corner], u[is_corner], w[is_corner, 0], run[is_corner, 0])
+    out = offset.slopes(where[is_corner], u[is_corner], w[is_corner, 1], run[is_corner, 1])
+    middle: Array = 0.5 * (v[jumps] + v[jumps + 1])[~is_corner]
+    return _Corners(where[is_corner], u[is_corner], into, out), middle
 
 
-def _smooth(offset: Offset, places: Places, i: int) -> bool:
-    """True where a branch goes over into the sphere about its own end: no corner."""
-    one, other = offset.runs[places.run[i]], offset.runs[places.run[i + 1]]
-    if one.fan == other.fan:
+def _smooth(offset: Offset, positions: Places, i: int) -> bool:
+    """Return True where a branch continues into the sphere about its own end: no corner."""
+    run_before, run_after = offset.runs[positions.run[i]], offset.runs[positions.run[i + 1]]
+    if run_before.fan == run_after.fan:
         return False
-    return bool(abs(one.v[-1] - other.v[0]) < 1e-12 and abs(one.w[-1] - other.w[0]) < 1e-12)
+    return bool(
+        abs(run_before.v[-1] - run_after.v[0]) < 1e-12
+        and abs(run_before.w[-1] - run_after.w[0]) < 1e-12
+    )
 
 
-def _assembled(
-    surface: Surface, offset: Offset, v: Array, places: Places, corner: _Corners, period: float
+def _assemble_layer(
+    surface: Surface, offset: Offset, v: Array, positions: Places, corner: _Corners, period: float
 ) -> WallLayer:
-    """The layer through the places asked for and the corners, which take the place of neighbours that coincide."""
+    """Return the layer through the positions and the corners, which replace neighbours that
+    coincide.
+    """
     where, u, into, out = corner
     start, end = v[0], v[-1]
-    near = np.searchsorted(np.sort(where), v)
+    neighbour = np.searchsorted(np.sort(where), v)
     gap = np.full(len(v), np.inf)
     if len(where):
         ordered = np.sort(where)
         gap = np.minimum(
-            np.abs(v - ordered[np.clip(near - 1, 0, len(where) - 1)]),
-            np.abs(v - ordered[np.clip(near, 0, len(where) - 1)]),
+            np.abs(v - ordered[np.clip(neighbour - 1, 0, len(where) - 1)]),
+            np.abs(v - ordered[np.clip(neighbour, 0, len(where) - 1)]),
         )
     keep = gap > AT_CORNER * period
     keep[[0, -1]] = True
     seam = np.minimum(np.abs(where - start), np.abs(where - end)) <= AT_CORNER * period
-    columns = np.stack([v, places.u, places.slope, places.slope])[:, keep]
+    columns = np.stack([v, positions.u, positions.slope, positions.slope])[:, keep]
     if seam.any():
         k = np.flatnonzero(seam)[0]
         columns[1:, 0] = columns[1:, -1] = u[k], into[k], out[k]

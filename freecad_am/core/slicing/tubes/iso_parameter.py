@@ -16,14 +16,15 @@ STEPS = 40
 
 
 def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "wall") -> WallLayer:
-    """The layer whose points lie at the chord `height` (mm) from those of the layer below with the same v.
+    """Return the layer whose points are at the chord `height` (mm) from points of the layer
+    below with the same v.
 
-    The chord is measured in space, as in equation 2, whose closed form this is on a torus. InputError
-    LAYER_HEIGHT where the wall bends so much that no such point exists.
+    The chord is measured in space, as in equation 2, whose closed form this is on a torus.
+    Raises InputError LAYER_HEIGHT if the wall bends too sharply for such a point to exist.
     """
     v, u, into, out = below.v, below.u, *below.slopes(surface)
     for _ in range(ROUNDS):
-        new, slopes = _stepped(surface, v, u, (into, out), height, label)
+        new, slopes = _step(surface, v, u, (into, out), height, label)
         layer = WallLayer.of(surface, v, new, *slopes)
         added = finer_grid(layer.curve)
         if not len(added):
@@ -34,20 +35,22 @@ def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "
 
 
 def layers(
-    surface: Surface, first: WallLayer, height: float, u_end: float, label: str = "wall"
+    surface: Surface, first_layer: WallLayer, height: float, u_end: float, label: str = "wall"
 ) -> list[WallLayer]:
-    """All layers from the first to the first one wholly past u_end."""
-    done = [first]
-    while done[-1].u.min() < u_end:
-        refuse_too_many(len(done), height, label)
-        done.append(next_layer(surface, done[-1], height, label))
-    return done
+    """Return all layers from the first to the first one wholly past u_end."""
+    wall_layers = [first_layer]
+    while wall_layers[-1].u.min() < u_end:
+        refuse_too_many(len(wall_layers), height, label)
+        wall_layers.append(next_layer(surface, wall_layers[-1], height, label))
+    return wall_layers
 
 
-def _stepped(
+def _step(
     surface: Surface, v: Array, u: Array, slopes: tuple[Array, Array], height: float, label: str
 ) -> tuple[Array, tuple[Array, Array]]:
-    """New u (m,) and its slopes on either side, from the implicit derivative of the chord."""
+    """Return the new u (m,) and its slopes on either side, from the implicit derivative of the
+    chord.
+    """
     base, along, around = surface.derivatives(u, v)
     new = u + height / np.linalg.norm(along, axis=1)
     for _ in range(STEPS):

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers in planes normal to the centreline of a tube: what multi-axis slicing of tubes did before (Chalvin 2018).
+"""Layers in planes normal to the centreline of a tube: the former multi-axis slicing of
+tubes (Chalvin 2018).
 
-Planes a layer height apart along the centreline open up like a fan on the outside of a bend and close on its inside;
-here they stand for comparison. On a torus their local distance is 2 rho sin(h / 2R) at the outside (rho = R + r) and
-at the inside (rho = R - r) of the bend.
+Planes a layer height apart along the centreline open up like a fan on the outside of a
+bend and close on its inside; they serve for comparison. On a torus their local distance
+is 2 rho sin(h / 2R) at the outside (rho = R + r) and at the inside (rho = R - r) of the
+bend.
 """
 
 from __future__ import annotations
@@ -19,20 +21,23 @@ from ...types import Array
 from ..backstop import refuse_too_many
 from .wall_layer import WallLayer
 
-SECTIONS, AROUND = (
+SECTIONS, SAMPLES_AROUND = (
     401,
     256,
 )  # sections of the wall from whose middles the centreline is taken, and points of each
-BEYOND = 0.5  # of the wall's length, how far past its end the centreline is followed
+EXTENSION_SHARE = 0.5  # of the wall's length, how far past its end the centreline is followed
 STEPS = 50
 
 
 class Centreline(NamedTuple):
-    """The middles of the sections u = const: `middle` gives points (n, 3) and, derived, tangents along u; `place` gives u
-    at a length (mm) along it."""
+    """The middles of the sections u = const.
+
+    middle: points (n, 3) and, derived, tangents along u. u_at_length: u at a length (mm)
+    along it.
+    """
 
     middle: CubicSpline
-    place: CubicSpline
+    u_at_length: CubicSpline
 
 
 def centreline(surface: Surface, low: float, high: float) -> Centreline:
@@ -40,11 +45,11 @@ def centreline(surface: Surface, low: float, high: float) -> Centreline:
     if surface.period is None:
         raise ValueError("a wall that is open in v has no centreline")
     u = np.linspace(low, high, SECTIONS)
-    v = surface.period * np.arange(AROUND) / AROUND
+    v = surface.period * np.arange(SAMPLES_AROUND) / SAMPLES_AROUND
     points, _, around = surface.derivatives(*np.meshgrid(u, v, indexing="ij"))
     share = np.linalg.norm(
         around, axis=-1, keepdims=True
-    )  # each point counts by the length of curve it stands for
+    )  # each point is weighted by the length of curve that it represents
     middle = CubicSpline(u, (points * share).sum(axis=1) / share.sum(axis=1))
     x, weight = np.polynomial.legendre.leggauss(5)
     step = np.diff(u)[:, None]
@@ -55,32 +60,37 @@ def centreline(surface: Surface, low: float, high: float) -> Centreline:
 
 def layers(
     surface: Surface,
-    first: WallLayer,
+    first_layer: WallLayer,
     height: float,
     u_end: float,
     points: int = 360,
     label: str = "wall",
 ) -> list[WallLayer]:
-    """The curves in planes `height` mm apart along the centreline, from the lowest point of `first` to the first curve
+    """Return the curves in planes `height` mm apart along the centreline, up to the first curve
     wholly past u_end.
 
-    Where they lie below `first` there is nothing to deposit. InputError NOT_NORMAL where a plane does not cut every line
-    v = const of the wall once, near its own section.
+    They start at the lowest point of `first_layer`; where they are below it there is nothing
+    to deposit. Raises InputError NOT_NORMAL if a plane does not cut every line v = const of
+    the wall once, near its own section.
     """
-    low = float(first.u.min())
-    # past its end a wall goes on, straight at least, so that the last planes cut it all around
-    middle, place = centreline(surface, low, u_end + BEYOND * (u_end - low))
-    v = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
-    done: list[WallLayer] = []
-    while not done or done[-1].u.min() < u_end:
-        refuse_too_many(len(done), height, label)
-        along = len(done) * height
-        if along > place.x[-1]:
+    low = float(first_layer.u.min())
+    # past its end the wall continues, at least straight, so the last planes cut it all around
+    middle, u_at_length = centreline(surface, low, u_end + EXTENSION_SHARE * (u_end - low))
+    v = first_layer.v[0] + (first_layer.v[-1] - first_layer.v[0]) * np.linspace(
+        0.0, 1.0, points + 1
+    )
+    wall_layers: list[WallLayer] = []
+    while not wall_layers or wall_layers[-1].u.min() < u_end:
+        refuse_too_many(len(wall_layers), height, label)
+        along = len(wall_layers) * height
+        if along > u_at_length.x[-1]:
             break
-        u = float(place(along))
+        u = float(u_at_length(along))
         tangent = middle(u, 1)
-        done.append(_in_plane(surface, v, u, middle(u), tangent / np.linalg.norm(tangent), label))
-    return done
+        wall_layers.append(
+            _in_plane(surface, v, u, middle(u), tangent / np.linalg.norm(tangent), label)
+        )
+    return wall_layers
 
 
 def _in_plane(

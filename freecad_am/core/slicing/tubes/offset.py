@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The curve on a wall at a constant distance in space from another: its smooth branches, before they are trimmed.
+"""The curve on a wall at a constant distance in space from another: its smooth branches,
+before trimming.
 
-Where the curve below is followed by w, a point of the wall at the distance h in the plane normal to the curve at C(w) is
-P(w) with |P - C|^2 = h^2 and (P - C).C' = 0. P has the v that it has: where the front gathers, v falls back as w rises
-(the focusing number 1 - (P - C).C''/|C'|^2 is negative there) and those points lie nearer to other places of the
-curve. Of all places C(w) the one whose sphere reaches highest up the line v = const carries the new layer: the
-layer is the upper envelope over the *runs*, the stretches with a positive focusing number, and over the *fans*, spheres
-about corners that stick out.
+With w along the curve below, a point of the wall at the distance h in the plane normal to
+the curve at C(w) is P(w) with |P - C|^2 = h^2 and (P - C).C' = 0. The v of P follows from
+this: where the front gathers, v falls as w rises (the focusing number 1 - (P -
+C).C''/|C'|^2 is negative there) and those points are nearer to other positions of the
+curve. The position C(w) whose sphere reaches highest up the line v = const carries the
+new layer. The layer is therefore the upper envelope over the *runs*, the stretches with a
+positive focusing number, and over the *fans*, spheres about convex corners.
 """
 
 from __future__ import annotations
@@ -28,8 +30,12 @@ TIE = (
 
 
 class Run(NamedTuple):
-    """One stretch of a branch, v rising. fan: all from one corner. low, high: bounds of w. first, last: arcs of
-    the curve between its corners (last = -1 where it has none). shift: what w and v were moved by, a period or none."""
+    """One stretch of a branch, v rising.
+
+    fan: all points belong to one corner. low, high: bounds of w. first_arc, last_arc: arcs of
+    the curve between its corners (last_arc = -1 without corners). shift: by which w and v
+    were moved, a period or none.
+    """
 
     v: Array
     u: Array
@@ -37,8 +43,8 @@ class Run(NamedTuple):
     fan: bool
     low: float
     high: float
-    first: int
-    last: int
+    first_arc: int
+    last_arc: int
     shift: float
 
 
@@ -67,10 +73,10 @@ class Offset:
         self.fan_ends: list[float] = []
         self.runs = self._runs(u)
 
-    def at(self, v: Array) -> Places:
-        """The uppermost branch at each v (n,), rising or not."""
+    def evaluate(self, v: Array) -> Places:
+        """Return the uppermost branch at each v (n,), in any order."""
         target, run, u, w = self._candidates(v)
-        u, w, sound = self._solved(v[target], u, w, run)
+        u, w, sound = self._solve(v[target], u, w, run)
         result = Places(
             np.full(len(v), -np.inf),
             np.zeros(len(v)),
@@ -81,14 +87,14 @@ class Offset:
         scale = TIE / self.height
         order = np.lexsort((run, target))
         for k in np.unique(run):  # runs come in the order of v
-            one = order[run[order] == k]
-            better = one[u[one] > result.u[target[one]] + scale]
+            rows = order[run[order] == k]
+            better = rows[u[rows] > result.u[target[rows]] + scale]
             for have, value in zip(result, (u, None, w, run)):
                 if value is not None:
                     have[target[better]] = value[better]
-        found = result.run >= 0
-        result.slope[found] = self.slopes(
-            v[found], result.u[found], result.w[found], result.run[found]
+        has_branch = result.run >= 0
+        result.slope[has_branch] = self.slopes(
+            v[has_branch], result.u[has_branch], result.w[has_branch], result.run[has_branch]
         )
         return result
 
@@ -102,22 +108,24 @@ class Offset:
     def crossings(
         self, low: Array, high: Array, u: Array, w: Array, run: Index
     ) -> tuple[Array, Array, Array]:
-        """Where two branches meet: v, u (k,) and w (k, 2), NaN where they do not between low and high (k,).
+        """Return where two branches meet: v, u (k,) and w (k, 2), NaN if not between low and high
+        (k,).
 
-        u (k,), w, run (k, 2): starting heights and the places of the left and the right branch.
+        u (k,), w, run (k, 2): starting heights and the positions of the left and the right
+        branch.
         """
         v, w = 0.5 * (low + high), w.copy()
         width = high - low
         fan = np.array([[self.runs[i].fan for i in row] for row in run])
         for _ in range(STEPS):
             point, along, around = self.surface.derivatives(u, v)
-            matrix, rest = np.zeros((len(v), 4, 4)), np.empty((len(v), 4))
+            matrix, residual = np.zeros((len(v), 4, 4)), np.empty((len(v), 4))
             for k in range(2):
                 base, slope, bend = self._below(w[:, k], run[:, k])
                 reach = point - base
                 on = 1.0 - fan[:, k]
-                rest[:, 2 * k] = dot(reach, reach) - self.height**2
-                rest[:, 2 * k + 1] = dot(reach, slope) * on
+                residual[:, 2 * k] = dot(reach, reach) - self.height**2
+                residual[:, 2 * k + 1] = dot(reach, slope) * on
                 matrix[:, 2 * k, 0], matrix[:, 2 * k, 1] = (
                     2.0 * dot(reach, along),
                     2.0 * dot(reach, around),
@@ -131,7 +139,7 @@ class Offset:
                     fan[:, k], 1.0, dot(reach, bend) - dot(slope, slope)
                 )
             try:
-                step = np.linalg.solve(matrix, rest[..., None])[..., 0]
+                step = np.linalg.solve(matrix, residual[..., None])[..., 0]
             except np.linalg.LinAlgError:
                 return np.full(len(v), np.nan), u, w
             over = np.maximum(1.0, np.abs(step[:, 1]) / width)[:, None]
@@ -146,69 +154,77 @@ class Offset:
         return np.where(sound, v, np.nan), u, w
 
     def _below(self, w: Array, run: Index) -> tuple[Array, Array, Array]:
-        """The curve below and its derivatives at w, each branch on its own side of a corner."""
+        """Return the curve below and its derivatives at w, each branch on its own side of a corner."""
         runs = self.runs
         shift = np.array([r.shift for r in runs])[run]
-        last = np.array([r.last for r in runs])[run]
+        last_arc = np.array([r.last_arc for r in runs])[run]
         base = w - shift
         if len(self.breaks):
-            found = np.searchsorted(self.curve.w, base, side="right") - 1
-            arc = np.clip(found, np.array([r.first for r in runs])[run], last)
+            index = np.searchsorted(self.curve.w, base, side="right") - 1
+            arc = np.clip(index, np.array([r.first_arc for r in runs])[run], last_arc)
         else:
             base = self.curve.wrap(base)
             arc = self.curve.arcs(base)
         return self.curve.evaluate_arcs(arc, (base - self.curve.w[arc]) / self.curve.span[arc])
 
     def _candidates(self, v: Array) -> tuple[Index, Index, Array, Array]:
-        """Which branches may carry each v: targets, runs and starting values of u and w, all (k,)."""
+        """Return branches that may carry each v: targets, runs and starting values of u and w, all
+        (k,).
+        """
         order = np.argsort(v, kind="stable")
         ordered = v[order]
-        parts: list[tuple[Index, Index, Array, Array]] = []
+        blocks: list[tuple[Index, Index, Array, Array]] = []
         for i, run in enumerate(self.runs):
-            # between its last sample and the place where it folds a run goes on
-            before = 1e-12 + (run.v[1] - run.v[0] if run.low < run.w[0] else 0.0)
-            after = 1e-12 + (run.v[-1] - run.v[-2] if run.high > run.w[-1] else 0.0)
-            one, other = np.searchsorted(ordered, (run.v[0] - before, run.v[-1] + after))
-            target = order[one:other]
+            # a run continues between its last sample and its fold
+            margin_before = 1e-12 + (run.v[1] - run.v[0] if run.low < run.w[0] else 0.0)
+            margin_after = 1e-12 + (run.v[-1] - run.v[-2] if run.high > run.w[-1] else 0.0)
+            start, stop = np.searchsorted(
+                ordered, (run.v[0] - margin_before, run.v[-1] + margin_after)
+            )
+            target = order[start:stop]
             if not len(target):
                 continue
             u = np.interp(v[target], run.v, run.u)
             w = np.interp(v[target], run.v, run.w)
-            if run.fan:  # from above, where the sphere is sure to be met
+            if run.fan:  # from above, where the sphere is certain to be met
                 u = np.full(len(target), run.u.max()) + self._rise
-            parts.append((target, np.full(len(target), i, dtype=np.intp), u, w))
-        if not parts:
+            blocks.append((target, np.full(len(target), i, dtype=np.intp), u, w))
+        if not blocks:
             return np.empty(0, np.intp), np.empty(0, np.intp), np.empty(0), np.empty(0)
-        target, run_of, u, w = (np.concatenate(column) for column in zip(*parts))
+        target, run_of, u, w = (np.concatenate(column) for column in zip(*blocks))
         return target, run_of, u, w
 
-    def _solved(self, v: Array, u: Array, w: Array, run: Index) -> tuple[Array, Array, Mask]:
-        """Newton in u and w at fixed v; which of the candidates came to a place of their own branch."""
+    def _solve(self, v: Array, u: Array, w: Array, run: Index) -> tuple[Array, Array, Mask]:
+        """Solve for u and w at fixed v by Newton; also returns which candidates converged on their
+        own branch.
+        """
         fan = np.array([r.fan for r in self.runs], dtype=bool)[run]
         low, high = (np.array([r[k] for r in self.runs])[run] for k in (4, 5))
         for _ in range(STEPS):
             point, along, _ = self.surface.derivatives(u, v)
             base, slope, bend = self._below(w, run)
             reach = point - base
-            rest = 0.5 * (dot(reach, reach) - self.height**2)
+            residual = 0.5 * (dot(reach, reach) - self.height**2)
             skew = np.where(fan, 0.0, dot(reach, slope))
             rise, lean = dot(reach, along), np.where(fan, 0.0, dot(along, slope))
             focus = np.where(fan, 1.0, dot(slope, slope) - dot(reach, bend))
             determinant = -rise * focus + skew * lean
             determinant = np.where(np.abs(determinant) > 1e-300, determinant, np.inf)
-            du = (-focus * rest + skew * skew) / determinant
-            dw = np.clip((rise * skew - lean * rest) / determinant, -0.2, 0.2)
+            du = (-focus * residual + skew * skew) / determinant
+            dw = np.clip((rise * skew - lean * residual) / determinant, -0.2, 0.2)
             u, w = u - du, np.where(fan, w, np.clip(w - dw, low, high))
             if (
-                np.abs(rest).max(initial=0.0) < CONVERGED * self.height**2
+                np.abs(residual).max(initial=0.0) < CONVERGED * self.height**2
                 and np.abs(dw).max(initial=0.0) < 1e-11
             ):
                 break
-        sound = (np.abs(rest) < 1e-8 * self.height**2) & (focus > 0.0) & (rise > 0.0)
+        sound = (np.abs(residual) < 1e-8 * self.height**2) & (focus > 0.0) & (rise > 0.0)
         return u, w, sound & (np.abs(skew) < 1e-7 * self.height * np.sqrt(dot(slope, slope)))
 
     def _forward(self, u: Array, arc: Index, t: Array) -> tuple[Array, Array, Array]:
-        """u, v and the focusing number (k,) of the points in the normal planes at t on arcs; NaN where there is none."""
+        """Return u, v and the focusing number (k,) of the points in the normal planes at t on arcs;
+        NaN where none exists.
+        """
         curve, h = self.curve, self.height
         base, slope, bend = curve.evaluate_arcs(arc, t)
         v = curve.w[arc] + t * curve.span[arc]
@@ -223,7 +239,7 @@ class Offset:
         for _ in range(STEPS):
             point, along, around = self.surface.derivatives(u, v)
             reach = point - base
-            rest, skew = 0.5 * (dot(reach, reach) - h * h), dot(reach, slope)
+            residual, skew = 0.5 * (dot(reach, reach) - h * h), dot(reach, slope)
             a, b, c, d = (
                 dot(reach, along),
                 dot(reach, around),
@@ -231,60 +247,67 @@ class Offset:
                 dot(around, slope),
             )
             determinant = a * d - b * c
-            du, dv = (d * rest - b * skew) / determinant, (a * skew - c * rest) / determinant
+            du, dv = (
+                (d * residual - b * skew) / determinant,
+                (a * skew - c * residual) / determinant,
+            )
             u, v = u - du, v - dv
-            if np.abs(rest).max() < CONVERGED * h * h and np.abs(dv).max() < 1e-11:
+            if np.abs(residual).max() < CONVERGED * h * h and np.abs(dv).max() < 1e-11:
                 break
-        sound = (np.abs(rest) < 1e-8 * h * h) & (np.abs(skew) < 1e-7 * h * np.sqrt(rate))
+        sound = (np.abs(residual) < 1e-8 * h * h) & (np.abs(skew) < 1e-7 * h * np.sqrt(rate))
         return np.where(sound, u, np.nan), np.where(sound, v, np.nan), 1.0 - dot(reach, bend) / rate
 
     def _samples(self, u: Array) -> tuple[Index, Array, Array, Array, Array]:
-        """Arc, t, u, v, focusing number of samples along the curve below: nodes, and more where the front gathers."""
+        """Return arc, t, u, v and focusing number of samples along the curve below: nodes, and more
+        where the front gathers.
+        """
         ends = self.breaks[1:] - 1
         arc = np.r_[np.arange(len(self.curve.span)), ends]
         t = np.r_[np.zeros(len(self.curve.span)), np.ones(len(ends))]
-        found = self._forward(u, arc, t)
-        number = found[2][: len(self.curve.span)]
-        least = np.fmin(number, np.roll(number, -1))
-        least[ends] = np.fmin(number[ends], found[2][len(number) :])
-        close = np.flatnonzero(least < GATHERING)
+        sampled = self._forward(u, arc, t)
+        number = sampled[2][: len(self.curve.span)]
+        min_number = np.fmin(number, np.roll(number, -1))
+        min_number[ends] = np.fmin(number[ends], sampled[2][len(number) :])
+        close = np.flatnonzero(min_number < GATHERING)
         if len(close):
-            more, places = np.repeat(close, 3), np.tile([0.25, 0.5, 0.75], len(close))
-            extra = self._forward(u, more, places)
-            arc, t = np.r_[arc, more], np.r_[t, places]
-            found = tuple(np.r_[one, other] for one, other in zip(found, extra))  # type: ignore[assignment]
+            extra_arcs, extra_t = np.repeat(close, 3), np.tile([0.25, 0.5, 0.75], len(close))
+            extra = self._forward(u, extra_arcs, extra_t)
+            arc, t = np.r_[arc, extra_arcs], np.r_[t, extra_t]
+            sampled = tuple(
+                np.r_[column, extra_column] for column, extra_column in zip(sampled, extra)
+            )  # type: ignore[assignment]
         order = np.lexsort((t, arc))
-        return arc[order], t[order], found[0][order], found[1][order], found[2][order]
+        return arc[order], t[order], sampled[0][order], sampled[1][order], sampled[2][order]
 
     def _runs(self, u: Array) -> list[Run]:
         arc, t, new, v, number = self._samples(u)
         self._rise = float(np.nanmax(new) - u.min()) if np.isfinite(new).any() else 0.0
         w = self.curve.w[arc] + t * self.curve.span[arc]
-        period, pieces = self.curve.period, max(1, len(self.breaks) - 1)
-        piece = (
+        period, piece_count = self.curve.period, max(1, len(self.breaks) - 1)
+        piece_number = (
             np.searchsorted(self.breaks, arc, side="right") - 1
             if len(self.breaks)
             else np.zeros(len(arc), np.intp)
         )
-        copies = np.array(
-            [-2, -1, 0, 1]
-        )  # started at a corner the curve begins up to a period late
+        copies = np.array([-2, -1, 0, 1])  # a curve started at a corner begins up to a period late
         turns = np.repeat(copies, len(arc))
         shift = turns * period
-        piece = np.tile(piece, len(copies)) + (turns * pieces if len(self.breaks) else 0)
+        piece_number = np.tile(piece_number, len(copies)) + (
+            turns * piece_count if len(self.breaks) else 0
+        )
         v, w, new, number = (np.tile(x, len(copies)) for x in (v, w, new, number))
         v, w = v + shift, w + shift
         good = (number > 0.0) & np.isfinite(v)
-        joined = good[1:] & good[:-1] & (piece[1:] == piece[:-1]) & (np.diff(v) > 0.0)
+        joined = good[1:] & good[:-1] & (piece_number[1:] == piece_number[:-1]) & (np.diff(v) > 0.0)
         start = np.flatnonzero(good & np.r_[True, ~joined])
         stop = np.flatnonzero(good & np.r_[~joined, True])
         runs: list[Run] = []
         for a, b in zip(start.tolist(), stop.tolist()):
             if b == a:
                 continue
-            low = w[max(a - 1, 0)] if a and piece[a - 1] == piece[a] else w[a]
-            high = w[b + 1] if b + 1 < len(w) and piece[b + 1] == piece[b] else w[b]
-            first, last = self._arcs_of(int(piece[a]) % pieces)
+            low = w[max(a - 1, 0)] if a and piece_number[a - 1] == piece_number[a] else w[a]
+            high = w[b + 1] if b + 1 < len(w) and piece_number[b + 1] == piece_number[b] else w[b]
+            first_arc, last_arc = self._arcs_of(int(piece_number[a]) % piece_count)
             runs.append(
                 Run(
                     v[a : b + 1],
@@ -293,15 +316,15 @@ class Offset:
                     False,
                     float(low),
                     float(high),
-                    first,
-                    last,
+                    first_arc,
+                    last_arc,
                     float(shift[a]) if len(self.breaks) else 0.0,
                 )
             )
         for k in np.flatnonzero(
-            (piece[1:] != piece[:-1]) & (v[1:] > v[:-1] + 1e-9)
-        ):  # corners that stick out
-            first, last = self._arcs_of(int(piece[k]) % pieces)
+            (piece_number[1:] != piece_number[:-1]) & (v[1:] > v[:-1] + 1e-9)
+        ):  # convex corners
+            first_arc, last_arc = self._arcs_of(int(piece_number[k]) % piece_count)
             runs.append(
                 Run(
                     v[k : k + 2],
@@ -310,8 +333,8 @@ class Offset:
                     True,
                     float(w[k]),
                     float(w[k]),
-                    first,
-                    last,
+                    first_arc,
+                    last_arc,
                     float(shift[k]),
                 )
             )
@@ -320,9 +343,9 @@ class Offset:
             runs[i] for i in np.lexsort(([run.v[-1] for run in runs], [run.v[0] for run in runs]))
         ]
 
-    def _arcs_of(self, piece: int) -> tuple[int, int]:
+    def _arcs_of(self, piece_number: int) -> tuple[int, int]:
         return (
-            (int(self.breaks[piece]), int(self.breaks[piece + 1]) - 1)
+            (int(self.breaks[piece_number]), int(self.breaks[piece_number + 1]) - 1)
             if len(self.breaks)
             else (0, -1)
         )

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Layers whose local distance may vary within a band, so that they stay free of corners.
 
-Fronts at an exactly constant distance gather into corners (errata of Chalvin 2019), at which a robot has to stop. The
-deposit tolerates some variation of the layer's height (Chalvin 2020): here each layer lies between the fronts at the least
-and the greatest distance allowed, and is as smooth as asked, or as the band allows. At the tip of a corner the front
-runs ahead and on its flanks it holds back, so that a corner of up to 2 acos((1 - band) / (1 + band)) stays round.
+Fronts at an exactly constant distance gather into corners (errata of Chalvin 2019), at
+which a robot has to stop. The deposit tolerates some variation of the layer height
+(Chalvin 2020): here each layer is between the fronts at the minimum and maximum distance
+allowed, and is as smooth as requested, or as the band allows. At the tip of a corner the
+front runs ahead and on its flanks it holds back, so a corner of up to 2 acos((1 - band) /
+(1 + band)) stays round.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from scipy.interpolate import CubicSpline
 from ...geometry.walls.surface import Surface, normals
 from ...issues import InputError
 from ...types import Array
-from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
+from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, lightest, smooth_between
 from ..directions import wall_turn
 from .offset import Offset
 from .wall_layer import WallLayer, local_distances
@@ -26,12 +28,13 @@ FINER = 4  # places per arc at which the result is measured
 
 
 class Smoothed(NamedTuple):
-    """A layer, the least and greatest local distance (mm), its sharpest turn within the wall (rad/mm), and which of the
-    weights it was made with."""
+    """A layer, its minimum and maximum local distance (mm), its sharpest turn within the wall
+    (rad/mm), and its weight number.
+    """
 
     layer: WallLayer
-    least: float
-    most: float
+    min_distance: float
+    max_distance: float
     turn: float
     weight: int
 
@@ -51,16 +54,18 @@ def next_layer(
     label: str = "wall",
     weight: int = HEAVY,
 ) -> Smoothed:
-    """The layer above `below`, as near to `height` mm as a turn within the wall of `limit` rad/mm allows.
+    """Return the layer above `below`, as near to `height` mm as a turn within the wall of
+    `limit` rad/mm allows.
 
-    grid: (n,) equally spread values of v from seam to seam. band: largest departure of the local distance, as a share of
-    the height. weight: where the search begins, best that of the layer below. Where the band is too narrow for the
-    limit, the band holds: see Smoothed.turn. InputError LAYER_HEIGHT where the wall has no point at such a distance.
+    grid: (n,) evenly spaced values of v from seam to seam. band: largest departure of the
+    local distance, as a share of the height. weight: start of the search, best the weight of
+    the layer below. If the band is too narrow for the limit, the band holds: see
+    Smoothed.turn. Raises InputError LAYER_HEIGHT if the wall has no point at such a distance.
     """
     fronts = []
     for share in (1.0, 1.0 - band * (1.0 - MARGIN), 1.0 + band * (1.0 - MARGIN)):
-        places = Offset(surface, below.curve, below.u, share * height).at(grid[:-1])
-        if (places.run < 0).any():
+        positions = Offset(surface, below.curve, below.u, share * height).evaluate(grid[:-1])
+        if (positions.run < 0).any():
             raise InputError(
                 "LAYER_HEIGHT",
                 label,
@@ -68,18 +73,21 @@ def next_layer(
                 "or a narrower band",
                 share * height,
             )
-        fronts.append(places.u)
-    wanted, low, high = fronts
+        fronts.append(positions.u)
+    target, low, high = fronts
 
     def trial(index: int) -> Smoothed | None:
-        found = _measured(
-            surface, below, grid, between(wanted, low, high, float(WEIGHTS[index])), index
+        candidate = _measured(
+            surface, below, grid, smooth_between(target, low, high, float(WEIGHTS[index])), index
         )
-        inside = found.least >= (1.0 - band) * height and found.most <= (1.0 + band) * height
-        return found if inside else None
+        inside = (
+            candidate.min_distance >= (1.0 - band) * height
+            and candidate.max_distance <= (1.0 + band) * height
+        )
+        return candidate if inside else None
 
     best = lightest(trial, weight, AIM * limit)
-    if best is None:  # a front that can only follow the one below, corners and all
+    if best is None:  # a front that can only follow the one below, including its corners
         raise InputError(
             "BAND",
             label,
@@ -92,7 +100,7 @@ def next_layer(
 
 def layers(
     surface: Surface,
-    first: WallLayer,
+    first_layer: WallLayer,
     height: float,
     u_end: float,
     band: float = 0.2,
@@ -100,15 +108,17 @@ def layers(
     points: int = 360,
     label: str = "wall",
 ) -> list[Smoothed]:
-    """All layers above the first up to the first one wholly past u_end."""
-    grid = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
-    done: list[Smoothed] = []
-    below = first
+    """Return all layers above the first up to the first one wholly past u_end."""
+    grid = first_layer.v[0] + (first_layer.v[-1] - first_layer.v[0]) * np.linspace(
+        0.0, 1.0, points + 1
+    )
+    smoothed_layers: list[Smoothed] = []
+    below = first_layer
     while below.u.min() < u_end:
-        weight = done[-1].weight if done else HEAVY
-        done.append(next_layer(surface, below, height, grid, band, limit, label, weight))
-        below = done[-1].layer
-    return done
+        weight = smoothed_layers[-1].weight if smoothed_layers else HEAVY
+        smoothed_layers.append(next_layer(surface, below, height, grid, band, limit, label, weight))
+        below = smoothed_layers[-1].layer
+    return smoothed_layers
 
 
 def _measured(surface: Surface, below: WallLayer, grid: Array, u: Array, weight: int) -> Smoothed:

@@ -66,9 +66,11 @@ def even_grid(surface: Surface, count: int, start: float = 0.0) -> Array:
 
 
 def local_distances(layer: WallLayer, below: WallLayer, finer: int = 1) -> tuple[Array, Array]:
-    """v (n,) and distance (n,) mm from the layer to the nearest point of the one below.
+    """Return v (n,) and the distance (n,) mm of the layer from the nearest point of the one
+    below.
 
-    finer: places per arc of the layer; 1 is its nodes alone. d_ij of Chalvin 2019, equation 6 and figures 6 and 8.
+    finer: points per arc of the layer; 1 uses only its nodes. d_ij of Chalvin 2019, equation
+    6 and figures 6 and 8.
     """
     v = layer.curve.refined(finer)
     return v, below.curve.nearest(layer.curve.at(v)[0])[0]

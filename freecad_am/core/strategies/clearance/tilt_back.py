@@ -24,7 +24,7 @@ from ...geometry.walls.surface import dot
 from ...issues import InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
-from ...slicing.directions.wall import limited, turn_rates
+from ...slicing.directions.wall import limit_turns, turn_rates
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..progress import Watch
@@ -300,8 +300,8 @@ def _slowed(
             rate, spread = 0.98 * rate * most / now, 1.5 * spread
             slower = asked.copy()
             try:
-                slower[row] = limited(
-                    space.points[row], asked[row], loop, rate, most=space.max_tilt
+                slower[row] = limit_turns(
+                    space.points[row], asked[row], loop, rate, max_lean=space.max_tilt
                 ).directions
             except InputError:
                 break

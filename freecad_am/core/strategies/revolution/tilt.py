@@ -95,7 +95,7 @@ class Tilting:
         )
         clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, deposit, self.chord)
         angle, issues = self._resolved(cases, clearance, layer)
-        build = directions.tilted_back(cases.build, angle)
+        build = directions.tilt_back(cases.build, angle)
         every = range(1, len(radius))
         return np.split(build, every), np.split(self._tool(build, cases.rising), every), issues
 
@@ -139,7 +139,7 @@ class Tilting:
             self.nozzle, self._lean, self.platform, tips.rows(rows), deposit, self.chord, tips
         )
         angle, issues = self._resolved(cases, clearance, layer)
-        build = directions.tilted_back(build, angle[number])
+        build = directions.tilt_back(build, angle[number])
         return (
             np.split(build, begin[1:]),
             np.split(self._tool(build, rising[bead]), begin[1:]),
@@ -169,7 +169,7 @@ class Tilting:
 
     def axes(self, tangent: Array, angle: Array, rising: bool) -> tuple[Array, Array]:
         """Build directions and tool axes (n, 3) on full circles from meridian tangents (n, 2) and tilt-backs (n,)."""
-        build = directions.tilted_back(self.build(tangent), angle)
+        build = directions.tilt_back(self.build(tangent), angle)
         return build, self._tool(build, np.full(len(tangent), rising))
 
     def _resolved(
@@ -209,7 +209,7 @@ class Tilting:
         tool = np.empty_like(build)
         for sense in (True, False):
             rows = rising == sense
-            tool[rows] = directions.held(
+            tool[rows] = directions.lean_tool(
                 build[rows], self.parameters.lead, self.parameters.tilt, sense
             )
         return tool
@@ -221,7 +221,7 @@ class Tilting:
             return np.maximum(directions.from_vertical(cases.build) - cap, 0.0)
 
         def good(some: Index, angle: Array) -> Mask:
-            tool = self._tool(directions.tilted_back(cases.build[some], angle), cases.rising[some])
+            tool = self._tool(directions.tilt_back(cases.build[some], angle), cases.rising[some])
             return np.asarray(directions.from_vertical(tool) <= cap + 1e-12)
 
         angle = directions.least_tilt_back(cases.build, np.zeros(len(cases.bead)), good)
@@ -263,7 +263,7 @@ class Tilting:
             return np.where(share > 0.0, np.minimum(known + STEEP * share, most), 0.0)
         if clearance.between is None:
             return np.zeros(len(angle))
-        build = directions.tilted_back(
+        build = directions.tilt_back(
             deposit.build, np.interp(deposit.case, np.arange(len(angle), dtype=float), angle)
         )
         tool = self._tool(build, np.full(len(build), cases.rising[0]))
@@ -289,11 +289,11 @@ class Tilting:
         among: Scene | None = None
         for sweep in range(SWEEPS):
             back = np.interp(deposit.case, number, angle)
-            among = clearance.standing(directions.tilted_back(deposit.build, back), among)
+            among = clearance.standing(directions.tilt_back(deposit.build, back), among)
 
             def good(some: Index, tried: Array, among: Scene = among) -> Mask:
                 tool = self._tool(
-                    directions.tilted_back(cases.build[some], tried), cases.rising[some]
+                    directions.tilt_back(cases.build[some], tried), cases.rising[some]
                 )
                 return clearance.clear(among, some, tool)
 
@@ -319,7 +319,7 @@ class Tilting:
         at = layer[cases.bead]
         cap = Text("{:.6g} deg", np.degrees(self.parameters.max_tilt))
         issues = []
-        tool = self._tool(directions.tilted_back(cases.build, angle), cases.rising)
+        tool = self._tool(directions.tilt_back(cases.build, angle), cases.rising)
         over = directions.from_vertical(tool) > self.parameters.max_tilt + 1e-9
         if over.any():
             issues.append(

@@ -17,7 +17,7 @@ from ...geometry.frames import unit
 from ...issues import InputError
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
-from ...slicing.directions.wall import limited, turn_rates
+from ...slicing.directions.wall import limit_turns, turn_rates
 from ...types import Array
 
 OF_NORMAL = 1.5  # a torch that leans may turn faster than the normals by that, whatever is asked
@@ -73,7 +73,7 @@ def evened(course: Course, way: Array, build: BuildDirectionParameters, leaning:
     if turn_rates(points, normals).max() <= most:
         return Evened(course, 0.0, 0.0)
     try:
-        found = limited(points, normals, course.closed, WITHIN * most)
+        found = limit_turns(points, normals, course.closed, WITHIN * most)
     except InputError:
         return Evened(course, 0.0, 0.0)
     off = found.departure > LEAST_DEPARTURE

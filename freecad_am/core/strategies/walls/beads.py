@@ -15,7 +15,7 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
 from ...process import classes
-from ...slicing.directions.wall import local
+from ...slicing.directions.wall import local_directions
 from ...toolpath import Bead
 from ...types import Array
 from .directions import Along, Directions, directions
@@ -79,7 +79,7 @@ def along(trace: Traced, normal: Array, up: Array) -> Along:
     normal: (n, 3) out of the wall. up: (n, 3) any vectors away from the layer below that are not along the bead.
     """
     into, out = trace.tangents[:, 0], trace.tangents[:, 1]
-    return Along(unit(into + out), local(normal, into, out, up), normal)
+    return Along(unit(into + out), local_directions(normal, into, out, up), normal)
 
 
 class BeadSettings(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from ...geometry.walls.surface_wall import Placed, SurfaceWall
 from ...issues import InputError
 from ...parameters.strategy import SurfaceParameters
-from ...slicing.first_layer import on_polyline
+from ...slicing.first_layer import interpolate_polyline
 from ...slicing.tubes import normal_layers
 from ...slicing.tubes.smooth_spacing import turns_in_wall
 from ...slicing.tubes.wall_layer import WallLayer, local_distances
@@ -61,7 +61,7 @@ class Refused:
 def compare(wall: SurfaceWall, strategy: SurfaceParameters) -> tuple[Compared | Refused, ...]:
     """The wall cut by every method of METHODS with the layer height, band and largest turn of the strategy."""
     surface = wall.surface()
-    first = on_polyline(surface, wall.first, label=wall.label)
+    first = interpolate_polyline(surface, wall.first, label=wall.label)
     found: list[Compared | Refused] = []
     for method in METHODS:
         try:

@@ -11,7 +11,13 @@ from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface_wall import SurfaceWall
 from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
-from ...slicing.directions.wall import LEAST, capped, held, in_plane, limited
+from ...slicing.directions.wall import (
+    MIN_IN_PLANE,
+    cap_lean,
+    lean_tool,
+    limit_turns,
+    project_onto_plane,
+)
 from ...types import Array
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -81,15 +87,18 @@ def directions(
     elif build.mode == "layer":
         mean = up.mean(axis=0)
         length = np.linalg.norm(mean)
-        up = np.tile(mean / length if length > LEAST else UP, (len(up), 1))
-    tool = held(up, along.forward, along.normal, build.lead, build.tilt)
+        up = np.tile(mean / length if length > MIN_IN_PLANE else UP, (len(up), 1))
+    tool = lean_tool(up, along.forward, along.normal, build.lead, build.tilt)
     both = [up] if tool is up else [up, tool]
     if plane is not None:
-        both = [in_plane(axes, plane, label) for axes in both]
-    turned = [capped(axes, build.max_tilt) for axes in both]
+        both = [project_onto_plane(axes, plane, label) for axes in both]
+    turned = [cap_lean(axes, build.max_tilt) for axes in both]
     both, back, spread = [axes for axes, _ in turned], turned[-1][1], 0.0
     if build.turn() < np.inf:  # last, for turned back beyond the level they turn faster
-        slower = [limited(points, axes, closed, build.turn(), most=build.max_tilt) for axes in both]
+        slower = [
+            limit_turns(points, axes, closed, build.turn(), max_lean=build.max_tilt)
+            for axes in both
+        ]
         both, spread = (
             [axes for axes, _ in slower],
             float(max(departure.max() for _, departure in slower)),

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...issues import NOTE, Issue, Text
-from ...slicing.fronts.feet import feet
+from ...slicing.fronts.feet import nearest_feet
 from ...slicing.fronts.rims import Rims
 
 SAMPLES = 100  # points along a front at which it is asked what it lies on
@@ -48,7 +48,9 @@ def _parents(front: SpaceCurve, below: list[Piece]) -> list[Piece]:
     points = front.at(
         np.linspace(front.w[0], front.w[-1], SAMPLES + 1)[:-1] + 0.5 * front.period / SAMPLES
     )[0]
-    count = np.bincount(feet([piece.curve for piece in below], points).front, minlength=len(below))
+    count = np.bincount(
+        nearest_feet([piece.curve for piece in below], points).front, minlength=len(below)
+    )
     order = np.argsort(-count, kind="stable")
     return [below[k] for k in order if count[k] >= LEAST_COMMON]
 

@@ -19,9 +19,9 @@ from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
-from ...slicing.curve_points import within_chord
+from ...slicing.curve_points import sample_within_chord
 from ...slicing.fronts import layers as slicing
-from ...slicing.fronts.feet import feet, local_distances
+from ...slicing.fronts.feet import local_distances, nearest_feet
 from ...slicing.fronts.rims import Rims
 from ...slicing.fronts.slicing import Smoothing
 from ...slicing.fronts.smooth import turn
@@ -96,7 +96,7 @@ def _sliced(
 ) -> slicing.Sliced:
     """The layers of a wall, as they were found before where they were."""
     if wall not in _SLICED or _SLICED[wall][0] != (height, smoothing):
-        layers = slicing.layers(
+        layers = slicing.slice_layers(
             wall, height, smoothing, lambda done, text: progress(FINDING * done, text)
         )
         _SLICED[wall] = (height, smoothing), layers
@@ -142,7 +142,9 @@ def _kept(
     if not kept:
         raise InputError("TOO_LOW", label, "its end cuts the first layer off; make it longer")
     last = [piece.curve for layer in kept for piece in layer if not piece.children]
-    remainder = float(feet(last, rims.upper).distance.max()) if last and len(rims.upper) else 0.0
+    remainder = (
+        float(nearest_feet(last, rims.upper).distance.max()) if last and len(rims.upper) else 0.0
+    )
     text = Text("up to {:.4g} mm of the wall are left above the last whole layer", remainder)
     note = Issue(NOTE, "REMAINDER", text, len(kept) - 1)
     return kept, [note] if remainder > 1e-4 * strategy.layer_height else []
@@ -205,7 +207,7 @@ def _layers(
             curve = way.piece.curve
             trace = traced(
                 curve,
-                within_chord(curve, way.start, way.start + curve.period, chord_error),
+                sample_within_chord(curve, way.start, way.start + curve.period, chord_error),
                 curve.closed,
             )
             points, normal = wall.project(

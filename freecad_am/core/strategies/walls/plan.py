@@ -15,8 +15,8 @@ from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
-from ...slicing.curve_points import within_chord
-from ...slicing.first_layer import on_polyline
+from ...slicing.curve_points import sample_within_chord
+from ...slicing.first_layer import interpolate_polyline
 from ...slicing.tubes import constant_distance, iso_parameter, smooth_spacing
 from ...slicing.tubes.wall_layer import WallLayer, local_distances
 from ...toolpath import Layer, Toolpath
@@ -83,7 +83,7 @@ def plan(
 
 def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> list[WallLayer]:
     """The fronts from the substrate up, the last of them at or past the end of the wall somewhere."""
-    first = on_polyline(surface, wall.first, label=wall.label)
+    first = interpolate_polyline(surface, wall.first, label=wall.label)
     if strategy.spacing == "smooth":
         found = smooth_spacing.layers(
             surface,
@@ -173,9 +173,9 @@ def _layers(
 def _parameters(stretch: Stretch, start: float, chord_error: float) -> Array:
     curve = stretch.front.curve
     if not stretch.closed:
-        return within_chord(curve, stretch.low, stretch.high, chord_error)
+        return sample_within_chord(curve, stretch.low, stretch.high, chord_error)
     low = float(curve.wrap(np.array([start]))[0])
-    return within_chord(curve, low, low + curve.period, chord_error)
+    return sample_within_chord(curve, low, low + curve.period, chord_error)
 
 
 @dataclass(frozen=True)
